@@ -1,0 +1,4 @@
+//! Implicit polynomials as sums of products of complex lines.
+mod line;
+
+pub use line::{Decomposition, Line};

@@ -1,0 +1,4 @@
+//! Riccati dynamics of complex lines.
+mod motion;
+
+pub use motion::{AffineMotion, RigidMotion};
