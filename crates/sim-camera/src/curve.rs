@@ -97,22 +97,48 @@ struct Knot {
     tangent: Vector2<f64>,
 }
 
+/// Unit tangents at the smooth vertices, zero at corners, from the cubic spline in chord-length parameters: with spans
+/// h, chord slopes D and slopes m, `m0/h0 + 2 (1/h0 + 1/h1) m1 + m2/h1 = 3 (D0/h0 + D1/h1)`. The span next to a corner is
+/// a parabola, `m0 = 2 D0 - m1`.
+fn spline_tangents(vertices: &[Vertex]) -> Vec<Vector2<f64>> {
+    /// The system is dominated by its diagonal 2 to 1, so that a sweep gains two bits or more.
+    const SWEEPS: usize = 40;
+    let count = vertices.len();
+    let chord = |i: usize| vertices[(i + 1) % count].position() - vertices[i % count].position();
+    let mut slopes = vec![Vector2::zeros(); count];
+    for i in (0..SWEEPS * count).map(|k| k % count).filter(|i| matches!(vertices[*i], Vertex::Smooth(..))) {
+        let (mut diagonal, mut right) = (0.0, Vector2::zeros());
+        for (other, chord) in [((i + count - 1) % count, chord(i + count - 1)), ((i + 1) % count, chord(i))] {
+            let h = chord.norm();
+            let slope = chord / h;
+            match vertices[other] {
+                Vertex::Smooth(..) => {
+                    diagonal += 2.0 / h;
+                    right += (3.0 * slope - slopes[other]) / h;
+                }
+                Vertex::Corner(..) => {
+                    diagonal += 1.0 / h;
+                    right += slope / h;
+                }
+            }
+        }
+        slopes[i] = right / diagonal;
+    }
+    slopes.into_iter().map(|m| m.try_normalize(0.0).unwrap_or_default()).collect()
+}
+
 /// The closed curve with continuous tangent through the vertices of a drawing.
 pub(crate) fn smooth_path(vertices: &[Vertex]) -> Vec<Segment> {
     let count = vertices.len();
     let at = |i: usize| vertices[i % count].position();
-    // Tangent of the parabola through three neighbours, in chord-length parameters.
-    let smooth_tangent = |i: usize| {
-        let (before, after) = (at(i) - at(i + count - 1), at(i + 1) - at(i));
-        (before.normalize() * after.norm() + after.normalize() * before.norm()).normalize()
-    };
+    let tangents = spline_tangents(vertices);
     // A corner's side runs straight to another corner, and to a smooth vertex along a circular arc.
     let side = |corner: usize, other: usize| {
         let chord = (at(other) - at(corner)).normalize();
         match vertices[other % count] {
             Vertex::Corner(..) => chord,
             Vertex::Smooth(..) => {
-                let tangent = smooth_tangent(other);
+                let tangent = tangents[other % count];
                 let along = if tangent.dot(&chord) < 0.0 { -tangent } else { tangent };
                 2.0 * along.dot(&chord) * chord - along
             }
@@ -121,7 +147,7 @@ pub(crate) fn smooth_path(vertices: &[Vertex]) -> Vec<Segment> {
     let mut knots = Vec::with_capacity(2 * count);
     for (i, vertex) in vertices.iter().enumerate() {
         match *vertex {
-            Vertex::Smooth(x, y) => knots.push(Knot { point: Point2::new(x, y), tangent: smooth_tangent(i) }),
+            Vertex::Smooth(x, y) => knots.push(Knot { point: Point2::new(x, y), tangent: tangents[i] }),
             Vertex::Corner(x, y, cut) => {
                 let (back, forward) = (side(i, i + count - 1), side(i, i + 1));
                 let corner = Point2::new(x, y);
