@@ -1,18 +1,19 @@
-use nalgebra::{Complex, Matrix3};
+use nalgebra::{Complex, Matrix3, RowVector3};
 
 /// Norm beyond which no digit of an exponential is left in f64: a turn by 1e15 rad has lost its phase.
 const MEANINGFUL_NORM: f64 = 1e15;
 
-/// `expm(m)`; all NaN where `m` is not finite or so large that nothing could be told.
+/// `expm(m)`; all NaN where `m` is not finite or so large that nothing could be told. Where the last row of `m` is zero,
+/// that of the result is exactly `(0, 0, 1)`.
 pub(crate) fn exponential(m: &Matrix3<f64>) -> Matrix3<f64> {
     // The library scales by powers of two until the norm is small, which for an infinite norm never ends.
-    if m.iter().all(|e| e.abs() < MEANINGFUL_NORM) { m.exp() } else { Matrix3::repeat(f64::NAN) }
-}
-
-/// `expm` of a generator whose last row is zero, with a last row of exactly `(0, 0, 1)`.
-pub(crate) fn affine_exponential(m: &Matrix3<f64>) -> Matrix3<f64> {
-    let mut map = exponential(m);
-    map.set_row(2, &nalgebra::RowVector3::new(0.0, 0.0, 1.0));
+    if !m.iter().all(|e| e.abs() < MEANINGFUL_NORM) {
+        return Matrix3::repeat(f64::NAN);
+    }
+    let mut map = m.exp();
+    if m.row(2).iter().all(|&e| e == 0.0) {
+        map.set_row(2, &RowVector3::new(0.0, 0.0, 1.0));
+    }
     map
 }
 

@@ -1,6 +1,6 @@
 use nalgebra::{Affine2, Complex, Matrix3, Projective2};
 
-use crate::exponential::{affine_exponential, exponential, exponential_quotient};
+use crate::exponential::{exponential, exponential_quotient};
 
 /// Constant rigid motion `x' = omega y + b1`, `y' = -omega x + b2` in the fixed image frame.
 ///
@@ -88,7 +88,7 @@ impl AffineMotion {
     /// The map of the plane that the motion makes in `seconds`, `expm(A seconds)`.
     #[must_use]
     pub fn flow(&self, seconds: f64) -> Affine2<f64> {
-        Affine2::from_matrix_unchecked(affine_exponential(&(self.generator() * seconds)))
+        Affine2::from_matrix_unchecked(exponential(&(self.generator() * seconds)))
     }
 }
 

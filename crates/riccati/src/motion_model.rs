@@ -1,9 +1,6 @@
 use nalgebra::{Matrix3, Projective2};
 
-use crate::{
-    exponential::{affine_exponential, exponential},
-    motion::SimilarityMotion,
-};
+use crate::{exponential::exponential, motion::SimilarityMotion};
 
 /// Family of motions of the plane, and with it the meaning of a parameter vector theta: `A = sum theta_j E_j`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -111,8 +108,7 @@ impl MotionModel {
                     (generator[(0, 0)], generator[(0, 1)], generator[(0, 2)], generator[(1, 2)]);
                 SimilarityMotion { sigma, omega, b1, b2 }.flow(seconds).to_homogeneous()
             }
-            Self::Affine => affine_exponential(&(generator * seconds)),
-            Self::Projective => exponential(&(generator * seconds)),
+            Self::Affine | Self::Projective => exponential(&(generator * seconds)),
         };
         Projective2::from_matrix_unchecked(map)
     }
