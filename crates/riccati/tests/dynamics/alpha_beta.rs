@@ -118,8 +118,8 @@ proptest! {
         };
         let end = dop853(rate, start, 0.0, t);
         let moved = factors.moved(&motion.flow(t)).coefficients;
-        prop_assert!((moved.alpha - end[12]).abs() < 1e-11 * moved.alpha.abs().max(1.0));
-        prop_assert!((moved.beta - end[13]).abs() < 1e-11 * moved.beta.abs().max(1.0));
+        prop_assert!((moved.alpha - end[12]).abs() < 1e-12 * moved.alpha.abs().max(1.0));
+        prop_assert!((moved.beta - end[13]).abs() < 1e-12 * moved.beta.abs().max(1.0));
     }
 
     #[test]

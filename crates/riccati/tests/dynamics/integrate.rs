@@ -101,7 +101,7 @@ proptest! {
         let flow = integrator().flow(motion, from, from + seconds).expect("smooth");
         let (moved, _) = moved_line(&line, &flow.map).expect("in the chart");
         let expected = freeform_decompose::Line::from(RealVariables::from(Vector4::from(end)));
-        prop_assert!(distance(moved.l, expected.l) < 1e-10 && distance(moved.k, expected.k) < 1e-10);
+        prop_assert!(distance(moved.l, expected.l) < 1e-12 && distance(moved.k, expected.k) < 1e-12);
     }
 
     #[test]

@@ -119,7 +119,7 @@ proptest! {
 
     #[test]
     fn the_flow_of_every_model_is_the_exponential_of_its_generator(
-        (model, parameters) in model_and_parameters(), t in -1.5..1.5,
+        (model, parameters) in model_and_parameters(), t in -1.5..1.5_f64,
     ) {
         let expected = (model.generator(&parameters) * t).exp();
         let flow = *model.flow(&parameters, t).matrix();

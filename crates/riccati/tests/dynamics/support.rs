@@ -13,7 +13,7 @@ impl<const N: usize, F: Fn(f64, &[f64; N]) -> [f64; N]> ODE<f64, [f64; N]> for S
 }
 
 /// Solution at `to` of `y' = rate(t, y)` by the Runge-Kutta method of order 8 of Dormand and Prince.
-pub fn dop853<const N: usize>(
+pub(crate) fn dop853<const N: usize>(
     rate: impl Fn(f64, &[f64; N]) -> [f64; N],
     start: [f64; N],
     from: f64,
@@ -26,19 +26,19 @@ pub fn dop853<const N: usize>(
 }
 
 /// A line of a well-conditioned closed curve of about unit size.
-pub fn line() -> impl Strategy<Value = Line> {
+pub(crate) fn line() -> impl Strategy<Value = Line> {
     (-1.5..1.5, 0.3..2.0, -1.0..1.0, -1.0..1.0, any::<bool>()).prop_map(|(l1, l2, k1, k2, conjugate)| {
         let line = Line { l: Complex::new(l1, l2), k: Complex::new(k1, k2) };
         if conjugate { line.conjugate() } else { line }
     })
 }
 
-pub fn affine_motion() -> impl Strategy<Value = AffineMotion> {
+pub(crate) fn affine_motion() -> impl Strategy<Value = AffineMotion> {
     prop::array::uniform6(-0.8..0.8).prop_map(|[a1, a2, a3, a4, b1, b2]| AffineMotion { a1, a2, a3, a4, b1, b2 })
 }
 
 /// A full 3x3 generator with a small last row, so that a unit-size object stays in front of the camera.
-pub fn generator() -> impl Strategy<Value = Matrix3<f64>> {
+pub(crate) fn generator() -> impl Strategy<Value = Matrix3<f64>> {
     (affine_motion(), prop::array::uniform3(-0.25..0.25)).prop_map(|(motion, [c1, c2, c3])| {
         let mut generator = motion.generator();
         generator.set_row(2, &nalgebra::RowVector3::new(c1, c2, c3));
@@ -47,7 +47,7 @@ pub fn generator() -> impl Strategy<Value = Matrix3<f64>> {
 }
 
 /// A model and parameters for it.
-pub fn model_and_parameters() -> impl Strategy<Value = (MotionModel, Vec<f64>)> {
+pub(crate) fn model_and_parameters() -> impl Strategy<Value = (MotionModel, Vec<f64>)> {
     (prop::sample::select(&MotionModel::ALL[..]), prop::array::uniform8(-0.8..0.8)).prop_map(|(model, mut values)| {
         values[6] *= 0.3;
         values[7] *= 0.3;
@@ -56,16 +56,16 @@ pub fn model_and_parameters() -> impl Strategy<Value = (MotionModel, Vec<f64>)> 
 }
 
 /// An affine map that is far from singular.
-pub fn affine_map() -> impl Strategy<Value = Affine2<f64>> {
+pub(crate) fn affine_map() -> impl Strategy<Value = Affine2<f64>> {
     (affine_motion(), 0.1..1.0).prop_map(|(motion, seconds)| motion.flow(seconds))
 }
 
-pub fn distance(a: Complex<f64>, b: Complex<f64>) -> f64 {
+pub(crate) fn distance(a: Complex<f64>, b: Complex<f64>) -> f64 {
     (a - b).norm() / b.norm().max(1.0)
 }
 
 /// Largest difference of two lists of numbers relative to the largest entry of the second.
-pub fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let scale = b.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
     a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / scale
