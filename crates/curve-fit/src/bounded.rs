@@ -13,14 +13,16 @@ use crate::{
     ridge::binomial,
 };
 
-/// The path ends where the duality gap of a problem scaled to size 1 has fallen to this.
-const GAP_TOLERANCE: f64 = 1e-14;
+/// The solution is the point of the central path with this duality gap, in a problem scaled to size 1. Ending on the
+/// path, a smooth function of the data, rather than near its end makes the fit move with the data to rounding.
+const FINAL_GAP: f64 = 1e-13;
+/// Full Newton steps towards that point before it is taken as reached.
+const FINAL_STEPS: usize = 4;
 /// Where rounding allows no more progress, this is still accepted: every point of the path is bounded, and the fit is
 /// then this close to optimal. Measured where the constraint is hard: below 1e-12 for quartics, 1e-10 for sextics, 1e-6
 /// for octics, whose monomials are nearly dependent.
 const ACCEPTED_GAP: f64 = 1e-5;
 const MINIMAL_STEP: f64 = 1e-7;
-const RESIDUAL_TOLERANCE: f64 = 1e-14;
 const MAX_ITERATIONS: usize = 80;
 /// Steps stop short of the boundary of the positive semidefinite cone by this fraction.
 const FRACTION_TO_BOUNDARY: f64 = 0.97;
@@ -91,14 +93,16 @@ impl<const ROWS: usize, const UNKNOWNS: usize, const FORM: usize> GramProblem<RO
         let mut primal = SMatrix::<f64, ROWS, ROWS>::identity();
         let mut dual = SMatrix::<f64, ROWS, ROWS>::identity();
         let mut centring = 0.3;
+        let mut full_steps = 0;
         for iteration in 0.. {
             let y = Self::vector(&primal);
             let residual = (self.normal * y - self.projection - Self::vector(&dual)).norm();
             let gap = primal.dot(&dual) / ROWS as f64;
-            if gap <= GAP_TOLERANCE && residual <= RESIDUAL_TOLERANCE {
+            if full_steps == FINAL_STEPS {
                 break;
             }
-            let length = match self.step(&primal, &dual, centring * gap) {
+            let target = (centring * gap).max(FINAL_GAP);
+            let length = match self.step(&primal, &dual, target) {
                 Some((primal_step, dual_step)) if iteration < MAX_ITERATIONS => {
                     let length = step_length(&primal, &primal_step).min(step_length(&dual, &dual_step));
                     primal += length * primal_step;
@@ -114,6 +118,7 @@ impl<const ROWS: usize, const UNKNOWNS: usize, const FORM: usize> GramProblem<RO
                 }
                 break;
             }
+            full_steps = if target > FINAL_GAP || length < 1.0 { 0 } else { full_steps + 1 };
             centring = if length > 0.8 { 0.02 } else { 0.3 };
         }
         let solution = self.floor_form + self.unit * (self.form_from_gram * Self::vector(&primal));

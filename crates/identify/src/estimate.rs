@@ -1,0 +1,104 @@
+use freeform_riccati::MotionModel;
+use nalgebra::Matrix3;
+
+/// Largest number of parameters of a motion model, that of a projective motion.
+pub(crate) const MAX_PARAMETERS: usize = 8;
+
+/// An identified motion in the image frame: one value per parameter of its model, and how well each is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionEstimate {
+    model: MotionModel,
+    values: [f64; MAX_PARAMETERS],
+    standard_deviations: Option<[f64; MAX_PARAMETERS]>,
+    observable: [bool; MAX_PARAMETERS],
+}
+
+/// One parameter of a [`MotionEstimate`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParameterEstimate {
+    /// Name as in the paper: `omega`, `b1`, `a3`, ...
+    pub name: &'static str,
+    /// Unit: `rad/s` or `1/s` (lengths of the image per second for b1 and b2).
+    pub unit: &'static str,
+    /// The value, or `None` where the outlines tell nothing of it.
+    pub value: Option<f64>,
+    /// Its standard deviation, or `None` where the method gives none.
+    pub standard_deviation: Option<f64>,
+}
+
+impl MotionEstimate {
+    /// An estimate in which all parameters are observable.
+    ///
+    /// # Panics
+    /// If the slices do not hold one value per parameter of the model.
+    #[must_use]
+    pub fn new(model: MotionModel, values: &[f64], standard_deviations: Option<&[f64]>) -> Self {
+        let pad = |list: &[f64]| {
+            assert_eq!(list.len(), model.parameter_count(), "one value per parameter");
+            let mut padded = [0.0; MAX_PARAMETERS];
+            padded[..list.len()].copy_from_slice(list);
+            padded
+        };
+        Self {
+            model,
+            values: pad(values),
+            standard_deviations: standard_deviations.map(pad),
+            observable: [true; MAX_PARAMETERS],
+        }
+    }
+
+    /// The same with parameter `index` marked as one that the outlines tell nothing of.
+    ///
+    /// # Panics
+    /// If there is no such parameter.
+    #[must_use]
+    pub fn with_unobservable(mut self, index: usize) -> Self {
+        assert!(index < self.model.parameter_count(), "parameter {index} of {:?}", self.model);
+        self.observable[index] = false;
+        self
+    }
+
+    /// The motion model.
+    #[must_use]
+    pub fn model(&self) -> MotionModel {
+        self.model
+    }
+
+    /// The parameters in the order of the model.
+    pub fn parameters(&self) -> impl Iterator<Item = ParameterEstimate> + '_ {
+        let names = self.model.parameter_names().iter().zip(self.model.units());
+        names.enumerate().map(|(i, (&name, &unit))| ParameterEstimate {
+            name,
+            unit,
+            value: self.observable[i].then_some(self.values[i]),
+            standard_deviation: self.standard_deviations.filter(|_| self.observable[i]).map(|list| list[i]),
+        })
+    }
+
+    /// The raw values in the order of the model, those of unobservable parameters included.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values[..self.model.parameter_count()]
+    }
+
+    /// The generator A of the motion (equation 4), unobservable parameters taken as they stand.
+    #[must_use]
+    pub fn generator(&self) -> Matrix3<f64> {
+        self.model.generator(self.values())
+    }
+
+    /// The same motion in space, seen by a scaled orthographic camera: b divided by f/Z0, and its standard deviations
+    /// with it (equations 23 and 24).
+    #[must_use]
+    pub fn in_space(mut self, focal_length_over_distance: f64) -> Self {
+        for (i, name) in self.model.parameter_names().iter().enumerate() {
+            if name.starts_with('b') {
+                self.values[i] /= focal_length_over_distance;
+                if let Some(list) = &mut self.standard_deviations {
+                    list[i] /= focal_length_over_distance;
+                }
+            }
+        }
+        self
+    }
+}
