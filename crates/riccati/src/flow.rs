@@ -47,6 +47,14 @@ pub fn moved_line<C: nalgebra::TCategory>(
     into_chart(&homogeneous_line(&inverse_of(map.matrix())?, line))
 }
 
+/// The rotation chart `w = (l - j) / (l + j)` of a line (see [`rotation_chart`](freeform_decompose::rotation_chart)) after
+/// `seconds` of a rotation with `omega` rad/s: `w' = -2 j omega w`, so `w(t) = w(0) exp(-2 j omega t)`, whatever the
+/// translation. Growth leaves w as it is.
+#[must_use]
+pub fn rotation_chart_flow(w: Complex<f64>, omega: f64, seconds: f64) -> Complex<f64> {
+    w * Complex::from_polar(1.0, -2.0 * omega * seconds)
+}
+
 pub(crate) fn inverse_of(map: &Matrix3<f64>) -> Result<Matrix3<f64>, DynamicsError> {
     map.try_inverse()
         .filter(|inverse| inverse.iter().all(|e| e.is_finite()))

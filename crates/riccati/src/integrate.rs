@@ -20,8 +20,8 @@ pub struct FlowIntegrator {
 /// The map that a motion makes between two times, and what it took to find it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntegratedFlow {
-    /// Takes a point at the first time to where it is at the last; the last row is exactly `(0, 0, 1)` if that of every
-    /// generator is zero.
+    /// Takes a point at the first time to where it is at the last. If the last row of every generator is zero, its own is
+    /// exactly `(0, 0, 1)`, and `nalgebra::try_convert` makes it an `Affine2`.
     pub map: Projective2<f64>,
     /// Steps taken.
     pub steps: usize,

@@ -95,7 +95,8 @@ impl MotionModel {
     }
 
     /// The map of the plane that the motion makes in `seconds`: in closed form for rigid and similarity motion, `expm(A
-    /// seconds)` otherwise. Its last row is exactly `(0, 0, 1)` for all but projective motion.
+    /// seconds)` otherwise. Its last row is exactly `(0, 0, 1)` for all but projective motion, so that `nalgebra::try_convert`
+    /// makes it an `Affine2`.
     ///
     /// # Panics
     /// If `parameters` does not have `parameter_count` entries.

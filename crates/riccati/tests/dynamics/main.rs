@@ -1,6 +1,7 @@
 //! The dynamics against the oracles of the theory: linear flows in homogeneous coordinates, an 8th-order integrator, and
 //! curves moved as a whole.
 mod alpha_beta;
+mod decomposition;
 mod integrate;
 mod lift;
 mod lines;

@@ -2,7 +2,7 @@ use approx::assert_relative_eq;
 use freeform_riccati::{
     AffineMotion, CameraScale, DynamicsError, MotionModel, ProjectiveMotion, RigidMotion, SimilarityMotion,
 };
-use nalgebra::{Matrix2, Matrix3, Point2};
+use nalgebra::{Affine2, Matrix2, Matrix3, Point2};
 use proptest::prelude::*;
 
 use crate::support::{affine_motion, dop853, model_and_parameters};
@@ -122,7 +122,10 @@ proptest! {
         (model, parameters) in model_and_parameters(), t in -1.5..1.5_f64,
     ) {
         let expected = (model.generator(&parameters) * t).exp();
-        let flow = *model.flow(&parameters, t).matrix();
+        let map = model.flow(&parameters, t);
+        let affine: Option<Affine2<f64>> = nalgebra::try_convert(map);
+        prop_assert_eq!(affine.is_some(), model != MotionModel::Projective);
+        let flow = *map.matrix();
         prop_assert!((flow - expected).amax() < 1e-13 * expected.amax());
         if model != MotionModel::Projective {
             prop_assert_eq!(flow.row(2).into_owned(), nalgebra::RowVector3::new(0.0, 0.0, 1.0));
