@@ -20,7 +20,7 @@ impl Condition {
     #[must_use]
     pub fn separation(&self, m: usize) -> f64 {
         let n = self.degree.value();
-        if m == 0 || m % 2 != 0 || m > n { f64::INFINITY } else { self.separations[(n - m) / 2] }
+        if m == 0 || !m.is_multiple_of(2) || m > n { f64::INFINITY } else { self.separations[(n - m) / 2] }
     }
 
     /// Smallest separation of all levels.
@@ -31,11 +31,13 @@ impl Condition {
 
     /// Estimated condition number: by about how much relative errors of the coefficients are magnified in the lines, in the
     /// coefficients of the levels, and in [`expand`](Decomposition::expand) through rounding. At least 1. In units of the
-    /// object: a decomposition far from the origin counts the digits that its offset costs.
+    /// object: a decomposition far from the origin counts the digits that its offset costs. Errors of a line are meant
+    /// relative to `1 + |l|^2`, as no rotation changes them; what the chart adds where |l| is large is not counted.
     ///
     /// An error of the coefficients is carried from level to level: relative to the leading form of a level it is magnified
     /// by the condition of its roots (M. Shub and S. Smale, Complexity of Bezout's theorem I, 1993; no rotation changes it),
-    /// and the line product hands it on to the next level in proportion to its own size.
+    /// which the intercepts k suffer once more by the separation of the lines, and the line product hands it on to the next
+    /// level in proportion to its own size.
     #[must_use]
     pub fn number(&self) -> f64 {
         self.number
@@ -60,7 +62,7 @@ impl Decomposition {
             let magnified = error / leading_size(&remainder, level) * root_condition(lines, &product);
             product.iter_mut().for_each(|a| *a *= self.coefficient(level));
             error += magnified * size(&product);
-            number = number.max(magnified).max(error / whole);
+            number = number.max(magnified / separations[position]).max(error / whole);
             remainder.iter_mut().zip(&product).for_each(|(r, a)| *r -= a);
         }
         let number = if number.is_finite() { number } else { f64::MAX };

@@ -138,7 +138,7 @@ impl Decomposition {
     /// The m lines of level m; empty where m is not one of `n, n - 2, ..., 2`.
     #[must_use]
     pub fn level(&self, m: usize) -> &[Line] {
-        if m % 2 != 0 || m > self.degree.value() {
+        if !m.is_multiple_of(2) || m > self.degree.value() {
             return &[];
         }
         let start = offset(self.degree, m);
@@ -149,7 +149,7 @@ impl Decomposition {
     #[must_use]
     pub fn coefficient(&self, m: usize) -> f64 {
         let n = self.degree.value();
-        if m % 2 != 0 || m > n { 0.0 } else { self.coefficients[(n - m) / 2] }
+        if !m.is_multiple_of(2) || m > n { 0.0 } else { self.coefficients[(n - m) / 2] }
     }
 
     /// Coefficient of the second level of the monic polynomial, `c_(n-2) / c_n`: the paper's alpha for a quartic.

@@ -13,8 +13,8 @@
 //! use freeform_decompose::{Correspondence, Decomposition, RelatedPoints};
 //! use nalgebra::{Isometry2, Vector2};
 //!
-//! // (x^2 + 2 y^2) (2 x^2 + y^2) + x^2 y - x^2 / 5 + x / 5 - 1
-//! let coefficients = [-1.0, 0.2, 0.0, -0.2, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 0.0, 5.0, 0.0, 2.0];
+//! // (x^2 + 2 y^2) (2 x^2 + y^2) + x^2 y + x y^2 / 2 - x^2 / 5 + x y / 2 + x / 5 - 1
+//! let coefficients = [-1.0, 0.2, 0.0, -0.2, 0.5, 0.0, 0.0, 1.0, 0.5, 0.0, 2.0, 0.0, 5.0, 0.0, 2.0];
 //! let f = ImplicitPolynomial::new(Degree::Quartic, &coefficients)?;
 //! let frame = Decomposition::of(&f)?;
 //! for line in frame.conjugate_pairs(4) {

@@ -58,7 +58,9 @@ impl LineProduct {
             let l = lines_here[i].l;
             let numerator = next.iter().fold(Complex::ZERO, |sum, a| sum * -l + *a);
             let denominator = (0..level).filter(|&j| j != i).fold(Complex::ONE, |p, j| p * (lines_here[j].l - l));
-            lines_here[i].k = numerator / coefficient / denominator;
+            let k = numerator / coefficient / denominator;
+            // The k of a real line is real but for the rounding of the conjugate pairs' product.
+            lines_here[i].k = if l.im == 0.0 { Complex::new(k.re, 0.0) } else { k };
         }
         if !lines_here.iter().all(|line| line.l.is_finite() && line.k.is_finite()) {
             return Err(DecompositionError::NotFinite { level });

@@ -68,14 +68,14 @@ impl RelatedPoints {
         let mut result = Self::empty(0.0);
         let mut magnitude = 0.0;
         let mut level = degree.value();
+        if leading == 0.0 {
+            return Err(DecompositionError::VanishingLeadingCoefficient { level, relative: 0.0 });
+        }
         while level > 2 {
             let product = LineProduct::leading(&remainder, level, magnitude)?;
             magnitude = product.subtract_from(&mut remainder)?;
             result.push_level(level, product.lines());
             level -= 2;
-        }
-        if leading == 0.0 {
-            return Err(DecompositionError::VanishingLeadingCoefficient { level, relative: 0.0 });
         }
         if let Some((point, value)) = centre(&remainder, magnitude) {
             result.push(RelatedPoint { level: 2, pair: 0, point, value: 0.0 });

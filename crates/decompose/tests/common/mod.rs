@@ -5,10 +5,10 @@ use freeform_decompose::from_rotation_chart;
 use nalgebra::{Affine2, Complex, Matrix3, Rotation2, Vector2};
 use proptest::prelude::*;
 
-pub type C = Complex<f64>;
+pub(crate) type C = Complex<f64>;
 
 /// Product of bivariate polynomials in graded order, written independently of the crate.
-pub fn product(a: &[f64], degree_a: usize, b: &[f64], degree_b: usize) -> Vec<f64> {
+pub(crate) fn product(a: &[f64], degree_a: usize, b: &[f64], degree_b: usize) -> Vec<f64> {
     let mut out = vec![0.0; coefficient_count(degree_a + degree_b)];
     for ((i, j), &ca) in exponents(degree_a).zip(a) {
         for ((k, l), &cb) in exponents(degree_b).zip(b) {
@@ -19,7 +19,7 @@ pub fn product(a: &[f64], degree_a: usize, b: &[f64], degree_b: usize) -> Vec<f6
 }
 
 /// The bounded curve `scale * (prod |x + l y|^2 + lower)`, l given in the rotation chart, lower of degree n - 1.
-pub fn bounded_curve(degree: Degree, w: &[C], lower: &[f64], scale: f64) -> ImplicitPolynomial {
+pub(crate) fn bounded_curve(degree: Degree, w: &[C], lower: &[f64], scale: f64) -> ImplicitPolynomial {
     let mut form = vec![1.0];
     for (i, &w) in w.iter().enumerate() {
         let l = from_rotation_chart(w);
@@ -31,7 +31,7 @@ pub fn bounded_curve(degree: Degree, w: &[C], lower: &[f64], scale: f64) -> Impl
 }
 
 /// Bounded curves of unit size whose leading lines are apart from each other, from the circle and from the real axis.
-pub fn bounded_curves(degree: Degree) -> impl Strategy<Value = ImplicitPolynomial> {
+pub(crate) fn bounded_curves(degree: Degree) -> impl Strategy<Value = ImplicitPolynomial> {
     let pairs = degree.value() / 2;
     let w = prop::collection::vec((0.05..0.8_f64, 0.0..std::f64::consts::TAU), pairs);
     let lower = prop::collection::vec(-1.0..1.0_f64, coefficient_count(degree.value() - 1));
@@ -42,7 +42,7 @@ pub fn bounded_curves(degree: Degree) -> impl Strategy<Value = ImplicitPolynomia
         .prop_map(move |(w, lower, scale)| bounded_curve(degree, &w, &lower, scale))
 }
 
-pub fn any_degree_curves() -> impl Strategy<Value = ImplicitPolynomial> {
+pub(crate) fn any_degree_curves() -> impl Strategy<Value = ImplicitPolynomial> {
     prop_oneof![
         bounded_curves(Degree::Conic),
         bounded_curves(Degree::Quartic),
@@ -51,18 +51,18 @@ pub fn any_degree_curves() -> impl Strategy<Value = ImplicitPolynomial> {
     ]
 }
 
-pub fn affine(m: [[f64; 2]; 2], b: [f64; 2]) -> Affine2<f64> {
+pub(crate) fn affine(m: [[f64; 2]; 2], b: [f64; 2]) -> Affine2<f64> {
     Affine2::from_matrix_unchecked(Matrix3::new(m[0][0], m[0][1], b[0], m[1][0], m[1][1], b[1], 0.0, 0.0, 1.0))
 }
 
 /// Rotation (radians, counter-clockwise), isotropic scale and translation.
-pub fn similarity(angle: f64, scale: f64, translation: Vector2<f64>) -> Affine2<f64> {
+pub(crate) fn similarity(angle: f64, scale: f64, translation: Vector2<f64>) -> Affine2<f64> {
     let r = Rotation2::new(angle).into_inner() * scale;
     affine([[r[(0, 0)], r[(0, 1)]], [r[(1, 0)], r[(1, 1)]]], [translation.x, translation.y])
 }
 
 /// Orientation-preserving affine maps, no worse than a stretch by 4.
-pub fn affine_maps() -> impl Strategy<Value = Affine2<f64>> {
+pub(crate) fn affine_maps() -> impl Strategy<Value = Affine2<f64>> {
     let angle = || 0.0..std::f64::consts::TAU;
     (angle(), angle(), 0.5..2.0_f64, 0.5..2.0_f64, -1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(p, q, s, t, bx, by)| {
         let stretch = affine([[s, 0.0], [0.0, t]], [bx, by]);
@@ -71,7 +71,7 @@ pub fn affine_maps() -> impl Strategy<Value = Affine2<f64>> {
 }
 
 /// Largest difference of two coefficient lists relative to the largest coefficient.
-pub fn relative_difference(a: &ImplicitPolynomial, b: &ImplicitPolynomial) -> f64 {
+pub(crate) fn relative_difference(a: &ImplicitPolynomial, b: &ImplicitPolynomial) -> f64 {
     let size = a.coefficients().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let pairs = a.coefficients().iter().zip(b.coefficients());
     pairs.map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) / size
