@@ -1,0 +1,93 @@
+use std::fmt;
+
+use csv::ByteRecord;
+
+use crate::csv_field::quoted_start;
+use crate::error::ReadErrorKind;
+
+/// A column of an outline file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    /// Frame number, a whole number from 0.
+    Frame,
+    /// Time in seconds.
+    Time,
+    /// First coordinate.
+    X,
+    /// Second coordinate.
+    Y,
+    /// Name of the object; optional.
+    Object,
+    /// Arc of an open outline; optional, empty for a closed one.
+    Arc,
+}
+
+impl Column {
+    /// The name in the header.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Frame => "frame",
+            Self::Time => "time",
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Object => "object",
+            Self::Arc => "arc",
+        }
+    }
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Where in a row each column stands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Columns {
+    pub(crate) frame: usize,
+    pub(crate) time: usize,
+    pub(crate) x: usize,
+    pub(crate) y: usize,
+    pub(crate) object: Option<usize>,
+    pub(crate) arc: Option<usize>,
+}
+
+/// Why a header is not usable; the column is set where one is to blame.
+pub(crate) type HeaderError = (Option<Column>, ReadErrorKind);
+
+impl Columns {
+    pub(crate) fn find(header: &ByteRecord) -> Result<Self, HeaderError> {
+        let [frame, time, x, y] = require(header, [Column::Frame, Column::Time, Column::X, Column::Y])?;
+        let object = position(header, Column::Object)?;
+        let arc = position(header, Column::Arc)?;
+        Ok(Self { frame, time, x, y, object, arc })
+    }
+}
+
+/// Positions of columns that must be there.
+pub(crate) fn require<const N: usize>(header: &ByteRecord, wanted: [Column; N]) -> Result<[usize; N], HeaderError> {
+    let mut positions = [0; N];
+    let mut missing = Vec::new();
+    for (slot, column) in positions.iter_mut().zip(wanted) {
+        match position(header, column)? {
+            Some(index) => *slot = index,
+            None => missing.push(column),
+        }
+    }
+    if missing.is_empty() {
+        return Ok(positions);
+    }
+    let names: Vec<String> = header.iter().map(|name| String::from_utf8_lossy(name).trim().to_owned()).collect();
+    Err((None, ReadErrorKind::MissingColumns { missing, header: quoted_start(names.join(",").as_bytes()) }))
+}
+
+fn position(header: &ByteRecord, column: Column) -> Result<Option<usize>, HeaderError> {
+    let mut found = header.iter().enumerate().filter(|(_, name)| name.trim_ascii() == column.name().as_bytes());
+    let first = found.next().map(|(index, _)| index);
+    match found.next() {
+        Some(_) => Err((Some(column), ReadErrorKind::RepeatedColumn)),
+        None => Ok(first),
+    }
+}

@@ -1,0 +1,81 @@
+use crate::error::ReadErrorKind;
+
+/// Largest absolute coordinate and time accepted, the limit of `freeform_curve_fit::Outline`; checked here already so
+/// that the message can name the line.
+pub(crate) const NUMBER_LIMIT: f64 = 1e100;
+
+/// Longest piece of a field quoted in a message, in characters.
+const QUOTED_CHARACTERS: usize = 40;
+
+/// A finite number of bounded size.
+pub(crate) fn number(field: &[u8]) -> Result<f64, ReadErrorKind> {
+    let text = text(field)?;
+    if text.is_empty() {
+        return Err(ReadErrorKind::EmptyField);
+    }
+    let Ok(value) = text.parse::<f64>() else {
+        return Err(ReadErrorKind::NotANumber { text: quoted_start(field) });
+    };
+    if !value.is_finite() {
+        return Err(ReadErrorKind::NotFinite { text: quoted_start(field) });
+    }
+    if value.abs() > NUMBER_LIMIT {
+        return Err(ReadErrorKind::TooLarge { value, limit: NUMBER_LIMIT });
+    }
+    Ok(value)
+}
+
+/// A whole number from 0.
+pub(crate) fn frame_number(field: &[u8]) -> Result<u64, ReadErrorKind> {
+    let text = text(field)?;
+    if text.is_empty() {
+        return Err(ReadErrorKind::EmptyField);
+    }
+    text.parse().map_err(|_| ReadErrorKind::NotAFrameNumber { text: quoted_start(field) })
+}
+
+/// The field without white space at its ends.
+pub(crate) fn text(field: &[u8]) -> Result<&str, ReadErrorKind> {
+    std::str::from_utf8(field.trim_ascii()).map_err(|_| ReadErrorKind::NotUtf8 { text: quoted_start(field) })
+}
+
+/// The beginning of a field for a message, marked with `...` where cut.
+pub(crate) fn quoted_start(field: &[u8]) -> String {
+    // Four bytes hold any character, so this much is enough whatever the length of the field.
+    let start = &field[..field.len().min(4 * QUOTED_CHARACTERS + 4)];
+    let text = String::from_utf8_lossy(start);
+    let text = text.trim();
+    match text.char_indices().nth(QUOTED_CHARACTERS) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_may_have_white_space_and_any_usual_form() {
+        for (field, value) in [("1", 1.0), (" -2.5\r", -2.5), ("1e-3", 1e-3), (".5", 0.5), ("+4.", 4.0), ("-0", 0.0)] {
+            assert_eq!(number(field.as_bytes()).expect("a number"), value);
+        }
+    }
+
+    #[test]
+    fn the_largest_number_accepted_is_also_accepted_by_an_outline() {
+        use freeform_curve_fit::Outline;
+        use nalgebra::Point2;
+        let corner = number(b"1e100").expect("at the limit");
+        let points = vec![Point2::origin(), Point2::new(corner, 0.0), Point2::new(0.0, corner)];
+        assert!(Outline::closed(points).is_ok());
+        assert!(number(b"1.0000001e100").is_err());
+    }
+
+    #[test]
+    fn a_long_field_is_quoted_by_its_beginning() {
+        assert_eq!(quoted_start(b"  abc "), "abc");
+        assert_eq!(quoted_start("\u{e4}".repeat(1000).as_bytes()), format!("{}...", "\u{e4}".repeat(40)));
+        assert_eq!(quoted_start(&[b'x'; 40]), "x".repeat(40));
+    }
+}

@@ -1,0 +1,211 @@
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use nalgebra::Point2;
+
+use crate::csv_columns::{Column, Columns};
+use crate::csv_field::{frame_number, number, text};
+use crate::csv_rows::Rows;
+use crate::error::{Place, ReadError, ReadErrorKind};
+use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
+use crate::outline_rows::OutlineRows;
+
+/// Reads outlines one by one from CSV with the header `frame,time,x,y` and the optional columns `object` and `arc`.
+///
+/// The columns may stand in any order; others are ignored. Lines that begin with `#` are comments. Fields may be
+/// quoted, white space around them is ignored, numbers are finite and at most 1e100 in size. The rows of one outline
+/// (same frame and object) follow each other in the order of the contour. The frames of each object have increasing
+/// numbers, gaps allowed, and increasing times; objects may be mixed frame by frame or come one after the other.
+///
+/// - Without an `arc` value an outline is closed. A last point that repeats the first is dropped.
+/// - With `arc` values it is open, every value one arc. An arc without two different points is dropped, unless nothing
+///   remains.
+/// - Points that repeat their neighbour are kept.
+///
+/// The reader is an iterator. An outline is returned as soon as the row after it has been read; no more than two rows,
+/// the present outline, and the last frame number and time of every object are held, so memory does not grow with the
+/// number of frames. After an error for which [`ReadError::is_recoverable`] is true the iterator goes on with the next
+/// outline, after any other it has ended. Outlines that are complete before the bad row are returned before the error;
+/// the one that the bad row interrupts is not returned.
+#[derive(Debug)]
+pub struct OutlineReader<R> {
+    rows: Rows<R>,
+    columns: Columns,
+    /// The outline whose rows are being read.
+    present: Option<OutlineRows>,
+    /// Frame number and time of the latest outline of every object.
+    latest: HashMap<String, (u64, f64)>,
+    /// Comes after the outline that was complete before it.
+    failure: Option<ReadError>,
+    ended: bool,
+}
+
+impl OutlineReader<File> {
+    /// Opens a file and reads its header.
+    ///
+    /// # Errors
+    /// The file cannot be opened or read, is empty, or its header lacks a column or has one twice.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let name = path.as_ref().display().to_string();
+        match File::open(path.as_ref()) {
+            Ok(file) => Self::new(file, name),
+            Err(error) => Err(ReadError {
+                place: Place { file: name, lines: None, column: None },
+                kind: ReadErrorKind::Io(error),
+            }),
+        }
+    }
+}
+
+impl<R: Read> OutlineReader<R> {
+    /// Reads the header from a source; it needs no buffer of its own. The name stands in error messages.
+    ///
+    /// # Errors
+    /// The source cannot be read, is empty, or its header lacks a column or has one twice.
+    pub fn new(source: R, name: impl Into<String>) -> Result<Self, ReadError> {
+        let (rows, columns) = Rows::open(source, name.into(), Columns::find)?;
+        Ok(Self { rows, columns, present: None, latest: HashMap::new(), failure: None, ended: false })
+    }
+
+    /// Reads one row; returns the outline that it completes, if any.
+    fn step(&mut self) -> Result<Option<OutlineRows>, ReadError> {
+        if !self.rows.advance()? {
+            self.ended = true;
+            return Ok(self.present.take());
+        }
+        let point = Point2::new(self.number(Column::X, self.columns.x)?, self.number(Column::Y, self.columns.y)?);
+        let continued = match &self.present {
+            Some(present) => self.continues(present)?,
+            None => false,
+        };
+        let finished = if continued { None } else { self.begin()? };
+        self.add(point)?;
+        Ok(finished)
+    }
+
+    /// Whether the present row belongs to the outline whose rows are being read.
+    fn continues(&self, present: &OutlineRows) -> Result<bool, ReadError> {
+        let Columns { frame, time, object, .. } = self.columns;
+        let same_object = object.is_none_or(|index| self.rows.same_as_before(index));
+        // The same text needs no second look, which is most of the speed of reading.
+        if same_object && self.rows.same_as_before(frame) && self.rows.same_as_before(time) {
+            return Ok(true);
+        }
+        let number = self.frame_number()?;
+        let seconds = self.number(Column::Time, time)?;
+        if number != present.frame || self.object()? != present.object {
+            return Ok(false);
+        }
+        if seconds == present.time {
+            return Ok(true);
+        }
+        let (object, frame, previous) = (present.object.clone(), present.frame, present.time);
+        let kind = ReadErrorKind::TimeChanges { object, frame, previous, time: seconds };
+        Err(self.rows.error(Some(Column::Time), kind))
+    }
+
+    /// Starts a new outline with the present row and hands out the one before.
+    fn begin(&mut self) -> Result<Option<OutlineRows>, ReadError> {
+        let frame = self.frame_number()?;
+        let time = self.number(Column::Time, self.columns.time)?;
+        let object = self.object()?.to_owned();
+        match self.latest.get_mut(&object) {
+            None => {
+                self.latest.insert(object.clone(), (frame, time));
+            }
+            Some(latest) => {
+                let (previous_frame, previous) = *latest;
+                if frame == previous_frame {
+                    let kind = ReadErrorKind::SecondOutline { object, frame };
+                    return Err(self.rows.error(Some(Column::Frame), kind));
+                }
+                if frame < previous_frame {
+                    let kind = ReadErrorKind::FrameNotIncreasing { object, frame, previous: previous_frame };
+                    return Err(self.rows.error(Some(Column::Frame), kind));
+                }
+                if time <= previous {
+                    let kind = ReadErrorKind::TimeNotIncreasing { object, frame, previous, time };
+                    return Err(self.rows.error(Some(Column::Time), kind));
+                }
+                *latest = (frame, time);
+            }
+        }
+        let capacity = self.present.as_ref().map_or(0, OutlineRows::capacity_hint);
+        Ok(self.present.replace(OutlineRows::new(frame, time, object, self.rows.line(), capacity)))
+    }
+
+    /// Adds the point of the present row to the present outline.
+    fn add(&mut self, point: Point2<f64>) -> Result<(), ReadError> {
+        let Some(present) = &mut self.present else { return Ok(()) };
+        let arc = self.columns.arc.map_or(&b""[..], |index| self.rows.field(index)).trim_ascii();
+        let arc_continues = self.columns.arc.is_none_or(|index| self.rows.same_as_before(index));
+        match present.add(point, arc, arc_continues, self.rows.end_line()) {
+            Ok(()) => Ok(()),
+            Err(kind) => Err(self.rows.error(kind.1, kind.0)),
+        }
+    }
+
+    fn number(&self, column: Column, index: usize) -> Result<f64, ReadError> {
+        number(self.rows.field(index)).map_err(|kind| self.rows.error(Some(column), kind))
+    }
+
+    fn frame_number(&self) -> Result<u64, ReadError> {
+        frame_number(self.rows.field(self.columns.frame)).map_err(|kind| self.rows.error(Some(Column::Frame), kind))
+    }
+
+    fn object(&self) -> Result<&str, ReadError> {
+        match self.columns.object {
+            None => Ok(DEFAULT_OBJECT),
+            Some(index) => text(self.rows.field(index)).map_err(|kind| self.rows.error(Some(Column::Object), kind)),
+        }
+    }
+
+    /// Whether the row that could not be read certainly belongs to another outline than the present one, which then
+    /// is complete.
+    fn failed_row_is_another_outline(&self) -> bool {
+        let Some(present) = &self.present else { return false };
+        let frame = self.rows.whole_field(self.columns.frame).and_then(|field| frame_number(field).ok());
+        let object = match self.columns.object {
+            None => Some(DEFAULT_OBJECT),
+            Some(index) => self.rows.whole_field(index).and_then(|field| text(field).ok()),
+        };
+        frame.is_some_and(|frame| frame != present.frame) || object.is_some_and(|object| object != present.object)
+    }
+
+    fn finish(&self, outline: OutlineRows) -> Result<OutlineFrame, ReadError> {
+        let OutlineRows { frame, time, first_line, last_line, .. } = outline;
+        let (object, outline) = outline.into_outline();
+        match outline {
+            Ok(outline) => Ok(OutlineFrame { frame, time, object, outline }),
+            Err(source) => {
+                let kind = ReadErrorKind::Degenerate { object, frame, source };
+                Err(self.rows.error_at(Some((first_line, last_line)), None, kind))
+            }
+        }
+    }
+}
+
+impl<R: Read> Iterator for OutlineReader<R> {
+    type Item = Result<OutlineFrame, ReadError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while !self.ended {
+            match self.step() {
+                Ok(None) => {}
+                Ok(Some(outline)) => return Some(self.finish(outline)),
+                Err(error) => {
+                    self.ended = true;
+                    let complete = self.failed_row_is_another_outline();
+                    let present = self.present.take().filter(|_| complete);
+                    self.failure = Some(error);
+                    if let Some(outline) = present {
+                        return Some(self.finish(outline));
+                    }
+                }
+            }
+        }
+        self.failure.take().map(Err)
+    }
+}

@@ -1,0 +1,139 @@
+use std::fmt;
+use std::io::{self, Write};
+
+use freeform_curve_fit::Outline;
+
+use crate::csv_columns::Column;
+use crate::csv_field::NUMBER_LIMIT;
+use crate::error::WriteError;
+use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
+
+/// Which optional columns a file has; the header comes first, so they are fixed before the first outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct WriterOptions {
+    /// Write the `object` column: needed for any object other than [`DEFAULT_OBJECT`].
+    pub object_column: bool,
+    /// Write the `arc` column: needed for open outlines, empty for closed ones.
+    pub arc_column: bool,
+}
+
+impl WriterOptions {
+    /// The columns that these outlines need.
+    #[must_use]
+    pub fn needed_for<'a>(frames: impl IntoIterator<Item = &'a OutlineFrame>) -> Self {
+        frames.into_iter().fold(Self::default(), |options, frame| Self {
+            object_column: options.object_column || frame.object != DEFAULT_OBJECT,
+            arc_column: options.arc_column || matches!(frame.outline, Outline::Open(_)),
+        })
+    }
+}
+
+/// Writes outlines one by one as CSV that [`OutlineReader`](crate::OutlineReader) reads back to the last bit, except
+/// for the last point of a closed outline where it repeats the first. Needs no buffered sink.
+#[derive(Debug)]
+pub struct OutlineWriter<W: Write> {
+    writer: csv::Writer<W>,
+    options: WriterOptions,
+    /// Holds one number as text.
+    text: Vec<u8>,
+}
+
+impl<W: Write> OutlineWriter<W> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// The sink fails.
+    pub fn new(sink: W, options: WriterOptions) -> Result<Self, WriteError> {
+        let mut writer = csv::Writer::from_writer(sink);
+        let required = [Column::Frame, Column::Time, Column::X, Column::Y].into_iter();
+        let object = options.object_column.then_some(Column::Object);
+        let arc = options.arc_column.then_some(Column::Arc);
+        writer.write_record(required.chain(object).chain(arc).map(|column| column.name())).map_err(io_error)?;
+        Ok(Self { writer, options, text: Vec::new() })
+    }
+
+    /// Writes one outline.
+    ///
+    /// # Errors
+    /// The sink fails; the outline needs a column that the header lacks; the time is not finite or beyond 1e100; the
+    /// object's name has control characters or white space at an end. Nothing of the outline has been written then,
+    /// unless the sink failed.
+    pub fn write(&mut self, frame: &OutlineFrame) -> Result<(), WriteError> {
+        self.check(frame)?;
+        let open = matches!(frame.outline, Outline::Open(_));
+        for (arc, piece) in frame.outline.pieces().enumerate() {
+            for point in piece.points {
+                self.field(format_args!("{}", frame.frame))?;
+                self.number(frame.time)?;
+                self.number(point.x)?;
+                self.number(point.y)?;
+                if self.options.object_column {
+                    self.writer.write_field(&frame.object).map_err(io_error)?;
+                }
+                match self.options.arc_column {
+                    true if open => self.field(format_args!("{arc}"))?,
+                    true => self.writer.write_field("").map_err(io_error)?,
+                    false => {}
+                }
+                self.writer.write_record(None::<&[u8]>).map_err(io_error)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes out what is buffered.
+    ///
+    /// # Errors
+    /// The sink fails.
+    pub fn flush(&mut self) -> Result<(), WriteError> {
+        Ok(self.writer.flush()?)
+    }
+
+    /// Writes out what is buffered and hands the sink back.
+    ///
+    /// # Errors
+    /// The sink fails.
+    pub fn finish(self) -> Result<W, WriteError> {
+        self.writer.into_inner().map_err(|error| WriteError::Io(error.into_error()))
+    }
+
+    /// The shortest text that reads back as the same number, without long runs of zeros.
+    fn number(&mut self, value: f64) -> Result<(), WriteError> {
+        if value == 0.0 || (1e-5..1e16).contains(&value.abs()) {
+            self.field(format_args!("{value}"))
+        } else {
+            self.field(format_args!("{value:e}"))
+        }
+    }
+
+    fn field(&mut self, text: fmt::Arguments<'_>) -> Result<(), WriteError> {
+        self.text.clear();
+        self.text.write_fmt(text)?;
+        self.writer.write_field(&self.text).map_err(io_error)
+    }
+
+    fn check(&self, frame: &OutlineFrame) -> Result<(), WriteError> {
+        let OutlineFrame { object, time, .. } = frame;
+        if !self.options.object_column && object != DEFAULT_OBJECT {
+            return Err(WriteError::NoObjectColumn { object: object.clone() });
+        }
+        if !self.options.arc_column && matches!(frame.outline, Outline::Open(_)) {
+            return Err(WriteError::NoArcColumn { object: object.clone(), frame: frame.frame });
+        }
+        if object.chars().any(char::is_control) || object.trim_ascii() != object {
+            return Err(WriteError::ObjectName { object: object.clone() });
+        }
+        if !time.is_finite() || time.abs() > NUMBER_LIMIT {
+            return Err(WriteError::Time { object: object.clone(), frame: frame.frame, time: *time });
+        }
+        Ok(())
+    }
+}
+
+/// Keeps the kind, by which a closed pipe is told from a full disc.
+fn io_error(error: csv::Error) -> WriteError {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => WriteError::Io(error),
+        other => WriteError::Io(io::Error::other(format!("{other:?}"))),
+    }
+}

@@ -1,0 +1,264 @@
+use std::fmt;
+use std::io;
+
+use freeform_curve_fit::OutlineError;
+use thiserror::Error;
+
+use crate::csv_columns::Column;
+
+/// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40` or `name`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file's name, or a stand-in such as `<stdin>`.
+    pub file: String,
+    /// First and last line, counted from 1; equal for a single line.
+    pub lines: Option<(u64, u64)>,
+    /// The column.
+    pub column: Option<Column>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // A name may hold line breaks; the message must stay one line.
+        for character in self.file.chars() {
+            if character.is_control() {
+                write!(f, "{}", character.escape_default())?;
+            } else {
+                write!(f, "{character}")?;
+            }
+        }
+        match self.lines {
+            Some((first, last)) if first == last => write!(f, ":{first}")?,
+            Some((first, last)) => write!(f, ":{first}-{last}")?,
+            None => {}
+        }
+        match self.column {
+            Some(column) => write!(f, ": column {column}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Outlines could not be read: where and why. Displays as one line.
+#[derive(Debug, Error)]
+#[error("{place}: {kind}")]
+pub struct ReadError {
+    /// File, line and column.
+    pub place: Place,
+    /// The reason.
+    #[source]
+    pub kind: ReadErrorKind,
+}
+
+impl ReadError {
+    /// Whether reading goes on after this error. True for an outline that is no outline (one point, all points on one
+    /// line): the next call returns the next outline. False for a file that does not follow the format or cannot be
+    /// read: nothing after this place can be trusted, and the reader has ended.
+    #[must_use]
+    pub fn is_recoverable(&self) -> bool {
+        matches!(self.kind, ReadErrorKind::Degenerate { .. })
+    }
+}
+
+/// Why outlines could not be read.
+#[derive(Debug, Error)]
+pub enum ReadErrorKind {
+    /// The file could not be opened or read.
+    #[error("{0}")]
+    Io(#[source] io::Error),
+    /// Nothing in the file but comments and blank lines.
+    #[error("the file is empty, expected a header such as frame,time,x,y")]
+    Empty,
+    /// The header lacks a column.
+    #[error("missing column(s) {}, the header is {header:?}", comma_separated(missing))]
+    MissingColumns {
+        /// The columns that are not there.
+        missing: Vec<Column>,
+        /// The header as found, shortened.
+        header: String,
+    },
+    /// The header names a column twice.
+    #[error("the header names this column twice")]
+    RepeatedColumn,
+    /// A row has more or fewer fields than the header.
+    #[error("{found} field(s), the header has {expected}")]
+    FieldCount {
+        /// Fields in the row.
+        found: usize,
+        /// Fields in the header.
+        expected: usize,
+    },
+    /// The last line has fewer fields than the header and no line end.
+    #[error("the last line is cut short: {found} field(s), the header has {expected}")]
+    CutShort {
+        /// Fields in the row.
+        found: usize,
+        /// Fields in the header.
+        expected: usize,
+    },
+    /// No complete row in a very long stretch of the file: no line ends, or a quote that is never closed.
+    #[error("no complete row within {limit} bytes")]
+    RowTooLong {
+        /// Longest stretch accepted, in bytes.
+        limit: u64,
+    },
+    /// A field is not UTF-8.
+    #[error("{text:?} is not valid UTF-8")]
+    NotUtf8 {
+        /// The field with replacement characters, shortened.
+        text: String,
+    },
+    /// A number is missing.
+    #[error("the field is empty, expected a number")]
+    EmptyField,
+    /// Text where a number should be.
+    #[error("{text:?} is not a number")]
+    NotANumber {
+        /// The field, shortened.
+        text: String,
+    },
+    /// NaN or an infinity, written as such or by a number too large for a float.
+    #[error("{text:?} is not a finite number")]
+    NotFinite {
+        /// The field, shortened.
+        text: String,
+    },
+    /// A number whose square would overflow.
+    #[error("{value:e} is beyond {limit:e}")]
+    TooLarge {
+        /// The number.
+        value: f64,
+        /// Largest absolute value accepted.
+        limit: f64,
+    },
+    /// A frame number that is not a whole number from 0.
+    #[error("{text:?} is not a frame number (a whole number, 0 or more)")]
+    NotAFrameNumber {
+        /// The field, shortened.
+        text: String,
+    },
+    /// The time changes between two rows of one outline.
+    #[error("the time changes from {previous} to {time} within frame {frame} of object {object:?}")]
+    TimeChanges {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+        /// Time of the outline so far, in seconds.
+        previous: f64,
+        /// Time in this row, in seconds.
+        time: f64,
+    },
+    /// A later frame of an object does not have a later time.
+    #[error("time {time} of frame {frame} of object {object:?} is not after {previous}, the time of its frame before")]
+    TimeNotIncreasing {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+        /// Time of the object's frame before, in seconds.
+        previous: f64,
+        /// Time of this frame, in seconds.
+        time: f64,
+    },
+    /// The frame numbers of an object run backwards.
+    #[error("frame {frame} of object {object:?} comes after its frame {previous}")]
+    FrameNotIncreasing {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+        /// The object's frame before.
+        previous: u64,
+    },
+    /// Rows of one object and frame that do not follow each other.
+    #[error("second outline of object {object:?} in frame {frame}: the rows of one outline must follow each other")]
+    SecondOutline {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+    },
+    /// Rows with and without an arc value in one outline.
+    #[error("some rows of frame {frame} of object {object:?} have an arc and some do not")]
+    MixedArcs {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+    },
+    /// Rows of one arc that do not follow each other.
+    #[error("arc {arc:?} comes a second time in frame {frame} of object {object:?}: its rows must follow each other")]
+    SecondArc {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+        /// The arc value, shortened.
+        arc: String,
+    },
+    /// An outline larger than any real one; the limit keeps memory bounded.
+    #[error("more than {limit} points in frame {frame} of object {object:?}")]
+    TooManyPoints {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+        /// Largest number of points accepted.
+        limit: usize,
+    },
+    /// The rows are well-formed but their points are no outline. The only recoverable error.
+    #[error("frame {frame} of object {object:?}: {source}")]
+    Degenerate {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+        /// Why the points are no outline.
+        source: OutlineError,
+    },
+}
+
+fn comma_separated(columns: &[Column]) -> String {
+    columns.iter().map(Column::name).collect::<Vec<_>>().join(", ")
+}
+
+/// Why an outline could not be written.
+#[derive(Debug, Error)]
+pub enum WriteError {
+    /// The sink failed; a closed pipe keeps its kind.
+    #[error("cannot write the outline: {0}")]
+    Io(#[from] io::Error),
+    /// An object other than the default one, but the header has no `object` column.
+    #[error("object {object:?} needs an object column, which the header does not have")]
+    NoObjectColumn {
+        /// The object's name.
+        object: String,
+    },
+    /// An open outline, but the header has no `arc` column.
+    #[error(
+        "the open outline of object {object:?} in frame {frame} needs an arc column, which the header does not have"
+    )]
+    NoArcColumn {
+        /// The object's name.
+        object: String,
+        /// The frame's number.
+        frame: u64,
+    },
+    /// A name that would not be read back: control characters, or white space at an end.
+    #[error("object name {object:?} has control characters or white space at an end")]
+    ObjectName {
+        /// The name.
+        object: String,
+    },
+    /// A time that is not finite or beyond 1e100.
+    #[error("the time of frame {frame} of object {object:?} is {time:e}, not a number up to 1e100")]
+    Time {
+        /// The object's name.
+        object: String,
+        /// The frame's number.
+        frame: u64,
+        /// The time.
+        time: f64,
+    },
+}
