@@ -5,6 +5,9 @@ use crate::curve::Segment;
 /// Parameter steps that a curved segment is divided into.
 const STEPS: u32 = 32;
 
+/// Parameter steps where points stand for the curve.
+const FINE_STEPS: u32 = 512;
+
 /// Where along the curve a tabulated arc length is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
@@ -45,9 +48,12 @@ impl ArcLengthCurve {
         &self.segments
     }
 
-    /// The point at each tabulated arc length: at least every end of a segment.
-    pub(crate) fn node_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
-        self.nodes.iter().map(|node| self.segments[node.segment].point(node.t))
+    /// Points so close that no part of a segment leaves their polygon by more than 1e-6 of its own size.
+    pub(crate) fn fine_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        self.segments.iter().flat_map(|segment| {
+            let steps = if segment.straight { 1 } else { FINE_STEPS };
+            (0..steps).map(move |k| segment.point(f64::from(k) / f64::from(steps)))
+        })
     }
 
     pub(crate) fn point(&self, fraction: f64) -> Point2<f64> {

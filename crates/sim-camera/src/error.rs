@@ -80,4 +80,14 @@ pub enum SimulationError {
         /// Its start in seconds.
         start: f64,
     },
+    /// A mask without pixels or with too many.
+    #[error("a mask of {width} by {height} pixels has none or more than {limit}")]
+    MaskSize {
+        /// Columns asked for.
+        width: usize,
+        /// Rows asked for.
+        height: usize,
+        /// Largest number of pixels accepted.
+        limit: usize,
+    },
 }

@@ -94,7 +94,7 @@ impl Settings {
                 positive("seconds", seconds)?;
                 let exact = seconds * self.fps;
                 // A product such as 0.3 * 30 that is a hair above a whole number means the whole number.
-                (exact - 1e-9 * exact.max(1.0)).ceil().max(1.0)
+                (exact * (1.0 - 1e-12)).ceil().max(1.0)
             }
         };
         if frames < 1.0 {

@@ -1,4 +1,4 @@
-use std::borrow::Cow;
+use std::{borrow::Cow, fmt};
 
 use freeform_curve_fit::ClosedOutline;
 use nalgebra::{Point2, Unit, Vector2};
@@ -16,7 +16,7 @@ const SMALLEST_AREA: f64 = 1e-9;
 ///
 /// A built-in shape is of *unit size*: its area centroid is the origin, and its diameter, the largest distance between two
 /// of its points, is 1 (to 1e-6). Places along the curve are given as a fraction of the perimeter, taken modulo 1.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Shape {
     name: Cow<'static, str>,
     curve: ArcLengthCurve,
@@ -112,10 +112,8 @@ impl Shape {
     /// Largest distance between two points of the curve, to 1e-6 of itself.
     #[must_use]
     pub fn diameter(&self) -> f64 {
-        let hull = convex_hull(self.curve.node_points().collect());
-        let distances =
-            hull.iter().enumerate().flat_map(|(i, p)| hull[..i].iter().map(move |q| (p - q).norm_squared()));
-        distances.fold(0.0, f64::max).sqrt()
+        let hull = convex_hull(self.curve.fine_points().collect());
+        largest_distance(&hull)
     }
 
     /// The point at a fraction of the perimeter.
@@ -144,7 +142,15 @@ impl Shape {
     }
 }
 
-/// Corners of the convex hull, by Andrew's monotone chain (1979).
+impl fmt::Debug for Shape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Shape");
+        fields.field("name", &self.name).field("perimeter", &self.perimeter()).field("area", &self.area);
+        fields.finish_non_exhaustive()
+    }
+}
+
+/// Corners of the convex hull, counter-clockwise, by Andrew's monotone chain (1979).
 fn convex_hull(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
     points.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
     let half = |ordered: &mut dyn Iterator<Item = &Point2<f64>>| {
@@ -157,8 +163,29 @@ fn convex_hull(mut points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
             }
             chain.push(*p);
         }
+        // The last point is the first of the other half.
+        chain.pop();
         chain
     };
     let (lower, upper) = (half(&mut points.iter()), half(&mut points.iter().rev()));
     lower.into_iter().chain(upper).collect()
+}
+
+/// Largest distance between two corners of a convex polygon, by rotating calipers (Shamos, 1978).
+fn largest_distance(hull: &[Point2<f64>]) -> f64 {
+    let count = hull.len();
+    let mut far = 1;
+    let mut largest = 0.0_f64;
+    for i in 0..count {
+        let (from, to) = (hull[i], hull[(i + 1) % count]);
+        let height = |k: usize| (to - from).perp(&(hull[k % count] - from));
+        // At most once round: equal heights of a tiny polygon must not keep it turning.
+        let limit = far + count;
+        while far < limit && height(far + 1) > height(far) {
+            far += 1;
+        }
+        let opposite = hull[far % count];
+        largest = largest.max((opposite - from).norm()).max((opposite - to).norm());
+    }
+    largest
 }
