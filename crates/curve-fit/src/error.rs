@@ -1,5 +1,7 @@
 use thiserror::Error;
 
+use crate::degree::Degree;
+
 /// Why a list of points is not an outline.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum OutlineError {
@@ -67,10 +69,76 @@ pub enum PolynomialError {
         /// Position in the graded order, counted from 0.
         index: usize,
     },
+    /// The leading form is not positive in every direction.
+    #[error("the curve is not bounded (margin {margin:.2e})")]
+    NotBounded {
+        /// Minimum of the leading form on the unit circle over its root mean square.
+        margin: f64,
+    },
     /// The map of the plane has no inverse.
     #[error("the map of the plane is singular (determinant {determinant:e})")]
     SingularMap {
         /// Determinant of its 3x3 matrix.
         determinant: f64,
+    },
+}
+
+/// Why no curve could be fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum FitError {
+    /// Fewer points than the polynomial needs.
+    #[error("{found} points, a fit of degree {degree} needs at least {needed}")]
+    TooFewPoints {
+        /// Points of the outline.
+        found: usize,
+        /// Smallest number accepted.
+        needed: usize,
+        /// Degree asked for.
+        degree: Degree,
+    },
+    /// The points do not determine all coefficients.
+    #[error("the points determine only {rank} of {needed} coefficients (condition number {condition:.1e})")]
+    RankDeficient {
+        /// Numerical rank of the least-squares matrix.
+        rank: usize,
+        /// Number of coefficients.
+        needed: usize,
+        /// Estimated condition number of the least-squares matrix.
+        condition: f64,
+    },
+    /// The leading form of the bounded fit could not be brought above its margin.
+    #[error("the bounded fit did not converge in {iterations} iterations")]
+    NoConvergence {
+        /// Newton steps made.
+        iterations: usize,
+    },
+}
+
+/// Why the settings of a fit are refused.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum SettingsError {
+    /// The distance of the outer level sets is not a positive fraction of the size.
+    #[error("level-set offset {value} is outside (0, 1]")]
+    Offset {
+        /// The value given, in units of the RMS radius.
+        value: f64,
+    },
+    /// The half window of the normals is not a fraction of the length.
+    #[error("normal half window {value} is outside [0, 0.25]")]
+    NormalHalfWindow {
+        /// The value given, a fraction of the length of the outline.
+        value: f64,
+    },
+    /// The weight of the ridge is negative or not finite.
+    #[error("ridge weight {value} is negative or not finite")]
+    RidgeWeight {
+        /// The value given.
+        value: f64,
+    },
+    /// The margin of the bounded fit is not a fraction.
+    #[error("boundedness margin {value} is outside (0, 0.5]")]
+    Margin {
+        /// The value given.
+        value: f64,
     },
 }

@@ -1,12 +1,59 @@
 //! Implicit polynomial curves fitted to noisy outlines.
+//!
+//! An outline comes as ordered points without correspondence to anything. A [`Fitter`] turns it into an implicit
+//! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8, negative inside and positive outside, by the 3L method
+//! (three level sets: the data at 0, and the data moved along its normals at -1 and +1). The fit can be globally
+//! stabilised, or closed and bounded by construction. It is equivariant: the fit of a moved outline is the moved fit.
+//!
+//! ```
+//! use freeform_curve_fit::{FitSettings, Fitter, Outline};
+//! use nalgebra::Point2;
+//!
+//! // An ellipse with half axes 2 and 1, seen through 200 points.
+//! let angle = |i: i32| std::f64::consts::TAU * f64::from(i) / 200.0;
+//! let points = (0..200).map(|i| Point2::new(2.0 * angle(i).cos(), angle(i).sin())).collect();
+//! let outline = Outline::closed(points)?;
+//!
+//! let mut fitter = Fitter::new(FitSettings::default())?;
+//! let fit = fitter.fit(&outline)?;
+//! assert!(fit.is_bounded());
+//! assert!(fit.diagnostics().geometric_residual < 0.02);
+//!
+//! let f = fit.polynomial();
+//! assert!(f.evaluate(&Point2::origin()) < 0.0);
+//! assert!(f.evaluate(&Point2::new(2.0, 1.0)) > 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+mod bounded;
+mod bounded_polynomial;
 mod degree;
 mod error;
+mod fit;
+mod fitter;
+mod leading_form;
+mod least_squares;
+mod moments;
 mod monomials;
+mod normalisation;
+mod normals;
 mod outline;
 mod polynomial;
+mod residuals;
+mod ridge;
+mod settings;
 
+pub use bounded_polynomial::BoundedPolynomial;
 pub use degree::{Degree, MAX_COEFFICIENTS, coefficient_count};
-pub use error::{OutlineError, PolynomialError};
+pub use error::{FitError, OutlineError, PolynomialError, SettingsError};
+pub use fit::{Factorisation, Fit, FitDiagnostics};
+pub use fitter::Fitter;
+pub use leading_form::CircleRange;
+pub use moments::Moments;
 pub use monomials::{evaluate_monomials, exponents, monomial_index};
+pub use normalisation::Normalisation;
+pub use normals::outward_normals;
 pub use outline::{ClosedOutline, OpenArc, OpenOutline, Outline, Piece};
 pub use polynomial::ImplicitPolynomial;
+pub use residuals::Residuals;
+pub use ridge::rotation_invariant_ridge;
+pub use settings::{FitSettings, Method};

@@ -35,6 +35,11 @@ impl ImplicitPolynomial {
         Ok(Self { degree, coefficients: padded })
     }
 
+    /// From finite coefficients that already stand in a padded array.
+    pub(crate) fn from_array(degree: Degree, coefficients: [f64; MAX_COEFFICIENTS]) -> Self {
+        Self { degree, coefficients }
+    }
+
     /// Degree n.
     #[must_use]
     pub const fn degree(&self) -> Degree {

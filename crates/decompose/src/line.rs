@@ -1,4 +1,3 @@
-use freeform_curve_fit::Degree;
 use nalgebra::{Affine2, Complex, Point2, Vector3};
 
 /// Complex line `x + l y + k = 0` in the chart where the coefficient of x is 1 (equation 1).
@@ -13,6 +12,9 @@ pub struct Line {
 }
 
 impl Line {
+    /// What unused places of a fixed-size collection hold.
+    pub(crate) const ZERO: Self = Self { l: Complex::ZERO, k: Complex::ZERO };
+
     /// Value `x + l y + k` at a point.
     #[must_use]
     pub fn evaluate(&self, p: &Point2<f64>) -> Complex<f64> {
@@ -45,20 +47,4 @@ impl Line {
         let moved = Self { l: l / s, k: k / s };
         (moved.l.is_finite() && moved.k.is_finite()).then_some((moved, s))
     }
-}
-
-/// Number of lines over all levels of the largest degree: 8 + 6 + 4 + 2.
-pub(crate) const MAX_LINES: usize = 20;
-
-/// Decomposition of an implicit polynomial of even degree n into a sum of line products (equation 1 for n = 4):
-/// `f = c_n prod (x + l_ni y + k_ni) + c_(n-2) prod (x + l_(n-2)i y + k_(n-2)i) + ... + c_0`.
-///
-/// In a decomposition of a monic quartic `c_4 = 1`, `c_2` is alpha and `c_0` is beta.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Decomposition {
-    pub(crate) degree: Degree,
-    /// Lines of level n, then of level n - 2, and so on.
-    pub(crate) lines: [Line; MAX_LINES],
-    /// `c_n, c_(n-2), ..., c_0`.
-    pub(crate) coefficients: [f64; 5],
 }

@@ -1,0 +1,188 @@
+//! The least-squares leading form that is positive on the unit circle by at least a margin.
+//!
+//! A binary form of degree 2m is non-negative if and only if it is a sum of squares, `h = v' Y v` with Y positive
+//! semidefinite and `v_k = sqrt(m over k) x^(m-k) y^k`. With this v, `|v|^2 = (x^2 + y^2)^m`, so rotation acts on Y by
+//! orthogonal matrices, and `h - floor (x^2 + y^2)^m` being a sum of squares says exactly that h >= floor on the circle.
+//! What is left is a least-squares problem over a small positive semidefinite matrix, solved by a primal-dual
+//! interior-point method with the direction of Helmberg, Rendl, Vanderbei, Wolkowicz (1996) and Kojima, Shindoh, Hara
+//! (1997).
+use nalgebra::{SMatrix, SVector};
+
+use crate::{
+    error::FitError, leading_form::CircleRange, least_squares::TriangularSystem, monomials::monomial_index,
+    ridge::binomial,
+};
+
+/// The path ends where the duality gap of a problem scaled to size 1 has fallen to this.
+const GAP_TOLERANCE: f64 = 1e-14;
+/// Where rounding allows no more progress, this is still accepted: every point of the path is bounded, and the fit is
+/// then this close to optimal. Measured where the constraint is hard: below 1e-12 for quartics, 1e-10 for sextics, 1e-6
+/// for octics, whose monomials are nearly dependent.
+const ACCEPTED_GAP: f64 = 1e-5;
+const MINIMAL_STEP: f64 = 1e-7;
+const RESIDUAL_TOLERANCE: f64 = 1e-14;
+const MAX_ITERATIONS: usize = 80;
+/// Steps stop short of the boundary of the positive semidefinite cone by this fraction.
+const FRACTION_TO_BOUNDARY: f64 = 0.97;
+const BACKTRACKING: f64 = 0.95;
+
+/// Replaces the leading form in `coefficients` (degree n) by the best one, in the sense of `system`, whose values on the
+/// unit circle are at least `margin` times their unconstrained root mean square, and the other coefficients by the best
+/// ones given that.
+pub(crate) fn constrain_leading_form(
+    degree: usize,
+    system: &TriangularSystem,
+    margin: f64,
+    coefficients: &mut [f64],
+) -> Result<(), FitError> {
+    let first = monomial_index(degree, 0);
+    let floor = margin * CircleRange::of(&coefficients[first..]).rms;
+    let form = &mut coefficients[first..];
+    match degree {
+        2 => GramProblem::<2, 3, 3>::new(system, first, floor).solve(form),
+        4 => GramProblem::<3, 6, 5>::new(system, first, floor).solve(form),
+        6 => GramProblem::<4, 10, 7>::new(system, first, floor).solve(form),
+        _ => GramProblem::<5, 15, 9>::new(system, first, floor).solve(form),
+    }?;
+    system.solve_leading(first, coefficients);
+    Ok(())
+}
+
+/// `min |A y - b|^2 / 2` over positive semidefinite Y of ROWS = m + 1 rows. The UNKNOWNS = ROWS (ROWS + 1) / 2 entries
+/// of y are the upper triangle of Y by rows, those off the diagonal times sqrt 2, so that inner products of vectors and
+/// of matrices are the same. FORM = 2m + 1 coefficients.
+struct GramProblem<const ROWS: usize, const UNKNOWNS: usize, const FORM: usize> {
+    /// The form from y.
+    form_from_gram: SMatrix<f64, FORM, UNKNOWNS>,
+    /// `floor (x^2 + y^2)^m`.
+    floor_form: SVector<f64, FORM>,
+    /// `A'A`.
+    normal: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    /// `A'b`.
+    projection: SVector<f64, UNKNOWNS>,
+    /// Factor between y and the scaled unknowns.
+    unit: f64,
+}
+
+impl<const ROWS: usize, const UNKNOWNS: usize, const FORM: usize> GramProblem<ROWS, UNKNOWNS, FORM> {
+    fn new(system: &TriangularSystem, first: usize, floor: f64) -> Self {
+        let m = ROWS - 1;
+        let mut form_from_gram = SMatrix::zeros();
+        for (column, (k, l)) in upper_triangle::<ROWS>().enumerate() {
+            let twice = if k == l { 1.0 } else { std::f64::consts::SQRT_2 };
+            form_from_gram[(k + l, column)] = twice * (binomial(m, k) * binomial(m, l)).sqrt();
+        }
+        let mut floor_form = SVector::zeros();
+        (0..=m).for_each(|k| floor_form[2 * k] = floor * binomial(m, k));
+        let weight =
+            SMatrix::<f64, FORM, FORM>::from_fn(|i, j| if i <= j { system.upper(first + i, first + j) } else { 0.0 });
+        let right = SVector::<f64, FORM>::from_fn(|i, _| system.right()[first + i]);
+        let matrix = weight * form_from_gram;
+        let target = right - weight * floor_form;
+        // Units in which the matrix and the solution are about 1.
+        let norm = matrix.norm();
+        let unit = target.norm() / norm;
+        let matrix = matrix / norm;
+        let projection = matrix.transpose() * target / target.norm();
+        Self { form_from_gram, floor_form, normal: matrix.transpose() * matrix, projection, unit }
+    }
+
+    fn solve(&self, form: &mut [f64]) -> Result<(), FitError> {
+        let mut primal = SMatrix::<f64, ROWS, ROWS>::identity();
+        let mut dual = SMatrix::<f64, ROWS, ROWS>::identity();
+        let mut centring = 0.3;
+        for iteration in 0.. {
+            let y = Self::vector(&primal);
+            let residual = (self.normal * y - self.projection - Self::vector(&dual)).norm();
+            let gap = primal.dot(&dual) / ROWS as f64;
+            if gap <= GAP_TOLERANCE && residual <= RESIDUAL_TOLERANCE {
+                break;
+            }
+            let length = match self.step(&primal, &dual, centring * gap) {
+                Some((primal_step, dual_step)) if iteration < MAX_ITERATIONS => {
+                    let length = step_length(&primal, &primal_step).min(step_length(&dual, &dual_step));
+                    primal += length * primal_step;
+                    dual += length * dual_step;
+                    length
+                }
+                _ => 0.0,
+            };
+            if length < MINIMAL_STEP {
+                // Rounding leaves nothing more to gain.
+                if gap > ACCEPTED_GAP || residual > ACCEPTED_GAP {
+                    return Err(FitError::NoConvergence { iterations: iteration });
+                }
+                break;
+            }
+            centring = if length > 0.8 { 0.02 } else { 0.3 };
+        }
+        let solution = self.floor_form + self.unit * (self.form_from_gram * Self::vector(&primal));
+        form.copy_from_slice(solution.as_slice());
+        Ok(())
+    }
+
+    /// The step of both matrices towards the point of the central path where their product is `target` times identity:
+    /// `dZ + sym(Y^-1 dY Z) = target Y^-1 - Z` and `A'A (y + dy) - A'b = z + dz`.
+    fn step(
+        &self,
+        primal: &SMatrix<f64, ROWS, ROWS>,
+        dual: &SMatrix<f64, ROWS, ROWS>,
+        target: f64,
+    ) -> Option<(SMatrix<f64, ROWS, ROWS>, SMatrix<f64, ROWS, ROWS>)> {
+        let y = Self::vector(primal);
+        let inverse = primal.cholesky()?.inverse();
+        let matrix = self.normal + Self::scaling(&inverse, dual);
+        let right = target * Self::vector(&inverse) - (self.normal * y - self.projection);
+        let step = matrix.cholesky()?.solve(&right);
+        let dual_step = Self::matrix(&(self.normal * (y + step) - self.projection)) - dual;
+        Some((Self::matrix(&step), dual_step))
+    }
+
+    /// The operator `D -> (Y^-1 D Z + Z D Y^-1) / 2` on vectors.
+    fn scaling(
+        inverse: &SMatrix<f64, ROWS, ROWS>,
+        dual: &SMatrix<f64, ROWS, ROWS>,
+    ) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
+        let mut operator = SMatrix::zeros();
+        for (column, (p, q)) in upper_triangle::<ROWS>().enumerate() {
+            for (row, (k, l)) in upper_triangle::<ROWS>().enumerate().skip(column) {
+                let product = |i: usize, j: usize, r: usize, s: usize| inverse[(i, r)] * dual[(s, j)];
+                let all = product(k, l, p, q) + product(k, l, q, p) + product(l, k, p, q) + product(l, k, q, p);
+                let weight = |i, j| if i == j { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
+                operator[(row, column)] = 0.5 * weight(k, l) * weight(p, q) * all;
+                operator[(column, row)] = operator[(row, column)];
+            }
+        }
+        operator
+    }
+
+    fn vector(matrix: &SMatrix<f64, ROWS, ROWS>) -> SVector<f64, UNKNOWNS> {
+        let mut vector = SVector::<f64, UNKNOWNS>::zeros();
+        for (slot, (k, l)) in vector.iter_mut().zip(upper_triangle::<ROWS>()) {
+            *slot = if k == l { matrix[(k, k)] } else { std::f64::consts::SQRT_2 * matrix[(k, l)] };
+        }
+        vector
+    }
+
+    fn matrix(vector: &SVector<f64, UNKNOWNS>) -> SMatrix<f64, ROWS, ROWS> {
+        let mut matrix = SMatrix::zeros();
+        for (&value, (k, l)) in vector.iter().zip(upper_triangle::<ROWS>()) {
+            let value = if k == l { value } else { std::f64::consts::FRAC_1_SQRT_2 * value };
+            (matrix[(k, l)], matrix[(l, k)]) = (value, value);
+        }
+        matrix
+    }
+}
+
+fn upper_triangle<const ROWS: usize>() -> impl Iterator<Item = (usize, usize)> {
+    (0..ROWS).flat_map(|k| (k..ROWS).map(move |l| (k, l)))
+}
+
+/// A step, at most 1, after which the matrix is still positive definite, with some room.
+fn step_length<const ROWS: usize>(from: &SMatrix<f64, ROWS, ROWS>, step: &SMatrix<f64, ROWS, ROWS>) -> f64 {
+    let mut length = 1.0;
+    while length > 0.1 * MINIMAL_STEP && (from + (length / FRACTION_TO_BOUNDARY) * step).cholesky().is_none() {
+        length *= BACKTRACKING;
+    }
+    length
+}

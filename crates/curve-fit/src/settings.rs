@@ -1,0 +1,64 @@
+use crate::{degree::Degree, error::SettingsError};
+
+/// How an implicit polynomial is fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// Plain 3L (Blane, Lei, Civi, Cooper 2000): the curve follows the data best, and may be unbounded.
+    ThreeLevel,
+    /// GS3L (Sahin, Unel 2004): 3L plus the Euclidean-invariant ridge of Tasdizen, Tarel and Cooper (2000).
+    /// Bounded curves become likely, not certain.
+    GloballyStabilised {
+        /// Weight kappa of the ridge, at least 0. Prefer the smallest that serves: a large one makes circles of lines.
+        ridge_weight: f64,
+    },
+    /// 3L under the constraint that the leading form is positive: closed and bounded by construction.
+    Bounded {
+        /// Smallest value of the leading form on the unit circle, as a fraction of the root mean square over the circle
+        /// that it has without the constraint. In (0, 0.5].
+        margin: f64,
+    },
+}
+
+/// Settings of a [`Fitter`](crate::Fitter).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitSettings {
+    /// Degree of the polynomial.
+    pub degree: Degree,
+    /// Which least-squares problem is solved.
+    pub method: Method,
+    /// Distance c of the outer level sets from the data, in units of the RMS radius of the outline. In (0, 1].
+    pub offset: f64,
+    /// Half width of the window that normals are regressed over, as a fraction of the length of the outline.
+    /// In [0, 0.25].
+    pub normal_half_window: f64,
+}
+
+impl Default for FitSettings {
+    /// A bounded quartic with level sets at a tenth of the RMS radius.
+    fn default() -> Self {
+        Self {
+            degree: Degree::Quartic,
+            method: Method::Bounded { margin: 0.02 },
+            offset: 0.1,
+            normal_half_window: 0.02,
+        }
+    }
+}
+
+impl FitSettings {
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
+        if !(self.offset > 0.0 && self.offset <= 1.0) {
+            return Err(SettingsError::Offset { value: self.offset });
+        }
+        if !(0.0..=0.25).contains(&self.normal_half_window) {
+            return Err(SettingsError::NormalHalfWindow { value: self.normal_half_window });
+        }
+        match self.method {
+            Method::GloballyStabilised { ridge_weight: value } if !(value >= 0.0 && value.is_finite()) => {
+                Err(SettingsError::RidgeWeight { value })
+            }
+            Method::Bounded { margin: value } if !(value > 0.0 && value <= 0.5) => Err(SettingsError::Margin { value }),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Outlines that the tests share.
+#![allow(dead_code, unreachable_pub)]
+use freeform_curve_fit::Outline;
+use nalgebra::{Affine2, Matrix2, Matrix3, Point2, Vector2};
+use proptest::prelude::*;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+
+/// A star-shaped outline `r(t) = 1 + sum_k a_k cos(k t) + b_k sin(k t)` seen through noisy points.
+pub fn star(harmonics: &[(f64, f64)], count: usize, noise: f64, seed: u64) -> Vec<Point2<f64>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let normal = Normal::new(0.0, noise).expect("a noise level");
+    (0..count)
+        .map(|i| {
+            let t = std::f64::consts::TAU * i as f64 / count as f64;
+            let wave = |(k, (a, b)): (usize, &(f64, f64))| {
+                let angle = (k + 2) as f64 * t;
+                a * angle.cos() + b * angle.sin()
+            };
+            let r = 1.0 + harmonics.iter().enumerate().map(wave).sum::<f64>();
+            Point2::new(r * t.cos() + normal.sample(&mut rng), r * t.sin() + normal.sample(&mut rng))
+        })
+        .collect()
+}
+
+/// Random star-shaped outlines: 150 to 400 points, noise 0.001 to 0.02 of a unit radius.
+pub fn any_star() -> impl Strategy<Value = Vec<Point2<f64>>> {
+    let harmonics = prop::collection::vec((-0.15..0.15_f64, -0.15..0.15_f64), 3);
+    (harmonics, 150..400_usize, 0.001..0.02_f64, any::<u64>())
+        .prop_map(|(h, count, noise, seed)| star(&h, count, noise, seed))
+}
+
+/// Random similarities without reflection: any turn, scale 0.1 to 10, shift up to 10.
+pub fn any_similarity() -> impl Strategy<Value = Affine2<f64>> {
+    (-3.2..3.2_f64, -1.0..1.0_f64, -10.0..10.0_f64, -10.0..10.0_f64)
+        .prop_map(|(turn, scale, x, y)| similarity(turn, 10.0_f64.powf(scale), Vector2::new(x, y)))
+}
+
+pub fn similarity(turn: f64, scale: f64, shift: Vector2<f64>) -> Affine2<f64> {
+    affine(nalgebra::Rotation2::new(turn).matrix() * scale, shift)
+}
+
+pub fn affine(linear: Matrix2<f64>, shift: Vector2<f64>) -> Affine2<f64> {
+    let mut matrix = Matrix3::identity();
+    matrix.fixed_view_mut::<2, 2>(0, 0).copy_from(&linear);
+    matrix.fixed_view_mut::<2, 1>(0, 2).copy_from(&shift);
+    Affine2::from_matrix_unchecked(matrix)
+}
+
+pub fn closed(points: Vec<Point2<f64>>) -> Outline {
+    Outline::closed(points).expect("a closed outline")
+}

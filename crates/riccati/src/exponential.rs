@@ -1,0 +1,54 @@
+use nalgebra::{Complex, Matrix3, RowVector3};
+
+/// Norm beyond which no digit of an exponential is left in f64: a turn by 1e15 rad has lost its phase.
+const MEANINGFUL_NORM: f64 = 1e15;
+
+/// `expm(m)`; all NaN where `m` is not finite or so large that nothing could be told. Where the last row of `m` is zero,
+/// that of the result is exactly `(0, 0, 1)`.
+pub(crate) fn exponential(m: &Matrix3<f64>) -> Matrix3<f64> {
+    // The library scales by powers of two until the norm is small, which for an infinite norm never ends.
+    if !m.iter().all(|e| e.abs() < MEANINGFUL_NORM) {
+        return Matrix3::repeat(f64::NAN);
+    }
+    let mut map = m.exp();
+    if m.row(2).iter().all(|&e| e == 0.0) {
+        map.set_row(2, &RowVector3::new(0.0, 0.0, 1.0));
+    }
+    map
+}
+
+/// `(e^z - 1) / z`, without loss of digits near 0.
+pub(crate) fn exponential_quotient(z: Complex<f64>) -> Complex<f64> {
+    let half = z * 0.5;
+    // e^z - 1 = 2 e^(z/2) sinh(z/2), and sinh keeps its digits at 0; below the square root of the rounding unit two
+    // terms of the series are exact and spare the quotient of two subnormal numbers.
+    if half.norm() < 1e-9 { half + 1.0 } else { half.exp() * half.sinh() / half }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quotient_agrees_with_its_series_on_both_sides_of_the_switch() {
+        for size in [0.0, 1e-300, 1e-12, 0.9e-9, 2.1e-9, 1e-6, 1e-3, 0.3] {
+            for phase in 0..8 {
+                let z = Complex::from_polar(size, f64::from(phase));
+                let (mut term, mut series) = (Complex::new(1.0, 0.0), Complex::new(0.0, 0.0));
+                for k in 1..20 {
+                    series += term;
+                    term *= z / f64::from(k + 1);
+                }
+                assert!((exponential_quotient(z) - series).norm() < 1e-15, "z = {z}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_exponential_of_something_not_finite_ends_and_is_nan() {
+        for bad in [f64::NAN, f64::INFINITY, 1e200] {
+            let map = exponential(&Matrix3::new(0.0, bad, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0));
+            assert!(map.iter().all(|e| e.is_nan()));
+        }
+    }
+}

@@ -1,0 +1,126 @@
+use nalgebra::{Matrix3, Projective2};
+
+use crate::{exponential::exponential, motion::SimilarityMotion};
+
+/// Family of motions of the plane, and with it the meaning of a parameter vector theta: `A = sum theta_j E_j`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum MotionModel {
+    /// omega, b1, b2: see [`RigidMotion`](crate::RigidMotion).
+    Rigid,
+    /// sigma, omega, b1, b2: see [`SimilarityMotion`](crate::SimilarityMotion).
+    Similarity,
+    /// a1, a2, a3, a4, b1, b2: see [`AffineMotion`](crate::AffineMotion).
+    Affine,
+    /// a1, a2, a3, a4, b1, b2, c1, c2: see [`ProjectiveMotion`](crate::ProjectiveMotion).
+    Projective,
+}
+
+const fn generator_of(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
+    let [[a1, a2, b1], [a3, a4, b2], [c1, c2, c3]] = rows;
+    Matrix3::new(a1, a2, b1, a3, a4, b2, c1, c2, c3)
+}
+
+const fn entry(row: usize, column: usize) -> Matrix3<f64> {
+    let mut rows = [[0.0; 3]; 3];
+    rows[row][column] = 1.0;
+    generator_of(rows)
+}
+
+const SIGMA: Matrix3<f64> = generator_of([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]]);
+const OMEGA: Matrix3<f64> = generator_of([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0; 3]]);
+const A1: Matrix3<f64> = entry(0, 0);
+const A2: Matrix3<f64> = entry(0, 1);
+const A3: Matrix3<f64> = entry(1, 0);
+const A4: Matrix3<f64> = entry(1, 1);
+const B1: Matrix3<f64> = entry(0, 2);
+const B2: Matrix3<f64> = entry(1, 2);
+const C1: Matrix3<f64> = entry(2, 0);
+const C2: Matrix3<f64> = entry(2, 1);
+
+impl MotionModel {
+    /// All models, fewest parameters first. Each holds the one before.
+    pub const ALL: [Self; 4] = [Self::Rigid, Self::Similarity, Self::Affine, Self::Projective];
+
+    /// Largest number of parameters of any model.
+    pub const MAX_PARAMETERS: usize = 8;
+
+    /// Number of parameters: 3, 4, 6 or 8.
+    #[must_use]
+    pub const fn parameter_count(self) -> usize {
+        self.basis().len()
+    }
+
+    /// Names of the parameters in order.
+    #[must_use]
+    pub const fn parameter_names(self) -> &'static [&'static str] {
+        match self {
+            Self::Rigid => &["omega", "b1", "b2"],
+            Self::Similarity => &["sigma", "omega", "b1", "b2"],
+            Self::Affine => &["a1", "a2", "a3", "a4", "b1", "b2"],
+            Self::Projective => &["a1", "a2", "a3", "a4", "b1", "b2", "c1", "c2"],
+        }
+    }
+
+    /// Units of the parameters in order, the length unit left out: a velocity is in lengths per second, written `1/s`.
+    #[must_use]
+    pub const fn units(self) -> &'static [&'static str] {
+        match self {
+            Self::Rigid => &["rad/s", "1/s", "1/s"],
+            Self::Similarity => &["1/s", "rad/s", "1/s", "1/s"],
+            Self::Affine => &["1/s"; 6],
+            Self::Projective => &["1/s"; 8],
+        }
+    }
+
+    /// The matrices `E_j` of `A = sum theta_j E_j`, in the order of the parameters.
+    #[must_use]
+    pub const fn basis(self) -> &'static [Matrix3<f64>] {
+        match self {
+            Self::Rigid => &[OMEGA, B1, B2],
+            Self::Similarity => &[SIGMA, OMEGA, B1, B2],
+            Self::Affine => &[A1, A2, A3, A4, B1, B2],
+            Self::Projective => &[A1, A2, A3, A4, B1, B2, C1, C2],
+        }
+    }
+
+    /// The generator `A = sum theta_j E_j`, per second.
+    ///
+    /// # Panics
+    /// If `parameters` does not have `parameter_count` entries.
+    #[must_use]
+    pub fn generator(self, parameters: &[f64]) -> Matrix3<f64> {
+        let basis = self.basis();
+        assert_eq!(parameters.len(), basis.len(), "number of parameters of a {self} motion");
+        parameters.iter().zip(basis).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta)
+    }
+
+    /// The map of the plane that the motion makes in `seconds`: in closed form for rigid and similarity motion, `expm(A
+    /// seconds)` otherwise. Its last row is exactly `(0, 0, 1)` for all but projective motion.
+    ///
+    /// # Panics
+    /// If `parameters` does not have `parameter_count` entries.
+    #[must_use]
+    pub fn flow(self, parameters: &[f64], seconds: f64) -> Projective2<f64> {
+        let generator = self.generator(parameters);
+        let map = match self {
+            Self::Rigid | Self::Similarity => {
+                let (sigma, omega, b1, b2) =
+                    (generator[(0, 0)], generator[(0, 1)], generator[(0, 2)], generator[(1, 2)]);
+                SimilarityMotion { sigma, omega, b1, b2 }.flow(seconds).to_homogeneous()
+            }
+            Self::Affine | Self::Projective => exponential(&(generator * seconds)),
+        };
+        Projective2::from_matrix_unchecked(map)
+    }
+}
+
+impl std::fmt::Display for MotionModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Rigid => "rigid",
+            Self::Similarity => "similarity",
+            Self::Affine => "affine",
+            Self::Projective => "projective",
+        })
+    }
+}
