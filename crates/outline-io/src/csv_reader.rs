@@ -66,7 +66,12 @@ impl<R: Read> OutlineReader<R> {
     /// The source cannot be read, is empty, or its header lacks a column or has one twice.
     pub fn new(source: R, name: impl Into<String>) -> Result<Self, ReadError> {
         let (rows, columns) = Rows::open(source, name.into(), Columns::find)?;
-        Ok(Self { rows, columns, present: None, latest: HashMap::new(), failure: None, ended: false })
+        Ok(Self::with_columns(rows, columns))
+    }
+
+    /// Goes on with a file whose header has been read.
+    pub(crate) fn with_columns(rows: Rows<R>, columns: Columns) -> Self {
+        Self { rows, columns, present: None, latest: HashMap::new(), failure: None, ended: false }
     }
 
     /// Reads one row; returns the outline that it completes, if any.

@@ -1,4 +1,4 @@
-use std::io::{self, Read};
+use std::io::{self, Chain, Cursor, Read};
 
 use csv::{ByteRecord, ReaderBuilder, Terminator};
 
@@ -11,7 +11,7 @@ use crate::row_limit::{ROW_LIMIT, RowLimit};
 #[derive(Debug)]
 pub(crate) struct Rows<R> {
     file: String,
-    reader: csv::Reader<RowLimit<R>>,
+    reader: csv::Reader<RowLimit<Chain<Cursor<Vec<u8>>, R>>>,
     field_count: usize,
     row: ByteRecord,
     previous: ByteRecord,
@@ -20,10 +20,19 @@ pub(crate) struct Rows<R> {
 impl<R: Read> Rows<R> {
     /// Reads the header and lets `columns` find its way in it.
     pub(crate) fn open<C>(
-        source: R,
+        mut source: R,
         file: String,
         columns: impl Fn(&ByteRecord) -> Result<C, HeaderError>,
     ) -> Result<(Self, C), ReadError> {
+        // The csv crate takes a byte order mark off too, but only where the first read returns all of it.
+        let mut start = Vec::new();
+        if let Err(error) = source.by_ref().take(3).read_to_end(&mut start) {
+            let place = Place { file, lines: None, column: None };
+            return Err(ReadError { place, kind: ReadErrorKind::Io(error) });
+        }
+        if start == b"\xef\xbb\xbf" {
+            start.clear();
+        }
         // Ending rows at "\n" alone makes line numbers exact; the "\r" of a "\r\n" falls to trimming.
         let reader = ReaderBuilder::new()
             .has_headers(false)
@@ -31,12 +40,11 @@ impl<R: Read> Rows<R> {
             .comment(Some(b'#'))
             .terminator(Terminator::Any(b'\n'))
             .buffer_capacity(1 << 16)
-            .from_reader(RowLimit::new(source));
+            .from_reader(RowLimit::new(Cursor::new(start).chain(source)));
         let mut rows = Self { file, reader, field_count: 0, row: ByteRecord::new(), previous: ByteRecord::new() };
         if !rows.read_row()? {
             return Err(rows.error_at(None, None, ReadErrorKind::Empty));
         }
-        strip_byte_order_mark(&mut rows.row);
         rows.field_count = rows.row.len();
         let found = columns(&rows.row).map_err(|(column, kind)| rows.error(column, kind))?;
         rows.row.clear();
@@ -130,12 +138,4 @@ impl<R: Read> Rows<R> {
 /// A line of nothing but white space comes as one blank field.
 fn is_blank(row: &ByteRecord) -> bool {
     row.len() == 1 && row[0].trim_ascii().is_empty()
-}
-
-/// The csv crate takes a byte order mark off only where the first read returns all of it.
-fn strip_byte_order_mark(header: &mut ByteRecord) {
-    if let Some(first) = header.get(0).and_then(|name| name.strip_prefix(b"\xef\xbb\xbf")) {
-        let fields: Vec<Vec<u8>> = std::iter::once(first).chain(header.iter().skip(1)).map(<[u8]>::to_vec).collect();
-        *header = ByteRecord::from(fields);
-    }
 }

@@ -2,6 +2,7 @@ use std::fmt;
 use std::io;
 
 use freeform_curve_fit::OutlineError;
+use image::ImageError;
 use thiserror::Error;
 
 use crate::csv_columns::Column;
@@ -260,5 +261,130 @@ pub enum WriteError {
         frame: u64,
         /// The time.
         time: f64,
+    },
+}
+
+/// A picture could not be read. Displays as one line.
+#[derive(Debug, Error)]
+#[error("{file}: {kind}")]
+pub struct PictureError {
+    /// The file's name.
+    pub file: String,
+    /// The reason.
+    #[source]
+    pub kind: PictureErrorKind,
+}
+
+/// Why a picture could not be read.
+#[derive(Debug, Error)]
+pub enum PictureErrorKind {
+    /// The file could not be opened or read.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// A file of no bytes.
+    #[error("the file is empty")]
+    Empty,
+    /// The content is that of no picture format.
+    #[error("not a picture")]
+    NotAPicture,
+    /// A picture format that is not built in.
+    #[error("pictures of type {format} are not supported")]
+    Unsupported {
+        /// Its media type.
+        format: &'static str,
+    },
+    /// More pixels than are accepted.
+    #[error("{width} x {height} pixels, more than {limit} in all")]
+    TooLarge {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Largest number of pixels accepted.
+        limit: u64,
+    },
+    /// The file ends early or contradicts itself.
+    #[error("the picture is damaged: {0}")]
+    Damaged(#[source] ImageError),
+}
+
+/// Why no outline could be traced in a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum TraceError {
+    /// A setting is out of range.
+    #[error("the setting {name} is {value}, expected {expected}")]
+    Setting {
+        /// Name of the setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range accepted.
+        expected: &'static str,
+    },
+    /// A picture of no pixels.
+    #[error("the picture has no pixels")]
+    NoPixels,
+    /// All pixels have one grey value.
+    #[error("no object: every pixel has the grey value {value}")]
+    Uniform {
+        /// The grey value.
+        value: u8,
+    },
+    /// No pixel passes the threshold.
+    #[error("no object: no pixel passes the threshold {threshold}")]
+    NoObject {
+        /// The threshold as a grey value of the picture.
+        threshold: f64,
+    },
+    /// The largest object is too small.
+    #[error("no object: the largest has {pixels} pixel(s), at least {needed} are asked for")]
+    TooSmall {
+        /// Pixels of the largest object.
+        pixels: u64,
+        /// Smallest number accepted.
+        needed: u64,
+    },
+    /// The object is so thin that smoothing takes it below the threshold.
+    #[error("smoothing by {sigma} pixels leaves nothing of the object")]
+    SmoothedAway {
+        /// Standard deviation of the smoothing, in pixels.
+        sigma: f64,
+    },
+    /// No part of the outline is within the picture.
+    #[error("the object fills the picture: nothing of its outline is visible")]
+    FillsPicture,
+    /// The points are no outline.
+    #[error("the traced points are no outline: {0}")]
+    Degenerate(#[from] OutlineError),
+}
+
+/// Why a file gave no shape.
+#[derive(Debug, Error)]
+pub enum ShapeError {
+    /// The CSV file could not be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The picture could not be read.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// The picture shows no object.
+    #[error("{file}: {source}")]
+    Trace {
+        /// The file's name.
+        file: String,
+        /// The reason.
+        source: TraceError,
+    },
+    /// The CSV file has a header but no outline.
+    #[error("{file}: no outline in the file")]
+    NoOutline {
+        /// The file's name.
+        file: String,
+    },
+    /// The first outline of the CSV file is open.
+    #[error("{file}: the first outline is made of open arcs, a shape needs a closed one")]
+    Open {
+        /// The file's name.
+        file: String,
     },
 }

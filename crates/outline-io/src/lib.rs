@@ -1,16 +1,51 @@
-//! Outlines from and to files: streamed CSV.
+//! Outlines from and to files: streamed CSV, and the outlines of objects in masks and pictures.
+//!
+//! ```
+//! use freeform_outline_io::{OutlineReader, read_shape};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let csv = "frame,time,x,y\n0,0.00,0,0\n0,0.00,2,0\n0,0.00,0,1\n1,0.04,1,0\n1,0.04,3,0\n1,0.04,1,1\n";
+//! for frame in OutlineReader::new(csv.as_bytes(), "<memory>")? {
+//!     let frame = frame?;
+//!     println!("{} s: area {}", frame.time, frame.outline.signed_area());
+//! }
+//!
+//! let error = read_shape("/nowhere/shape.csv").expect_err("no such file");
+//! assert!(error.to_string().starts_with("/nowhere/shape.csv: "));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! - [`OutlineReader`] and [`OutlineWriter`] stream outlines as CSV.
+//! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
+//! - [`read_shape`] reads one closed outline from either.
 mod csv_columns;
 mod csv_field;
 mod csv_reader;
 mod csv_rows;
 mod csv_writer;
 mod error;
+mod field;
 mod frame;
+mod isoline;
+mod object_mask;
 mod outline_rows;
+mod picture;
 mod row_limit;
+mod segment;
+mod shape;
+mod threshold;
+mod trace;
 
 pub use csv_columns::Column;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
-pub use error::{Place, ReadError, ReadErrorKind, WriteError};
+pub use error::{PictureError, PictureErrorKind, Place, ReadError, ReadErrorKind, ShapeError, TraceError, WriteError};
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
+pub use image::GrayImage;
+pub use picture::{decode_picture, read_picture};
+pub use shape::read_shape;
+pub use trace::{Clipping, Contrast, Smoothing, Threshold, TraceSettings, TracedOutline, trace_mask};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,0 +1,102 @@
+use image::GrayImage;
+
+use crate::error::TraceError;
+use crate::trace::{Contrast, Threshold};
+
+/// The grey values that tell an object from its ground, on a scale where the object is lighter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Levels {
+    /// Pixels from here on belong to an object; the outline runs where the grey value passes it.
+    pub(crate) threshold: f64,
+    /// Median of the ground.
+    pub(crate) ground: f64,
+    /// Median of the objects.
+    pub(crate) object: f64,
+    /// Whether the picture has only two grey values, as masks do.
+    pub(crate) two_valued: bool,
+}
+
+/// Grey value on a scale where the object is lighter.
+pub(crate) fn signal(value: u8, contrast: Contrast) -> u8 {
+    match contrast {
+        Contrast::LightOnDark => value,
+        Contrast::DarkOnLight => u8::MAX - value,
+    }
+}
+
+impl Levels {
+    pub(crate) fn of(picture: &GrayImage, contrast: Contrast, threshold: Threshold) -> Result<Self, TraceError> {
+        let mut counts = [0_u64; 256];
+        for value in picture.as_raw() {
+            counts[usize::from(signal(*value, contrast))] += 1;
+        }
+        let values = counts.iter().filter(|count| **count > 0).count();
+        let (split, fixed) = match threshold {
+            Threshold::Automatic => {
+                if values < 2 {
+                    let value = picture.as_raw().first().copied();
+                    return Err(value.map_or(TraceError::NoPixels, |value| TraceError::Uniform { value }));
+                }
+                (otsu(&counts), None)
+            }
+            Threshold::Level(level) => {
+                let level = level_in_picture(level, contrast);
+                (level.ceil().clamp(0.0, 256.0) as usize, Some(level))
+            }
+        };
+        let ground = median(&counts[..split], 0);
+        let object = median(&counts[split..], split);
+        match (ground, object) {
+            (_, None) if counts.iter().all(|count| *count == 0) => Err(TraceError::NoPixels),
+            (_, None) => Err(TraceError::NoObject { threshold: level_in_picture(fixed.unwrap_or(0.0), contrast) }),
+            (ground, Some(object)) => {
+                let ground = ground.unwrap_or(0.0);
+                let threshold = fixed.unwrap_or(0.5 * (ground + object));
+                Ok(Self { threshold, ground, object, two_valued: values <= 2 })
+            }
+        }
+    }
+}
+
+/// From a grey value of the picture to the scale where the object is lighter, or back.
+pub(crate) fn level_in_picture(level: f64, contrast: Contrast) -> f64 {
+    match contrast {
+        Contrast::LightOnDark => level,
+        Contrast::DarkOnLight => 255.0 - level,
+    }
+}
+
+/// First grey value of the upper class where the variance between the two classes is largest (Otsu, A threshold
+/// selection method from gray-level histograms, 1979).
+fn otsu(counts: &[u64; 256]) -> usize {
+    let total: f64 = counts.iter().map(|count| *count as f64).sum();
+    let sum: f64 = counts.iter().enumerate().map(|(value, count)| value as f64 * *count as f64).sum();
+    let (mut below, mut sum_below) = (0.0, 0.0);
+    let mut best = (0.0, 1);
+    for split in 1..256 {
+        below += counts[split - 1] as f64;
+        sum_below += (split - 1) as f64 * counts[split - 1] as f64;
+        let above = total - below;
+        if below > 0.0 && above > 0.0 {
+            let distance = sum_below / below - (sum - sum_below) / above;
+            let between = below * above * distance * distance;
+            if between > best.0 {
+                best = (between, split);
+            }
+        }
+    }
+    best.1
+}
+
+/// Median grey value of a part of the histogram that begins at `first`.
+fn median(counts: &[u64], first: usize) -> Option<f64> {
+    let total: u64 = counts.iter().sum();
+    let mut seen = 0;
+    for (index, count) in counts.iter().enumerate() {
+        seen += count;
+        if *count > 0 && 2 * seen >= total {
+            return Some((first + index) as f64);
+        }
+    }
+    None
+}

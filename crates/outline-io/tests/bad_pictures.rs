@@ -1,0 +1,143 @@
+//! Files that are no pictures, or damaged ones, give a typed error in one line and never a panic.
+use std::io::Cursor;
+use std::path::Path;
+
+use freeform_outline_io::{GrayImage, PictureErrorKind, ShapeError, decode_picture, read_picture, read_shape};
+use image::{DynamicImage, ImageFormat, Luma, LumaA, Rgb};
+
+fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    picture.into().write_to(&mut bytes, ImageFormat::Png).expect("memory never fails");
+    bytes.into_inner()
+}
+
+fn disc() -> GrayImage {
+    GrayImage::from_fn(120, 100, |x, y| {
+        let distance = (f64::from(x) - 60.0).hypot(f64::from(y) - 50.0);
+        Luma([((40.0 - distance).clamp(0.0, 1.0) * 200.0) as u8 + (x % 7 + y % 5) as u8])
+    })
+}
+
+fn decode(bytes: &[u8]) -> Result<GrayImage, PictureErrorKind> {
+    decode_picture(Cursor::new(bytes), "test.png").map_err(|error| {
+        let message = error.to_string();
+        assert!(message.starts_with("test.png: ") && message.lines().count() == 1, "{message}");
+        error.kind
+    })
+}
+
+#[test]
+fn a_picture_comes_back_as_its_grey_values() {
+    assert_eq!(decode(&png(disc())).expect("a picture"), disc());
+    let red = image::RgbImage::from_pixel(3, 2, Rgb([255, 0, 0]));
+    assert_eq!(decode(&png(red)).expect("a picture").get_pixel(0, 0).0[0], 54);
+}
+
+#[test]
+fn the_visible_part_of_a_transparent_picture_is_the_object() {
+    let picture = image::GrayAlphaImage::from_fn(4, 1, |x, _| LumaA([0, if x == 2 { 255 } else { 0 }]));
+    assert_eq!(decode(&png(picture)).expect("a picture").into_raw(), [0, 0, 255, 0]);
+    let opaque = image::GrayAlphaImage::from_pixel(2, 1, LumaA([77, 255]));
+    assert_eq!(decode(&png(opaque)).expect("a picture").into_raw(), [77, 77]);
+}
+
+#[test]
+fn files_that_are_no_pictures_are_told_apart() {
+    assert!(matches!(decode(b""), Err(PictureErrorKind::Empty)));
+    assert!(matches!(decode(b"frame,time,x,y\n0,0,1,2\n"), Err(PictureErrorKind::NotAPicture)));
+    assert!(matches!(decode(b"\x89"), Err(PictureErrorKind::NotAPicture)));
+    let jpeg = b"\xff\xd8\xff\xe0\x00\x10JFIF\x00\x01";
+    assert!(matches!(decode(jpeg), Err(PictureErrorKind::Unsupported { format: "image/jpeg" })));
+    let missing = read_picture("/nowhere/mask.png").expect_err("no such file");
+    assert_eq!(missing.to_string(), "/nowhere/mask.png: No such file or directory (os error 2)");
+}
+
+#[test]
+fn a_picture_that_is_too_large_is_refused_before_its_pixels_are_read() {
+    let mut header = Vec::from(b"\x89PNG\r\n\x1a\n");
+    let mut chunk = Vec::from(b"IHDR");
+    chunk.extend(20_000_u32.to_be_bytes());
+    chunk.extend(20_000_u32.to_be_bytes());
+    chunk.extend([8, 0, 0, 0, 0]);
+    header.extend(13_u32.to_be_bytes());
+    header.extend(&chunk);
+    header.extend(checksum(&chunk).to_be_bytes());
+    // The beginning of the pixel data, where the decoder stops reading the header.
+    header.extend([0, 0, 1, 0]);
+    header.extend(b"IDAT");
+    let error = decode(&header).expect_err("too large");
+    assert_eq!(error.to_string(), "20000 x 20000 pixels, more than 67108864 in all");
+}
+
+/// The checksum of a PNG chunk (CRC-32).
+fn checksum(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg()))
+    })
+}
+
+#[test]
+fn a_png_cut_anywhere_is_an_error() {
+    let whole = png(disc());
+    // The last 12 bytes are the end marker, without which all pixels are there.
+    for length in (1..whole.len() - 12).step_by(97).chain([whole.len() - 40]) {
+        assert!(decode(&whole[..length]).is_err(), "cut to {length} of {} bytes", whole.len());
+    }
+}
+
+#[test]
+fn a_png_with_flipped_bytes_never_panics() {
+    let whole = png(disc());
+    let mut refused = 0;
+    for at in 0..whole.len() {
+        for flip in [0x01, 0x80, 0xff] {
+            let mut bytes = whole.clone();
+            bytes[at] ^= flip;
+            refused += usize::from(decode(&bytes).is_err());
+        }
+    }
+    println!("{refused} of {} damaged files refused", 3 * whole.len());
+    assert!(refused > whole.len());
+}
+
+fn shape_of(name: &str, content: &[u8]) -> Result<freeform_curve_fit::Outline, ShapeError> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join(name);
+    std::fs::write(&path, content).expect("a file");
+    read_shape(&path)
+}
+
+/// The message without the folder.
+#[track_caller]
+fn no_shape(name: &str, content: &[u8], message: &str) {
+    let error = shape_of(name, content).expect_err("no shape").to_string();
+    let from = error.find(name).expect("the file is named");
+    assert_eq!(&error[from..], message);
+}
+
+#[test]
+fn a_shape_comes_from_csv_points_or_pictures() {
+    let bare = shape_of("a.csv", b"y,x\n0,0\n0,2\n1,0\n").expect("a triangle");
+    let sequence = b"frame,time,x,y\n0,0,0,0\n0,0,2,0\n0,0,0,1\n1,1,0,0\n1,1,2,0\n1,1,0,oops\n";
+    assert_eq!(shape_of("a.csv", sequence).expect("the first triangle"), bare);
+    assert_eq!(bare.signed_area(), 1.0);
+    assert!(shape_of("a.png", &png(disc())).is_ok());
+    assert!(shape_of("a", &png(disc())).is_ok(), "the content tells a picture without an extension");
+}
+
+#[test]
+fn a_file_without_a_shape_says_why() {
+    let black = png(GrayImage::new(30, 30));
+    no_shape("a.png", &black, "a.png: no object: every pixel has the grey value 0");
+    no_shape("a.png", b"x,y\n0,0\n", "a.png: not a picture");
+    no_shape("a.png", b"", "a.png: the file is empty");
+    no_shape("a.csv", b"", "a.csv: the file is empty, expected a header such as frame,time,x,y");
+    no_shape("a.csv", b"x,y\n", "a.csv: no outline in the file");
+    no_shape("a.csv", b"1,2\n3,4\n", "a.csv:1: missing column(s) x, y, the header is \"1,2\"");
+    no_shape("a.csv", b"frame,x,y\n", "a.csv:1: missing column(s) time, the header is \"frame,x,y\"");
+    no_shape("a.csv", b"x,y\n0,0\n1,nan\n", "a.csv:3: column y: \"nan\" is not a finite number");
+    no_shape("a.csv", b"x,y\n0,0\n1,1\n", "a.csv:2-3: frame 0 of object \"0\": 2 point(s), at least 3 are needed");
+    let open = b"frame,time,x,y,arc\n0,0,0,0,1\n0,0,2,0,1\n";
+    no_shape("a.csv", open, "a.csv: the first outline is made of open arcs, a shape needs a closed one");
+    assert!(read_shape(Path::new("/nowhere/a.csv")).is_err());
+}
