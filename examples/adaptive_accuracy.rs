@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let outline = read_shape(&path)?;
         let points: Vec<_> = outline.points().copied().collect();
         let name = std::path::Path::new(&path).file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
-        shapes.push(Shape::from_polygon(&points)?.with_name(format!("*{name}")));
+        shapes.push(Shape::from_polygon(&points)?.normalised().with_name(format!("*{name}")));
     }
     let env = |name: &str, default: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
     let law = match std::env::var("LAW").as_deref() {

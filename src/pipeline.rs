@@ -1,4 +1,4 @@
-use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Outline, SettingsError};
+use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Outline, SettingsError};
 use freeform_decompose::{Correspondence, CorrespondenceError, Decomposition, DecompositionError, Line};
 use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, MotionEstimate};
 
@@ -6,12 +6,21 @@ use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, Mot
 const MAX_PAIRS: usize = 4;
 
 /// Settings of a [`Pipeline`].
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PipelineSettings {
     /// How a curve is fitted to every outline.
     pub fit: FitSettings,
     /// How the motion is identified from its lines.
     pub identify: AdaptiveSettings,
+}
+
+impl Default for PipelineSettings {
+    /// A bounded quartic, rounder than the one that follows the outline best: a large margin keeps the lines of the
+    /// leading form away from real ones, whose slopes swing far out as they turn and carry their noise with them.
+    fn default() -> Self {
+        let fit = FitSettings { method: Method::Bounded { margin: 0.5 }, offset: 0.2, ..FitSettings::default() };
+        Self { fit, identify: AdaptiveSettings::default() }
+    }
 }
 
 /// What one frame gave.

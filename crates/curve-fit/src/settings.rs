@@ -14,7 +14,7 @@ pub enum Method {
     /// 3L under the constraint that the leading form is positive: closed and bounded by construction.
     Bounded {
         /// Smallest value of the leading form on the unit circle, as a fraction of the root mean square over the circle
-        /// that it has without the constraint. In (0, 0.5].
+        /// that it has without the constraint. In (0, 0.9].
         margin: f64,
     },
 }
@@ -57,7 +57,7 @@ impl FitSettings {
             Method::GloballyStabilised { ridge_weight: value } if !(value >= 0.0 && value.is_finite()) => {
                 Err(SettingsError::RidgeWeight { value })
             }
-            Method::Bounded { margin: value } if !(value > 0.0 && value <= 0.5) => Err(SettingsError::Margin { value }),
+            Method::Bounded { margin: value } if !(value > 0.0 && value <= 0.9) => Err(SettingsError::Margin { value }),
             _ => Ok(()),
         }
     }
