@@ -81,7 +81,7 @@ fn stages(c: &mut Criterion) {
             let free = FitSettings { degree, method: Method::ThreeLevel, ..FitSettings::default() };
             let mut fitter = Fitter::new(free).expect("settings");
             group.bench_function(BenchmarkId::new("3L fit", &name), |b| b.iter(|| fitter.fit(black_box(outline))));
-            let tight = FitSettings { method: Method::Bounded { margin: 0.5 }, ..free };
+            let tight = FitSettings { method: Method::Bounded { margin: 0.5, ridge_weight: 0.0 }, ..free };
             let mut fitter = Fitter::new(tight).expect("settings");
             group.bench_function(BenchmarkId::new("fit with the boundedness constraint active", &name), |b| {
                 b.iter(|| fitter.fit(black_box(outline)));
@@ -90,7 +90,11 @@ fn stages(c: &mut Criterion) {
     }
     let list = frames(400, 2);
     for degree in [Degree::Quartic, Degree::Sextic] {
-        let settings = FitSettings { degree, method: Method::Bounded { margin: 0.5 }, ..FitSettings::default() };
+        let settings = FitSettings {
+            degree,
+            method: Method::Bounded { margin: 0.5, ridge_weight: 0.0 },
+            ..FitSettings::default()
+        };
         let mut fitter = Fitter::new(settings).expect("settings");
         let fits = [0, 1].map(|i: usize| fitter.fit(&list[i].1).expect("a fit"));
         let name = format!("degree {degree}");

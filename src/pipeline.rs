@@ -15,10 +15,11 @@ pub struct PipelineSettings {
 }
 
 impl Default for PipelineSettings {
-    /// A bounded quartic, rounder than the one that follows the outline best: a large margin keeps the lines of the
-    /// leading form away from real ones, whose slopes swing far out as they turn and carry their noise with them.
+    /// A bounded quartic, rounder than the one that follows the outline best: a ridge and a large margin keep the lines
+    /// of the leading form away from real ones, whose slopes swing far out as they turn and carry their noise with them.
     fn default() -> Self {
-        let fit = FitSettings { method: Method::Bounded { margin: 0.5 }, offset: 0.2, ..FitSettings::default() };
+        let method = Method::Bounded { margin: 0.5, ridge_weight: 0.03 };
+        let fit = FitSettings { method, offset: 0.15, ..FitSettings::default() };
         Self { fit, identify: AdaptiveSettings::default() }
     }
 }
