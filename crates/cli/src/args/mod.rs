@@ -32,7 +32,7 @@ See 'freeform COMMAND --help' for more on a command.";
 /// Fits an implicit polynomial to every outline, takes it apart into complex lines, and identifies the motion from how
 /// the lines move: x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2.
 #[derive(Debug, Parser)]
-#[command(name = "freeform", version, after_help = EXAMPLES, arg_required_else_help = true, max_term_width = 100)]
+#[command(name = "freeform", version, after_help = EXAMPLES, arg_required_else_help = true, args_override_self = true, max_term_width = 100)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,

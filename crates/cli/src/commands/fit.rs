@@ -72,6 +72,10 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
             continue;
         }
         match fitter.fit(&frame.outline) {
+            Ok(fit) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
+                let place = format!("{name}: frame {} of object {:?}", frame.frame, frame.object);
+                reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
+            }
             Ok(fit) => {
                 let fitted = FittedOutline::new(&frame, fit);
                 collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;

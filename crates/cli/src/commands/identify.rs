@@ -18,6 +18,8 @@ use crate::tracking::{Estimate, ObjectResult, Observation, Tracking};
 #[derive(Debug)]
 pub(crate) struct History {
     pub(crate) object: String,
+    /// Time of the first frame in seconds.
+    pub(crate) start: Option<f64>,
     /// Time in seconds and what was known then.
     pub(crate) estimates: Vec<(f64, Estimate)>,
     /// The latest outline that was not rejected, with its curve.
@@ -29,10 +31,16 @@ impl History {
     pub(crate) fn take(histories: &mut Vec<Self>, observation: &Observation, frame: Option<&OutlineFrame>) {
         let position = histories.iter().position(|history| history.object == observation.object);
         let position = position.unwrap_or_else(|| {
-            histories.push(Self { object: observation.object.clone(), estimates: Vec::new(), latest: None });
+            histories.push(Self {
+                object: observation.object.clone(),
+                start: None,
+                estimates: Vec::new(),
+                latest: None,
+            });
             histories.len() - 1
         });
         let history = &mut histories[position];
+        history.start = history.start.or(observation.time);
         let Ok(accepted) = &observation.outcome else { return };
         if let (Some(time), Some(estimate)) = (observation.time, accepted.estimate) {
             history.estimates.push((time, estimate));

@@ -49,6 +49,7 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
         x_label: "x (image length)".to_owned(),
         y_label: "y (image length)".to_owned(),
         curves,
+        x_from: None,
         equal_scales: true,
     }
 }
@@ -84,6 +85,7 @@ pub(crate) fn parameter_panels(
                 x_label: "time (s)".to_owned(),
                 y_label: format!("{name} ({unit})"),
                 curves,
+                x_from: history.start,
                 equal_scales: false,
             }
         })

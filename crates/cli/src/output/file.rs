@@ -155,7 +155,8 @@ pub(crate) fn refuse_overwriting(input: &Path, outputs: &[&Path]) -> Result<(), 
         if input.as_os_str() != "-" && place(input).is_some_and(|input| place(output) == Some(input)) {
             return Err(Failure::unusable(format_args!("{}: this is the input", output.display())));
         }
-        if outputs[..index].contains(output) {
+        let is_device = output.exists() && !output.is_file();
+        if outputs[..index].contains(output) && !is_device {
             return Err(Failure::unusable(format_args!("{}: named for two outputs", output.display())));
         }
     }

@@ -19,7 +19,7 @@ mod tests {
     #[test]
     fn numbers_keep_their_significant_digits() {
         for (value, digits, text) in [
-            (1.570796, 5, "1.5708"),
+            (1.23456, 4, "1.235"),
             (-0.3, 3, "-0.300"),
             (0.000_012_34, 2, "0.000012"),
             (1.234e-9, 3, "1.23e-9"),

@@ -49,6 +49,8 @@ pub(crate) struct Panel {
     pub(crate) x_label: String,
     pub(crate) y_label: String,
     pub(crate) curves: Vec<Curve>,
+    /// Where the x axis begins, if before all curves.
+    pub(crate) x_from: Option<f64>,
     /// Whether a length is drawn the same along both axes.
     pub(crate) equal_scales: bool,
 }
@@ -92,7 +94,7 @@ impl Panel {
         let right = place.left + place.width - 16.0;
         let (low, high) = self.range(1, 0.06);
         let mut y = Axis { low, high, from: bottom, to: top };
-        let y_count = ((bottom - top) / 40.0) as usize;
+        let y_count = ((bottom - top) / if self.equal_scales { 60.0 } else { 32.0 }) as usize;
         let y_ticks = Ticks::within(y.low, y.high, y_count);
         let widest = y_ticks.labels.iter().map(String::len).max().unwrap_or(0);
         let left = place.left + 34.0 + CHARACTER_WIDTH * widest as f64;
@@ -105,7 +107,7 @@ impl Panel {
             y.set_density(density);
         }
         let y_ticks = if self.equal_scales { Ticks::within(y.low, y.high, y_count) } else { y_ticks };
-        let x_ticks = Ticks::within(x.low, x.high, ((right - left) / 70.0) as usize);
+        let x_ticks = Ticks::within(x.low, x.high, ((right - left) / 60.0) as usize);
 
         let mut svg = String::new();
         self.draw_frame(&mut svg, (&x, &x_ticks), (&y, &y_ticks));
@@ -139,7 +141,8 @@ impl Panel {
     /// Range of all finite values on an axis, widened by a share of itself.
     fn range(&self, axis: usize, margin: f64) -> (f64, f64) {
         let points = self.curves.iter().flat_map(|curve| curve.runs.iter().flatten());
-        let values = points.map(|point| point[axis]).filter(|value| value.is_finite());
+        let start = self.x_from.filter(|_| axis == 0);
+        let values = points.map(|point| point[axis]).chain(start).filter(|value| value.is_finite());
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low > high {
             return (0.0, 1.0);

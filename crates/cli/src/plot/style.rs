@@ -1,7 +1,7 @@
 use super::panel::{Panel, Place};
 
 /// Mean width of a character at the size of tick labels, in pixels.
-pub(crate) const CHARACTER_WIDTH: f64 = 6.7;
+pub(crate) const CHARACTER_WIDTH: f64 = 6.5;
 
 /// Colours and lines on white paper. Blue and vermilion can be told apart by everyone (Okabe and Ito, 2008).
 const PAPER: &str = "\
