@@ -11,10 +11,11 @@ Examples:
   freeform identify outlines.csv
   freeform identify outlines.csv --scale 0.1 --trace trace.csv --report report.html
   freeform simulate --seconds 5 | freeform identify - --format json
-  freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1.57,-1.57,0,-0.3,0.4
+  freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
 
-INPUT has a header frame,time,x,y and optional columns object and arc. Rows of one outline follow each other along the
-contour. Where it begins with the comment lines of 'freeform simulate', the truth in them is shown beside the result.";
+INPUT has a header frame,time,x,y and optional columns object and arc. Rows of one outline follow each other along the \
+contour. Where it begins with the comment lines of 'freeform simulate', the truth in them is shown beside \
+the result.";
 
 /// Identify the motion of every object in a sequence of outlines.
 #[derive(Debug, Args)]
@@ -54,8 +55,8 @@ Examples:
   freeform track outlines.csv
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
-Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, generator and
-reason (why the frame was not accepted, else null).";
+Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
+generator and reason (why the frame was not accepted, else null).";
 
 /// Identify as a stream: one line of JSON per object and frame as soon as the frame is complete.
 ///

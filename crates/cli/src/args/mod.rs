@@ -24,7 +24,7 @@ Examples:
   freeform simulate --seconds 5 | freeform identify - --format json
   freeform outline mask-*.png --fps 25 | freeform identify -
 
-Exit status: 0 done; 1 the input was understood but gives no result; 2 wrong usage or unreadable input.
+Exit status: 0 done; 1 input understood but no result; 2 wrong usage or unreadable input.
 See 'freeform COMMAND --help' for more on a command.";
 
 /// Finds how a flat free-form object moves from nothing but its outlines.

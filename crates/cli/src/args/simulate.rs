@@ -14,7 +14,7 @@ Examples:
 
 Shapes: plane, van, glass_vase, cd_box, shoe, car, vase, glider, phone, hat, bird, boomerang, circle, ellipse, square.
 
-The first lines of the output are comments that hold the command and the true motion; 'freeform identify' shows the
+The first lines of the output are comments that hold the command and the true motion; 'freeform identify' shows the \
 truth beside what it finds.";
 
 /// Make outlines of a moving object as CSV.

@@ -7,7 +7,7 @@ use serde_json::Value;
 /// The binary with arguments, in words.
 pub(crate) fn freeform(arguments: &str) -> Command {
     let mut command = Command::cargo_bin("freeform").expect("the binary is built");
-    command.args(arguments.split_whitespace());
+    command.args(arguments.split_whitespace()).env("COLUMNS", "100");
     command
 }
 
