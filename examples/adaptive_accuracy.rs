@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let outline = read_shape(&path)?;
         let points: Vec<_> = outline.points().copied().collect();
         let name = std::path::Path::new(&path).file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
-        shapes.push(Shape::from_polygon(&points)?.with_name(format!("*{name}")));
+        shapes.push(Shape::from_polygon(&points)?.normalised().with_name(format!("*{name}")));
     }
     let env = |name: &str, default: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
     let law = match std::env::var("LAW").as_deref() {
@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Ok("all") => PairChoice::All,
         Ok("0") => PairChoice::Given(0),
         Ok("1") => PairChoice::Given(1),
-        _ => PairChoice::Best,
+        Ok("best") => PairChoice::Best,
+        _ => PairChoice::All,
     };
     println!("{:<16} {:>7} {:>8} {:>8}  |w| (chosen first)   rejected", "shape", "motion", "omega %", "b %");
     let mut passed = [0; 3];
@@ -45,8 +46,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             };
             let simulator = Simulator::new(scene, settings)?;
             let mut fit = freeform_motion::curve_fit::FitSettings { offset: env("OFFSET", 0.1), ..Default::default() };
-            if let Method::Bounded { margin } = &mut fit.method {
+            if let Method::Bounded { margin, ridge_weight } = &mut fit.method {
                 *margin = env("MARGIN", *margin);
+                *ridge_weight = env("RIDGE", *ridge_weight);
             }
             if let Ok(kappa) = std::env::var("KAPPA") {
                 fit.method = Method::GloballyStabilised { ridge_weight: kappa.parse()? };

@@ -1,4 +1,4 @@
-use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Outline, SettingsError};
+use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Outline, SettingsError};
 use freeform_decompose::{Correspondence, CorrespondenceError, Decomposition, DecompositionError, Line};
 use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, MotionEstimate};
 
@@ -6,12 +6,22 @@ use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, Mot
 const MAX_PAIRS: usize = 4;
 
 /// Settings of a [`Pipeline`].
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PipelineSettings {
     /// How a curve is fitted to every outline.
     pub fit: FitSettings,
     /// How the motion is identified from its lines.
     pub identify: AdaptiveSettings,
+}
+
+impl Default for PipelineSettings {
+    /// A bounded quartic, rounder than the one that follows the outline best: a ridge and a large margin keep the lines
+    /// of the leading form away from real ones, whose slopes swing far out as they turn and carry their noise with them.
+    fn default() -> Self {
+        let method = Method::Bounded { margin: 0.5, ridge_weight: 0.03 };
+        let fit = FitSettings { method, offset: 0.15, ..FitSettings::default() };
+        Self { fit, identify: AdaptiveSettings::default() }
+    }
 }
 
 /// What one frame gave.

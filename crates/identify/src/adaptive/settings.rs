@@ -44,12 +44,12 @@ pub struct AdaptiveSettings {
 }
 
 impl Default for AdaptiveSettings {
-    /// Rigid motion by the structured law over the best pair, from zero, with the paper's Am and Q.
+    /// Rigid motion by the structured law over all pairs, from zero, with the paper's Am and Q.
     fn default() -> Self {
         Self {
             model: MotionModel::Rigid,
             law: AdaptiveLaw::Structured,
-            pairs: PairChoice::Best,
+            pairs: PairChoice::All,
             stability: Matrix4::from_diagonal(&Vector4::new(-0.5, -0.5, -1.0, -1.0)),
             definite: Matrix4::from_diagonal(&Vector4::new(0.5, 1.0, 2.0, 3.0)),
             initial_values: Vec::new(),
