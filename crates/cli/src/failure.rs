@@ -26,7 +26,7 @@ impl Failure {
     pub(crate) fn of_stdout(error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::Silent,
-            _ => Self::Unusable(format!("standard output: {error}")),
+            _ => Self::Unusable(format!("standard output: {}", plain(error))),
         }
     }
 
@@ -48,6 +48,12 @@ impl Failure {
         say(reason);
         ExitCode::from(status)
     }
+}
+
+/// An error of the system without the number that Rust adds.
+pub(crate) fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
 /// Prints one line on standard error, which may be closed.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use freeform_motion::outline_io::{OutlineReader, ReadError};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
 use crate::truth::SimulatedMotion;
 
 /// Longest head of comment lines that is looked through for the truth, in bytes.
@@ -49,12 +49,6 @@ impl Input {
 /// What is said of a file that cannot be read.
 pub(crate) fn unreadable(error: &ReadError) -> Failure {
     Failure::unusable(error)
-}
-
-/// An error of the system without the number that Rust adds.
-pub(crate) fn plain(error: &io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
 /// The lines at the beginning that start with `#`. Nothing beyond them is taken from the source.

@@ -50,11 +50,11 @@ pub(crate) struct FitOptions {
     #[arg(long, value_enum, default_value_t = FitMethod::Bounded)]
     pub(crate) method: FitMethod,
 
-    /// Weight of the ridge (gs3l) [default: 1e-5]
+    /// Weight of the ridge [default: 1e-5 for gs3l, 0 for bounded]
     #[arg(long, value_name = "WEIGHT", value_parser = not_negative)]
     pub(crate) kappa: Option<f64>,
 
-    /// Smallest leading form on the unit circle, a fraction in (0, 0.5] (bounded) [default: 0.02]
+    /// Smallest leading form on the unit circle, a fraction in (0, 0.9] (bounded) [default: 0.02]
     #[arg(long, value_name = "FRACTION", value_parser = positive)]
     pub(crate) margin: Option<f64>,
 
@@ -90,10 +90,13 @@ impl FitOptions {
         let method = match self.method {
             FitMethod::ThreeLevel => Method::ThreeLevel,
             FitMethod::Gs3l => Method::GloballyStabilised { ridge_weight: self.kappa.unwrap_or(DEFAULT_KAPPA) },
-            FitMethod::Bounded => Method::Bounded { margin: self.margin.unwrap_or(DEFAULT_MARGIN) },
+            FitMethod::Bounded => Method::Bounded {
+                margin: self.margin.unwrap_or(DEFAULT_MARGIN),
+                ridge_weight: self.kappa.unwrap_or(0.0),
+            },
         };
-        if self.kappa.is_some() && self.method != FitMethod::Gs3l {
-            return Err(Failure::unusable("--kappa goes with --method gs3l only"));
+        if self.kappa.is_some() && self.method == FitMethod::ThreeLevel {
+            return Err(Failure::unusable("--kappa goes with --method gs3l or bounded, not 3l"));
         }
         if self.margin.is_some() && self.method != FitMethod::Bounded {
             return Err(Failure::unusable("--margin goes with --method bounded only"));

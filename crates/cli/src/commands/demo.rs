@@ -8,8 +8,7 @@ use super::identify::settings;
 use super::simulate::{SequenceError, write_sequence};
 use super::{FittedOutline, History, command_line};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
-use crate::failure::{Failure, warn};
-use crate::input::plain;
+use crate::failure::{Failure, plain, warn};
 use crate::output::{
     Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
 };
@@ -47,7 +46,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let mut tracking = Tracking::new(&options)?;
     let mut outlines = WholeFile::create(&folder.join(OUTLINES))?;
     let trace_path = folder.join(TRACE);
-    let trace_failure = |error: std::io::Error| Failure::unusable(format_args!("{}: {error}", trace_path.display()));
+    let trace_failure =
+        |error: std::io::Error| Failure::unusable(format_args!("{}: {}", trace_path.display(), plain(&error)));
     let mut trace = TraceWriter::new(WholeFile::create(&trace_path)?, model).map_err(trace_failure)?;
     let mut histories = Vec::new();
     let mut first = None;

@@ -6,7 +6,7 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::{FittedOutline, command_line};
 use crate::args::{IdentifyArgs, IdentifyFormat, TrackOptions};
-use crate::failure::{Failure, warn};
+use crate::failure::{Failure, plain, warn};
 use crate::input::Input;
 use crate::output::{
     Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
@@ -152,5 +152,5 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
 }
 
 fn file_failure(path: &std::path::Path, error: &std::io::Error) -> Failure {
-    Failure::unusable(format_args!("{}: {}", path.display(), crate::input::plain(error)))
+    Failure::unusable(format_args!("{}: {}", path.display(), plain(error)))
 }

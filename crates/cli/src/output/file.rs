@@ -2,8 +2,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
-use crate::input::plain;
+use crate::failure::{Failure, plain};
 
 /// A file that appears whole or not at all: written beside its place and moved there in the end. A place that is no
 /// regular file (a device, a pipe) is written to as it is.

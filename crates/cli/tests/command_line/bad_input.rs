@@ -90,7 +90,7 @@ fn wrong_usage_is_told_on_one_line() {
         "identify - --scale NaN",
         "identify - --truth 1,2",
         "identify - --unknown",
-        "fit - --kappa 1",
+        "fit - --method 3l --kappa 1",
         "fit - --method gs3l --margin 0.1",
         "fit - --margin 3",
         "fit - --offset 7",
