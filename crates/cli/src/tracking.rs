@@ -40,7 +40,7 @@ pub(crate) struct Estimate(MotionEstimate);
 
 impl Estimate {
     /// `None` where a number is not finite: the identifier has diverged.
-    fn of(estimate: MotionEstimate, scale: Option<f64>) -> Option<Self> {
+    pub(crate) fn of(estimate: MotionEstimate, scale: Option<f64>) -> Option<Self> {
         let estimate = scale.map_or(estimate, |scale| estimate.in_space(scale));
         let is_finite = |p: ParameterEstimate| {
             p.value.is_none_or(f64::is_finite) && p.standard_deviation.is_none_or(f64::is_finite)

@@ -109,3 +109,38 @@ fn generator_rows(estimate: &Estimate) -> Option<[[f64; 3]; 3]> {
     let a = estimate.generator()?;
     Some([0, 1, 2].map(|row| [a[(row, 0)], a[(row, 1)], a[(row, 2)]]))
 }
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::identify::MotionEstimate;
+    use freeform_motion::riccati::MotionModel;
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::args::IdentifyMethod;
+
+    #[test]
+    fn what_is_not_observable_is_null_and_so_is_the_generator() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.3, 0.4], Some(&[0.1, 0.2, 0.3]));
+        let result = ObjectResult {
+            object: "left".to_owned(),
+            method: IdentifyMethod::Adaptive,
+            motion: MotionModel::Rigid,
+            frames: 12,
+            frames_rejected: 1,
+            estimate: Estimate::of(estimate.with_unobservable(0), Some(0.1)),
+            warnings: vec!["a warning".to_owned()],
+        };
+        let mut text = Vec::new();
+        write_identify_json(&mut text, &[result]).expect("memory");
+        let document: Value = serde_json::from_slice(&text).expect("JSON");
+        let object = &document["objects"][0];
+        let nothing = json!({"value": null, "std": null, "unit": "rad/s", "observable": false});
+        assert_eq!(object["parameters"]["omega"], nothing);
+        assert_eq!(
+            object["parameters"]["b2"],
+            json!({"value": 0.4 / 0.1, "std": 0.3 / 0.1, "unit": "1/s", "observable": true})
+        );
+        assert_eq!((&object["generator"], &object["warnings"]), (&Value::Null, &json!(["a warning"])));
+    }
+}

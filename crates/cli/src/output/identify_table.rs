@@ -88,3 +88,32 @@ fn write_aligned(sink: &mut impl Write, heads: &[&str], rows: &[Vec<String>]) ->
     line(&mut heads.iter().take(count).copied())?;
     rows.iter().try_for_each(|row| line(&mut row.iter().map(String::as_str)))
 }
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::identify::MotionEstimate;
+    use freeform_motion::riccati::RigidMotion;
+
+    use super::*;
+    use crate::args::IdentifyMethod;
+
+    #[test]
+    fn the_table_has_a_line_per_parameter_and_says_what_is_not_observable() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.31, 0.4], Some(&[0.001, 0.0123, 0.01]));
+        let result = |estimate: MotionEstimate| ObjectResult {
+            object: "0".to_owned(),
+            method: IdentifyMethod::Adaptive,
+            motion: MotionModel::Rigid,
+            frames: 120,
+            frames_rejected: 3,
+            estimate: Estimate::of(estimate, None),
+            warnings: Vec::new(),
+        };
+        let diverged = MotionEstimate::new(MotionModel::Rigid, &[f64::NAN, 0.0, 0.0], None);
+        let results = [result(estimate), result(estimate.with_unobservable(0)), result(diverged)];
+        let truth = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 }.into();
+        let mut text = Vec::new();
+        write_identify_table(&mut text, &results, Some(&truth)).expect("memory");
+        insta::assert_snapshot!(String::from_utf8(text).expect("UTF-8"));
+    }
+}

@@ -81,17 +81,12 @@ fn the_csv_has_one_row_per_object_and_parameter() {
     assert!(lines[1].starts_with("0,adaptive,rigid,15,0,omega,") && lines[1].ends_with(",,rad/s,true"), "{}", lines[1]);
 }
 
-/// The text with every digit replaced, so that only the layout is compared.
-fn layout(text: &str) -> String {
-    let digit = |c: char| if c.is_ascii_digit() { '9' } else { c };
-    text.lines().map(|line| line.chars().map(digit).collect::<String>() + "\n").collect()
-}
-
 #[test]
 fn the_table_shows_the_truth_where_the_file_tells_it() {
     let csv = sequence("--seconds 3 --noise 0");
     let table = succeed("identify - --scale 0.1", &csv);
-    insta::assert_snapshot!(layout(&table));
+    assert!(table.lines().nth(1).is_some_and(|head| head.ends_with("error")), "{table}");
+    assert!(table.contains(" 1.57080 ") && table.contains(" -3.00000 "), "{table}");
     let without: String = csv.lines().skip(2).map(|line| format!("{line}\n")).collect();
     assert!(!succeed("identify -", &without).contains("truth"));
     let given = succeed("identify - --truth -1.5,2,-3", &without);
