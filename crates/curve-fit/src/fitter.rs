@@ -1,4 +1,5 @@
-use nalgebra::{DMatrix, Point2};
+use nalgebra::{DMatrix, Point2, Vector2};
+use pulp::Arch;
 
 use crate::{
     bounded,
@@ -30,6 +31,8 @@ pub struct Fitter {
     normals: [Vec<f64>; 2],
     level_set: [Vec<f64>; 2],
     regression: NormalRegression,
+    /// Of the inner level set, the data and the outer level set.
+    moments: [Moments; 3],
     system: TriangularSystem,
 }
 
@@ -46,6 +49,7 @@ impl Fitter {
             normals: Default::default(),
             level_set: Default::default(),
             regression: NormalRegression::default(),
+            moments: [Moments::none(); 3],
             system: TriangularSystem::new(),
         })
     }
@@ -104,7 +108,7 @@ impl Fitter {
             xs.extend(piece.points.iter().map(|p| p.x));
             ys.extend(piece.points.iter().map(|p| p.y));
         }
-        let normalisation = normalise(xs, ys);
+        let normalisation = Arch::new().dispatch(|| normalise(xs, ys));
         let [nx, ny] = &mut self.normals;
         self.regression.run(outline, [xs, ys], self.settings.normal_half_window, [nx, ny]);
         Ok(normalisation)
@@ -124,10 +128,11 @@ impl Fitter {
     fn factor_moments(&mut self) -> bool {
         let degree = self.settings.degree.value();
         let size = self.settings.degree.coefficient_count();
-        let [inner, data, outer] = LEVELS.map(|level| {
+        for (l, level) in LEVELS.into_iter().enumerate() {
             self.place_level_set(level);
-            Moments::of(2 * degree, &self.level_set[0], &self.level_set[1])
-        });
+            self.moments[l].set_to(2 * degree, &self.level_set[0], &self.level_set[1]);
+        }
+        let [inner, data, outer] = &self.moments;
         // M'd: the levels are -1, 0 and 1.
         let mut projection = [0.0; MAX_COEFFICIENTS];
         for (value, (plus, minus)) in
@@ -135,8 +140,8 @@ impl Fitter {
         {
             *value = plus - minus;
         }
-        let ridge = self.ridge(&data);
-        self.system.factor_gram(degree, &(inner + data + outer), &projection[..size], &ridge)
+        let ridge = self.ridge(data);
+        self.system.factor_gram(degree, [inner, data, outer], &projection[..size], &ridge)
     }
 
     fn ridge(&self, data: &Moments) -> [f64; MAX_COEFFICIENTS] {
@@ -204,18 +209,29 @@ impl Fitter {
 }
 
 /// Centres and scales coordinates in place to mean 0 and root mean square radius 1.
+#[inline(always)]
 fn normalise(xs: &mut [f64], ys: &mut [f64]) -> Normalisation {
+    // Relative to the first point, so that the mean of a far outline is exact to the last digit of its size rather than
+    // of its offset.
+    let first = Point2::new(xs[0], ys[0]);
     let count = xs.len() as f64;
-    // Twice, so that the mean of a far outline is exact to the last digit of its size rather than of its offset.
-    let mut centre = Point2::new(xs[0], ys[0]);
-    for _ in 0..2 {
-        let mean = |values: &[f64], origin: f64| values.iter().map(|v| v - origin).sum::<f64>() / count;
-        centre += nalgebra::Vector2::new(mean(xs, centre.x), mean(ys, centre.y));
-    }
-    let squares = |values: &[f64], origin: f64| values.iter().map(|v| (v - origin) * (v - origin)).sum::<f64>();
-    let radius = ((squares(xs, centre.x) + squares(ys, centre.y)) / count).sqrt();
+    let mean = Vector2::new(sum(xs, |x| x - first.x), sum(ys, |y| y - first.y)) / count;
+    let centre = first + mean;
+    let squares = sum(xs, |x| (x - centre.x) * (x - centre.x)) + sum(ys, |y| (y - centre.y) * (y - centre.y));
+    let radius = (squares / count).sqrt();
     let inverse = 1.0 / radius;
     xs.iter_mut().for_each(|x| *x = (*x - centre.x) * inverse);
     ys.iter_mut().for_each(|y| *y = (*y - centre.y) * inverse);
     Normalisation { centre, radius }
+}
+
+/// Sum of `term` over the values, in eight interleaved partial sums that the compiler can keep in vector registers.
+#[inline(always)]
+fn sum(values: &[f64], term: impl Fn(f64) -> f64) -> f64 {
+    let (chunks, rest) = values.as_chunks::<8>();
+    let mut partial = [0.0; 8];
+    for chunk in chunks {
+        partial.iter_mut().zip(chunk).for_each(|(sum, &value)| *sum += term(value));
+    }
+    partial.iter().sum::<f64>() + rest.iter().map(|&value| term(value)).sum::<f64>()
 }

@@ -67,18 +67,26 @@ impl TriangularSystem {
         }
     }
 
-    /// From the moments of all level sets (`gram`, up to twice the degree), the vector `M' d`, and a ridge to be added
+    /// From the moments of the three level sets (up to twice the degree), the vector `M' d`, and a ridge to be added
     /// to the diagonal. Returns whether the Gram matrix was well-conditioned enough to be relied on.
-    pub(crate) fn factor_gram(&mut self, degree: usize, gram: &Moments, projection: &[f64], ridge: &[f64]) -> bool {
+    pub(crate) fn factor_gram(
+        &mut self,
+        degree: usize,
+        level_sets: [&Moments; 3],
+        projection: &[f64],
+        ridge: &[f64],
+    ) -> bool {
         let size = projection.len();
         self.size = size;
+        let [inner, data, outer] = level_sets.map(Moments::as_slice);
+        let gram = |position: usize| inner[position] + data[position] + outer[position];
         let mut scale = [0.0; MAX_COEFFICIENTS];
         for (position, (i, j)) in exponents(degree).enumerate() {
-            scale[position] = (gram.get(2 * i, 2 * j) + ridge[position]).sqrt();
+            scale[position] = (gram(monomial_index(2 * i, 2 * j)) + ridge[position]).sqrt();
         }
         for (column, (k, l)) in exponents(degree).enumerate() {
             for (row, (i, j)) in exponents(degree).enumerate().skip(column) {
-                let sum = gram.as_slice()[monomial_index(i + k, j + l)];
+                let sum = gram(monomial_index(i + k, j + l));
                 self.lower[column * size + row] = sum / (scale[row] * scale[column]);
             }
             // The diagonal of the scaled matrix, with the ridge in it, is 1.

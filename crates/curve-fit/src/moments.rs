@@ -25,13 +25,24 @@ impl Moments {
     /// If the slices differ in length or `total_degree` exceeds 16.
     #[must_use]
     pub fn of(total_degree: usize, xs: &[f64], ys: &[f64]) -> Self {
+        let mut moments = Self::none();
+        moments.set_to(total_degree, xs, ys);
+        moments
+    }
+
+    /// The moments of no points, of degree 0.
+    pub(crate) fn none() -> Self {
+        Self { total_degree: 0, sums: [0.0; MAX_MOMENTS] }
+    }
+
+    /// Overwrites these moments with those of other points; see [`of`](Self::of).
+    pub(crate) fn set_to(&mut self, total_degree: usize, xs: &[f64], ys: &[f64]) {
         assert!(total_degree <= MAX_TOTAL_DEGREE, "moments beyond degree {MAX_TOTAL_DEGREE}");
         assert_eq!(xs.len(), ys.len(), "as many x as y");
-        let mut sums = [0.0; MAX_MOMENTS];
-        Arch::new().dispatch(MomentKernel { total_degree, xs, ys, sums: &mut sums });
+        self.total_degree = total_degree;
+        Arch::new().dispatch(MomentKernel { total_degree, xs, ys, sums: &mut self.sums });
         // The vectors of an incomplete group are padded with points at the origin, which count in this sum alone.
-        sums[0] = xs.len() as f64;
-        Self { total_degree, sums }
+        self.sums[0] = xs.len() as f64;
     }
 
     /// The same as [`of`](Self::of), written for reading; a test holds the two together.
@@ -66,18 +77,6 @@ impl Moments {
     #[must_use]
     pub fn as_slice(&self) -> &[f64] {
         &self.sums[..coefficient_count(self.total_degree)]
-    }
-}
-
-impl std::ops::Add for Moments {
-    type Output = Self;
-
-    /// Moments of the two sets of points together, up to the lower of the two degrees.
-    fn add(self, other: Self) -> Self {
-        let mut sum = self;
-        sum.total_degree = self.total_degree.min(other.total_degree);
-        sum.sums.iter_mut().zip(&other.sums).for_each(|(a, b)| *a += b);
-        sum
     }
 }
 
