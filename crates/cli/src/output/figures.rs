@@ -2,6 +2,7 @@ use freeform_motion::curve_fit::Outline;
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
 
+use super::number::short;
 use crate::commands::{FittedOutline, History};
 use crate::level_set::{Area, curve_of};
 use crate::plot::{Curve, Look, Panel, stacked_svg};
@@ -16,7 +17,7 @@ const BAND: f64 = 2.0;
 /// Outlines with their fitted curves and related points, as a file.
 pub(crate) fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
     let title = drawn.first().map_or_else(String::new, |(fitted, _)| {
-        format!("Frame {} at {} s, degree {}", fitted.frame, fitted.time, fitted.fit.working().degree())
+        format!("Frame {} at {} s, degree {}", fitted.frame, short(fitted.time), fitted.fit.working().degree())
     });
     stacked_svg(&[fit_panel(title, drawn)], 640.0, 640.0)
 }
