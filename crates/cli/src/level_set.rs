@@ -42,6 +42,13 @@ impl Area {
         p >= &self.low && p <= &self.high
     }
 
+    /// The smallest square about the same centre that holds it.
+    pub(crate) fn square(&self) -> Self {
+        let half = nalgebra::Vector2::repeat(0.5 * (self.high - self.low).max());
+        let centre = nalgebra::center(&self.low, &self.high);
+        Self { low: centre - half, high: centre + half }
+    }
+
     /// Wider on all sides by a share of the longer side.
     pub(crate) fn widened(&self, share: f64) -> Self {
         let size = self.high - self.low;

@@ -97,12 +97,7 @@ struct Object {
 impl Tracking {
     /// With no object yet.
     pub(crate) fn new(options: &TrackOptions) -> Result<Self, Failure> {
-        let motion = options.motion.model();
-        let mut settings = PipelineSettings::default();
-        settings.identify.model = motion;
-        if let Some(degree) = options.degree {
-            settings.fit.degree = degree;
-        }
+        let (settings, motion) = (pipeline_settings(options), options.motion.model());
         // Settings are refused before anything is read.
         Pipeline::new(settings.clone()).map_err(Failure::unusable)?;
         Ok(Self {
@@ -213,6 +208,16 @@ impl Object {
             self.reasons_left_out += 1;
         }
     }
+}
+
+/// What the options ask of a pipeline.
+pub(crate) fn pipeline_settings(options: &TrackOptions) -> PipelineSettings {
+    let mut settings = PipelineSettings::default();
+    settings.identify.model = options.motion.model();
+    if let Some(degree) = options.degree {
+        settings.fit.degree = degree;
+    }
+    settings
 }
 
 fn accepted(method: IdentifyMethod, scale: Option<f64>, result: FrameResult) -> Accepted {

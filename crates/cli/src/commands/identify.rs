@@ -1,6 +1,6 @@
 use std::io::Write as _;
 
-use freeform_motion::curve_fit::Outline;
+use freeform_motion::curve_fit::{Method, Outline};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
 
@@ -12,7 +12,7 @@ use crate::output::{
     Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
     write_identify_table, write_parameters, write_report,
 };
-use crate::tracking::{Estimate, ObjectResult, Observation, Tracking};
+use crate::tracking::{Estimate, ObjectResult, Observation, Tracking, pipeline_settings};
 
 /// What was found of one object over time, kept for figures.
 #[derive(Debug)]
@@ -139,14 +139,21 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
 
 /// The settings as a report lists them.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
-    let degree = options.degree.map_or_else(|| "4".to_owned(), |degree| degree.to_string());
+    let fit = pipeline_settings(options).fit;
+    let method = match fit.method {
+        Method::ThreeLevel => "3L".to_owned(),
+        Method::GloballyStabilised { ridge_weight } => format!("GS3L, ridge {ridge_weight}"),
+        Method::Bounded { margin, ridge_weight } => format!("3L, bounded with margin {margin}, ridge {ridge_weight}"),
+    };
     let scale =
         options.scale.map_or_else(|| "none: b in image lengths per second".to_owned(), |scale| scale.to_string());
     vec![
         ("Input", input.to_owned()),
         ("Motion model", options.motion.model().to_string()),
         ("Method", options.method.name().to_owned()),
-        ("Degree of the curve", degree),
+        ("Degree of the curve", fit.degree.to_string()),
+        ("Curve fit", method),
+        ("Level-set offset", format!("{} RMS radii", fit.offset)),
         ("Camera scale f/Z0", scale),
     ]
 }

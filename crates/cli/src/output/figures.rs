@@ -2,13 +2,14 @@ use freeform_motion::curve_fit::Outline;
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
 
+use super::number::short;
 use crate::commands::{FittedOutline, History};
 use crate::level_set::{Area, curve_of};
 use crate::plot::{Curve, Look, Panel, stacked_svg};
 use crate::truth::parameters_in;
 
-/// How far around the points a curve is drawn, as a share of their extent.
-const SURROUNDINGS: f64 = 0.25;
+/// What is seen around the points, as a share of their extent.
+const SURROUNDINGS: f64 = 0.15;
 
 /// Standard deviations on each side that a band shows.
 const BAND: f64 = 2.0;
@@ -16,7 +17,7 @@ const BAND: f64 = 2.0;
 /// Outlines with their fitted curves and related points, as a file.
 pub(crate) fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
     let title = drawn.first().map_or_else(String::new, |(fitted, _)| {
-        format!("Frame {} at {} s, degree {}", fitted.frame, fitted.time, fitted.fit.working().degree())
+        format!("Frame {} at {} s, degree {}", fitted.frame, short(fitted.time), fitted.fit.working().degree())
     });
     stacked_svg(&[fit_panel(title, drawn)], 640.0, 640.0)
 }
@@ -26,10 +27,14 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
     let xy = |p: &Point2<f64>| [p.x, p.y];
     let (mut points, mut curves, mut related) = (Vec::new(), Vec::new(), Vec::new());
     let mut outside = 0;
+    let whole = Area::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
+    let view = whole.map(|area| area.widened(SURROUNDINGS).square());
     for (fitted, outline) in drawn {
         points.push(outline.points().map(xy).collect());
-        let Some(area) = Area::around(outline.points()).map(|area| area.widened(SURROUNDINGS)) else { continue };
-        curves.extend(curve_of(&fitted.fit, &area).iter().map(|run| run.iter().map(xy).collect()));
+        let Some(area) = view else { continue };
+        // Beyond what is seen, so that a curve that leaves it goes on to the frame.
+        let traced = curve_of(&fitted.fit, &area.widened(SURROUNDINGS));
+        curves.extend(traced.iter().map(|run| run.iter().map(xy).collect()));
         let all = fitted.parts.iter().flat_map(|parts| parts.related_points.as_slice());
         let (inside, far): (Vec<_>, Vec<_>) = all.map(|d| d.point).partition(|point| area.contains(point));
         related.push(inside.iter().map(xy).collect());
@@ -50,7 +55,7 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
         y_label: "y (image length)".to_owned(),
         curves,
         x_from: None,
-        equal_scales: true,
+        view: view.map(|area| [xy(&area.low), xy(&area.high)]),
     }
 }
 
@@ -86,7 +91,7 @@ pub(crate) fn parameter_panels(
                 y_label: format!("{name} ({unit})"),
                 curves,
                 x_from: history.start,
-                equal_scales: false,
+                view: None,
             }
         })
         .collect()

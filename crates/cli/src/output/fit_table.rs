@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use freeform_motion::curve_fit::exponents;
 use nalgebra::Complex;
 
-use super::number::significant;
+use super::number::{short, significant};
 use crate::commands::{FittedOutline, Parts};
 
 /// Digits of coefficients and lines.
@@ -18,7 +18,8 @@ pub(crate) fn write_fit_table(sink: &mut impl Write, fitted: &FittedOutline, bla
     let polynomial = fitted.fit.polynomial();
     let degree = polynomial.degree();
     let FittedOutline { object, frame, time, .. } = fitted;
-    writeln!(sink, "object {object}, frame {frame}, {time} s: degree {degree}, {} points", diagnostics.point_count)?;
+    let (time, points) = (short(*time), diagnostics.point_count);
+    writeln!(sink, "object {object}, frame {frame}, {time} s: degree {degree}, {points} points")?;
     let margin = significant(diagnostics.boundedness_margin, 3);
     let constraint = if diagnostics.constraint_active { ", constraint active" } else { "" };
     let bounded = if fitted.fit.is_bounded() { "yes" } else { "no" };

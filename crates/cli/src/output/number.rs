@@ -12,9 +12,20 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A number with at most six significant digits and no zeros at its end.
+pub(crate) fn short(value: f64) -> String {
+    let text = significant(value, 6);
+    text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
+}
+
 #[cfg(test)]
 mod tests {
-    use super::significant;
+    use super::{short, significant};
+
+    #[test]
+    fn a_short_number_has_no_zeros_at_its_end() {
+        assert_eq!([0.2 / 3.0, 5.0, 0.0, 120.25].map(short), ["0.0666667", "5", "0", "120.25"]);
+    }
 
     #[test]
     fn numbers_keep_their_significant_digits() {

@@ -51,8 +51,9 @@ pub(crate) struct Panel {
     pub(crate) curves: Vec<Curve>,
     /// Where the x axis begins, if before all curves.
     pub(crate) x_from: Option<f64>,
-    /// Whether a length is drawn the same along both axes.
-    pub(crate) equal_scales: bool,
+    /// Lower left and upper right corner of what is to be seen, with a length drawn the same along both axes; curves are
+    /// cut off at the frame. Without it, axes are as long as the curves.
+    pub(crate) view: Option<[[f64; 2]; 2]>,
 }
 
 /// Where a panel stands in the picture, in pixels.
@@ -94,30 +95,36 @@ impl Panel {
         let right = place.left + place.width - 16.0;
         let (low, high) = self.range(1, 0.06);
         let mut y = Axis { low, high, from: bottom, to: top };
-        let y_count = ((bottom - top) / if self.equal_scales { 60.0 } else { 32.0 }) as usize;
+        let y_count = ((bottom - top) / if self.view.is_some() { 60.0 } else { 32.0 }) as usize;
         let y_ticks = Ticks::within(y.low, y.high, y_count);
         let widest = y_ticks.labels.iter().map(String::len).max().unwrap_or(0);
         let left = place.left + 34.0 + CHARACTER_WIDTH * widest as f64;
-        let (low, high) = self.range(0, if self.equal_scales { 0.06 } else { 0.0 });
+        let (low, high) = self.range(0, 0.0);
         let mut x = Axis { low, high, from: left, to: right };
-        if self.equal_scales {
+        if self.view.is_some() {
             let density = |axis: &Axis| (axis.high - axis.low) / (axis.to - axis.from).abs();
             let density = density(&x).max(density(&y));
             x.set_density(density);
             y.set_density(density);
         }
-        let y_ticks = if self.equal_scales { Ticks::within(y.low, y.high, y_count) } else { y_ticks };
+        let y_ticks = if self.view.is_some() { Ticks::within(y.low, y.high, y_count) } else { y_ticks };
         let x_ticks = Ticks::within(x.low, x.high, ((right - left) / 60.0) as usize);
 
         let mut svg = String::new();
         self.draw_frame(&mut svg, (&x, &x_ticks), (&y, &y_ticks));
+        let (width, height) = (right - left, bottom - top);
+        let frame = format!(r#"x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}""#);
+        if self.view.is_some() {
+            let _ = writeln!(svg, r#"<svg {frame} viewBox="{left:.1} {top:.1} {width:.1} {height:.1}">"#);
+        }
         for curve in &self.curves {
             draw_curve(&mut svg, curve, &x, &y);
         }
+        if self.view.is_some() {
+            svg.push_str("</svg>\n");
+        }
         // Over the data, so that a line along the edge does not hide it.
-        let (width, height) = (right - left, bottom - top);
-        let _ =
-            writeln!(svg, r#"<rect class="axis" x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}"/>"#);
+        let _ = writeln!(svg, r#"<rect class="axis" {frame}/>"#);
         let (middle_x, middle_y) = (0.5 * (left + right), 0.5 * (top + bottom));
         let title_top = place.top + 17.0;
         let _ = writeln!(svg, r#"<text class="title" x="{left:.1}" y="{title_top:.1}">{}</text>"#, escape(&self.title));
@@ -140,6 +147,9 @@ impl Panel {
 
     /// Range of all finite values on an axis, widened by a share of itself.
     fn range(&self, axis: usize, margin: f64) -> (f64, f64) {
+        if let Some([low, high]) = self.view {
+            return (low[axis], high[axis]);
+        }
         let points = self.curves.iter().flat_map(|curve| curve.runs.iter().flatten());
         let start = self.x_from.filter(|_| axis == 0);
         let values = points.map(|point| point[axis]).chain(start).filter(|value| value.is_finite());
