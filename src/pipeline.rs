@@ -1,9 +1,13 @@
-use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Outline, SettingsError};
+use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Outline, SettingsError};
 use freeform_decompose::{Correspondence, CorrespondenceError, Decomposition, DecompositionError, Line};
 use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, MotionEstimate};
+use nalgebra::Affine2;
 
 /// Largest number of conjugate pairs, that of an octic.
 const MAX_PAIRS: usize = 4;
+
+/// RMS radius of the first outline in the coordinates of the identifier: that of an object of about size 1.
+const RMS_RADIUS: f64 = 0.35;
 
 /// Settings of a [`Pipeline`].
 #[derive(Debug, Clone, PartialEq)]
@@ -65,11 +69,15 @@ pub enum PipelineError {
 
 /// From outlines to motion, frame by frame: fit, decompose, match, identify.
 ///
-/// In steady state a frame costs no allocation.
+/// Outlines may be in any unit and anywhere: the identifier works in coordinates centred on the first outline, in which
+/// the object is about of size 1, as its gains expect. In steady state a frame costs no allocation.
 #[derive(Debug, Clone)]
 pub struct Pipeline {
+    settings: PipelineSettings,
     fitter: Fitter,
     identifier: AdaptiveIdentifier,
+    /// From the coordinates of the identifier to those of the image; `None` before the first good frame.
+    image_from_identifier: Option<Affine2<f64>>,
     last: Option<MatchedFrame>,
     frames: usize,
     frames_rejected: usize,
@@ -90,7 +98,9 @@ impl Pipeline {
     pub fn new(settings: PipelineSettings) -> Result<Self, PipelineError> {
         Ok(Self {
             fitter: Fitter::new(settings.fit)?,
-            identifier: AdaptiveIdentifier::new(settings.identify)?,
+            identifier: AdaptiveIdentifier::new(settings.identify.clone())?,
+            image_from_identifier: None,
+            settings,
             last: None,
             frames: 0,
             frames_rejected: 0,
@@ -116,23 +126,44 @@ impl Pipeline {
         };
         // Decomposed where the fit is well-conditioned; the lines are then moved exactly.
         let normalisation = fit.normalisation();
-        let decomposition = Decomposition::of(curve.polynomial())?.moved(&normalisation.image_from_working())?;
-        let (matched, correspondence) = self.matched(decomposition, normalisation.radius)?;
+        let working = Decomposition::of(curve.polynomial())?;
+        let image_from_identifier = match self.image_from_identifier {
+            Some(known) => known,
+            None => self.start_at(normalisation)?,
+        };
+        let image_from_working = normalisation.image_from_working();
+        let in_identifier = working.moved(&(image_from_identifier.inverse() * image_from_working))?;
+        let decomposition = working.moved(&image_from_working)?;
+        let (matched, correspondence) = self.matched(in_identifier)?;
         let (lines, count) = matched.lines();
         self.identifier.step(time, &lines[..count])?;
+        self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
         Ok(FrameResult { fit, decomposition, correspondence, estimate: self.estimate() })
     }
 
-    /// Finds which pair continues which.
+    /// Sets up the identifier in coordinates centred on the first outline.
+    fn start_at(&mut self, first: &Normalisation) -> Result<Affine2<f64>, IdentifyError> {
+        let unit = Normalisation { centre: first.centre, radius: first.radius / RMS_RADIUS };
+        let map = unit.image_from_working();
+        let AdaptiveSettings { model, initial_values, .. } = &self.settings.identify;
+        if !initial_values.is_empty() {
+            let moved = MotionEstimate::new(*model, initial_values, None).in_coordinates(&map.inverse());
+            let initial_values = moved.values().to_vec();
+            self.identifier =
+                AdaptiveIdentifier::new(AdaptiveSettings { initial_values, ..self.settings.identify.clone() })?;
+        }
+        Ok(map)
+    }
+
+    /// Finds which pair continues which, in the coordinates of the identifier.
     fn matched(
         &self,
         decomposition: Decomposition,
-        object_size: f64,
     ) -> Result<(MatchedFrame, Option<Correspondence>), CorrespondenceError> {
         let mut order = [0, 1, 2, 3];
         let Some(last) = &self.last else { return Ok((MatchedFrame { decomposition, order }, None)) };
-        let correspondence = Correspondence::between(&last.decomposition, &decomposition, object_size)?;
+        let correspondence = Correspondence::between(&last.decomposition, &decomposition, RMS_RADIUS)?;
         for (slot, &before) in order.iter_mut().zip(&last.order).take(correspondence.permutation().len()) {
             *slot = correspondence.permutation()[before];
         }
@@ -142,10 +173,11 @@ impl Pipeline {
     /// The motion as identified so far, in the image frame; `None` before the second frame.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
-        self.identifier.estimate()
+        let map = self.image_from_identifier.as_ref()?;
+        self.identifier.estimate().map(|estimate| estimate.in_coordinates(map))
     }
 
-    /// The identifier, for what it says beside the estimate.
+    /// The identifier, for what it says beside the estimate. Its own estimate is in its own coordinates.
     #[must_use]
     pub fn identifier(&self) -> &AdaptiveIdentifier {
         &self.identifier

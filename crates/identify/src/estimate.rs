@@ -1,5 +1,5 @@
 use freeform_riccati::MotionModel;
-use nalgebra::Matrix3;
+use nalgebra::{Affine2, Matrix3};
 
 /// Largest number of parameters of a motion model, that of a projective motion.
 pub(crate) const MAX_PARAMETERS: usize = 8;
@@ -85,6 +85,18 @@ impl MotionEstimate {
     #[must_use]
     pub fn generator(&self) -> Matrix3<f64> {
         self.model.generator(self.values())
+    }
+
+    /// The same motion in other coordinates: those that `map`, a scaling and a shift, takes the present ones to.
+    ///
+    /// # Panics
+    /// If there are standard deviations: without covariances they cannot be carried over.
+    #[must_use]
+    pub fn in_coordinates(mut self, map: &Affine2<f64>) -> Self {
+        assert!(self.standard_deviations.is_none(), "standard deviations alone cannot change coordinates");
+        let moved = map.matrix() * self.generator() * map.inverse().matrix();
+        self.values = self.model.parameters_of(&moved);
+        self
     }
 
     /// The same motion in space, seen by a scaled orthographic camera: b divided by f/Z0, and its standard deviations

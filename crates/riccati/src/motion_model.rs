@@ -94,6 +94,18 @@ impl MotionModel {
         parameters.iter().zip(basis).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta)
     }
 
+    /// The parameters of the motion in this model that is nearest to a generator in its entries: the inverse of
+    /// [`generator`](Self::generator) for one of this model. As many as `parameter_count` in front, 0 behind.
+    #[must_use]
+    pub fn parameters_of(self, generator: &Matrix3<f64>) -> [f64; Self::MAX_PARAMETERS] {
+        let mut parameters = [0.0; Self::MAX_PARAMETERS];
+        // The basis matrices of each model are orthogonal to each other.
+        for (theta, e) in parameters.iter_mut().zip(self.basis()) {
+            *theta = e.dot(generator) / e.norm_squared();
+        }
+        parameters
+    }
+
     /// The map of the plane that the motion makes in `seconds`: in closed form for rigid and similarity motion, `expm(A
     /// seconds)` otherwise. Its last row is exactly `(0, 0, 1)` for all but projective motion, so that `nalgebra::try_convert`
     /// makes it an `Affine2`.
