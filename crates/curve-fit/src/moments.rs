@@ -94,21 +94,26 @@ impl WithSimd for MomentKernel<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         // Known sizes let the compiler unroll the loops over the powers and keep the sums close.
         match self.total_degree {
-            4 => accumulate::<S, 5, 15>(simd, self),
-            8 => accumulate::<S, 9, 45>(simd, self),
-            12 => accumulate::<S, 13, 91>(simd, self),
-            _ => accumulate::<S, { MAX_TOTAL_DEGREE + 1 }, MAX_MOMENTS>(simd, self),
+            4 => accumulate::<S, 5, 15>(simd, self.xs, self.ys, self.sums),
+            8 => accumulate::<S, 9, 45>(simd, self.xs, self.ys, self.sums),
+            12 => accumulate::<S, 13, 91>(simd, self.xs, self.ys, self.sums),
+            _ => accumulate::<S, { MAX_TOTAL_DEGREE + 1 }, MAX_MOMENTS>(simd, self.xs, self.ys, self.sums),
         }
     }
 }
 
 /// POWERS = D + 1 powers of a coordinate, MOMENTS = (D + 1)(D + 2) / 2 sums.
 #[inline(always)]
-fn accumulate<S: Simd, const POWERS: usize, const MOMENTS: usize>(simd: S, kernel: MomentKernel<'_>) {
+fn accumulate<S: Simd, const POWERS: usize, const MOMENTS: usize>(
+    simd: S,
+    xs: &[f64],
+    ys: &[f64],
+    sums: &mut [f64; MAX_MOMENTS],
+) {
     let mut accumulated = [simd.splat_f64s(0.0); MOMENTS];
     let mut x_powers = [[simd.splat_f64s(1.0); GROUP]; POWERS];
     let group_len = GROUP * S::F64_LANES;
-    for (x_chunk, y_chunk) in kernel.xs.chunks(group_len).zip(kernel.ys.chunks(group_len)) {
+    for (x_chunk, y_chunk) in xs.chunks(group_len).zip(ys.chunks(group_len)) {
         let x = load_group(simd, x_chunk);
         let y = load_group(simd, y_chunk);
         x_powers[1] = x;
@@ -130,7 +135,7 @@ fn accumulate<S: Simd, const POWERS: usize, const MOMENTS: usize>(simd: S, kerne
             }
         }
     }
-    for (sum, lanes) in kernel.sums.iter_mut().zip(&accumulated) {
+    for (sum, lanes) in sums.iter_mut().zip(&accumulated) {
         *sum = simd.reduce_sum_f64s(*lanes);
     }
 }
