@@ -7,7 +7,7 @@ use freeform_decompose::{Line, rotation_chart};
 /// for m = 2, 3 and 4: about 1.7 m. Measured over 60 frames of circles, noise 0.001 to 0.02: at most 2.3 m.
 const NOISE_FACTOR: f64 = 3.0;
 /// With n second differences the noise may be underrated by a factor of about this over n.
-const FEW_FRAMES: f64 = 10.0;
+const FEW_FRAMES: f64 = 20.0;
 
 /// How much one conjugate pair tells about the motion, against how noisy it is.
 ///
