@@ -22,6 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod pipeline;
+mod warning;
 
 pub use freeform_curve_fit as curve_fit;
 pub use freeform_decompose as decompose;

@@ -1,10 +1,21 @@
 use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Outline, SettingsError};
-use freeform_decompose::{Correspondence, CorrespondenceError, Decomposition, DecompositionError, Line};
-use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, MotionEstimate};
+use freeform_decompose::{Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line};
+use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError, MotionEstimate};
+use freeform_riccati::MotionModel;
 use nalgebra::Affine2;
+
+use crate::warning::Warning;
 
 /// Largest number of conjugate pairs, that of an octic.
 const MAX_PAIRS: usize = 4;
+/// Share of rejected frames that is worth a warning.
+const MANY_REJECTED: f64 = 0.05;
+/// A match by continuity is ambiguous where the second best pairing is less than twice as far away (costs are squares).
+const AMBIGUOUS_COST_RATIO: f64 = 4.0;
+/// Share of ambiguous matches that is worth a warning.
+const MANY_AMBIGUOUS: f64 = 0.03;
+/// Seconds that the structured law takes to settle to a few percent with the paper's gains.
+const SETTLING_SECONDS: f64 = 10.0;
 
 /// RMS radius of the first outline in the coordinates of the identifier. The gains of the paper belong to objects of
 /// about size 1; a larger radius makes the law settle faster and follow the noise more.
@@ -82,6 +93,18 @@ pub struct Pipeline {
     last: Option<MatchedFrame>,
     frames: usize,
     frames_rejected: usize,
+    counts: Counts,
+}
+
+/// What the warnings are drawn from.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    /// Frames whose curve has (nearly) coincident lines.
+    without_separate_lines: usize,
+    matched: usize,
+    ambiguous: usize,
+    /// Times of the first and last accepted frame.
+    span: Option<(f64, f64)>,
 }
 
 /// The lines of a frame and in which order its pairs continue those of the first frame.
@@ -105,6 +128,7 @@ impl Pipeline {
             last: None,
             frames: 0,
             frames_rejected: 0,
+            counts: Counts::default(),
         })
     }
 
@@ -117,7 +141,8 @@ impl Pipeline {
         self.frames += 1;
         let result = self.take(time, outline);
         self.frames_rejected += usize::from(result.is_err());
-        result
+        self.counts.without_separate_lines += usize::from(result.as_ref().is_err_and(has_no_separate_lines));
+        result.map(|result| FrameResult { estimate: self.estimate(), ..result })
     }
 
     fn take(&mut self, time: f64, outline: &Outline) -> Result<FrameResult, PipelineError> {
@@ -140,7 +165,8 @@ impl Pipeline {
         self.identifier.step(time, &lines[..count])?;
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
-        Ok(FrameResult { fit, decomposition, correspondence, estimate: self.estimate() })
+        self.counts.take(time, correspondence.as_ref());
+        Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
     }
 
     /// Sets up the identifier in coordinates centred on the first outline.
@@ -171,11 +197,20 @@ impl Pipeline {
         Ok((MatchedFrame { decomposition, order }, Some(correspondence)))
     }
 
-    /// The motion as identified so far, in the image frame; `None` before the second frame.
+    /// The motion as identified so far, in the image frame; `None` before the second frame. Parameters of which the
+    /// outlines tell nothing are marked unobservable: all of them for a circle.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
-        let map = self.image_from_identifier.as_ref()?;
-        self.identifier.estimate().map(|estimate| estimate.in_coordinates(map))
+        let map = self.image_from_identifier.as_ref();
+        let identified = map.and_then(|map| self.identifier.estimate().map(|estimate| estimate.in_coordinates(map)));
+        if self.frames < 2 || 2 * self.counts.without_separate_lines <= self.frames {
+            return identified;
+        }
+        let model = self.settings.identify.model;
+        let count = model.parameter_count();
+        let nothing = [0.0; MotionModel::MAX_PARAMETERS];
+        let estimate = identified.unwrap_or_else(|| MotionEstimate::new(model, &nothing[..count], None));
+        Some((0..count).fold(estimate, MotionEstimate::with_unobservable))
     }
 
     /// The identifier, for what it says beside the estimate. Its own estimate is in its own coordinates.
@@ -199,8 +234,52 @@ impl Pipeline {
     /// What a user should know of the result, one line each.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        Vec::new()
+        let mut warnings = Vec::new();
+        let unobservable: Vec<_> = self.estimate().map_or(Vec::new(), |estimate| {
+            estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect()
+        });
+        if !unobservable.is_empty() {
+            warnings.push(Warning::NotObservable { parameters: unobservable });
+        }
+        let (rejected, frames) = (self.frames_rejected, self.frames);
+        if rejected as f64 > MANY_REJECTED * frames as f64 {
+            warnings.push(Warning::FramesRejected { rejected, frames });
+        }
+        let Counts { ambiguous, matched, span, .. } = self.counts;
+        if ambiguous as f64 > MANY_AMBIGUOUS * matched as f64 {
+            warnings.push(Warning::AmbiguousCorrespondence { ambiguous, matched });
+        }
+        let settles_slowly = self.identifier.settings().law != AdaptiveLaw::FilteredLeastSquares;
+        if let Some(seconds) = span.map(|(first, last)| last - first)
+            && settles_slowly
+            && seconds < SETTLING_SECONDS
+        {
+            warnings.push(Warning::MayNotHaveSettled { seconds });
+        }
+        warnings.iter().map(ToString::to_string).collect()
     }
+}
+
+impl Counts {
+    fn take(&mut self, time: f64, correspondence: Option<&Correspondence>) {
+        self.span = Some((self.span.map_or(time, |(first, _)| first), time));
+        let Some(matching) = correspondence else { return };
+        self.matched += 1;
+        // The order of the values settles the rest, whatever the turn.
+        self.ambiguous += usize::from(
+            matching.decided_by() == Criterion::Continuity
+                && matching.runner_up_cost() < AMBIGUOUS_COST_RATIO * matching.continuity_cost(),
+        );
+    }
+}
+
+/// Whether a frame was refused because its lines nearly coincide, as those of a circle do.
+fn has_no_separate_lines(error: &PipelineError) -> bool {
+    use DecompositionError::{CircularLeadingForm, IllConditioned, NearDoubleLines};
+    matches!(
+        error,
+        PipelineError::Decomposition(CircularLeadingForm { .. } | NearDoubleLines { .. } | IllConditioned { .. })
+    )
 }
 
 impl MatchedFrame {

@@ -22,7 +22,7 @@ pub enum IdentifyError {
         /// The model asked for.
         model: MotionModel,
     },
-    /// The printed estimator identifies rigid and affine motion.
+    /// The list of initial values does not fit the motion model.
     #[error("as many initial values as parameters are needed: {needed}, not {found}")]
     WrongInitialValueCount {
         /// Number of parameters.
@@ -52,12 +52,12 @@ pub enum IdentifyError {
         /// Pairs of this frame.
         found: usize,
     },
-    /// Time did not advance.
+    /// Time did not advance, or is not a finite number.
     #[error("time {time} does not come after {previous}")]
     TimeNotIncreasing {
         /// Time of the frame, in seconds.
         time: f64,
-        /// Time of the frame before it.
+        /// Time of the frame before it, minus infinity at the first.
         previous: f64,
     },
 }

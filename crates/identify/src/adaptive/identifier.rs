@@ -85,24 +85,22 @@ impl AdaptiveIdentifier {
     /// followed, nothing is learned.
     ///
     /// # Errors
-    /// Time that does not advance, another number of pairs than before, or fewer than the given pair asks for. The
-    /// identifier is then as before.
+    /// Time that does not advance or is not finite, another number of pairs than before, none at all, or fewer than the
+    /// given pair asks for. The identifier is then as before.
     pub fn step(&mut self, time: f64, lines: &[Line]) -> Result<(), IdentifyError> {
         let count = lines.len().min(MAX_PAIRS);
-        if let PairChoice::Given(index) = self.settings.pairs
-            && index >= count
-        {
+        let index = if let PairChoice::Given(index) = self.settings.pairs { index } else { 0 };
+        if index >= count {
             return Err(IdentifyError::NoSuchPair { index, count });
+        }
+        let previous = self.last.map_or(f64::NEG_INFINITY, |last| last.time);
+        if !time.is_finite() || time <= previous {
+            return Err(IdentifyError::TimeNotIncreasing { time, previous });
         }
         let mut padded = [lines[0]; MAX_PAIRS];
         padded[..count].copy_from_slice(&lines[..count]);
-        if let Some(last) = self.last {
-            if time.is_nan() || time <= last.time {
-                return Err(IdentifyError::TimeNotIncreasing { time, previous: last.time });
-            }
-            if count != last.count {
-                return Err(IdentifyError::PairCountChanged { expected: last.count, found: count });
-            }
+        if let Some(last) = self.last.filter(|last| last.count != count) {
+            return Err(IdentifyError::PairCountChanged { expected: last.count, found: count });
         }
         for (quality, line) in self.qualities.iter_mut().zip(&padded[..count]) {
             quality.take(line);
@@ -119,7 +117,7 @@ impl AdaptiveIdentifier {
     }
 
     /// The motion as identified so far, in the image frame; `None` before the second frame. The adaptive laws give no
-    /// standard deviations.
+    /// standard deviations. All parameters are unobservable where [`is_observable`](Self::is_observable) is false.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
         (self.frames > 1).then(|| {
@@ -129,7 +127,9 @@ impl AdaptiveIdentifier {
                 Laws::Six(laws) => laws[self.chosen_law(laws.len())].parameters(),
             };
             let model = self.settings.model;
-            MotionEstimate::new(model, &parameters.as_slice()[..model.parameter_count()], None)
+            let count = model.parameter_count();
+            let estimate = MotionEstimate::new(model, &parameters.as_slice()[..count], None);
+            if self.is_observable() { estimate } else { (0..count).fold(estimate, MotionEstimate::with_unobservable) }
         })
     }
 
@@ -147,6 +147,18 @@ impl AdaptiveIdentifier {
     #[must_use]
     pub fn rotation_content(&self, pair: usize) -> f64 {
         self.qualities.get(pair).map_or(0.0, PairQuality::magnitude)
+    }
+
+    /// Whether the pairs in use tell of the motion at all: |w| of at least one is more than noise about 0. Where none does
+    /// (a circle) neither rotation nor the velocity at the origin, which depends on it, can be told.
+    #[must_use]
+    pub fn is_observable(&self) -> bool {
+        let count = self.pair_count();
+        let used = match self.settings.pairs {
+            PairChoice::Given(index) => index..index + 1,
+            PairChoice::Best | PairChoice::All => 0..count,
+        };
+        count == 0 || self.qualities[used].iter().any(|quality| quality.tells_of_rotation(count))
     }
 
     /// Number of pairs in each frame, 0 before the first.

@@ -69,3 +69,50 @@ where
         self.parameters = 2.0 * mean - self.parameters;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MotionModel;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::solve_lyapunov;
+
+    proptest! {
+        /// Over a plant at rest in each step: X stays, so that the error of Xh is driven by the parameters alone.
+        #[test]
+        fn the_lyapunov_function_never_grows_whatever_the_lines_gains_weights_and_steps(
+            lines in prop::collection::vec(prop::array::uniform4(-20.0..20.0_f64), 1..5),
+            errors in prop::array::uniform16(-5.0..5.0_f64),
+            parameters in prop::array::uniform3(-3.0..3.0_f64),
+            weight in 0.0..1.0_f64,
+            decay in prop::array::uniform4(0.1..20.0_f64),
+            skew in -5.0..5.0_f64,
+            step in 1e-3..10.0_f64,
+        ) {
+            let mut stability = -Matrix4::from_diagonal(&Vector4::from(decay));
+            (stability[(0, 1)], stability[(1, 0)]) = (skew, -skew);
+            let lyapunov = solve_lyapunov(&stability, &Matrix4::identity()).expect("stable");
+            // The parameters of a plant at rest are zero, so that the parameters are their own error.
+            let mut law =
+                StructuredLaw::new(Regressor::<3>::new(MotionModel::Rigid), stability, lyapunov, parameters.into());
+            let inputs: Vec<_> =
+                lines.iter().map(|x| PairInput { state: Vector4::from(*x), weight }).collect();
+            let mut states: Vec<_> = inputs
+                .iter()
+                .zip(errors.chunks_exact(4))
+                .map(|(input, e)| input.state + Vector4::from_column_slice(e))
+                .collect();
+            let function = |law: &StructuredLaw<3>, states: &[EstimatorState]| {
+                let energy = |(s, i): (&EstimatorState, &PairInput)| (s - i.state).dot(&(lyapunov * (s - i.state)));
+                weight * states.iter().zip(&inputs).map(energy).sum::<f64>() + law.parameters().norm_squared()
+            };
+            for _ in 0..20 {
+                let before = function(&law, &states);
+                law.step(step, &mut states, &inputs);
+                let after = function(&law, &states);
+                prop_assert!(after <= before * (1.0 + 1e-8) + 1e-12, "{before} to {after}");
+            }
+        }
+    }
+}

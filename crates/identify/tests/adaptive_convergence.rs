@@ -1,0 +1,104 @@
+//! The three laws over line pairs that move exactly.
+mod adaptive_support;
+
+use adaptive_support::{AFFINE, RIGID, even_times, parameters_after, run, starting_lines};
+use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice};
+use freeform_riccati::MotionModel;
+use proptest::prelude::*;
+use rand::{RngExt as _, SeedableRng as _};
+
+const LAWS: [AdaptiveLaw; 3] = [AdaptiveLaw::Printed, AdaptiveLaw::Structured, AdaptiveLaw::FilteredLeastSquares];
+
+fn distance(found: &[f64], truth: &[f64]) -> f64 {
+    let size = truth.iter().map(|t| t * t).sum::<f64>().sqrt();
+    found.iter().zip(truth).map(|(f, t)| (f - t).powi(2)).sum::<f64>().sqrt() / size
+}
+
+#[test]
+fn the_structured_law_converges_to_a_rigid_motion_over_any_choice_of_pairs() {
+    for pairs in [PairChoice::All, PairChoice::Best, PairChoice::Given(0), PairChoice::Given(1)] {
+        let settings = AdaptiveSettings { pairs, ..AdaptiveSettings::default() };
+        let found = parameters_after(&settings, &RIGID, &even_times(60.0, 30.0));
+        println!("{pairs:?}: {}", distance(&found, &RIGID));
+        assert!(distance(&found, &RIGID) < 0.01, "{pairs:?}: {found:?}");
+    }
+}
+
+#[test]
+fn the_structured_law_converges_to_an_affine_motion() {
+    let settings = AdaptiveSettings { model: MotionModel::Affine, ..AdaptiveSettings::default() };
+    let found = parameters_after(&settings, &AFFINE, &even_times(120.0, 30.0));
+    println!("{}", distance(&found, &AFFINE));
+    assert!(distance(&found, &AFFINE) < 0.02, "{found:?}");
+}
+
+#[test]
+fn filtered_least_squares_settles_to_two_percent_within_half_a_second() {
+    let law = AdaptiveLaw::FilteredLeastSquares;
+    let rigid = AdaptiveSettings { law, ..AdaptiveSettings::default() };
+    let found = parameters_after(&rigid, &RIGID, &even_times(0.5, 30.0));
+    println!("rigid {}", distance(&found, &RIGID));
+    assert!(distance(&found, &RIGID) < 0.02, "{found:?}");
+}
+
+#[test]
+fn the_true_motion_is_a_fixed_point_of_every_law() {
+    for (model, truth) in [(MotionModel::Rigid, &RIGID[..]), (MotionModel::Affine, &AFFINE[..])] {
+        for law in LAWS {
+            let settings =
+                AdaptiveSettings { model, law, initial_values: truth.to_vec(), ..AdaptiveSettings::default() };
+            let found = parameters_after(&settings, truth, &even_times(10.0, 200.0));
+            println!("{law:?} {model}: {}", distance(&found, truth));
+            assert!(distance(&found, truth) < 2e-3, "{law:?} {model}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn the_printed_law_stays_finite_and_need_not_converge() {
+    let settings = AdaptiveSettings { law: AdaptiveLaw::Printed, ..AdaptiveSettings::default() };
+    let found = parameters_after(&settings, &RIGID, &even_times(30.0, 30.0));
+    println!("{}", distance(&found, &RIGID));
+    assert!(distance(&found, &RIGID) < 1.0, "no nearer than the start: {found:?}");
+}
+
+#[test]
+fn a_fifth_of_the_frames_may_be_missing_and_times_may_be_uneven() {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(5);
+    let mut times = even_times(60.0, 30.0);
+    times.retain(|_| rng.random::<f64>() >= 0.2);
+    times.iter_mut().for_each(|time| *time += 0.01 * rng.random::<f64>());
+    for (law, seconds) in [(AdaptiveLaw::Structured, 60.0), (AdaptiveLaw::FilteredLeastSquares, 2.0)] {
+        let settings = AdaptiveSettings { law, ..AdaptiveSettings::default() };
+        let times: Vec<f64> = times.iter().copied().filter(|time| *time < seconds).collect();
+        let found = parameters_after(&settings, &RIGID, &times);
+        println!("{law:?}: {}", distance(&found, &RIGID));
+        assert!(distance(&found, &RIGID) < 0.02, "{law:?}: {found:?}");
+    }
+}
+
+#[test]
+fn the_origin_of_time_does_not_matter() {
+    for law in LAWS {
+        let settings = AdaptiveSettings { law, ..AdaptiveSettings::default() };
+        let lines = starting_lines();
+        let mut now = AdaptiveIdentifier::new(settings.clone()).expect("settings");
+        let mut later = AdaptiveIdentifier::new(settings).expect("settings");
+        run(&mut now, &lines, &RIGID, &even_times(5.0, 32.0), 0.0);
+        run(&mut later, &lines, &RIGID, &even_times(5.0, 32.0), 1024.0);
+        let (now, later) = (now.estimate().expect("an estimate"), later.estimate().expect("an estimate"));
+        assert!(distance(now.values(), later.values()) < 1e-12, "{law:?}: {now:?} and {later:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn every_start_leads_to_the_same_motion(start in prop::array::uniform3(-2.0..2.0_f64)) {
+        for (law, seconds) in [(AdaptiveLaw::Structured, 80.0), (AdaptiveLaw::FilteredLeastSquares, 2.0)] {
+            let settings = AdaptiveSettings { law, initial_values: start.to_vec(), ..AdaptiveSettings::default() };
+            let found = parameters_after(&settings, &RIGID, &even_times(seconds, 30.0));
+            prop_assert!(distance(&found, &RIGID) < 0.02, "{:?} from {:?}: {:?}", law, start, found);
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! The hot path takes no memory from the heap.
+mod common;
+
+use common::frames;
+use freeform_motion::{
+    Pipeline, PipelineSettings,
+    identify::{AdaptiveLaw, PairChoice},
+    sim_camera::{Frame, PaperExperiment, Simulator},
+};
+
+#[test]
+fn after_the_first_frames_none_allocates() {
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scene");
+    let frames: Vec<Frame> = Simulator::new(scene, frames(60)).expect("a simulation").frames().collect();
+    for law in [AdaptiveLaw::Structured, AdaptiveLaw::Printed, AdaptiveLaw::FilteredLeastSquares] {
+        for pairs in [PairChoice::All, PairChoice::Best, PairChoice::Given(0)] {
+            let mut settings = PipelineSettings::default();
+            (settings.identify.law, settings.identify.pairs) = (law, pairs);
+            let mut pipeline = Pipeline::new(settings).expect("settings");
+            for (index, frame) in frames.iter().enumerate() {
+                let mut accepted = false;
+                let counts = allocation_counter::measure(|| {
+                    accepted = pipeline.push(frame.time, &frame.outline).is_ok();
+                });
+                assert!(accepted);
+                assert!(index < 3 || counts.count_total == 0, "frame {index}, {law:?}, {pairs:?}: {counts:?}");
+            }
+        }
+    }
+}
