@@ -206,6 +206,10 @@ struct RunningLaw<const N: usize> {
 }
 
 #[derive(Debug, Clone)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "made once and kept in place; a box would only be followed at every step"
+)]
 enum Law<const N: usize> {
     Structured(StructuredLaw<N>),
     Printed(PrintedLaw),
