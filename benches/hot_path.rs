@@ -60,7 +60,7 @@ fn baselines(c: &mut Criterion) {
         });
         let dense = nalgebra::DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)]);
         group.bench_function(BenchmarkId::new("nalgebra SVD", &name), |b| {
-            b.iter(|| black_box(&dense).clone().svd(true, true))
+            b.iter(|| black_box(&dense).clone().svd(true, true));
         });
     }
     group.finish();
