@@ -87,7 +87,8 @@ fn run(shape: &Shape, setting: &Setting, bound: &[f64], seed: u64) -> Outcome {
     };
     let simulator = Simulator::new(scene, settings).expect("good settings");
     let frames: Vec<_> = simulator.frames().collect();
-    let mut filter = MotionFilter::new(FilterSettings { model: setting.model, ..FilterSettings::default() }).expect("ok");
+    let mut filter =
+        MotionFilter::new(FilterSettings { model: setting.model, ..FilterSettings::default() }).expect("ok");
     let (mut spent, mut timed) = (0.0, 0);
     for frame in &frames {
         let start = Instant::now();
@@ -158,7 +159,10 @@ fn main() {
         Setting { model: MotionModel::Affine, ..plain("affine 120", 120) },
         Setting { model: MotionModel::Affine, occlusion: 0.2, ..plain("affine arc 120", 120) },
     ];
-    println!("{:<16} {:>7} {:>7} {:>9} {:>6} {:>9}  by shape", "setting", "pooled", "worst", "coverage", "lost", "us/frame");
+    println!(
+        "{:<16} {:>7} {:>7} {:>9} {:>6} {:>9}  by shape",
+        "setting", "pooled", "worst", "coverage", "lost", "us/frame"
+    );
     for setting in settings.iter().filter(|s| s.name.contains(&wanted)) {
         let (mut sum, mut count, mut covered, mut lost, mut worst, mut spent) = (0.0, 0.0, 0.0, 0, 0.0_f64, 0.0);
         let mut by_shape = String::new();

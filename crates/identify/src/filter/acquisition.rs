@@ -48,7 +48,8 @@ impl Landmarks {
         let fit = Fitter::new(FitSettings::default()).ok()?.fit(outline).ok()?;
         let decomposition = Decomposition::of(fit.working()).ok()?;
         let related = RelatedPoints::of(&decomposition);
-        let mut points = related.level(4).map(|d| fit.normalisation().centre + fit.normalisation().radius * d.point.coords);
+        let mut points =
+            related.level(4).map(|d| fit.normalisation().centre + fit.normalisation().radius * d.point.coords);
         Some(Self([points.next()?, points.next()?]))
     }
 
@@ -79,7 +80,9 @@ fn search(map: &OutlineMap, points: &[Point2<f64>], landmarks: Option<[Landmarks
     let body_centre = map.cells.iter().map(|c| map_point(&map.pose, &c.centre).coords / count).sum::<Vector2<f64>>();
     let centre = points.iter().map(|p| p.coords / points.len() as f64).sum::<Vector2<f64>>();
     let mut starts = vec![Matrix3::identity()];
-    starts.extend((0..TURNS).map(|i| turn_between(std::f64::consts::TAU * i as f64 / TURNS as f64, &body_centre, &centre)));
+    starts.extend(
+        (0..TURNS).map(|i| turn_between(std::f64::consts::TAU * i as f64 / TURNS as f64, &body_centre, &centre)),
+    );
     if let Some([before, after]) = landmarks {
         let ([a, b], [c, d]) = (before.normalised(map), after.normalised(map));
         for (c, d) in [(c, d), (d, c)] {
@@ -89,10 +92,8 @@ fn search(map: &OutlineMap, points: &[Point2<f64>], landmarks: Option<[Landmarks
             starts.push(turn_between(turn, &middle(a, b), &middle(c, d)));
         }
     }
-    let mut found: Vec<Hypothesis> = starts
-        .iter()
-        .map(|start| refined(map, &few, MotionModel::Rigid, &(start * map.pose), SEARCH_STEPS))
-        .collect();
+    let mut found: Vec<Hypothesis> =
+        starts.iter().map(|start| refined(map, &few, MotionModel::Rigid, &(start * map.pose), SEARCH_STEPS)).collect();
     let by_score = |a: &Hypothesis, b: &Hypothesis| a.score.total_cmp(&b.score);
     found.sort_by(by_score);
     let mut best: Vec<Hypothesis> = Vec::new();
@@ -135,7 +136,13 @@ fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -> Matrix3<f
 }
 
 /// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals.
-fn refined(map: &OutlineMap, points: &[Point2<f64>], model: MotionModel, start: &Matrix3<f64>, steps: usize) -> Hypothesis {
+fn refined(
+    map: &OutlineMap,
+    points: &[Point2<f64>],
+    model: MotionModel,
+    start: &Matrix3<f64>,
+    steps: usize,
+) -> Hypothesis {
     let k = model.parameter_count();
     let mut pose = *start;
     let mut distances = Vec::with_capacity(points.len());
@@ -201,7 +208,8 @@ pub(crate) fn motion_between(model: MotionModel, change: &Matrix3<f64>, seconds:
         let flow = model.flow(&theta[..k], seconds).into_inner();
         let rest = change / change[(2, 2)] * flow.try_inverse()?;
         let error = coordinates(model, &(rest / rest[(2, 2)] - Matrix3::identity()));
-        let by_motion = crate::motion_algebra::columns(model, model.flow_sensitivities(&theta[..k], seconds).into_iter());
+        let by_motion =
+            crate::motion_algebra::columns(model, model.flow_sensitivities(&theta[..k], seconds).into_iter());
         let matrix = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| {
             if i < k && j < k { by_motion[i][j] } else { f64::from(u8::from(i == j)) }
         });

@@ -99,9 +99,11 @@ fn eliminate<const S: usize>(cells: &[CellInformation], sum: &mut [[f64; STATE];
 }
 
 fn padded(sum: &[[f64; STATE]; STATE], size: usize) -> StateMatrix {
-    StateMatrix::from_fn(|i, j| {
-        if i < size && j < size { 0.5 * (sum[i][j] + sum[j][i]) } else { f64::from(u8::from(i == j)) }
-    })
+    StateMatrix::from_fn(
+        |i, j| {
+            if i < size && j < size { 0.5 * (sum[i][j] + sum[j][i]) } else { f64::from(u8::from(i == j)) }
+        },
+    )
 }
 
 fn transpose(m: &mut [[f64; STATE]; STATE]) {

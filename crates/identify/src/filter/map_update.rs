@@ -293,7 +293,8 @@ impl OutlineMap {
     /// Appends the runs of places that no cell covers, linked along the contour.
     fn add_places(&mut self, piece: &SmoothPiece, first_new: usize) {
         let count = piece.places.len();
-        let covering: Vec<Option<usize>> = piece.places.iter().map(|place| self.covering(&place.centre, first_new)).collect();
+        let covering: Vec<Option<usize>> =
+            piece.places.iter().map(|place| self.covering(&place.centre, first_new)).collect();
         let new = |i: usize| covering[i].is_none();
         if !(0..count).any(new) {
             return;
@@ -323,7 +324,9 @@ impl OutlineMap {
                 self.cells.push(Cell { centre: place.centre, normal: place.normal, offset: 0.0, neighbours });
             }
             let (head, tail) = (run[0], run[run.len() - 1]);
-            let wraps = |i: usize, on: bool| if on && (piece.closed || i != 0) { covering[(i + count - 1) % count] } else { None };
+            let wraps = |i: usize, on: bool| {
+                if on && (piece.closed || i != 0) { covering[(i + count - 1) % count] } else { None }
+            };
             self.link(wraps(head, true), base, 0);
             let after = (tail + 1 < count || piece.closed).then(|| covering[(tail + 1) % count]).flatten();
             let last = self.cells.len() - 1;
@@ -378,7 +381,11 @@ impl OutlineMap {
     }
 }
 
-fn accumulate_sized<const K: usize>(scratch: &mut Scratch, work: &mut ArrowInformation, state: &StateVector) -> StateVector {
+fn accumulate_sized<const K: usize>(
+    scratch: &mut Scratch,
+    work: &mut ArrowInformation,
+    state: &StateVector,
+) -> StateVector {
     let mut right = StateVector::zeros();
     let mut dense = [[0.0; K]; K];
     for Reading { cell, residual, slope, row, weight } in &scratch.readings {

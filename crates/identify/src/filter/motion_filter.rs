@@ -171,9 +171,7 @@ impl MotionFilter {
         map.add_process_noise(&self.settings.process_noise, seconds);
         self.map_time = time;
         let smallest = self.settings.smallest_agreement;
-        Some(map.update(outline, |update| {
-            update.agreement >= smallest && update.innovation <= LARGEST_INNOVATION
-        }))
+        Some(map.update(outline, |update| update.agreement >= smallest && update.innovation <= LARGEST_INNOVATION))
     }
 
     /// Goes on as predicted if that fits, searches for the object otherwise.
@@ -278,4 +276,3 @@ impl MotionFilter {
         self.restarts
     }
 }
-

@@ -272,7 +272,8 @@ impl OutlineMap {
             if *value < threshold {
                 let generator = self.model.generator(&vector.as_slice()[..self.information.k]);
                 let Some(inverse) = to_body.try_inverse() else { continue };
-                self.unseen_in_body.push(crate::motion_algebra::coordinates(self.model, &(to_body * generator * inverse)));
+                self.unseen_in_body
+                    .push(crate::motion_algebra::coordinates(self.model, &(to_body * generator * inverse)));
             }
         }
         self.scratch.centroid = centroid;
