@@ -182,7 +182,7 @@ fn gaps_and_uneven_times_change_nothing() {
 fn a_change_of_motion_is_noticed_and_the_new_motion_found() {
     let before = AffineMotion::from(RIGID);
     let after = AffineMotion::from(RigidMotion { omega: -1.0, b1: 0.5, b2: 0.1 });
-    let motion = Motion::piecewise(vec![(1.0, before), (10.0, after)]).expect("two phases");
+    let motion = Motion::piecewise(vec![(0.0, before), (1.0, after)]).expect("two phases");
     let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Bird, motion, settings(75, 2)));
     assert_eq!((run.phase(), run.restarts()), (Phase::Tracking, 0));
     let truth = values(MotionModel::Rigid, after);

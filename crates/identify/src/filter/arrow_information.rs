@@ -48,21 +48,7 @@ impl ArrowInformation {
     }
 
     fn predict_sized<const K: usize>(&mut self, inverse: &CoordinateMatrix, product: &CoordinateMatrix) {
-        let transform = |v: &mut [f64; STATE]| {
-            let mut moved = [0.0; STATE];
-            for i in 0..K {
-                for (j, m) in moved.iter_mut().enumerate().take(K) {
-                    *m += inverse[i][j] * v[i];
-                }
-            }
-            for j in 0..K {
-                moved[K + j] = v[K + j];
-                for i in 0..K {
-                    moved[K + j] -= product[i][j] * v[i];
-                }
-            }
-            *v = moved;
-        };
+        let transform = |v: &mut [f64; STATE]| transform::<K>(v, inverse, product);
         self.dense.iter_mut().take(2 * K).for_each(transform);
         transpose(&mut self.dense);
         self.dense.iter_mut().take(2 * K).for_each(transform);
@@ -80,6 +66,36 @@ impl ArrowInformation {
         }
         padded(&sum, 2 * self.k)
     }
+}
+
+/// A marginal information matrix moved on by the same step.
+pub(crate) fn moved_marginal(
+    m: &StateMatrix,
+    k: usize,
+    inverse: &CoordinateMatrix,
+    product: &CoordinateMatrix,
+) -> StateMatrix {
+    let mut moved = ArrowInformation::new(k);
+    for (i, row) in moved.dense.iter_mut().enumerate().take(2 * k) {
+        (0..2 * k).for_each(|j| row[j] = m[(i, j)]);
+    }
+    moved.predict(inverse, product);
+    padded(&moved.dense, 2 * k)
+}
+
+/// `v <- F^-T v`.
+fn transform<const K: usize>(v: &mut [f64; STATE], inverse: &CoordinateMatrix, product: &CoordinateMatrix) {
+    let mut moved = [0.0; STATE];
+    for j in 0..K {
+        moved[K + j] = v[K + j];
+    }
+    for i in 0..K {
+        for j in 0..K {
+            moved[j] += inverse[i][j] * v[i];
+            moved[K + j] -= product[i][j] * v[i];
+        }
+    }
+    *v = moved;
 }
 
 /// Subtracts `c c' / o` of every cell.

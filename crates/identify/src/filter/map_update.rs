@@ -21,7 +21,9 @@ const AGREEING: f64 = 3.5;
 /// Most linearisations per frame.
 const MOST_ITERATIONS: usize = 6;
 /// A step that moves points by less than this many standard deviations of the noise is the last.
-const SETTLED: f64 = 0.02;
+const SETTLED: f64 = 0.03;
+/// With this share of the points near the prediction, their spread need not be looked at before they are weighted.
+const NEAR_ENOUGH: f64 = 0.75;
 /// Points further than this many spacings beyond a known end belong to what is not known yet.
 const BEYOND_END: f64 = 0.75;
 /// Places further than this many spacings from all cells are new.
@@ -67,13 +69,30 @@ const NO_CELL: usize = usize::MAX;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Scratch {
     pub(crate) points: Vec<Point2<f64>>,
-    pub(crate) centroid: Point2<f64>,
-    pub(crate) spread: f64,
     readings: Vec<Reading>,
     cells: Vec<CellInformation>,
     right: Vec<f64>,
     shifts: Vec<f64>,
     values: Vec<f64>,
+}
+
+impl Scratch {
+    /// Offsets that go with a solution for pose and motion, and what it leaves of the residuals.
+    fn take_solution(&mut self, cells: &[CellInformation], step: &StateVector, state: &StateVector, k: usize) {
+        self.values.clear();
+        for ((shift, cell), right) in self.shifts.iter_mut().zip(cells).zip(&self.right) {
+            let before = *shift;
+            if cell.own > 0.0 {
+                let along: f64 = (0..2 * k).map(|i| cell.coupling[i] * state[i]).sum();
+                *shift = (right - along) / cell.own;
+            }
+            self.values.push(*shift - before);
+        }
+        for reading in self.readings.iter_mut().filter(|r| r.cell != NO_CELL) {
+            let along: f64 = (0..k).map(|i| reading.row[i] * step[i]).sum();
+            reading.residual -= along + reading.slope * self.values[reading.cell];
+        }
+    }
 }
 
 impl OutlineMap {
@@ -112,12 +131,7 @@ impl OutlineMap {
                 std::mem::swap(&mut work.cells, &mut scratch.cells);
                 return self.rejected(iterations);
             };
-            for (shift, (cell, right)) in scratch.shifts.iter_mut().zip(work.cells.iter().zip(&scratch.right)) {
-                if cell.own > 0.0 {
-                    let along: f64 = (0..2 * k).map(|i| cell.coupling[i] * next[i]).sum();
-                    *shift = (right - along) / cell.own;
-                }
-            }
+            scratch.take_solution(&work.cells, &(next - state), &next, k);
             let step = (0..k).map(|i| (next[i] - state[i]).abs()).fold(0.0, f64::max);
             state = next;
             pose = self.model.flow(&state.as_slice()[..k], 1.0).into_inner() * self.pose;
@@ -126,7 +140,7 @@ impl OutlineMap {
                 return self.rejected(iterations);
             }
             iterations += 1;
-            settled = step < SETTLED * self.sigma && iterations > 1;
+            settled = step < SETTLED * self.sigma;
             std::mem::swap(&mut work.cells, &mut scratch.cells);
         }
         let mut update = self.judge(scratch, &state, iterations);
@@ -156,7 +170,9 @@ impl OutlineMap {
         readings.clear();
         readings.extend(points.iter().map(|p| self.read(p, &inverse, unseen, shifts)));
         let mut scale = self.sigma;
-        if first {
+        let limit = FULL_WEIGHT * scale;
+        let near = readings.iter().filter(|r| r.residual.abs() < limit).count();
+        if first && (near as f64) < NEAR_ENOUGH * readings.len() as f64 {
             // A prediction that is off by more than the noise must not lose the points it has to be corrected by.
             values.clear();
             values.extend(readings.iter().filter(|r| r.cell != NO_CELL).map(|r| r.residual.abs()));

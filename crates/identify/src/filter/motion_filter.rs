@@ -12,6 +12,8 @@ use crate::estimate::MotionEstimate;
 
 /// Squared innovation of one frame beyond which the motion has not gone on as it was.
 const LARGEST_INNOVATION: f64 = 80.0;
+/// A frame with so many times the noise known does not show the known outline, however well the map is bent to it.
+const LARGEST_NOISE_RATIO: f64 = 1.8;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
 const FALSE_START: usize = 3;
 /// Frames rejected in a row after which the object is given up and a new one taken.
@@ -178,7 +180,7 @@ impl MotionFilter {
     fn acquire(&mut self, time: f64, outline: &Outline) -> Option<MapUpdate> {
         let seconds = time - self.map_time;
         let smallest = self.settings.smallest_agreement;
-        let fits = |update: &MapUpdate| update.agreement >= smallest;
+        let fits = fits(self.map.as_ref()?, smallest);
         if self.phase == Phase::Lost {
             let mut going_on = self.map.clone()?;
             going_on.predict(seconds);
@@ -208,7 +210,7 @@ impl MotionFilter {
                 candidate.predict(seconds);
                 Phase::Tracking
             };
-            let update = candidate.update(outline, fits);
+            let update = candidate.update(outline, &fits);
             last = Some(update);
             if update.accepted {
                 self.replace(candidate, time, phase);
@@ -275,4 +277,10 @@ impl MotionFilter {
     pub fn restarts(&self) -> usize {
         self.restarts
     }
+}
+
+/// Whether a frame shows the outline that the map knows.
+fn fits(map: &OutlineMap, smallest_agreement: f64) -> impl Fn(&MapUpdate) -> bool + use<> {
+    let largest_noise = LARGEST_NOISE_RATIO * map.noise();
+    move |update| update.agreement >= smallest_agreement && update.noise.is_none_or(|noise| noise <= largest_noise)
 }

@@ -3,7 +3,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Matrix3, Point2, Projective2, SMatrix, Vector2};
 
 use super::{
-    arrow_information::{ArrowInformation, CellInformation, StateMatrix, StateVector},
+    arrow_information::{ArrowInformation, CellInformation, StateMatrix, StateVector, moved_marginal},
     contour::Contour,
     error::FilterError,
     map_update::Scratch,
@@ -27,6 +27,8 @@ const GAUGE_WEIGHT: f64 = 10.0;
 const MOTION_PRIOR: f64 = 1e-10;
 /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
 const DEGENERATE: f64 = 0.003;
+/// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
+const WORTHLESS: f64 = 0.25;
 /// Frames that the estimate of the noise looks back on.
 const NOISE_MEMORY: f64 = 200.0;
 
@@ -76,6 +78,8 @@ pub struct OutlineMap {
     pub(crate) half_window: usize,
     /// In the body frame.
     unseen_in_body: Vec<Coordinates>,
+    /// From centred coordinates of unit RMS radius to the body frame.
+    body_frame: Matrix3<f64>,
     pub(crate) scratch: Scratch,
     /// Seconds predicted over since the motion was last unknown.
     span: f64,
@@ -114,6 +118,7 @@ impl OutlineMap {
             sigma_weight: 0.5,
             half_window: 2,
             unseen_in_body: Vec::new(),
+            body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
             span: 0.0,
         };
@@ -185,12 +190,7 @@ impl OutlineMap {
         }
         self.pose = flow * self.pose;
         self.information.predict(&ad_inverse, &product);
-        let transition = StateMatrix::from_fn(|i, j| match (i < k, j < k) {
-            (true, true) => ad_inverse[i][j],
-            (true, false) if j < 2 * k => -product[i][j - k],
-            _ => f64::from(u8::from(i == j)),
-        });
-        self.marginal = transition.transpose() * self.marginal * transition;
+        self.marginal = moved_marginal(&self.marginal, k, &ad_inverse, &product);
         self.span += seconds;
     }
 
@@ -276,8 +276,7 @@ impl OutlineMap {
                     .push(crate::motion_algebra::coordinates(self.model, &(to_body * generator * inverse)));
             }
         }
-        self.scratch.centroid = centroid;
-        self.scratch.spread = spread;
+        self.body_frame = to_body;
     }
 
     /// The same in the image, for the pose given.
@@ -289,8 +288,7 @@ impl OutlineMap {
         let Some(inverse) = pose.try_inverse() else { return Vec::new() };
         let (ad, ad_inverse) = (adjoint(self.model, pose, &inverse), adjoint(self.model, &inverse, pose));
         // Duals in centred coordinates, where the directions are orthonormal.
-        let (c, s) = (self.scratch.centroid, self.scratch.spread);
-        let to_body = Matrix3::new(s, 0.0, c.x, 0.0, s, c.y, 0.0, 0.0, 1.0);
+        let to_body = self.body_frame;
         let Some(from_body) = to_body.try_inverse() else { return Vec::new() };
         let centring = adjoint(self.model, &from_body, &to_body);
         let list = self.unseen_in_body.iter().map(|u| {
@@ -364,8 +362,8 @@ impl OutlineMap {
         Some(&change * motion * change.transpose())
     }
 
-    /// The motion in image units, with standard deviations. A parameter whose uncertainty, over the time seen so far, would
-    /// turn or move the object by its own size is marked as unobservable.
+    /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time seen so
+    /// far, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
         let covariance = self.covariance()?;
@@ -382,7 +380,7 @@ impl OutlineMap {
                 b'c' => 1.0 / reach,
                 _ => 1.0,
             };
-            let known = deviations[j] * self.span <= limit;
+            let known = deviations[j] * self.span <= WORTHLESS * limit;
             if !known {
                 estimate = estimate.with_unobservable(j);
             }

@@ -25,14 +25,9 @@ pub struct FilterSettings {
 }
 
 impl Default for FilterSettings {
-    /// Rigid motion that does not change; a frame is taken if 55 % of its points agree; patience of 2 frames.
+    /// Rigid motion that does not change; a frame is taken if 70 % of its points agree; patience of 2 frames.
     fn default() -> Self {
-        Self {
-            model: MotionModel::Rigid,
-            process_noise: ProcessNoise::default(),
-            smallest_agreement: 0.55,
-            patience: 2,
-        }
+        Self { model: MotionModel::Rigid, process_noise: ProcessNoise::default(), smallest_agreement: 0.7, patience: 2 }
     }
 }
 
