@@ -52,7 +52,7 @@ fn motion(model: MotionModel) -> (AffineMotion, Vec<f64>) {
 fn bound(shape: &Shape, setting: &Setting) -> Vec<f64> {
     let (truth, theta) = motion(setting.model);
     let mut bound = CramerRaoBound::new(setting.model, &theta).expect("a motion");
-    let dense = 2000;
+    let dense = 2000_usize;
     let share = (1.0 - setting.occlusion) * (1.0 - setting.outliers) * (1.0 - setting.wrong);
     for frame in 0..setting.frames {
         let time = frame as f64 / FPS;

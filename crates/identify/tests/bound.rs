@@ -38,9 +38,9 @@ fn numerical_information(model: MotionModel, theta: &[f64]) -> DMatrix<f64> {
         let displaced = |index: usize, by: f64| -> Vec<Point2<f64>> {
             let (mut pose, mut motion) = (vec![0.0; k], theta.to_vec());
             if index < k {
-                pose[index] += by
+                pose[index] += by;
             } else {
-                motion[index - k] += by
+                motion[index - k] += by;
             }
             let map = flow(model, &motion, time) * flow(model, &pose, 1.0);
             curve(&map).into_iter().map(|p| p.point).collect()

@@ -252,6 +252,20 @@ fn process_noise_lets_the_filter_follow_a_motion_that_drifts() {
 }
 
 #[test]
+fn exact_points_give_the_motion_to_the_precision_of_the_cells() {
+    for sampling in [Sampling::Regular { jitter: 0.0 }, Sampling::Independent] {
+        let exact = Settings { noise: 0.0, sampling, ..settings(20, 0) };
+        let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Bird, RIGID, exact));
+        assert_eq!(run.frames_rejected(), 0, "{sampling:?}");
+        for (value, truth) in
+            run.estimate().expect("an estimate").values().iter().zip(values(MotionModel::Rigid, RIGID.into()))
+        {
+            assert!((value - truth).abs() < 1e-3, "{value} for {truth}");
+        }
+    }
+}
+
+#[test]
 fn bad_input_is_refused_and_leaves_the_filter_as_it_was() {
     let frames = frames_of(BuiltInShape::Bird, RIGID, settings(5, 0));
     let mut run = filtered(MotionModel::Rigid, &frames);

@@ -63,7 +63,7 @@ impl Landmarks {
     }
 }
 
-/// Poses that bring the map onto the outline, best first, at most three. `landmarks` are the related points of the map in its present
+/// Poses that bring the map onto the outline, best first, at most three (six with a model of more parameters). `landmarks` are the related points of the map in its present
 /// pose, and those of the outline.
 pub(crate) fn find_pose(map: &mut OutlineMap, outline: &Outline, landmarks: Option<[Landmarks; 2]>) -> Vec<Hypothesis> {
     map.load(outline);
@@ -94,31 +94,38 @@ fn search(map: &OutlineMap, points: &[Point2<f64>], landmarks: Option<[Landmarks
     }
     let mut found: Vec<Hypothesis> =
         starts.iter().map(|start| refined(map, &few, MotionModel::Rigid, &(start * map.pose), SEARCH_STEPS)).collect();
-    let by_score = |a: &Hypothesis, b: &Hypothesis| a.score.total_cmp(&b.score);
-    found.sort_by(by_score);
+    found.sort_by(|a, b| a.score.total_cmp(&b.score));
     let mut best: Vec<Hypothesis> = Vec::new();
     for hypothesis in found {
         if best.len() < REFINED && !best.iter().any(|other| same(other, &hypothesis)) {
             best.push(hypothesis);
         }
     }
-    for hypothesis in &mut best {
-        *hypothesis = refined(map, points, MotionModel::Rigid, &hypothesis.pose, REFINEMENT_STEPS);
-        if map.model != MotionModel::Rigid {
-            // Growing models, so that the many parameters start near.
-            for model in MotionModel::ALL.into_iter().filter(|m| *m > MotionModel::Rigid && *m <= map.model) {
-                *hypothesis = refined(map, points, model, &hypothesis.pose, REFINEMENT_STEPS);
-            }
-        }
-    }
+    let rigid = best.iter().map(|h| refined(map, points, MotionModel::Rigid, &h.pose, REFINEMENT_STEPS));
+    best = rigid.collect();
     best.retain(|h| h.score.is_finite());
-    best.sort_by(by_score);
-    if let Some(limit) = best.first().map(|h| TIE * h.score) {
-        let ties = best.iter().filter(|h| h.score <= limit).count();
-        best[..ties].sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
-    }
+    rank(&mut best);
     best.truncate(KEPT);
+    if map.model != MotionModel::Rigid {
+        // More parameters start from fewer. They may also lead astray where arcs are missing, so that the rigid poses stay.
+        let more = best.clone().into_iter().map(|hypothesis| {
+            let models = MotionModel::ALL.into_iter().filter(|m| *m > MotionModel::Rigid && *m <= map.model);
+            models.fold(hypothesis, |h, model| refined(map, points, model, &h.pose, REFINEMENT_STEPS))
+        });
+        best.extend(more);
+        best.retain(|h| h.score.is_finite());
+        rank(&mut best);
+    }
     best
+}
+
+/// Best first; among equals the smallest turn.
+fn rank(list: &mut [Hypothesis]) {
+    list.sort_by(|a, b| a.score.total_cmp(&b.score));
+    if let Some(limit) = list.first().map(|h| TIE * h.score) {
+        let ties = list.iter().filter(|h| h.score <= limit).count();
+        list[..ties].sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
+    }
 }
 
 fn same(a: &Hypothesis, b: &Hypothesis) -> bool {

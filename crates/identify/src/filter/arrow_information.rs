@@ -50,7 +50,10 @@ impl ArrowInformation {
     fn predict_sized<const K: usize>(&mut self, inverse: &CoordinateMatrix, product: &CoordinateMatrix) {
         let transform = |v: &mut [f64; STATE]| transform::<K>(v, inverse, product);
         self.dense.iter_mut().take(2 * K).for_each(transform);
-        transpose(&mut self.dense);
+        let rows = self.dense;
+        for (i, row) in self.dense.iter_mut().enumerate() {
+            row.iter_mut().zip(&rows).for_each(|(entry, other)| *entry = other[i]);
+        }
         self.dense.iter_mut().take(2 * K).for_each(transform);
         self.cells.iter_mut().for_each(|cell| transform(&mut cell.coupling));
     }
@@ -86,9 +89,7 @@ pub(crate) fn moved_marginal(
 /// `v <- F^-T v`.
 fn transform<const K: usize>(v: &mut [f64; STATE], inverse: &CoordinateMatrix, product: &CoordinateMatrix) {
     let mut moved = [0.0; STATE];
-    for j in 0..K {
-        moved[K + j] = v[K + j];
-    }
+    moved[K..2 * K].copy_from_slice(&v[K..2 * K]);
     for i in 0..K {
         for j in 0..K {
             moved[j] += inverse[i][j] * v[i];
@@ -120,13 +121,4 @@ fn padded(sum: &[[f64; STATE]; STATE], size: usize) -> StateMatrix {
             if i < size && j < size { 0.5 * (sum[i][j] + sum[j][i]) } else { f64::from(u8::from(i == j)) }
         },
     )
-}
-
-fn transpose(m: &mut [[f64; STATE]; STATE]) {
-    for i in 0..STATE {
-        for j in 0..i {
-            let (a, b) = (m[i][j], m[j][i]);
-            (m[i][j], m[j][i]) = (b, a);
-        }
-    }
 }

@@ -95,7 +95,7 @@ impl Contour {
             along.push(length);
         }
         let count = (length / spacing).round().max(1.0);
-        if !(length > 0.0) || count > 1e5 {
+        if length <= 0.0 || !length.is_finite() || count > 1e5 {
             return None;
         }
         let step = length / count;

@@ -18,6 +18,8 @@ const FULL_WEIGHT: f64 = 3.0;
 const NO_WEIGHT: f64 = 6.0;
 /// Residuals within this many standard deviations agree with the map.
 const AGREEING: f64 = 3.5;
+/// Residuals below this many spacings agree too: corners lie off the straight cells by as much.
+const BEND: f64 = 0.2;
 /// Most linearisations per frame.
 const MOST_ITERATIONS: usize = 6;
 /// A step that moves points by less than this many standard deviations of the noise is the last.
@@ -257,6 +259,7 @@ impl OutlineMap {
 
     fn judge(&self, scratch: &mut Scratch, state: &StateVector, iterations: usize) -> MapUpdate {
         let Scratch { readings, values, cells, .. } = scratch;
+        let tolerance = (AGREEING * self.sigma).max(BEND * self.spacing);
         let (mut known, mut agreeing, mut new_points) = (0usize, 0usize, 0usize);
         values.clear();
         for r in readings.iter() {
@@ -265,7 +268,7 @@ impl OutlineMap {
                 continue;
             }
             known += 1;
-            agreeing += usize::from(r.residual.abs() < AGREEING * self.sigma);
+            agreeing += usize::from(r.residual.abs() < tolerance);
             let leverage = r.weight * r.slope * r.slope / cells[r.cell].own;
             if r.weight > 0.0 && leverage < 0.8 {
                 values.push(r.residual.abs() / (1.0 - leverage).sqrt());
@@ -424,10 +427,8 @@ fn accumulate_sized<const K: usize>(
         information.own += weighted * slope;
         scratch.right[*cell] += weighted * target;
     }
-    for i in 0..K {
-        for j in 0..K {
-            work.dense[i][j] += dense[i][j];
-        }
+    for (sum, row) in work.dense.iter_mut().zip(&dense) {
+        sum.iter_mut().zip(row).for_each(|(s, d)| *s += d);
     }
     right
 }

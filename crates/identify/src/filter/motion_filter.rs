@@ -14,6 +14,8 @@ use crate::estimate::MotionEstimate;
 const LARGEST_INNOVATION: f64 = 80.0;
 /// A frame with so many times the noise known does not show the known outline, however well the map is bent to it.
 const LARGEST_NOISE_RATIO: f64 = 1.8;
+/// Share of the points that one pose must explain beyond another to be preferred to a likelier one.
+const CLEARLY_BETTER: f64 = 0.03;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
 const FALSE_START: usize = 3;
 /// Frames rejected in a row after which the object is given up and a new one taken.
@@ -196,12 +198,12 @@ impl MotionFilter {
             Some([landmarks.moved(&pose), Landmarks::of(outline)?])
         });
         let hypotheses = find_pose(map, outline, landmarks);
-        let mut last = None;
+        let mut best: Option<(MapUpdate, OutlineMap, Phase)> = None;
         for hypothesis in hypotheses {
             let mut candidate = self.map.clone()?;
             let phase = if self.phase == Phase::Lost {
                 // Where it is now says nothing of how it moves now.
-                candidate.relocate(hypothesis.pose, None);
+                candidate.relocate(hypothesis.pose);
                 Phase::Acquiring
             } else {
                 let change = hypothesis.pose * candidate.pose.try_inverse()?;
@@ -211,13 +213,19 @@ impl MotionFilter {
                 Phase::Tracking
             };
             let update = candidate.update(outline, &fits);
-            last = Some(update);
-            if update.accepted {
-                self.replace(candidate, time, phase);
-                break;
+            // The hypotheses come in order: a later one has to be clearly better.
+            let better = best.as_ref().is_none_or(|(other, ..)| {
+                (update.accepted, update.agreement) > (other.accepted, other.agreement + CLEARLY_BETTER)
+            });
+            if better {
+                best = Some((update, candidate, phase));
             }
         }
-        last
+        let (update, candidate, phase) = best?;
+        if update.accepted {
+            self.replace(candidate, time, phase);
+        }
+        Some(update)
     }
 
     fn replace(&mut self, map: OutlineMap, time: f64, phase: Phase) {

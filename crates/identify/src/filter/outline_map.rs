@@ -29,6 +29,12 @@ const MOTION_PRIOR: f64 = 1e-10;
 const DEGENERATE: f64 = 0.003;
 /// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
 const WORTHLESS: f64 = 0.25;
+/// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
+const SEEN_BY_PATH: f64 = 0.02;
+/// Smallest standard deviation of the noise that is reckoned with, in RMS radii.
+const SMALLEST_NOISE: f64 = 1e-9;
+/// What straight cells leave of an outline where it bends most, in spacings: noise is not told from it below.
+const CELL_ERROR: f64 = 0.03;
 /// Frames that the estimate of the noise looks back on.
 const NOISE_MEMORY: f64 = 200.0;
 
@@ -75,12 +81,15 @@ pub struct OutlineMap {
     pub(crate) spacing: f64,
     pub(crate) sigma: f64,
     pub(crate) sigma_weight: f64,
+    /// What bent cells alone would leave of the residuals.
+    sigma_floor: f64,
     pub(crate) half_window: usize,
     /// In the body frame.
     unseen_in_body: Vec<Coordinates>,
     /// From centred coordinates of unit RMS radius to the body frame.
     body_frame: Matrix3<f64>,
     pub(crate) scratch: Scratch,
+    process_noise: ProcessNoise,
     /// Seconds predicted over since the motion was last unknown.
     span: f64,
 }
@@ -116,10 +125,12 @@ impl OutlineMap {
             spacing: 0.0,
             sigma: 0.0,
             sigma_weight: 0.5,
+            sigma_floor: SMALLEST_NOISE,
             half_window: 2,
             unseen_in_body: Vec::new(),
             body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
+            process_noise: ProcessNoise::default(),
             span: 0.0,
         };
         map.load(outline);
@@ -132,7 +143,20 @@ impl OutlineMap {
             return Err(too_few);
         }
         map.marginal = map.information.marginal();
+        let sagitta = map.sagitta();
+        map.sigma_floor = map.sigma_floor.max(0.25 * sagitta).max(CELL_ERROR * map.spacing);
+        map.sigma = map.sigma.max(0.5 * sagitta).max(map.sigma_floor);
         Ok(map)
+    }
+
+    /// How far a bent outline lies from the straight cells: what is left to be noise where the points have none.
+    fn sagitta(&self) -> f64 {
+        let bends = self.cells.iter().map(|cell| {
+            let [a, b] = cell.neighbours.map(|n| self.cells[n].centre);
+            cell.normal.dot(&(nalgebra::center(&a, &b) - cell.centre)).abs()
+        });
+        // Over a chord of two cells: a quarter of it is left at the ends of one.
+        super::contour::median(&mut bends.collect::<Vec<_>>()).unwrap_or(0.0)
     }
 
     /// Noise, window and spacing from the first frame.
@@ -147,7 +171,7 @@ impl OutlineMap {
             length += contour.smooth_length(window);
         }
         // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
-        self.sigma = (variance / f64::max(count, 1.0)).sqrt().max(1e-9);
+        self.sigma = (variance / f64::max(count, 1.0)).sqrt().max(SMALLEST_NOISE);
         self.half_window = window;
         let cells = (count / POINTS_PER_CELL).clamp(4.0, MOST_CELLS);
         self.spacing = length / cells;
@@ -200,6 +224,7 @@ impl OutlineMap {
         if noise.rates == 0.0 && noise.velocities == 0.0 {
             return;
         }
+        self.process_noise = *noise;
         let k = self.information.k;
         let units = self.sigma * self.sigma;
         let mut added = StateMatrix::zeros();
@@ -235,10 +260,9 @@ impl OutlineMap {
     }
 
     /// Puts the object into a new pose and forgets motion and pose, keeping the outline.
-    pub(crate) fn relocate(&mut self, pose: Matrix3<f64>, motion: Option<Coordinates>) {
+    pub(crate) fn relocate(&mut self, pose: Matrix3<f64>) {
         let k = self.information.k;
         self.pose = pose;
-        self.motion = motion.unwrap_or(self.motion);
         self.information.dense = ArrowInformation::new(k).dense;
         for i in 0..k {
             self.information.dense[i][i] = MOTION_PRIOR;
@@ -315,7 +339,7 @@ impl OutlineMap {
     pub(crate) fn take_noise(&mut self, sigma: f64) {
         let weight = self.sigma_weight;
         self.sigma = (self.sigma * weight + sigma) / (weight + 1.0);
-        self.sigma = self.sigma.max(1e-9);
+        self.sigma = self.sigma.max(self.sigma_floor);
         self.sigma_weight = (weight + 1.0).min(NOISE_MEMORY);
     }
 
@@ -363,7 +387,8 @@ impl OutlineMap {
     }
 
     /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time seen so
-    /// far, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable.
+    /// far, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable; so is one
+    /// that takes part in a motion which the outline does not show, such as the turning of a circle about its centre.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
         let covariance = self.covariance()?;
@@ -373,19 +398,51 @@ impl OutlineMap {
         let values = crate::motion_algebra::coordinates(self.model, &generator);
         let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
         let mut estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
+        let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
         let reach = self.radius + self.origin.coords.norm();
         for (j, name) in self.model.parameter_names().iter().enumerate() {
-            let limit = match name.as_bytes()[0] {
-                b'b' => reach,
-                b'c' => 1.0 / reach,
-                _ => 1.0,
+            let (limit, drift) = match name.as_bytes()[0] {
+                b'b' => (reach, self.process_noise.velocities),
+                b'c' => (1.0 / reach, self.process_noise.rates),
+                _ => (1.0, self.process_noise.rates),
             };
-            let known = deviations[j] * self.span <= WORTHLESS * limit;
-            if !known {
+            // A motion that drifts is known no longer than it takes to drift by its standard deviation.
+            let span = self.span.min((deviations[j] / drift).powi(2));
+            let known = deviations[j] * span <= WORTHLESS * limit;
+            if !known || blind[j] {
                 estimate = estimate.with_unobservable(j);
             }
         }
         Some(estimate)
+    }
+}
+
+impl OutlineMap {
+    /// Parameters that take part in a motion which the outline does not show, and which the path of the object has not shown either.
+    fn blind_parameters(&self) -> Option<[bool; MAX_PARAMETERS]> {
+        let mut blind = [false; MAX_PARAMETERS];
+        if self.unseen_in_body.is_empty() {
+            return Some(blind);
+        }
+        let k = self.information.k;
+        let covariance = scaled_inverse(&self.marginal)?;
+        let covariance = nalgebra::DMatrix::from_fn(k, k, |i, j| covariance[(k + i, k + j)]);
+        let frame = self.pose * self.body_frame;
+        let from_centred = adjoint(self.model, &frame, &frame.try_inverse()?);
+        let from_centred = nalgebra::DMatrix::from_fn(k, k, |i, j| from_centred[i][j]);
+        let to_centred = from_centred.clone().try_inverse()?;
+        let information = (&to_centred * covariance * to_centred.transpose()).try_inverse()?;
+        let typical = information.trace() / k as f64;
+        for unseen in self.unseen_in_image(&self.pose) {
+            let direction = nalgebra::DVector::from_column_slice(&unseen.direction[..k]);
+            let centred = &to_centred * &direction;
+            let seen = (centred.transpose() * &information * &centred)[(0, 0)] / centred.norm_squared();
+            if seen < SEEN_BY_PATH * typical {
+                let largest = direction.amax();
+                (0..k).filter(|j| direction[*j].abs() > 0.1 * largest).for_each(|j| blind[j] = true);
+            }
+        }
+        Some(blind)
     }
 }
 
