@@ -1,4 +1,26 @@
 //! Finds how a flat free-form object moves from nothing but its outlines.
+//!
+//! Every frame gives noisy points along the outline of the object, without correspondence to the frame before. A
+//! [`Pipeline`] fits an implicit polynomial curve to them, takes it apart into complex lines, matches the lines to those
+//! of the frame before, and identifies the motion from their Riccati dynamics (M. Unel, B. K. Ghosh, *Motion
+//! identification of planar free-form objects*). Each stage is a crate of its own, re-exported here.
+//!
+//! ```
+//! use freeform_motion::{Pipeline, PipelineSettings};
+//! use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+//!
+//! // The paper's flight bird, seen for 20 s at 30 frames/s by a camera with f/Z0 = 0.1.
+//! let scene = PaperExperiment::FLIGHT_BIRD.scene(0.1)?;
+//! let settings = Settings { length: SequenceLength::Seconds(20.0), ..Settings::default() };
+//! let mut pipeline = Pipeline::new(PipelineSettings::default())?;
+//! for frame in Simulator::new(scene, settings)?.frames() {
+//!     pipeline.push(frame.time, &frame.outline)?;
+//! }
+//! let motion = pipeline.estimate().expect("more than one frame").in_space(0.1);
+//! let omega = motion.parameters().next().and_then(|p| p.value).expect("observable");
+//! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 mod pipeline;
 
 pub use freeform_curve_fit as curve_fit;
@@ -8,3 +30,7 @@ pub use freeform_outline_io as outline_io;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,1 +1,20 @@
-fn main() {}
+//! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
+mod args;
+mod commands;
+mod failure;
+mod input;
+mod level_set;
+mod output;
+mod plot;
+mod progress;
+mod tracking;
+mod truth;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match args::parse().and_then(|cli| commands::run(&cli)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}

@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("degree  method                                      margin   condition  distance");
     for degree in Degree::ALL {
         let ridge = Method::GloballyStabilised { ridge_weight: 1e-3 };
-        for method in [Method::ThreeLevel, ridge, Method::Bounded { margin: 0.02 }] {
+        for method in [Method::ThreeLevel, ridge, Method::Bounded { margin: 0.02, ridge_weight: 0.0 }] {
             let mut fitter = Fitter::new(FitSettings { degree, method, ..FitSettings::default() })?;
             let fit = fitter.fit(&outline)?;
             let d = fit.diagnostics();

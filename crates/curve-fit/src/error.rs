@@ -136,7 +136,7 @@ pub enum SettingsError {
         value: f64,
     },
     /// The margin of the bounded fit is not a fraction.
-    #[error("boundedness margin {value} is outside (0, 0.5]")]
+    #[error("boundedness margin {value} is outside (0, 0.9]")]
     Margin {
         /// The value given.
         value: f64,

@@ -141,7 +141,9 @@ impl Fitter {
 
     fn ridge(&self, data: &Moments) -> [f64; MAX_COEFFICIENTS] {
         match self.settings.method {
-            Method::GloballyStabilised { ridge_weight } => {
+            Method::GloballyStabilised { ridge_weight } | Method::Bounded { ridge_weight, .. }
+                if ridge_weight > 0.0 =>
+            {
                 rotation_invariant_ridge(self.settings.degree.value(), data).map(|d| ridge_weight * d)
             }
             _ => [0.0; MAX_COEFFICIENTS],
@@ -179,7 +181,7 @@ impl Fitter {
         let leading = size - degree.value() - 1..size;
         let mut range = CircleRange::of(&coefficients[leading.clone()]);
         let mut constraint_active = false;
-        if let Method::Bounded { margin } = self.settings.method
+        if let Method::Bounded { margin, .. } = self.settings.method
             && range.minimum < margin * range.rms
         {
             constraint_active = true;

@@ -93,62 +93,60 @@ impl WithSimd for MomentKernel<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        // Known sizes let the compiler unroll the loops over the powers and keep the sums close.
         match self.total_degree {
-            // Known degrees let the compiler unroll the loops over the powers.
-            4 => accumulate::<S, 4>(simd, self),
-            8 => accumulate::<S, 8>(simd, self),
-            12 => accumulate::<S, 12>(simd, self),
-            _ => accumulate::<S, 16>(simd, self),
+            4 => accumulate::<S, 5, 15>(simd, self),
+            8 => accumulate::<S, 9, 45>(simd, self),
+            12 => accumulate::<S, 13, 91>(simd, self),
+            _ => accumulate::<S, { MAX_TOTAL_DEGREE + 1 }, MAX_MOMENTS>(simd, self),
         }
     }
 }
 
+/// POWERS = D + 1 powers of a coordinate, MOMENTS = (D + 1)(D + 2) / 2 sums.
 #[inline(always)]
-fn accumulate<S: Simd, const D: usize>(simd: S, kernel: MomentKernel<'_>) {
-    let zero = simd.splat_f64s(0.0);
-    let one = simd.splat_f64s(1.0);
-    let mut accumulated = [zero; MAX_MOMENTS];
+fn accumulate<S: Simd, const POWERS: usize, const MOMENTS: usize>(simd: S, kernel: MomentKernel<'_>) {
+    let mut accumulated = [simd.splat_f64s(0.0); MOMENTS];
+    let mut x_powers = [[simd.splat_f64s(1.0); GROUP]; POWERS];
     let group_len = GROUP * S::F64_LANES;
     for (x_chunk, y_chunk) in kernel.xs.chunks(group_len).zip(kernel.ys.chunks(group_len)) {
-        let mut x_powers = [[zero; GROUP]; MAX_TOTAL_DEGREE + 1];
-        let mut y = [zero; GROUP];
-        x_powers[0] = [one; GROUP];
-        load_group(simd, x_chunk, &mut x_powers[1]);
-        load_group(simd, y_chunk, &mut y);
-        for i in 2..=D {
+        let x = load_group(simd, x_chunk);
+        let y = load_group(simd, y_chunk);
+        x_powers[1] = x;
+        for i in 2..POWERS {
             for g in 0..GROUP {
-                x_powers[i][g] = simd.mul_f64s(x_powers[i - 1][g], x_powers[1][g]);
+                x_powers[i][g] = simd.mul_f64s(x_powers[i - 1][g], x[g]);
             }
         }
-        let mut y_power = [one; GROUP];
-        for j in 0..=D {
-            for i in 0..=(D - j) {
+        let mut y_power = [simd.splat_f64s(1.0); GROUP];
+        for j in 0..POWERS {
+            for (i, x_power) in x_powers.iter().enumerate().take(POWERS - j) {
                 let sum = &mut accumulated[monomial_index(i, j)];
-                let mut total = *sum;
                 for g in 0..GROUP {
-                    total = simd.mul_add_e_f64s(x_powers[i][g], y_power[g], total);
+                    *sum = simd.mul_add_e_f64s(x_power[g], y_power[g], *sum);
                 }
-                *sum = total;
             }
             for g in 0..GROUP {
                 y_power[g] = simd.mul_f64s(y_power[g], y[g]);
             }
         }
     }
-    for (sum, lanes) in kernel.sums.iter_mut().zip(&accumulated).take(coefficient_count(D)) {
+    for (sum, lanes) in kernel.sums.iter_mut().zip(&accumulated) {
         *sum = simd.reduce_sum_f64s(*lanes);
     }
 }
 
 #[inline(always)]
-fn load_group<S: Simd>(simd: S, chunk: &[f64], out: &mut [S::f64s; GROUP]) {
+fn load_group<S: Simd>(simd: S, chunk: &[f64]) -> [S::f64s; GROUP] {
+    let mut group = [simd.splat_f64s(0.0); GROUP];
     let (full, rest) = S::as_simd_f64s(chunk);
-    for (slot, value) in out.iter_mut().zip(full) {
+    for (slot, value) in group.iter_mut().zip(full) {
         *slot = *value;
     }
     if !rest.is_empty() {
-        out[full.len()] = simd.partial_load_f64s(rest);
+        group[full.len()] = simd.partial_load_f64s(rest);
     }
+    group
 }
 
 #[cfg(test)]

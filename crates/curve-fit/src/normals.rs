@@ -2,6 +2,7 @@
 use std::ops::Range;
 
 use nalgebra::Vector2;
+use pulp::Arch;
 
 use crate::outline::Outline;
 
@@ -30,14 +31,15 @@ pub fn outward_normals(outline: &Outline, half_window: f64) -> Vec<Vector2<f64>>
 pub(crate) struct NormalRegression {
     /// Distance of every point to the one before it in its piece; 0 at an open beginning.
     steps: Vec<f64>,
-    /// One piece, with enough neighbours repeated beyond its ends if it is closed, and running sums along it.
-    nodes: Vec<Node>,
+    /// Arc lengths along one piece, with enough neighbours repeated beyond its ends if it is closed.
+    arc_lengths: Vec<f64>,
+    /// Running sums along the same, one more than there are arc lengths.
+    sums: Vec<RunningSums>,
 }
 
-/// A point of the extended piece with its arc length `s`, and the sums over all points before it.
+/// Sums over all points of the extended piece before one.
 #[derive(Debug, Clone, Copy, Default)]
-struct Node {
-    s: f64,
+struct RunningSums {
     sum_s: f64,
     sum_x: f64,
     sum_y: f64,
@@ -56,46 +58,43 @@ impl NormalRegression {
         [nx, ny]: [&mut Vec<f64>; 2],
     ) {
         assert!((0.0..=0.25).contains(&half_window), "half window {half_window} outside 0 to 0.25");
-        nx.clear();
-        ny.clear();
+        for normals in [&mut *nx, &mut *ny] {
+            normals.clear();
+            normals.resize(xs.len(), 0.0);
+        }
         let outward = 1.0_f64.copysign(signed_area(xs, ys));
         self.measure_steps(outline, xs, ys);
         // A hair less than the window, so that rounding does not decide whether evenly spaced points lie on its edge.
         let half_length = (1.0 - 1e-9) * half_window * self.steps.iter().sum::<f64>();
         for (range, closed) in ranges(outline) {
-            let count = range.len();
-            let before = self.lay_out(xs, ys, range, closed, half_length);
-            let (mut low, mut high) = (0, before + 1);
-            for i in before..before + count {
-                let s = self.nodes[i].s;
-                while low + 1 < i && s - self.nodes[low + 1].s >= half_length {
-                    low += 1;
-                }
-                // The sums up to `high` include the first node at or beyond the window; the last node only closes them.
-                while high + 1 < self.nodes.len() && (high <= i + 1 || self.nodes[high - 1].s - s < half_length) {
-                    high += 1;
-                }
-                let (tx, ty) = slope(&self.nodes[low], &self.nodes[high], (high - low) as f64);
-                let norm = distance(tx, ty);
-                let scale = if norm > 0.0 { outward / norm } else { 0.0 };
-                nx.push(ty * scale);
-                ny.push(-tx * scale);
+            let before = self.lay_out(xs, ys, range.clone(), closed, half_length);
+            let (mut low, mut high) = (0, before);
+            for (i, (nx, ny)) in (before..).zip(nx[range.clone()].iter_mut().zip(&mut ny[range])) {
+                let s = self.arc_lengths[i];
+                low = advance(low, &self.arc_lengths, s - half_length);
+                // The window ends after the first point at or beyond it.
+                high = advance(high.max(i), &self.arc_lengths, s + half_length);
+                let end = (high + 2).min(self.arc_lengths.len());
+                let begin = low.min(i.saturating_sub(1));
+                let (tx, ty) = slope(&self.sums[begin], &self.sums[end], (end - begin) as f64);
+                (*nx, *ny) = (outward * ty, -outward * tx);
             }
         }
+        Arch::new().dispatch(|| scale_to_unit_length(nx, ny));
     }
 
     fn measure_steps(&mut self, outline: &Outline, xs: &[f64], ys: &[f64]) {
         self.steps.clear();
+        self.steps.resize(xs.len(), 0.0);
+        Arch::new().dispatch(|| distances_to_previous(xs, ys, &mut self.steps));
         for (range, closed) in ranges(outline) {
-            let last = range.end - 1;
-            let first = if closed { distance(xs[range.start] - xs[last], ys[range.start] - ys[last]) } else { 0.0 };
-            self.steps.push(first);
-            self.steps.extend(range.skip(1).map(|i| distance(xs[i] - xs[i - 1], ys[i] - ys[i - 1])));
+            let (first, last) = (range.start, range.end - 1);
+            self.steps[first] = if closed { distance(xs[first] - xs[last], ys[first] - ys[last]) } else { 0.0 };
         }
     }
 
     /// Lays out a piece with its neighbours beyond both ends (closed pieces only) and the running sums. Returns how many
-    /// nodes stand before the first point.
+    /// points stand before the first.
     fn lay_out(&mut self, xs: &[f64], ys: &[f64], range: Range<usize>, closed: bool, half_length: f64) -> usize {
         let (start, count) = (range.start, range.len());
         let steps = &self.steps[range];
@@ -104,27 +103,41 @@ impl NormalRegression {
         } else {
             (0, 0)
         };
-        self.nodes.clear();
-        self.nodes.reserve(before + count + after + 1);
-        let mut node = Node::default();
-        let mut position = count - before;
+        self.arc_lengths.clear();
+        self.sums.clear();
+        let (mut s, mut sums) = (0.0, RunningSums::default());
+        let mut i = (count - before) % count;
         for n in 0..before + count + after {
-            let i = position % count;
-            position += 1;
             if n > 0 {
-                node.s += steps[i];
+                s += steps[i];
             }
             let (x, y) = (xs[start + i], ys[start + i]);
-            self.nodes.push(node);
-            node.sum_s += node.s;
-            node.sum_x += x;
-            node.sum_y += y;
-            node.sum_sx += node.s * x;
-            node.sum_sy += node.s * y;
+            self.arc_lengths.push(s);
+            self.sums.push(sums);
+            sums.sum_s += s;
+            sums.sum_x += x;
+            sums.sum_y += y;
+            sums.sum_sx += s * x;
+            sums.sum_sy += s * y;
+            i = if i + 1 == count { 0 } else { i + 1 };
         }
-        self.nodes.push(node);
+        self.sums.push(sums);
         before
     }
+}
+
+/// The last index from `from` on whose successor is not beyond `limit`: where evenly spread points are passed, one or two
+/// at a time, the way there has no branch to mispredict.
+fn advance(from: usize, arc_lengths: &[f64], limit: f64) -> usize {
+    let last = arc_lengths.len() - 1;
+    let mut index = from;
+    for _ in 0..2 {
+        index += usize::from(index < last && arc_lengths[(index + 1).min(last)] <= limit);
+    }
+    while index < last && arc_lengths[index + 1] <= limit {
+        index += 1;
+    }
+    index
 }
 
 /// How many steps reach at least `length`, and one more; at most `count`.
@@ -137,16 +150,36 @@ fn nodes_to_cover<'a>(length: f64, steps: impl Iterator<Item = &'a f64>, count: 
     (short.count() + 2).min(count)
 }
 
-/// Covariance of arc length with position over the nodes from `a` to before `b`, up to a positive factor: the direction
+/// Covariance of arc length with position over the points from `a` to before `b`, up to a positive factor: the direction
 /// of the regression line.
-fn slope(a: &Node, b: &Node, count: f64) -> (f64, f64) {
+fn slope(a: &RunningSums, b: &RunningSums, count: f64) -> (f64, f64) {
     let mean_s = (b.sum_s - a.sum_s) / count;
     let tx = (b.sum_sx - a.sum_sx) - mean_s * (b.sum_x - a.sum_x);
     let ty = (b.sum_sy - a.sum_sy) - mean_s * (b.sum_y - a.sum_y);
     (tx, ty)
 }
 
+/// Scales vectors to length 1; zero vectors stay zero.
+#[inline(always)]
+fn scale_to_unit_length(xs: &mut [f64], ys: &mut [f64]) {
+    for (x, y) in xs.iter_mut().zip(ys) {
+        let norm = distance(*x, *y);
+        let scale = if norm > 0.0 { 1.0 / norm } else { 0.0 };
+        (*x, *y) = (*x * scale, *y * scale);
+    }
+}
+
+/// Distance of every point but the first to the one before it.
+#[inline(always)]
+fn distances_to_previous(xs: &[f64], ys: &[f64], out: &mut [f64]) {
+    let (earlier, later) = (xs.iter().zip(ys), xs.iter().zip(ys).skip(1));
+    for (out, ((x0, y0), (x1, y1))) in out.iter_mut().skip(1).zip(earlier.zip(later)) {
+        *out = distance(x1 - x0, y1 - y0);
+    }
+}
+
 /// Euclidean length, without the guard of `f64::hypot` against overflow, which coordinates of unit size do not need.
+#[inline(always)]
 fn distance(dx: f64, dy: f64) -> f64 {
     (dx * dx + dy * dy).sqrt()
 }

@@ -14,8 +14,11 @@ pub enum Method {
     /// 3L under the constraint that the leading form is positive: closed and bounded by construction.
     Bounded {
         /// Smallest value of the leading form on the unit circle, as a fraction of the root mean square over the circle
-        /// that it has without the constraint. In (0, 0.5].
+        /// that it has without the constraint. In (0, 0.9].
         margin: f64,
+        /// Weight kappa of the rotation-invariant ridge, as in [`GloballyStabilised`](Self::GloballyStabilised); 0 for
+        /// none. A ridge makes the constraint idle on most frames and calms the leading form.
+        ridge_weight: f64,
     },
 }
 
@@ -38,7 +41,7 @@ impl Default for FitSettings {
     fn default() -> Self {
         Self {
             degree: Degree::Quartic,
-            method: Method::Bounded { margin: 0.02 },
+            method: Method::Bounded { margin: 0.02, ridge_weight: 0.0 },
             offset: 0.1,
             normal_half_window: 0.02,
         }
@@ -54,10 +57,14 @@ impl FitSettings {
             return Err(SettingsError::NormalHalfWindow { value: self.normal_half_window });
         }
         match self.method {
-            Method::GloballyStabilised { ridge_weight: value } if !(value >= 0.0 && value.is_finite()) => {
+            Method::GloballyStabilised { ridge_weight: value } | Method::Bounded { ridge_weight: value, .. }
+                if !(value >= 0.0 && value.is_finite()) =>
+            {
                 Err(SettingsError::RidgeWeight { value })
             }
-            Method::Bounded { margin: value } if !(value > 0.0 && value <= 0.5) => Err(SettingsError::Margin { value }),
+            Method::Bounded { margin: value, .. } if !(value > 0.0 && value <= 0.9) => {
+                Err(SettingsError::Margin { value })
+            }
             _ => Ok(()),
         }
     }

@@ -59,7 +59,7 @@ proptest! {
             let plain = FitSettings { degree, method: Method::ThreeLevel, ..FitSettings::default() };
             let outline = closed(points.clone());
             let free = Fitter::new(plain).expect("settings").fit(&outline).expect("a fit");
-            let bounded = FitSettings { method: Method::Bounded { margin }, ..plain };
+            let bounded = FitSettings { method: Method::Bounded { margin, ridge_weight: 0.0 }, ..plain };
             let fit = Fitter::new(bounded).expect("settings").fit(&outline).expect("a fit");
             if !fit.diagnostics().constraint_active {
                 continue;

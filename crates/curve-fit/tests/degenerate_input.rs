@@ -35,7 +35,7 @@ fn a_perfect_circle_has_a_bounded_quartic_but_no_sextic() {
     };
     // The distance from a circle is concave in r^2, so plain 3L opens outwards.
     assert!(!fit(Degree::Quartic, Method::ThreeLevel).expect("a fit").is_bounded());
-    let bounded = fit(Degree::Quartic, Method::Bounded { margin: 0.02 }).expect("a fit");
+    let bounded = fit(Degree::Quartic, Method::Bounded { margin: 0.02, ridge_weight: 0.0 }).expect("a fit");
     assert!(bounded.diagnostics().boundedness_margin > 0.999);
     assert!(matches!(fit(Degree::Sextic, Method::ThreeLevel), Err(FitError::RankDeficient { .. })));
     let ridge = Method::GloballyStabilised { ridge_weight: 1e-3 };
@@ -50,7 +50,7 @@ fn settings_outside_their_range_are_refused_by_name() {
     assert_eq!(refuse(FitSettings { normal_half_window: 0.3, ..good }), SettingsError::NormalHalfWindow { value: 0.3 });
     let ridge = Method::GloballyStabilised { ridge_weight: -1.0 };
     assert_eq!(refuse(FitSettings { method: ridge, ..good }), SettingsError::RidgeWeight { value: -1.0 });
-    let margin = Method::Bounded { margin: 0.0 };
+    let margin = Method::Bounded { margin: 0.0, ridge_weight: 0.0 };
     assert_eq!(refuse(FitSettings { method: margin, ..good }), SettingsError::Margin { value: 0.0 });
 }
 

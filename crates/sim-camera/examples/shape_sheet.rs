@@ -18,12 +18,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (place, built_in) in BuiltInShape::ALL.into_iter().enumerate() {
         let x = CELL * ((place % COLUMNS) as f64 + 0.5);
         let y = CELL * ((place / COLUMNS) as f64 + 0.45);
-        let path: Vec<String> = built_in
-            .shape()
-            .sample(800, 0.0)
-            .iter()
-            .map(|p| format!("{:.2},{:.2}", x + 0.75 * CELL * p.x, y - 0.75 * CELL * p.y))
-            .collect();
+        let points = built_in.shape().sample(800, 0.0);
+        // The middle of the box around the shape goes to the middle of the cell.
+        let (low, high) = points.iter().fold((points[0], points[0]), |(low, high), p| (low.inf(p), high.sup(p)));
+        let middle = nalgebra::center(&low, &high);
+        let offsets = points.iter().map(|p| 0.75 * CELL * (p - middle));
+        let path: Vec<String> = offsets.map(|v| format!("{:.2},{:.2}", x + v.x, y - v.y)).collect();
         writeln!(
             svg,
             "<polygon points=\"{}\" fill=\"#d8e2ee\" stroke=\"#234\" stroke-width=\"1.5\"/>",

@@ -16,7 +16,7 @@ fn outline_of(built_in: BuiltInShape) -> Outline {
 #[test]
 fn the_mask_of_every_shape_covers_its_area() {
     for built_in in BuiltInShape::ALL {
-        let grid = PixelGrid::new(250, 240, Point2::origin(), 200.0).expect("a good grid");
+        let grid = PixelGrid::new(290, 280, Point2::origin(), 200.0).expect("a good grid");
         let mask = Mask::of_outline(&outline_of(built_in), &grid);
         let (area, truth) = (covered_area(&mask, 200.0), built_in.shape().area());
         // Rounding to 1/255 leaves at most 1/510 of each of the pixels along the outline, with random sign.

@@ -12,7 +12,7 @@ use crate::{curve::Vertex, error::ShapeError, shape::Shape};
 /// turn, `Square` after a quarter, `Circle` after any. The others have no symmetry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BuiltInShape {
-    /// An airliner seen from above, banking.
+    /// A jet plane seen from above, banking.
     Plane,
     /// A delivery van from the side.
     Van,
@@ -26,7 +26,7 @@ pub enum BuiltInShape {
     Car,
     /// A bellied vase.
     Vase,
-    /// A sailplane seen from above, banking.
+    /// A hang-glider seen from above, banking.
     Glider,
     /// A cellular phone with a stub of an antenna.
     Phone,
@@ -150,7 +150,7 @@ impl FromStr for BuiltInShape {
             "flightbird" | "flyingbird" => "bird".to_owned(),
             "airplane" | "aeroplane" | "aircraft" => "plane".to_owned(),
             "cdcase" | "cd" => "cdbox".to_owned(),
-            "sailplane" => "glider".to_owned(),
+            "hangglider" => "glider".to_owned(),
             other => other.to_owned(),
         };
         let found = Self::ALL.into_iter().find(|shape| letters(shape.name()) == wanted);

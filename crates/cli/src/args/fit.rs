@@ -1,0 +1,107 @@
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use freeform_motion::curve_fit::{Degree, FitSettings, Method};
+
+use super::values::{degree, not_negative, positive};
+use crate::failure::Failure;
+
+const EXAMPLES: &str = "\
+Examples:
+  freeform fit outlines.csv --frame 0
+  freeform fit outlines.csv --frame 0 --degree 6 --svg curve.svg
+  freeform fit outlines.csv --method gs3l --kappa 1e-5 --format json";
+
+/// Fit a curve to every outline and take it apart into lines.
+///
+/// Prints for each outline: the coefficients a_ij of x^i y^j, whether the curve is closed and bounded, how far the points
+/// lie from it, the complex lines x + l y + k of every level, the related points that move with the curve, and its affine
+/// invariants.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct FitArgs {
+    /// Outlines as CSV; '-' is standard input
+    pub(crate) input: PathBuf,
+
+    /// Only the outlines of this frame
+    #[arg(long, value_name = "N")]
+    pub(crate) frame: Option<u64>,
+
+    #[command(flatten)]
+    pub(crate) options: FitOptions,
+
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t = FitFormat::Table)]
+    pub(crate) format: FitFormat,
+
+    /// Draw the first frame (or that of --frame): points, fitted curves and related points
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+}
+
+/// How curves are fitted.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct FitOptions {
+    /// Degree of the polynomial: 2, 4, 6 or 8
+    #[arg(long, value_name = "N", value_parser = degree, default_value = "4")]
+    pub(crate) degree: Degree,
+
+    /// Which least-squares problem is solved
+    #[arg(long, value_enum, default_value_t = FitMethod::Bounded)]
+    pub(crate) method: FitMethod,
+
+    /// Weight of the ridge [default: 1e-5 for gs3l, 0 for bounded]
+    #[arg(long, value_name = "WEIGHT", value_parser = not_negative)]
+    pub(crate) kappa: Option<f64>,
+
+    /// Smallest leading form on the unit circle, a fraction in (0, 0.9] (bounded) [default: 0.02]
+    #[arg(long, value_name = "FRACTION", value_parser = positive)]
+    pub(crate) margin: Option<f64>,
+
+    /// Distance of the outer level sets, in units of the root mean square radius [default: 0.1]
+    #[arg(long, value_name = "DISTANCE", value_parser = positive)]
+    pub(crate) offset: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FitMethod {
+    /// Plain 3L: follows the data best, may be unbounded
+    #[value(name = "3l")]
+    ThreeLevel,
+    /// Globally stabilised 3L: bounded curves are likely
+    Gs3l,
+    /// 3L under a constraint: closed and bounded by construction
+    Bounded,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FitFormat {
+    /// For reading
+    Table,
+    /// One JSON object
+    Json,
+}
+
+const DEFAULT_KAPPA: f64 = 1e-5;
+const DEFAULT_MARGIN: f64 = 0.02;
+
+impl FitOptions {
+    pub(crate) fn settings(&self) -> Result<FitSettings, Failure> {
+        let method = match self.method {
+            FitMethod::ThreeLevel => Method::ThreeLevel,
+            FitMethod::Gs3l => Method::GloballyStabilised { ridge_weight: self.kappa.unwrap_or(DEFAULT_KAPPA) },
+            FitMethod::Bounded => Method::Bounded {
+                margin: self.margin.unwrap_or(DEFAULT_MARGIN),
+                ridge_weight: self.kappa.unwrap_or(0.0),
+            },
+        };
+        if self.kappa.is_some() && self.method == FitMethod::ThreeLevel {
+            return Err(Failure::unusable("--kappa goes with --method gs3l or bounded, not 3l"));
+        }
+        if self.margin.is_some() && self.method != FitMethod::Bounded {
+            return Err(Failure::unusable("--margin goes with --method bounded only"));
+        }
+        let default = FitSettings::default();
+        Ok(FitSettings { degree: self.degree, method, offset: self.offset.unwrap_or(default.offset), ..default })
+    }
+}

@@ -1,0 +1,137 @@
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use freeform_motion::curve_fit::Degree;
+use freeform_motion::riccati::{AffineMotion, MotionModel};
+
+use super::values::{degree, motion, positive};
+
+const EXAMPLES: &str = "\
+Examples:
+  freeform identify outlines.csv
+  freeform identify outlines.csv --scale 0.1 --trace trace.csv --report report.html
+  freeform simulate --seconds 5 | freeform identify - --format json
+  freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
+
+INPUT has a header frame,time,x,y and optional columns object and arc. Rows of one outline follow each other along the \
+contour. Where it begins with the comment lines of 'freeform simulate', the truth in them is shown beside \
+the result.";
+
+/// Identify the motion of every object in a sequence of outlines.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct IdentifyArgs {
+    /// Outlines as CSV; '-' is standard input
+    pub(crate) input: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) options: TrackOptions,
+
+    /// The true parameters (OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2), as they should be printed
+    ///
+    /// Shown beside the result and in figures; takes no part in the identification.
+    #[arg(long, value_name = "LIST", value_parser = motion, allow_hyphen_values = true)]
+    pub(crate) truth: Option<AffineMotion>,
+
+    /// How the result is printed
+    #[arg(long, value_enum, default_value_t = IdentifyFormat::Table)]
+    pub(crate) format: IdentifyFormat,
+
+    /// Write one row per frame with the parameters as identified so far
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) trace: Option<PathBuf>,
+
+    /// Draw the parameters against time
+    #[arg(long, value_name = "FILE")]
+    pub(crate) svg: Option<PathBuf>,
+
+    /// Write a self-contained report
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
+}
+
+const TRACK_EXAMPLES: &str = "\
+Examples:
+  freeform track outlines.csv
+  camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
+
+Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
+generator and reason (why the frame was not accepted, else null).";
+
+/// Identify as a stream: one line of JSON per object and frame as soon as the frame is complete.
+///
+/// A frame is complete when the row after it has been read. Memory does not grow with the number of frames.
+#[derive(Debug, Args)]
+#[command(after_help = TRACK_EXAMPLES)]
+pub(crate) struct TrackArgs {
+    /// Outlines as CSV; '-' is standard input
+    #[arg(default_value = "-")]
+    pub(crate) input: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) options: TrackOptions,
+}
+
+/// What is identified and how.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct TrackOptions {
+    /// Family of motions
+    #[arg(long, value_enum, default_value_t = MotionChoice::Rigid)]
+    pub(crate) motion: MotionChoice,
+
+    /// How the motion is identified
+    #[arg(long, value_enum, default_value_t = IdentifyMethod::Adaptive)]
+    pub(crate) method: IdentifyMethod,
+
+    /// Degree of the fitted polynomial: 2, 4, 6 or 8 [default: 4]
+    #[arg(long, value_name = "N", value_parser = degree)]
+    pub(crate) degree: Option<Degree>,
+
+    /// Camera scale f/Z0: b is divided by it, so that it is the velocity in space
+    #[arg(long, value_name = "F_OVER_Z0", value_parser = positive)]
+    pub(crate) scale: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MotionChoice {
+    /// omega, b1, b2
+    Rigid,
+    /// sigma, omega, b1, b2
+    Similarity,
+    /// a1, a2, a3, a4, b1, b2
+    Affine,
+}
+
+impl MotionChoice {
+    pub(crate) const fn model(self) -> MotionModel {
+        match self {
+            Self::Rigid => MotionModel::Rigid,
+            Self::Similarity => MotionModel::Similarity,
+            Self::Affine => MotionModel::Affine,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum IdentifyMethod {
+    /// The paper's adaptive identifier on the lines of the fitted curve
+    Adaptive,
+}
+
+impl IdentifyMethod {
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Adaptive => "adaptive",
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum IdentifyFormat {
+    /// For reading
+    Table,
+    /// One JSON object, schema freeform.identify/1
+    Json,
+    /// One row per object and parameter
+    Csv,
+}

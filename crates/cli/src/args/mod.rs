@@ -1,0 +1,105 @@
+//! What can be asked for on the command line.
+mod fit;
+mod identify;
+mod outline;
+mod simulate;
+mod values;
+
+use std::path::PathBuf;
+
+use clap::{Args, CommandFactory, Parser, Subcommand, error::ErrorKind};
+
+pub(crate) use fit::{FitArgs, FitFormat};
+pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
+pub(crate) use outline::OutlineArgs;
+pub(crate) use simulate::SimulateArgs;
+
+use crate::failure::Failure;
+
+const EXAMPLES: &str = "\
+Examples:
+  freeform demo
+  freeform simulate --shape glider --omega -1.05 --b 0,4 --output outlines.csv
+  freeform identify outlines.csv --scale 0.1 --report report.html
+  freeform simulate --seconds 5 | freeform identify - --format json
+  freeform outline mask-*.png --fps 25 | freeform identify -
+
+Exit status: 0 done; 1 input understood but no result; 2 wrong usage or unreadable input.
+See 'freeform COMMAND --help' for more on a command.";
+
+/// Finds how a flat free-form object moves from nothing but its outlines.
+///
+/// Fits an implicit polynomial to every outline, takes it apart into complex lines, and identifies the motion from how
+/// the lines move: x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2.
+#[derive(Debug, Parser)]
+#[command(name = "freeform", version, after_help = EXAMPLES, arg_required_else_help = true, args_override_self = true, max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Demo(DemoArgs),
+    Simulate(SimulateArgs),
+    Fit(FitArgs),
+    Identify(IdentifyArgs),
+    Track(TrackArgs),
+    Outline(OutlineArgs),
+    Completions(CompletionsArgs),
+}
+
+const DEMO_EXAMPLES: &str = "\
+Examples:
+  freeform demo
+  freeform demo --out /tmp/bird";
+
+/// The main job with nothing to prepare: simulate a flying bird, identify its motion, write a report.
+///
+/// Simulates the flight bird of the paper (omega = pi/2 rad/s, b = (-3, 4), f/Z0 = 0.1, noise 0.005, 30 s at 30
+/// frames/s), identifies its motion, and prints what was found beside the truth. A report, the outlines, the trace and
+/// figures are left in a folder.
+#[derive(Debug, Args)]
+#[command(after_help = DEMO_EXAMPLES)]
+pub(crate) struct DemoArgs {
+    /// Folder for the files; it is made where it does not exist
+    #[arg(long, value_name = "DIR", default_value = "freeform-demo")]
+    pub(crate) out: PathBuf,
+}
+
+/// Print a completion script for a shell.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  freeform completions bash > ~/.local/share/bash-completion/completions/freeform")]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// Reads the arguments of the process. Help and version are printed here.
+pub(crate) fn parse() -> Result<Cli, Failure> {
+    Cli::try_parse().map_err(|error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            // A closed pipe is no error.
+            let _ = error.print();
+            Failure::Silent
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            let _ = error.print();
+            Failure::unusable("a command is missing")
+        }
+        _ => Failure::unusable(one_line(&error.render().to_string())),
+    })
+}
+
+/// The command as it is defined, to make completions from.
+pub(crate) fn definition() -> clap::Command {
+    Cli::command()
+}
+
+/// What clap says, without the usage that it prints below.
+fn one_line(rendered: &str) -> String {
+    let message = rendered.split("\n\nUsage:").next().unwrap_or(rendered);
+    let message = message.split("\n\nFor more information").next().unwrap_or(message);
+    let message = message.strip_prefix("error: ").unwrap_or(message);
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}

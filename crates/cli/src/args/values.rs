@@ -1,0 +1,67 @@
+//! Values of options that are more than one word or number.
+use freeform_motion::curve_fit::Degree;
+use freeform_motion::riccati::{AffineMotion, RigidMotion, SimilarityMotion};
+
+/// A finite number.
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
+    if value.is_finite() { Ok(value) } else { Err(format!("{text:?} is not a finite number")) }
+}
+
+/// A finite number above 0.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value > 0.0 && value.is_normal() { Ok(value) } else { Err(format!("{text} is not above 0")) }
+}
+
+/// A finite number, 0 or above.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value >= 0.0 { Ok(value) } else { Err(format!("{text} is below 0")) }
+}
+
+/// A share of a whole, below 1.
+pub(crate) fn fraction(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if (0.0..1.0).contains(&value) { Ok(value) } else { Err(format!("{text} is not in [0, 1)")) }
+}
+
+/// Numbers between commas.
+fn list(text: &str) -> Result<Vec<f64>, String> {
+    text.split(',').map(finite).collect()
+}
+
+/// `B1,B2`.
+pub(crate) fn pair(text: &str) -> Result<[f64; 2], String> {
+    let list = list(text)?;
+    let count = list.len();
+    list.try_into().map_err(|_| format!("expected B1,B2, found {count} number(s)"))
+}
+
+/// `A1,A2,A3,A4,B1,B2`.
+pub(crate) fn affine(text: &str) -> Result<AffineMotion, String> {
+    match list(text)?[..] {
+        [a1, a2, a3, a4, b1, b2] => Ok(AffineMotion { a1, a2, a3, a4, b1, b2 }),
+        ref other => Err(format!("expected A1,A2,A3,A4,B1,B2, found {} number(s)", other.len())),
+    }
+}
+
+/// The parameters of a rigid, similarity or affine motion.
+pub(crate) fn motion(text: &str) -> Result<AffineMotion, String> {
+    match list(text)?[..] {
+        [omega, b1, b2] => Ok(RigidMotion { omega, b1, b2 }.into()),
+        [sigma, omega, b1, b2] => Ok(SimilarityMotion { sigma, omega, b1, b2 }.into()),
+        [a1, a2, a3, a4, b1, b2] => Ok(AffineMotion { a1, a2, a3, a4, b1, b2 }),
+        ref other => Err(format!(
+            "expected OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2, found {} number(s)",
+            other.len()
+        )),
+    }
+}
+
+/// 2, 4, 6 or 8.
+pub(crate) fn degree(text: &str) -> Result<Degree, String> {
+    let number = text.trim().parse::<usize>().ok();
+    let degree = number.and_then(|number| Degree::try_from(number).ok());
+    degree.ok_or_else(|| "the degree is one of 2, 4, 6, 8".to_owned())
+}

@@ -1,0 +1,133 @@
+use std::io;
+
+use freeform_motion::curve_fit::{Fit, Fitter, Outline};
+use freeform_motion::decompose::{AffineInvariants, Decomposition, DecompositionError, RelatedPoints};
+use freeform_motion::outline_io::OutlineFrame;
+
+use crate::args::{FitArgs, FitFormat};
+use crate::failure::{Failure, warn};
+use crate::input::{Input, unreadable};
+use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
+use crate::progress::Progress;
+
+/// A curve fitted to one outline, and what it is made of.
+#[derive(Debug, Clone)]
+pub(crate) struct FittedOutline {
+    pub(crate) object: String,
+    pub(crate) frame: u64,
+    pub(crate) time: f64,
+    pub(crate) fit: Fit,
+    /// In image coordinates.
+    pub(crate) parts: Result<Parts, DecompositionError>,
+}
+
+/// What a decomposition gives.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Parts {
+    pub(crate) decomposition: Decomposition,
+    pub(crate) related_points: RelatedPoints,
+    pub(crate) invariants: Option<AffineInvariants>,
+}
+
+impl FittedOutline {
+    /// The curve of one frame of one object.
+    pub(crate) fn new(frame: &OutlineFrame, fit: Fit) -> Self {
+        // In working coordinates, where nothing is lost to rounding, and then moved.
+        let parts = Decomposition::of(fit.working()).and_then(|working| {
+            let decomposition = working.moved(&fit.normalisation().image_from_working())?;
+            let related_points = RelatedPoints::of(&working).moved(&fit.normalisation().image_from_working());
+            Ok(Parts { decomposition, related_points, invariants: AffineInvariants::of(&working) })
+        });
+        Self { object: frame.object.clone(), frame: frame.frame, time: frame.time, fit, parts }
+    }
+}
+
+/// Fits a curve to every outline.
+pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
+    let mut fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
+    if let Some(svg) = &args.svg {
+        refuse_overwriting(&args.input, &[svg])?;
+    }
+    let input = Input::open(&args.input)?;
+    let name = input.name.clone();
+    let mut sink = Sink::stdout();
+    let mut collected = Collected::default();
+    let mut reasons = Vec::new();
+    let mut failure = None;
+    let progress = Progress::of_frames(None);
+    for item in input.outlines {
+        progress.advance();
+        let frame = match item {
+            Ok(frame) => frame,
+            Err(error) if error.is_recoverable() => {
+                reasons.push(error.to_string());
+                continue;
+            }
+            Err(error) => {
+                failure = Some(unreadable(&error));
+                break;
+            }
+        };
+        if args.frame.is_some_and(|wanted| wanted != frame.frame) {
+            continue;
+        }
+        match fitter.fit(&frame.outline) {
+            Ok(fit) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
+                let place = format!("{name}: frame {} of object {:?}", frame.frame, frame.object);
+                reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
+            }
+            Ok(fit) => {
+                let fitted = FittedOutline::new(&frame, fit);
+                collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;
+            }
+            Err(error) => {
+                reasons.push(format!("{name}: frame {} of object {:?}: {error}", frame.frame, frame.object));
+            }
+        }
+    }
+    drop(progress);
+    if collected.count == 0 {
+        let nothing = match (args.frame, reasons.into_iter().next()) {
+            (_, Some(reason)) => reason,
+            (Some(frame), None) => format!("{name}: no frame {frame} in the file"),
+            (None, None) => format!("{name}: no outline in the file"),
+        };
+        return Err(failure.unwrap_or_else(|| Failure::no_result(nothing)));
+    }
+    reasons.iter().for_each(|reason| warn(reason));
+    if args.format == FitFormat::Json {
+        write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;
+    }
+    let printed = sink.finish();
+    if let Some(path) = &args.svg {
+        WholeFile::write(path, &fit_figure(&collected.drawn))?;
+    }
+    failure.map_or(printed, Err)
+}
+
+/// What is kept of the outlines while they are read.
+#[derive(Default)]
+struct Collected {
+    count: usize,
+    /// All fits, where they are printed together in the end.
+    fits: Vec<FittedOutline>,
+    /// Those of the first frame, where they are drawn.
+    drawn: Vec<(FittedOutline, Outline)>,
+}
+
+impl Collected {
+    fn take(&mut self, args: &FitArgs, sink: &mut Sink, fitted: FittedOutline, outline: Outline) -> io::Result<()> {
+        if args.format == FitFormat::Table {
+            write_fit_table(sink, &fitted, self.count > 0)?;
+        }
+        self.count += 1;
+        let is_of_first_frame = self.drawn.first().is_none_or(|(first, _)| first.frame == fitted.frame);
+        if args.svg.is_some() && is_of_first_frame {
+            self.drawn.push((fitted.clone(), outline));
+        }
+        if args.format == FitFormat::Json {
+            self.fits.push(fitted);
+        }
+        Ok(())
+    }
+}

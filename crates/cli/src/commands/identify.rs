@@ -1,0 +1,156 @@
+use std::io::Write as _;
+
+use freeform_motion::curve_fit::Outline;
+use freeform_motion::outline_io::OutlineFrame;
+use freeform_motion::riccati::AffineMotion;
+
+use super::{FittedOutline, command_line};
+use crate::args::{IdentifyArgs, IdentifyFormat, TrackOptions};
+use crate::failure::{Failure, plain, warn};
+use crate::input::Input;
+use crate::output::{
+    Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
+    write_identify_table, write_parameters, write_report,
+};
+use crate::tracking::{Estimate, ObjectResult, Observation, Tracking};
+
+/// What was found of one object over time, kept for figures.
+#[derive(Debug)]
+pub(crate) struct History {
+    pub(crate) object: String,
+    /// Time of the first frame in seconds.
+    pub(crate) start: Option<f64>,
+    /// Time in seconds and what was known then.
+    pub(crate) estimates: Vec<(f64, Estimate)>,
+    /// The latest outline that was not rejected, with its curve.
+    pub(crate) latest: Option<(FittedOutline, Outline)>,
+}
+
+impl History {
+    /// Adds a frame to the history of its object.
+    pub(crate) fn take(histories: &mut Vec<Self>, observation: &Observation, frame: Option<&OutlineFrame>) {
+        let position = histories.iter().position(|history| history.object == observation.object);
+        let position = position.unwrap_or_else(|| {
+            histories.push(Self {
+                object: observation.object.clone(),
+                start: None,
+                estimates: Vec::new(),
+                latest: None,
+            });
+            histories.len() - 1
+        });
+        let history = &mut histories[position];
+        history.start = history.start.or(observation.time);
+        let Ok(accepted) = &observation.outcome else { return };
+        if let (Some(time), Some(estimate)) = (observation.time, accepted.estimate) {
+            history.estimates.push((time, estimate));
+        }
+        if let Some(frame) = frame {
+            history.latest = Some((FittedOutline::new(frame, accepted.result.fit), frame.outline.clone()));
+        }
+    }
+}
+
+/// Identifies the motion of every object of a sequence.
+pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
+    let outputs: Vec<_> = [&args.trace, &args.svg, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
+    refuse_overwriting(&args.input, &outputs)?;
+    let mut tracking = Tracking::new(&args.options)?;
+    let input = Input::open(&args.input)?;
+    let name = input.name.clone();
+    let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
+
+    let mut trace = match &args.trace {
+        Some(path) => {
+            let file = WholeFile::create(path)?;
+            Some(TraceWriter::new(file, args.options.motion.model()).map_err(|error| file_failure(path, &error))?)
+        }
+        None => None,
+    };
+    let keeps_history = args.svg.is_some() || args.report.is_some();
+    let mut histories = Vec::new();
+    let failure = tracking.read(input, |observation, frame| {
+        if let (Some(trace), Some(path)) = (&mut trace, &args.trace) {
+            trace.write(&observation).map_err(|error| file_failure(path, &error))?;
+        }
+        if keeps_history {
+            History::take(&mut histories, &observation, frame);
+        }
+        Ok(())
+    })?;
+
+    let results = tracking.results();
+    if results.iter().all(|result| result.estimate.is_none()) {
+        return Err(failure.unwrap_or_else(|| nothing_found(&name, &results)));
+    }
+    for result in &results {
+        result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
+    }
+    let printed = print(args.format, &results, truth.as_ref());
+    if let (Some(trace), Some(path)) = (trace, &args.trace) {
+        trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
+    }
+    if let Some(path) = &args.svg {
+        WholeFile::write(path, &parameter_figure(&histories, args.options.motion.model(), truth.as_ref()))?;
+    }
+    if let Some(path) = &args.report {
+        let failure_text = failure.as_ref().map(Failure::text);
+        let report = Report {
+            title: format!("Motion in {name}"),
+            command: command_line(),
+            settings: settings(&args.options, &name),
+            results: &results,
+            histories: &histories,
+            truth: truth.as_ref(),
+            read_error: failure_text,
+        };
+        WholeFile::write(path, &write_report(&report))?;
+    }
+    printed?;
+    failure.map_or(Ok(()), Err)
+}
+
+fn print(format: IdentifyFormat, results: &[ObjectResult], truth: Option<&AffineMotion>) -> Result<(), Failure> {
+    let mut sink = Sink::stdout();
+    let written = match format {
+        IdentifyFormat::Table => write_identify_table(&mut sink, results, truth),
+        IdentifyFormat::Json => write_identify_json(&mut sink, results),
+        IdentifyFormat::Csv => write_parameters(&mut sink, results),
+    };
+    written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
+}
+
+/// Why no object has a result, on one line.
+fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
+    let Some(first) = results.first() else {
+        return Failure::no_result(format_args!("{name}: no outline in the file"));
+    };
+    let ObjectResult { object, frames, frames_rejected, .. } = first;
+    let used = frames - frames_rejected;
+    match first.warnings.first() {
+        Some(warning) => Failure::no_result(format_args!(
+            "{name}: no motion of object {object:?}: {frames_rejected} of {frames} frame(s) rejected, {warning}"
+        )),
+        None => Failure::no_result(format_args!(
+            "{name}: no motion of object {object:?}: {used} frame(s), at least 2 are needed"
+        )),
+    }
+}
+
+/// The settings as a report lists them.
+pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
+    let degree = options.degree.map_or_else(|| "4".to_owned(), |degree| degree.to_string());
+    let scale =
+        options.scale.map_or_else(|| "none: b in image lengths per second".to_owned(), |scale| scale.to_string());
+    vec![
+        ("Input", input.to_owned()),
+        ("Motion model", options.motion.model().to_string()),
+        ("Method", options.method.name().to_owned()),
+        ("Degree of the curve", degree),
+        ("Camera scale f/Z0", scale),
+    ]
+}
+
+fn file_failure(path: &std::path::Path, error: &std::io::Error) -> Failure {
+    Failure::unusable(format_args!("{}: {}", path.display(), plain(error)))
+}

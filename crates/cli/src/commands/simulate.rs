@@ -1,0 +1,93 @@
+use std::io::Write;
+use std::path::Path;
+
+use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineWriter, WriteError, WriterOptions, read_shape};
+use freeform_motion::riccati::{AffineMotion, RigidMotion};
+use freeform_motion::sim_camera::{
+    BuiltInShape, Camera, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator,
+};
+
+use super::command_line;
+use crate::args::SimulateArgs;
+use crate::failure::Failure;
+use crate::output::Sink;
+use crate::progress::Progress;
+use crate::truth::SimulatedMotion;
+
+/// Simulates a sequence and writes its outlines.
+pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
+    let simulator = simulator(args)?;
+    let mut sink = Sink::open(&args.output)?;
+    let written = write_sequence(&mut sink, &simulator, |_| Ok(()));
+    match written {
+        Ok(()) => sink.finish(),
+        Err(SequenceError::Write(WriteError::Io(error))) => Err(sink.failure(&error)),
+        Err(SequenceError::Write(error)) => Err(Failure::unusable(error)),
+        Err(SequenceError::Other(failure)) => Err(failure),
+    }
+}
+
+/// Why a sequence could not be written.
+pub(crate) enum SequenceError {
+    Write(WriteError),
+    Other(Failure),
+}
+
+/// Writes the head with the truth and all outlines; hands every outline on after it has been written.
+pub(crate) fn write_sequence(
+    sink: &mut impl Write,
+    simulator: &Simulator,
+    mut observe: impl FnMut(&OutlineFrame) -> Result<(), Failure>,
+) -> Result<(), SequenceError> {
+    let write = |error| SequenceError::Write(WriteError::Io(error));
+    let truth =
+        SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale: simulator.scene().camera().scale() };
+    writeln!(sink, "# {}", command_line()).and_then(|()| writeln!(sink, "# {truth}")).map_err(write)?;
+    let arc_column = simulator.settings().occlusion.fraction > 0.0;
+    let options = WriterOptions { arc_column, ..WriterOptions::default() };
+    let mut writer = OutlineWriter::new(sink, options).map_err(SequenceError::Write)?;
+    let progress = Progress::of_frames(Some(simulator.frame_count() as u64));
+    for Frame { index, time, outline, .. } in simulator.frames() {
+        let frame = OutlineFrame { frame: index as u64, time, object: DEFAULT_OBJECT.to_owned(), outline };
+        writer.write(&frame).map_err(SequenceError::Write)?;
+        observe(&frame).map_err(SequenceError::Other)?;
+        progress.advance();
+    }
+    writer.flush().map_err(SequenceError::Write)
+}
+
+fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
+    let rigid = RigidMotion { omega: args.omega, b1: args.b[0], b2: args.b[1] };
+    let motion = args.affine.unwrap_or_else(|| AffineMotion::from(rigid));
+    let camera = Camera::new(args.scale).map_err(Failure::unusable)?;
+    let scene = Scene::new(shape(&args.shape)?, motion, camera);
+    let settings = Settings {
+        fps: args.fps,
+        length: SequenceLength::Seconds(args.seconds),
+        points: args.points,
+        noise: args.noise,
+        occlusion: Occlusion { fraction: args.occlusion, ..Occlusion::default() },
+        outliers: args.outliers,
+        seed: args.seed,
+        ..Settings::default()
+    };
+    Simulator::new(scene, settings).map_err(Failure::unusable)
+}
+
+/// A built-in shape, or that of a file at unit size.
+fn shape(name_or_file: &str) -> Result<Shape, Failure> {
+    let unknown = match name_or_file.parse::<BuiltInShape>() {
+        Ok(shape) => return Ok(shape.shape()),
+        Err(error) => error,
+    };
+    let path = Path::new(name_or_file);
+    let looks_like_file = path.extension().is_some() || path.components().count() > 1 || path.exists();
+    if !looks_like_file {
+        return Err(Failure::unusable(unknown));
+    }
+    let outline = read_shape(path).map_err(Failure::unusable)?;
+    let points: Vec<_> = outline.points().copied().collect();
+    let shape =
+        Shape::from_polygon(&points).map_err(|error| Failure::unusable(format_args!("{name_or_file}: {error}")))?;
+    Ok(shape.normalised().with_name(name_or_file))
+}

@@ -1,0 +1,34 @@
+use std::io::Write as _;
+
+use crate::args::TrackArgs;
+use crate::failure::Failure;
+use crate::input::Input;
+use crate::output::{Sink, track_line};
+use crate::tracking::Tracking;
+
+/// Identifies as a stream.
+pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
+    let mut tracking = Tracking::new(&args.options)?;
+    let input = Input::open(&args.input)?;
+    let name = input.name.clone();
+    let mut sink = Sink::stdout();
+    let mut accepted = 0_u64;
+    let mut first_reason = None;
+    let failure = tracking.read(input, |observation, _| {
+        match &observation.outcome {
+            Ok(_) => accepted += 1,
+            Err(reason) => first_reason = first_reason.take().or_else(|| Some(reason.clone())),
+        }
+        let line = track_line(&observation).map_err(Failure::unusable)?;
+        writeln!(sink, "{line}").and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
+    })?;
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    sink.finish()?;
+    match (accepted, first_reason) {
+        (0, Some(reason)) => Err(Failure::no_result(format_args!("no frame could be used: {reason}"))),
+        (0, None) => Err(Failure::no_result(format_args!("{name}: no outline in the file"))),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,68 @@
+use std::fmt::Display;
+use std::io::{self, Write as _};
+use std::process::ExitCode;
+
+/// Why a command ends before its time; decides the exit status.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// Help or version was asked for and has been printed, or the reader of the output has gone: no error.
+    Silent,
+    /// The input was understood but no result can be given: status 1.
+    NoResult(String),
+    /// Wrong usage, or input or output that cannot be read or written: status 2.
+    Unusable(String),
+}
+
+impl Failure {
+    pub(crate) fn no_result(reason: impl Display) -> Self {
+        Self::NoResult(reason.to_string())
+    }
+
+    pub(crate) fn unusable(reason: impl Display) -> Self {
+        Self::Unusable(reason.to_string())
+    }
+
+    /// An error of standard output: a closed pipe means that the reader has seen enough.
+    pub(crate) fn of_stdout(error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::Silent,
+            _ => Self::Unusable(format!("standard output: {}", plain(error))),
+        }
+    }
+
+    /// The reason; empty where there is none to tell.
+    pub(crate) fn text(&self) -> &str {
+        match self {
+            Self::Silent => "",
+            Self::NoResult(reason) | Self::Unusable(reason) => reason,
+        }
+    }
+
+    /// Prints the reason on one line and gives the exit status.
+    pub(crate) fn report(&self) -> ExitCode {
+        let (reason, status) = match self {
+            Self::Silent => return ExitCode::SUCCESS,
+            Self::NoResult(reason) => (reason, 1),
+            Self::Unusable(reason) => (reason, 2),
+        };
+        say(reason);
+        ExitCode::from(status)
+    }
+}
+
+/// An error of the system without the number that Rust adds.
+pub(crate) fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_owned()
+}
+
+/// Prints one line on standard error, which may be closed.
+pub(crate) fn say(message: &str) {
+    let lines: Vec<&str> = message.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let _ = writeln!(io::stderr(), "freeform: {}", lines.join(" "));
+}
+
+/// Prints a warning on standard error.
+pub(crate) fn warn(message: &str) {
+    say(&format!("warning: {message}"));
+}

@@ -1,0 +1,82 @@
+use std::io::{self, Write};
+
+use freeform_motion::riccati::MotionModel;
+
+use crate::tracking::{Estimate, ObjectResult, Observation};
+
+/// Writes the trace: one row per frame with the parameters as identified so far.
+pub(crate) struct TraceWriter<W: Write> {
+    writer: csv::Writer<W>,
+    parameters: usize,
+}
+
+impl<W: Write> TraceWriter<W> {
+    /// Writes the header.
+    pub(crate) fn new(sink: W, model: MotionModel) -> io::Result<Self> {
+        let mut writer = csv::Writer::from_writer(sink);
+        let mut header: Vec<String> = ["object", "frame", "time", "phase", "accepted"].map(str::to_owned).into();
+        header.extend(model.parameter_names().iter().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
+        writer.write_record(&header).map_err(io::Error::from)?;
+        Ok(Self { writer, parameters: model.parameter_count() })
+    }
+
+    /// Writes one frame. What is missing stays empty.
+    pub(crate) fn write(&mut self, observation: &Observation) -> io::Result<()> {
+        let accepted = observation.outcome.as_ref().ok();
+        let mut row = vec![
+            observation.object.clone(),
+            observation.frame.to_string(),
+            optional(observation.time),
+            accepted.map_or_else(String::new, |accepted| accepted.phase.to_owned()),
+            accepted.is_some().to_string(),
+        ];
+        match accepted.and_then(|accepted| accepted.estimate.as_ref()) {
+            Some(estimate) => row.extend(values(estimate)),
+            None => row.extend(std::iter::repeat_n(String::new(), 2 * self.parameters)),
+        }
+        self.writer.write_record(&row).map_err(io::Error::from)
+    }
+
+    /// Writes out what is buffered and hands the sink back.
+    pub(crate) fn into_inner(self) -> io::Result<W> {
+        self.writer.into_inner().map_err(csv::IntoInnerError::into_error)
+    }
+}
+
+/// Each parameter and its standard deviation.
+fn values(estimate: &Estimate) -> impl Iterator<Item = String> + '_ {
+    estimate.parameters().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])
+}
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
+
+/// The results with one row per object and parameter.
+pub(crate) fn write_parameters(sink: &mut impl Write, results: &[ObjectResult]) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(sink);
+    let header =
+        ["object", "method", "motion", "frames", "frames_rejected", "parameter", "value", "std", "unit", "observable"];
+    writer.write_record(header).map_err(io::Error::from)?;
+    for result in results {
+        let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
+        for (index, (name, unit)) in result.motion.parameter_names().iter().zip(result.motion.units()).enumerate() {
+            let value = found.get(index).and_then(|p| p.value);
+            let deviation = found.get(index).and_then(|p| p.standard_deviation);
+            let row = [
+                result.object.clone(),
+                result.method.name().to_owned(),
+                result.motion.to_string(),
+                result.frames.to_string(),
+                result.frames_rejected.to_string(),
+                (*name).to_owned(),
+                optional(value),
+                optional(deviation),
+                (*unit).to_owned(),
+                value.is_some().to_string(),
+            ];
+            writer.write_record(&row).map_err(io::Error::from)?;
+        }
+    }
+    writer.flush()
+}

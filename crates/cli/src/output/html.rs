@@ -1,0 +1,91 @@
+use std::fmt::Write as _;
+
+use freeform_motion::riccati::AffineMotion;
+
+use super::figures::{fit_panel, parameter_panels};
+use super::identify_table::{COLUMNS, parameter_rows};
+use crate::commands::History;
+use crate::plot::{escape, panel_svg};
+use crate::tracking::ObjectResult;
+
+const STYLE: &str = include_str!("report.css");
+
+/// What stands in a report.
+#[derive(Debug)]
+pub(crate) struct Report<'a> {
+    pub(crate) title: String,
+    /// The command as it was given.
+    pub(crate) command: String,
+    pub(crate) settings: Vec<(&'static str, String)>,
+    pub(crate) results: &'a [ObjectResult],
+    pub(crate) histories: &'a [History],
+    pub(crate) truth: Option<&'a AffineMotion>,
+    /// What ended the reading before the end of the input.
+    pub(crate) read_error: Option<&'a str>,
+}
+
+/// A page that needs nothing but itself.
+pub(crate) fn write_report(report: &Report<'_>) -> String {
+    let title = escape(&report.title);
+    let mut body = format!("<h1>{title}</h1>\n");
+    let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&summary(report.results)));
+    if let Some(error) = report.read_error {
+        let error = escape(error);
+        let _ = writeln!(body, "<p class=\"alert\">The input could not be read to its end: {error}</p>");
+    }
+    for result in report.results {
+        write_object(&mut body, report, result);
+    }
+    body.push_str("<h2>Settings</h2>\n<div class=\"scroll\"><table class=\"words\">\n");
+    for (name, value) in &report.settings {
+        let _ = writeln!(body, "<tr><th>{}</th><td>{}</td></tr>", escape(name), escape(value));
+    }
+    let version = env!("CARGO_PKG_VERSION");
+    let _ = writeln!(body, "<tr><th>Version</th><td>freeform {version}</td></tr>\n</table></div>");
+    let _ = writeln!(body, "<h2>Command</h2>\n<pre>{}</pre>", escape(&report.command));
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
+    )
+}
+
+fn summary(results: &[ObjectResult]) -> String {
+    let frames: usize = results.iter().map(|result| result.frames).sum();
+    let rejected: usize = results.iter().map(|result| result.frames_rejected).sum();
+    format!("{} object(s), {frames} frames, {rejected} rejected", results.len())
+}
+
+fn write_object(body: &mut String, report: &Report<'_>, result: &ObjectResult) {
+    let object = escape(&result.object);
+    let _ = writeln!(body, "<h2>Object {object}: {} motion, {} method</h2>", result.motion, result.method.name());
+    let rows = parameter_rows(result.motion, result.estimate.as_ref(), report.truth);
+    let count = rows.first().map_or(0, Vec::len);
+    body.push_str("<div class=\"scroll\"><table>\n");
+    write_row(body, "th", COLUMNS.iter().take(count).copied());
+    rows.iter().for_each(|row| write_row(body, "td", row.iter().map(String::as_str)));
+    body.push_str("</table></div>\n");
+    if !result.warnings.is_empty() {
+        body.push_str("<p class=\"alert\">Warnings</p>\n<ul>\n");
+        result.warnings.iter().for_each(|warning| {
+            let _ = writeln!(body, "<li>{}</li>", escape(warning));
+        });
+        body.push_str("</ul>\n");
+    }
+    let Some(history) = report.histories.iter().find(|history| history.object == result.object) else { return };
+    body.push_str("<div class=\"panels\">\n");
+    for panel in parameter_panels(history, "", result.motion, report.truth) {
+        let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 300.0));
+    }
+    if let Some(latest) = &history.latest {
+        let title = format!("Frame {}, the last one used", latest.0.frame);
+        let panel = fit_panel(title, std::slice::from_ref(latest));
+        let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 400.0));
+    }
+    body.push_str("</div>\n");
+}
+
+fn write_row<'a>(body: &mut String, tag: &str, cells: impl Iterator<Item = &'a str>) {
+    let cells: String = cells.map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect();
+    let _ = writeln!(body, "<tr>{cells}</tr>");
+}

@@ -1,0 +1,146 @@
+use std::io::{self, Write};
+
+use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
+
+use crate::tracking::{Estimate, ObjectResult, Observation};
+
+/// The result as one JSON object.
+pub(crate) fn write_identify_json(sink: &mut impl Write, results: &[ObjectResult]) -> io::Result<()> {
+    let objects: Vec<_> = results.iter().map(ObjectJson).collect();
+    let document = Document { schema: "freeform.identify/1", objects };
+    serde_json::to_writer_pretty(&mut *sink, &document)?;
+    writeln!(sink)
+}
+
+/// One frame as one line of JSON, without its end.
+pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String> {
+    let accepted = observation.outcome.as_ref().ok();
+    let estimate = accepted.and_then(|accepted| accepted.estimate.as_ref());
+    serde_json::to_string(&TrackLine {
+        schema: "freeform.track/1",
+        object: &observation.object,
+        frame: observation.frame,
+        time: observation.time,
+        phase: accepted.map(|accepted| accepted.phase),
+        accepted: accepted.is_some(),
+        parameters: estimate.map(Parameters),
+        generator: estimate.and_then(generator_rows),
+        reason: observation.outcome.as_ref().err().map(String::as_str),
+    })
+}
+
+#[derive(serde::Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    objects: Vec<ObjectJson<'a>>,
+}
+
+#[derive(serde::Serialize)]
+struct TrackLine<'a> {
+    schema: &'static str,
+    object: &'a str,
+    frame: u64,
+    time: Option<f64>,
+    phase: Option<&'static str>,
+    accepted: bool,
+    parameters: Option<Parameters<'a>>,
+    generator: Option<[[f64; 3]; 3]>,
+    reason: Option<&'a str>,
+}
+
+struct ObjectJson<'a>(&'a ObjectResult);
+
+impl Serialize for ObjectJson<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self(result) = self;
+        let mut object = serializer.serialize_struct("Object", 8)?;
+        object.serialize_field("object", &result.object)?;
+        object.serialize_field("method", result.method.name())?;
+        object.serialize_field("motion", &result.motion.to_string())?;
+        object.serialize_field("frames", &result.frames)?;
+        object.serialize_field("frames_rejected", &result.frames_rejected)?;
+        match &result.estimate {
+            Some(estimate) => object.serialize_field("parameters", &Parameters(estimate))?,
+            None => object.serialize_field("parameters", &NoParameters(result))?,
+        }
+        object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
+        object.serialize_field("warnings", &result.warnings)?;
+        object.end()
+    }
+}
+
+#[derive(serde::Serialize)]
+struct ParameterJson {
+    value: Option<f64>,
+    std: Option<f64>,
+    unit: &'static str,
+    observable: bool,
+}
+
+struct Parameters<'a>(&'a Estimate);
+
+impl Serialize for Parameters<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for parameter in self.0.parameters() {
+            let (value, std) = (parameter.value, parameter.standard_deviation);
+            let json = ParameterJson { value, std, unit: parameter.unit, observable: value.is_some() };
+            map.serialize_entry(parameter.name, &json)?;
+        }
+        map.end()
+    }
+}
+
+/// The parameters of an object that nothing was found of.
+struct NoParameters<'a>(&'a ObjectResult);
+
+impl Serialize for NoParameters<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        let model = self.0.motion;
+        for (name, &unit) in model.parameter_names().iter().zip(model.units()) {
+            map.serialize_entry(name, &ParameterJson { value: None, std: None, unit, observable: false })?;
+        }
+        map.end()
+    }
+}
+
+fn generator_rows(estimate: &Estimate) -> Option<[[f64; 3]; 3]> {
+    let a = estimate.generator()?;
+    Some([0, 1, 2].map(|row| [a[(row, 0)], a[(row, 1)], a[(row, 2)]]))
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::identify::MotionEstimate;
+    use freeform_motion::riccati::MotionModel;
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::args::IdentifyMethod;
+
+    #[test]
+    fn what_is_not_observable_is_null_and_so_is_the_generator() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.3, 0.4], Some(&[0.1, 0.2, 0.3]));
+        let result = ObjectResult {
+            object: "left".to_owned(),
+            method: IdentifyMethod::Adaptive,
+            motion: MotionModel::Rigid,
+            frames: 12,
+            frames_rejected: 1,
+            estimate: Estimate::of(estimate.with_unobservable(0), Some(0.1)),
+            warnings: vec!["a warning".to_owned()],
+        };
+        let mut text = Vec::new();
+        write_identify_json(&mut text, &[result]).expect("memory");
+        let document: Value = serde_json::from_slice(&text).expect("JSON");
+        let object = &document["objects"][0];
+        let nothing = json!({"value": null, "std": null, "unit": "rad/s", "observable": false});
+        assert_eq!(object["parameters"]["omega"], nothing);
+        assert_eq!(
+            object["parameters"]["b2"],
+            json!({"value": 0.4 / 0.1, "std": 0.3 / 0.1, "unit": "1/s", "observable": true})
+        );
+        assert_eq!((&object["generator"], &object["warnings"]), (&Value::Null, &json!(["a warning"])));
+    }
+}

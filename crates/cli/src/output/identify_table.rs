@@ -1,0 +1,119 @@
+use std::io::{self, Write};
+
+use freeform_motion::riccati::{AffineMotion, MotionModel};
+
+use super::number::significant;
+use crate::tracking::{Estimate, ObjectResult};
+use crate::truth::parameters_in;
+
+/// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
+pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
+
+/// The parameters of an object as text, one row each.
+pub(crate) fn parameter_rows(
+    model: MotionModel,
+    estimate: Option<&Estimate>,
+    truth: Option<&AffineMotion>,
+) -> Vec<Vec<String>> {
+    let truth = truth.and_then(|motion| parameters_in(model, motion));
+    let found: Vec<_> = estimate.map_or_else(Vec::new, |estimate| estimate.parameters().collect());
+    let names = model.parameter_names().iter().zip(model.units());
+    names
+        .enumerate()
+        .map(|(index, (name, unit))| {
+            let parameter = found.get(index);
+            let value = parameter.and_then(|p| p.value);
+            let deviation = parameter.and_then(|p| p.standard_deviation);
+            let value_text = match (parameter, value) {
+                (_, Some(value)) => significant(value, 6),
+                (Some(_), None) => "unobservable".to_owned(),
+                (None, None) => "-".to_owned(),
+            };
+            let deviation = deviation.map_or_else(|| "-".to_owned(), |std| significant(std, 2));
+            let mut row = vec![(*name).to_owned(), value_text, deviation, (*unit).to_owned()];
+            if let Some(truth) = &truth {
+                row.push(significant(truth[index], 6));
+                row.push(value.map_or_else(|| "-".to_owned(), |value| error_text(value, truth[index])));
+            }
+            row
+        })
+        .collect()
+}
+
+/// The difference from the truth, with its share of the truth where that is not 0.
+fn error_text(value: f64, truth: f64) -> String {
+    let difference = significant(value - truth, 2);
+    if truth == 0.0 {
+        return difference;
+    }
+    format!("{difference} ({} %)", significant(100.0 * ((value - truth) / truth).abs(), 2))
+}
+
+/// The results as tables, one per object.
+pub(crate) fn write_identify_table(
+    sink: &mut impl Write,
+    results: &[ObjectResult],
+    truth: Option<&AffineMotion>,
+) -> io::Result<()> {
+    for (index, result) in results.iter().enumerate() {
+        if index > 0 {
+            writeln!(sink)?;
+        }
+        let ObjectResult { object, motion, frames, frames_rejected, .. } = result;
+        let method = result.method.name();
+        writeln!(
+            sink,
+            "object {object}: {motion} motion, {method} method, {frames} frames, {frames_rejected} rejected"
+        )?;
+        let rows = parameter_rows(*motion, result.estimate.as_ref(), truth);
+        write_aligned(sink, &COLUMNS, &rows)?;
+    }
+    Ok(())
+}
+
+/// Columns as wide as their widest entry; the first and the one with units to the left, numbers to the right.
+fn write_aligned(sink: &mut impl Write, heads: &[&str], rows: &[Vec<String>]) -> io::Result<()> {
+    let count = rows.first().map_or(heads.len(), Vec::len);
+    let cells = |column: usize| rows.iter().map(move |row| row[column].chars().count());
+    let widths: Vec<usize> = (0..count).map(|c| cells(c).chain([heads[c].len()]).max().unwrap_or(0)).collect();
+    let mut line = |cells: &mut dyn Iterator<Item = &str>| {
+        let mut text = String::new();
+        for (column, (cell, &width)) in cells.zip(&widths).enumerate() {
+            let gap = if column == 0 { "  " } else { "   " };
+            let is_text = column == 0 || column == 3;
+            text.push_str(&if is_text { format!("{gap}{cell:<width$}") } else { format!("{gap}{cell:>width$}") });
+        }
+        writeln!(sink, "{}", text.trim_end())
+    };
+    line(&mut heads.iter().take(count).copied())?;
+    rows.iter().try_for_each(|row| line(&mut row.iter().map(String::as_str)))
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::identify::MotionEstimate;
+    use freeform_motion::riccati::RigidMotion;
+
+    use super::*;
+    use crate::args::IdentifyMethod;
+
+    #[test]
+    fn the_table_has_a_line_per_parameter_and_says_what_is_not_observable() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.31, 0.4], Some(&[0.001, 0.0123, 0.01]));
+        let result = |estimate: MotionEstimate| ObjectResult {
+            object: "0".to_owned(),
+            method: IdentifyMethod::Adaptive,
+            motion: MotionModel::Rigid,
+            frames: 120,
+            frames_rejected: 3,
+            estimate: Estimate::of(estimate, None),
+            warnings: Vec::new(),
+        };
+        let diverged = MotionEstimate::new(MotionModel::Rigid, &[f64::NAN, 0.0, 0.0], None);
+        let results = [result(estimate), result(estimate.with_unobservable(0)), result(diverged)];
+        let truth = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 }.into();
+        let mut text = Vec::new();
+        write_identify_table(&mut text, &results, Some(&truth)).expect("memory");
+        insta::assert_snapshot!(String::from_utf8(text).expect("UTF-8"));
+    }
+}

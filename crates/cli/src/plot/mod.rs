@@ -1,0 +1,7 @@
+//! Figures as SVG: panels with axes, ticks at round numbers and a legend above the data.
+mod panel;
+mod style;
+mod ticks;
+
+pub(crate) use panel::{Curve, Look, Panel};
+pub(crate) use style::{escape, panel_svg, stacked_svg};

@@ -1,0 +1,97 @@
+use std::fmt;
+
+use freeform_motion::riccati::{AffineMotion, MotionModel};
+
+/// What the comment line begins with, after `#`.
+const MARK: &str = "truth ";
+
+/// The motion that simulated outlines were made with, as it stands in a comment at the head of their file:
+/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SimulatedMotion {
+    /// In space: image velocities over the scale.
+    pub(crate) motion: AffineMotion,
+    /// Camera scale f/Z0.
+    pub(crate) scale: f64,
+}
+
+impl SimulatedMotion {
+    /// The motion in the image, b divided by the scale of the one who asks, if any.
+    pub(crate) fn seen_at(&self, scale: Option<f64>) -> AffineMotion {
+        let factor = self.scale / scale.unwrap_or(1.0);
+        AffineMotion { b1: factor * self.motion.b1, b2: factor * self.motion.b2, ..self.motion }
+    }
+
+    /// Reads a comment line without its `#`; `None` where it is another comment or not complete.
+    pub(crate) fn parse(comment: &str) -> Option<Self> {
+        let fields = comment.trim().strip_prefix(MARK)?;
+        let value = |name: &str| -> Option<f64> {
+            let mut pairs = fields.split_whitespace().filter_map(|field| field.split_once('='));
+            let number: f64 = pairs.find(|(key, _)| *key == name)?.1.parse().ok()?;
+            number.is_finite().then_some(number)
+        };
+        let (b1, b2) = (value("b1")?, value("b2")?);
+        let motion = match value("omega") {
+            Some(omega) => AffineMotion { a1: 0.0, a2: omega, a3: -omega, a4: 0.0, b1, b2 },
+            None => AffineMotion { a1: value("a1")?, a2: value("a2")?, a3: value("a3")?, a4: value("a4")?, b1, b2 },
+        };
+        let scale = value("scale").filter(|scale| *scale > 0.0)?;
+        Some(Self { motion, scale })
+    }
+}
+
+impl fmt::Display for SimulatedMotion {
+    /// The comment line without its `#`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let AffineMotion { a1, a2, a3, a4, b1, b2 } = self.motion;
+        f.write_str(MARK)?;
+        match parameters_in(MotionModel::Rigid, &self.motion) {
+            Some(_) => write!(f, "omega={a2}")?,
+            None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
+        }
+        write!(f, " b1={b1} b2={b2} scale={}", self.scale)
+    }
+}
+
+/// The parameters of a motion in a model, `None` where the model does not hold it.
+pub(crate) fn parameters_in(model: MotionModel, motion: &AffineMotion) -> Option<Vec<f64>> {
+    let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
+    let is_similarity = a1 == a4 && a2 == -a3;
+    match model {
+        MotionModel::Rigid => (is_similarity && a1 == 0.0).then(|| vec![a2, b1, b2]),
+        MotionModel::Similarity => is_similarity.then(|| vec![a1, a2, b1, b2]),
+        MotionModel::Affine => Some(vec![a1, a2, a3, a4, b1, b2]),
+        MotionModel::Projective => Some(vec![a1, a2, a3, a4, b1, b2, 0.0, 0.0]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_written_as_a_comment_reads_back_to_the_last_bit() {
+        let rigid = AffineMotion { a1: 0.0, a2: 0.1 + 0.2, a3: -(0.1 + 0.2), a4: 0.0, b1: -3.0, b2: 1e-17 };
+        let affine = AffineMotion { a1: 0.3, ..rigid };
+        for motion in [rigid, affine] {
+            let written = SimulatedMotion { motion, scale: 0.1 };
+            assert_eq!(SimulatedMotion::parse(&written.to_string()), Some(written));
+        }
+        assert!(SimulatedMotion { motion: rigid, scale: 0.1 }.to_string().starts_with("truth omega="));
+    }
+
+    #[test]
+    fn other_comments_and_incomplete_ones_hold_no_motion() {
+        for comment in ["", "made by hand", "truth", "truth omega=1", "truth omega=NaN b1=0 b2=0 scale=1"] {
+            assert_eq!(SimulatedMotion::parse(comment), None, "{comment}");
+        }
+    }
+
+    #[test]
+    fn the_scale_of_the_one_who_asks_divides_the_velocity_only() {
+        let motion = AffineMotion { a2: 2.0, a3: -2.0, b1: -3.0, b2: 4.0, ..AffineMotion::default() };
+        let truth = SimulatedMotion { motion, scale: 0.5 };
+        assert_eq!(truth.seen_at(None), AffineMotion { b1: -1.5, b2: 2.0, ..motion });
+        assert_eq!(truth.seen_at(Some(0.5)), motion);
+    }
+}

@@ -1,0 +1,131 @@
+use std::fs;
+use std::io::Read as _;
+use std::process::{Command, Stdio};
+
+use crate::support::{file, freeform, run, sequence, stderr, stdout, succeed};
+
+#[test]
+fn the_trace_has_one_row_per_frame_with_the_columns_of_the_contract() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let trace = folder.path().join("trace.csv");
+    succeed(&format!("identify - --trace {}", trace.display()), &(sequence("") + "20,5.0,1,1\n"));
+    let text = fs::read_to_string(trace).expect("the trace");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let header = "object,frame,time,phase,accepted,omega,omega_std,b1,b1_std,b2,b2_std";
+    assert_eq!(rows[0], header.split(',').collect::<Vec<_>>());
+    assert_eq!(rows.len(), 1 + 16);
+    assert!(rows.iter().all(|row| row.len() == 11));
+    assert_eq!(rows[1][..5], ["0", "0", "0", "start", "true"]);
+    assert!(rows[15][5].parse::<f64>().is_ok_and(f64::is_finite) && rows[15][6].is_empty());
+    assert_eq!(rows[16], ["0", "20", "", "", "false", "", "", "", "", "", ""]);
+}
+
+#[test]
+fn figures_and_report_hold_what_they_should_and_nothing_from_elsewhere() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (svg, report) = (path("p.svg"), path("r.html"));
+    succeed(&format!("identify - --svg {svg} --report {report} --scale 0.1"), &sequence(""));
+    let svg = fs::read_to_string(svg).expect("the figure");
+    for text in ["omega (rad/s)", "time (s)", "true value", "identified"] {
+        assert!(svg.contains(text), "{text}");
+    }
+    let report = fs::read_to_string(report).expect("the report");
+    for text in ["<table>", "<svg", "--scale 0.1", "omega (rad/s)", "Camera scale", "prefers-color-scheme", "viewport"]
+    {
+        assert!(report.contains(text), "{text}");
+    }
+    for page in [&svg, &report] {
+        assert!(!page.contains("NaN") && !page.contains("inf\""));
+        let links = page.matches("http").count() - page.matches("http://www.w3.org/2000/svg").count();
+        assert_eq!(links, 0, "no link to elsewhere");
+    }
+    let fit = path("f.svg");
+    succeed(&format!("fit - --frame 1 --svg {fit}"), &sequence(""));
+    let fit = fs::read_to_string(fit).expect("the figure");
+    assert!(fit.contains("fitted curve") && fit.contains("related points"));
+}
+
+#[test]
+fn names_from_the_input_are_no_markup_in_the_report() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = folder.path().join("r.html");
+    let rows: String = sequence("").lines().skip(3).map(|line| format!("{line},<b>x</b>\n")).collect();
+    let csv = format!("frame,time,x,y,object\n{rows}");
+    succeed(&format!("identify - --report {}", report.display()), &csv);
+    let text = fs::read_to_string(report).expect("the report");
+    assert!(text.contains("&lt;b&gt;x") && !text.contains("<b>x"));
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_told_and_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for option in ["--trace", "--svg", "--report"] {
+        let output = run(&format!("identify - {option} {}/no/where", folder.path().display()), &sequence(""));
+        assert_eq!(output.status.code(), Some(2), "{option}");
+        assert_eq!(stderr(&output).lines().count(), 1, "{option}: {}", stderr(&output));
+        assert!(stderr(&output).contains("/no/where: No such file"), "{option}: {}", stderr(&output));
+    }
+    let output = run(&format!("simulate --output {}", folder.path().display()), "");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 0);
+}
+
+#[test]
+fn a_run_that_fails_leaves_the_old_file_as_it_was() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let trace = file(folder.path(), "trace.csv", "old");
+    let output = run(&format!("identify - --trace {trace}"), "frame,time,x,y\n0,0,1,1\n");
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(fs::read_to_string(&trace).expect("the file"), "old");
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 1);
+}
+
+#[test]
+fn the_input_is_not_overwritten_by_an_output() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let csv = sequence("");
+    let input = file(folder.path(), "outlines.csv", &csv);
+    for option in ["--trace", "--svg", "--report"] {
+        let output = run(&format!("identify {input} {option} {input}"), "");
+        assert_eq!(output.status.code(), Some(2), "{option}");
+    }
+    assert_eq!(fs::read_to_string(&input).expect("the file"), csv);
+}
+
+#[test]
+fn a_device_is_written_to_and_not_replaced() {
+    assert!(!succeed("identify - --trace /dev/null --svg /dev/null", &sequence("")).is_empty());
+    assert!(!fs::metadata("/dev/null").expect("the device").is_file());
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = file(folder.path(), "outlines.csv", sequence("--seconds 5"));
+    for arguments in [vec!["simulate"], vec!["track", &input], vec!["fit", &input], vec!["completions", "bash"]] {
+        let mut child = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
+            .args(&arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the binary runs");
+        let mut start = [0; 10];
+        child.stdout.take().expect("a pipe").read_exact(&mut start).expect("some output");
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert_eq!(stderr(&output), "", "{arguments:?}");
+    }
+}
+
+#[test]
+fn the_demo_leaves_a_report_and_its_data() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = freeform("demo").current_dir(folder.path()).output().expect("the binary runs");
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stdout(&output).contains("freeform-demo") && stdout(&output).contains("truth"));
+    for name in ["report.html", "outlines.csv", "trace.csv", "parameters.svg", "curve.svg"] {
+        let length = fs::metadata(folder.path().join("freeform-demo").join(name)).expect(name).len();
+        assert!(length > 1000, "{name}");
+    }
+}

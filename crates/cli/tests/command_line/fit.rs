@@ -1,0 +1,59 @@
+use crate::support::{json, run, sequence, stderr, stdout, succeed};
+
+#[test]
+fn the_coefficients_are_those_of_a_curve_that_the_points_lie_on() {
+    let circle: String = (0..60)
+        .map(|k| std::f64::consts::TAU * f64::from(k) / 60.0)
+        .map(|angle| format!("0,0,{},{}\n", 1.0 + 2.0 * angle.cos(), 2.0 * angle.sin()))
+        .collect();
+    let csv = format!("frame,time,x,y\n{circle}");
+    let document = json(&succeed("fit - --degree 2 --format json", &csv));
+    assert_eq!(document["schema"], "freeform.fit/1");
+    let outline = &document["outlines"][0];
+    let a = |name: &str| {
+        outline["coefficients"][name].as_f64().expect("a number")
+            / outline["coefficients"]["a_20"].as_f64().expect("a number")
+    };
+    // x^2 + y^2 - 2 x + 1 - r^2 with r near 2: the level sets pull it a little inwards or outwards.
+    assert!((a("a_02") - 1.0).abs() < 1e-9 && a("a_11").abs() < 1e-9);
+    assert!((a("a_10") + 2.0).abs() < 1e-9 && a("a_01").abs() < 1e-9);
+    assert!((a("a_00") + 3.0).abs() < 0.1);
+    assert_eq!(outline["bounded"], true);
+    assert!(outline["residual"]["geometric"].as_f64().expect("a number") < 0.05);
+    assert_eq!(outline["levels"][0]["lines"].as_array().map(Vec::len), Some(2));
+    let centre = &outline["related_points"][0];
+    assert!((centre["x"].as_f64().expect("a number") - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_quartic_has_six_lines_three_related_points_and_four_invariants() {
+    let document = json(&succeed("fit - --frame 2 --format json", &sequence("")));
+    let outlines = document["outlines"].as_array().expect("a list");
+    assert_eq!(outlines.len(), 1);
+    assert_eq!(outlines[0]["frame"], 2);
+    assert_eq!(outlines[0]["coefficients"].as_object().map(serde_json::Map::len), Some(15));
+    assert_eq!(outlines[0]["levels"][0]["lines"].as_array().map(Vec::len), Some(4));
+    assert_eq!(outlines[0]["levels"][1]["lines"].as_array().map(Vec::len), Some(2));
+    assert_eq!(outlines[0]["related_points"].as_array().map(Vec::len), Some(3));
+    assert_eq!(outlines[0]["invariants"].as_array().map(Vec::len), Some(4));
+}
+
+#[test]
+fn every_method_and_degree_prints_a_table() {
+    let csv = sequence("--seconds 0.02");
+    for degree in [2, 4, 6, 8] {
+        for method in ["3l", "gs3l --kappa 1e-4", "bounded --margin 0.1 --offset 0.2"] {
+            let table = succeed(&format!("fit - --degree {degree} --method {method}"), &csv);
+            assert!(table.contains(&format!("degree {degree}, 120 points")), "{table}");
+            assert!(table.contains("bounded") && table.contains("a_00"), "{table}");
+        }
+    }
+}
+
+#[test]
+fn a_frame_that_is_not_there_has_no_result() {
+    let output = run("fit - --frame 99", &sequence(""));
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(stdout(&output), "");
+    assert!(stderr(&output).contains("no frame 99"));
+}

@@ -1,0 +1,43 @@
+use crate::support::{freeform, run, stderr, stdout, succeed};
+
+#[test]
+fn every_command_has_a_help_with_examples() {
+    for command in ["demo", "simulate", "fit", "identify", "track", "outline"] {
+        let help = succeed(&format!("{command} --help"), "");
+        assert!(help.contains(&format!("  freeform {command}")), "{help}");
+        assert!(help.contains("Example"), "{help}");
+    }
+}
+
+#[test]
+fn the_help_reads_as_it_should() {
+    insta::assert_snapshot!("help", succeed("--help", ""));
+    insta::assert_snapshot!("help_identify", succeed("identify --help", ""));
+    insta::assert_snapshot!("help_simulate", succeed("simulate --help", ""));
+}
+
+#[test]
+fn the_version_is_that_of_the_package() {
+    assert_eq!(succeed("--version", ""), format!("freeform {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn no_command_at_all_is_wrong_usage() {
+    let output = run("", "");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(stdout(&output), "");
+    assert!(stderr(&output).contains("Usage"));
+}
+
+#[test]
+fn nothing_is_coloured_where_colour_is_not_wanted() {
+    let output = freeform("--help").env("NO_COLOR", "1").output().expect("the binary runs");
+    assert!(!stdout(&output).contains('\u{1b}'));
+}
+
+#[test]
+fn there_are_completions_for_the_shells() {
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(succeed(&format!("completions {shell}"), "").contains("identify"), "{shell}");
+    }
+}

@@ -1,0 +1,124 @@
+use serde_json::Value;
+
+use crate::support::{json, run, sequence, stderr, stdout, succeed};
+
+/// Field names of an object in alphabetical order.
+fn keys(value: &Value) -> Vec<&str> {
+    let mut keys: Vec<&str> = value.as_object().expect("an object").keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    keys
+}
+
+#[test]
+fn the_json_has_the_fields_of_the_contract_and_no_others() {
+    let csv = sequence("");
+    let document = json(&succeed("identify - --format json --scale 0.1", &csv));
+    assert_eq!(document["schema"], "freeform.identify/1");
+    assert_eq!(keys(&document), ["objects", "schema"]);
+    let object = &document["objects"][0];
+    let fields = ["frames", "frames_rejected", "generator", "method", "motion", "object", "parameters", "warnings"];
+    assert_eq!(keys(object), fields);
+    assert_eq!((&object["object"], &object["motion"]), (&"0".into(), &"rigid".into()));
+    assert_eq!((&object["frames"], &object["frames_rejected"]), (&15.into(), &0.into()));
+    assert_eq!(keys(&object["parameters"]), ["b1", "b2", "omega"]);
+    for (name, unit) in [("omega", "rad/s"), ("b1", "1/s"), ("b2", "1/s")] {
+        let parameter = &object["parameters"][name];
+        assert_eq!(keys(parameter), ["observable", "std", "unit", "value"]);
+        assert!(parameter["value"].is_f64() && parameter["observable"] == true && parameter["unit"] == unit);
+    }
+    let generator = &object["generator"];
+    assert_eq!(generator[0][1], object["parameters"]["omega"]["value"]);
+    assert_eq!(generator[1][2], object["parameters"]["b2"]["value"]);
+    assert_eq!(generator[2], json("[0.0, 0.0, 0.0]"));
+}
+
+#[test]
+fn the_adaptive_method_says_that_it_gives_no_standard_deviation() {
+    let document = json(&succeed("identify - --method adaptive --format json", &sequence("")));
+    assert_eq!(document["objects"][0]["method"], "adaptive");
+    assert_eq!(document["objects"][0]["parameters"]["omega"]["std"], Value::Null);
+}
+
+#[test]
+fn an_affine_motion_has_six_parameters() {
+    let document = json(&succeed("identify - --motion affine --format json", &sequence("")));
+    assert_eq!(keys(&document["objects"][0]["parameters"]), ["a1", "a2", "a3", "a4", "b1", "b2"]);
+    assert_eq!(document["objects"][0]["motion"], "affine");
+}
+
+#[test]
+fn the_scale_divides_the_velocity_and_nothing_else() {
+    let csv = sequence("");
+    let image = json(&succeed("identify - --format json", &csv));
+    let space = json(&succeed("identify - --format json --scale 0.5", &csv));
+    let value =
+        |document: &Value, name: &str| document["objects"][0]["parameters"][name]["value"].as_f64().expect("a number");
+    assert_eq!(value(&image, "omega"), value(&space, "omega"));
+    for name in ["b1", "b2"] {
+        assert!((value(&space, name) - 2.0 * value(&image, name)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn every_object_has_its_own_result() {
+    let one = sequence("--shape glider --omega -1 --b 0,1");
+    let other = sequence("--shape bird");
+    let rows = |csv: &str, name: &str| csv.lines().skip(3).map(|line| format!("{line},{name}\n")).collect::<String>();
+    let csv = format!("frame,time,x,y,object\n{}{}", rows(&one, "glider <1>"), rows(&other, "bird"));
+    let document = json(&succeed("identify - --format json", &csv));
+    let objects = document["objects"].as_array().expect("a list");
+    assert_eq!(objects.iter().map(|object| &object["object"]).collect::<Vec<_>>(), ["glider <1>", "bird"]);
+    let alone = json(&succeed("identify - --format json", &one));
+    assert_eq!(objects[0]["parameters"], alone["objects"][0]["parameters"]);
+}
+
+#[test]
+fn the_csv_has_one_row_per_object_and_parameter() {
+    let csv = succeed("identify - --format csv", &sequence(""));
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines[0], "object,method,motion,frames,frames_rejected,parameter,value,std,unit,observable");
+    assert_eq!(lines.len(), 4);
+    assert!(lines[1].starts_with("0,adaptive,rigid,15,0,omega,") && lines[1].ends_with(",,rad/s,true"), "{}", lines[1]);
+}
+
+#[test]
+fn the_table_shows_the_truth_where_the_file_tells_it() {
+    let csv = sequence("--seconds 3 --noise 0");
+    let table = succeed("identify - --scale 0.1", &csv);
+    assert!(table.lines().nth(1).is_some_and(|head| head.ends_with("error")), "{table}");
+    assert!(table.contains(" 1.57080 ") && table.contains(" -3.00000 "), "{table}");
+    let without: String = csv.lines().skip(2).map(|line| format!("{line}\n")).collect();
+    assert!(!succeed("identify -", &without).contains("truth"));
+    let given = succeed("identify - --truth -1.5,2,-3", &without);
+    assert!(given.contains("-1.50000") && given.contains("truth"), "{given}");
+}
+
+#[test]
+fn the_truth_of_the_file_is_told_in_the_units_of_the_result() {
+    let csv = sequence("");
+    assert!(succeed("identify -", &csv).contains(" -0.300000 "));
+    assert!(succeed("identify - --scale 0.1", &csv).contains(" -3.00000 "));
+}
+
+#[test]
+fn frames_that_are_no_outline_are_counted_and_the_rest_is_used() {
+    let csv = sequence("");
+    let csv = csv + "20,5.0,1,1\n21,5.1,1,1\n21,5.1,1,1\n21,5.1,1,1\n";
+    let output = run("identify - --format json", &csv);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let object = &json(&stdout(&output))["objects"][0];
+    assert_eq!((&object["frames"], &object["frames_rejected"]), (&17.into(), &2.into()));
+    let warnings = object["warnings"].as_array().expect("a list");
+    assert!(warnings.iter().any(|warning| warning.as_str().is_some_and(|text| text.contains("frame 21"))));
+    assert_eq!(stderr(&output).lines().filter(|line| line.contains("rejected")).count(), 2);
+}
+
+#[test]
+fn nothing_is_found_of_an_object_that_was_seen_once() {
+    let csv = sequence("--seconds 0.03");
+    let output = run("identify - --format json", &csv);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(stdout(&output), "");
+    assert_eq!(stderr(&output).lines().count(), 1);
+    assert!(stderr(&output).contains("at least 2"), "{}", stderr(&output));
+}

@@ -1,0 +1,10 @@
+//! The contract of the command line, tested on the binary itself.
+mod bad_input;
+mod files;
+mod fit;
+mod help;
+mod identify;
+mod outline;
+mod simulate;
+mod support;
+mod track;

@@ -1,0 +1,48 @@
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+/// The binary with arguments, in words.
+pub(crate) fn freeform(arguments: &str) -> Command {
+    let mut command = Command::cargo_bin("freeform").expect("the binary is built");
+    command.args(arguments.split_whitespace()).env("COLUMNS", "100");
+    command
+}
+
+/// What the binary does with arguments and an input.
+pub(crate) fn run(arguments: &str, input: &str) -> Output {
+    freeform(arguments).write_stdin(input).output().expect("the binary runs")
+}
+
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("UTF-8")
+}
+
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("UTF-8")
+}
+
+/// The output of a run that must succeed.
+pub(crate) fn succeed(arguments: &str, input: &str) -> String {
+    let output = run(arguments, input);
+    assert!(output.status.success(), "{arguments}: {}", stderr(&output));
+    stdout(&output)
+}
+
+pub(crate) fn json(text: &str) -> Value {
+    serde_json::from_str(text).expect("JSON")
+}
+
+/// A short simulated sequence.
+pub(crate) fn sequence(arguments: &str) -> String {
+    succeed(&format!("simulate --points 120 --seconds 0.5 {arguments}"), "")
+}
+
+/// Writes a file into a folder and gives its path as text.
+pub(crate) fn file(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, content).expect("a temporary file");
+    path.to_str().expect("UTF-8").to_owned()
+}

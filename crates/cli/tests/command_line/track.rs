@@ -1,0 +1,49 @@
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::process::{Command, Stdio};
+
+use crate::support::{json, run, sequence, stdout, succeed};
+
+#[test]
+fn every_frame_is_one_line_and_the_last_agrees_with_identify() {
+    let csv = sequence("");
+    let lines = succeed("track", &csv);
+    assert_eq!(lines.lines().count(), 15);
+    let first = json(lines.lines().next().expect("a line"));
+    assert_eq!((&first["frame"], &first["accepted"]), (&0.into(), &true.into()));
+    let last = json(lines.lines().last().expect("a line"));
+    let whole = json(&succeed("identify - --format json", &csv));
+    assert_eq!(last["parameters"], whole["objects"][0]["parameters"]);
+}
+
+#[test]
+fn a_frame_that_is_no_outline_is_told_in_its_line() {
+    let output = run("track", &(sequence("") + "20,5.0,1,1\n"));
+    assert_eq!(output.status.code(), Some(0));
+    let last = json(stdout(&output).lines().last().expect("a line"));
+    assert_eq!((&last["frame"], &last["accepted"]), (&20.into(), &false.into()));
+    assert!(last["reason"].as_str().is_some_and(|reason| reason.contains("frame 20")));
+}
+
+#[test]
+fn a_line_comes_as_soon_as_the_row_after_its_frame_has_been_read() {
+    let csv = sequence("");
+    let split = csv.match_indices("\n1,").next().expect("a second frame").0 + 1;
+    let next_row = csv[split..].find('\n').expect("a row") + split + 1;
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
+        .arg("track")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let mut input = child.stdin.take().expect("a pipe");
+    let mut output = BufReader::new(child.stdout.take().expect("a pipe"));
+    // One row beyond: the line end of a row may only be recognised with the next byte.
+    let end = csv[next_row..].find('\n').expect("a row") + next_row + 1;
+    input.write_all(&csv.as_bytes()[..end]).expect("the binary reads");
+    input.flush().expect("the binary reads");
+    let mut line = String::new();
+    output.read_line(&mut line).expect("a line while the input is open");
+    assert_eq!(json(&line)["frame"], 0);
+    drop(input);
+    assert!(child.wait().expect("it ends").success());
+}

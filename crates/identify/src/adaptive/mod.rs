@@ -1,0 +1,15 @@
+//! The paper's adaptive identifier (equations 19 to 22).
+mod identifier;
+mod least_squares_law;
+mod line_path;
+mod lyapunov;
+mod pair_quality;
+mod printed_law;
+mod regressor;
+mod settings;
+mod structured_law;
+
+pub use identifier::AdaptiveIdentifier;
+pub use lyapunov::solve_lyapunov;
+pub use regressor::{Regressor, quadratic_terms};
+pub use settings::{AdaptiveLaw, AdaptiveSettings, PairChoice};

@@ -1,0 +1,58 @@
+use freeform_riccati::MotionModel;
+use nalgebra::{Matrix4, Vector4};
+
+/// How the parameters are adapted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AdaptiveLaw {
+    /// Equation 21 as printed: all entries of A, B and C, 36 numbers, of which the motion is read off. Needs far more
+    /// excitation than one line pair gives, and is here for comparison.
+    Printed,
+    /// Equation 21 with the structure that equations 14 to 17 give A, B and C: only the motion parameters are adapted,
+    /// `theta' = -W' P e`.
+    Structured,
+    /// Least squares on the filtered regression `X' = W theta` with exponential forgetting: settles in a fraction of a
+    /// second (Slotine, Li, Applied Nonlinear Control, 1991, section 8.7).
+    FilteredLeastSquares,
+}
+
+/// Which conjugate pairs drive the identification.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PairChoice {
+    /// The pair with the best signal against its noise, judged from all frames so far.
+    Best,
+    /// One given pair, counted from 0 in the order of the first frame.
+    Given(usize),
+    /// All pairs, each weighted by its noise relative to that of the best.
+    All,
+}
+
+/// Settings of an [`AdaptiveIdentifier`](crate::AdaptiveIdentifier).
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdaptiveSettings {
+    /// Motion model: rigid, similarity or affine.
+    pub model: MotionModel,
+    /// How the parameters are adapted.
+    pub law: AdaptiveLaw,
+    /// Which pairs are used.
+    pub pairs: PairChoice,
+    /// The stability matrix Am, per second. All its eigenvalues must have negative real parts.
+    pub stability: Matrix4<f64>,
+    /// The symmetric positive-definite matrix Q of the Lyapunov equation `Am' P + P Am = -Q`.
+    pub definite: Matrix4<f64>,
+    /// Parameters to start from, in the order of the model; empty for all zero.
+    pub initial_values: Vec<f64>,
+}
+
+impl Default for AdaptiveSettings {
+    /// Rigid motion by the structured law over all pairs, from zero, with the paper's Am and Q.
+    fn default() -> Self {
+        Self {
+            model: MotionModel::Rigid,
+            law: AdaptiveLaw::Structured,
+            pairs: PairChoice::All,
+            stability: Matrix4::from_diagonal(&Vector4::new(-0.5, -0.5, -1.0, -1.0)),
+            definite: Matrix4::from_diagonal(&Vector4::new(0.5, 1.0, 2.0, 3.0)),
+            initial_values: Vec::new(),
+        }
+    }
+}

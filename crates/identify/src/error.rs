@@ -1,0 +1,63 @@
+use freeform_riccati::MotionModel;
+use thiserror::Error;
+
+/// Why an identifier could not be made, or could not take a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum IdentifyError {
+    /// The stability matrix has an eigenvalue that does not decay.
+    #[error("the stability matrix has an eigenvalue with real part {real_part}, which is not negative")]
+    NotStable {
+        /// Largest real part of its eigenvalues.
+        real_part: f64,
+    },
+    /// The matrix Q of the Lyapunov equation is not symmetric and positive definite.
+    #[error("the matrix Q is not symmetric positive definite (smallest eigenvalue {smallest})")]
+    NotPositiveDefinite {
+        /// Smallest eigenvalue of its symmetric part; NaN entries give NaN.
+        smallest: f64,
+    },
+    /// The motion model has no law here.
+    #[error("the adaptive identifier has no law for {model} motion")]
+    UnsupportedModel {
+        /// The model asked for.
+        model: MotionModel,
+    },
+    /// The printed estimator identifies rigid and affine motion.
+    #[error("as many initial values as parameters are needed: {needed}, not {found}")]
+    WrongInitialValueCount {
+        /// Number of parameters.
+        needed: usize,
+        /// Values given.
+        found: usize,
+    },
+    /// An initial value is NaN or infinite.
+    #[error("initial value {index} is not finite")]
+    InitialValueNotFinite {
+        /// Position in the list, counted from 0.
+        index: usize,
+    },
+    /// The pair asked for is not there.
+    #[error("there is no pair {index}, the curve has {count}")]
+    NoSuchPair {
+        /// Position asked for, counted from 0.
+        index: usize,
+        /// Pairs of the curve.
+        count: usize,
+    },
+    /// The number of line pairs changed between frames.
+    #[error("{found} line pairs, the frames before had {expected}")]
+    PairCountChanged {
+        /// Pairs of the frames before.
+        expected: usize,
+        /// Pairs of this frame.
+        found: usize,
+    },
+    /// Time did not advance.
+    #[error("time {time} does not come after {previous}")]
+    TimeNotIncreasing {
+        /// Time of the frame, in seconds.
+        time: f64,
+        /// Time of the frame before it.
+        previous: f64,
+    },
+}
