@@ -11,10 +11,6 @@ use freeform_sim_camera::{
 };
 use nalgebra::Vector2;
 
-const FPS: f64 = 30.0;
-const NOISE: f64 = 0.005;
-const POINTS: usize = 400;
-
 /// One row of the table.
 struct Setting {
     name: &'static str,
@@ -24,6 +20,9 @@ struct Setting {
     outliers: f64,
     wrong: f64,
     sampling: Sampling,
+    noise: f64,
+    points: usize,
+    fps: f64,
 }
 
 struct Outcome {
@@ -55,7 +54,7 @@ fn bound(shape: &Shape, setting: &Setting) -> Vec<f64> {
     let dense = 2000_usize;
     let share = (1.0 - setting.occlusion) * (1.0 - setting.outliers) * (1.0 - setting.wrong);
     for frame in 0..setting.frames {
-        let time = frame as f64 / FPS;
+        let time = frame as f64 / setting.fps;
         let pose = truth.flow(time);
         let linear = pose.matrix().fixed_view::<2, 2>(0, 0).into_owned();
         let cofactor = linear.try_inverse().expect("a regular flow").transpose();
@@ -64,7 +63,7 @@ fn bound(shape: &Shape, setting: &Setting) -> Vec<f64> {
             let normal: Vector2<f64> = (cofactor * shape.normal_at(s).into_inner()).normalize();
             BoundaryPoint { point: pose * shape.point_at(s), normal }
         });
-        bound.add_frame(time, points, NOISE, share * POINTS as f64 / dense as f64).expect("finite");
+        bound.add_frame(time, points, setting.noise, share * setting.points as f64 / dense as f64).expect("finite");
     }
     let covariance = bound.covariance().expect("finite");
     covariance.standard_deviations().map(|std| std.expect("observable")).collect()
@@ -74,11 +73,11 @@ fn run(shape: &Shape, setting: &Setting, bound: &[f64], seed: u64) -> Outcome {
     let (truth, theta) = motion(setting.model);
     let scene = Scene::new(shape.clone(), truth, Camera::default());
     let settings = Settings {
-        fps: FPS,
+        fps: setting.fps,
         length: SequenceLength::Frames(setting.frames),
-        points: POINTS,
+        points: setting.points,
         sampling: setting.sampling,
-        noise: NOISE,
+        noise: setting.noise,
         occlusion: Occlusion { fraction: setting.occlusion, ..Occlusion::default() },
         outliers: setting.outliers,
         wrong_frames: setting.wrong,
@@ -143,6 +142,9 @@ fn main() {
         outliers: 0.0,
         wrong: 0.0,
         sampling: Sampling::Independent,
+        noise: 0.005,
+        points: 400,
+        fps: 30.0,
     };
     let settings = [
         plain("clean 3", 3),
@@ -158,6 +160,14 @@ fn main() {
         Setting { model: MotionModel::Affine, ..plain("affine 60", 60) },
         Setting { model: MotionModel::Affine, ..plain("affine 120", 120) },
         Setting { model: MotionModel::Affine, occlusion: 0.2, ..plain("affine arc 120", 120) },
+        Setting { noise: 0.0005, ..plain("noise 0.0005", 60) },
+        Setting { noise: 0.02, ..plain("noise 0.02", 60) },
+        Setting { noise: 0.05, ..plain("noise 0.05", 60) },
+        Setting { points: 40, ..plain("points 40", 60) },
+        Setting { points: 100, ..plain("points 100", 60) },
+        Setting { points: 4000, ..plain("points 4000", 60) },
+        Setting { fps: 2.0, ..plain("fps 2", 30) },
+        Setting { fps: 200.0, ..plain("fps 200", 120) },
     ];
     println!(
         "{:<16} {:>7} {:>7} {:>9} {:>6} {:>9}  by shape",
@@ -198,5 +208,44 @@ fn main() {
             lost,
             1e6 * spent / (runs as f64 * shapes.len() as f64),
         );
+    }
+    if "acquisition".contains(&wanted) {
+        acquisition(&shapes, 10 * runs);
+    }
+}
+
+/// Share of runs in which the second frame is found, the turn between being within 60 degrees and the shift within half the
+/// object's size: the turn to a tenth of a radian. Without and with a fifth of the outline missing.
+fn acquisition(shapes: &[Shape], runs: u64) {
+    for (name, occlusion) in [("acquisition", 0.0), ("acquisition arc", 0.2)] {
+        let (mut found, mut by_shape) = (0.0, String::new());
+        for shape in shapes {
+            let mut here = 0.0;
+            for seed in 0..runs {
+                // A golden-ratio sequence spreads turns and directions evenly.
+                let fraction = |step: f64| 2.0 * (step * (seed as f64 + 0.5)).fract() - 1.0;
+                let turn = fraction(0.618_034) * std::f64::consts::FRAC_PI_3;
+                let (shift, direction) = (0.5 * fraction(0.754_878).abs(), std::f64::consts::PI * fraction(0.569_84));
+                let motion = RigidMotion { omega: turn, b1: shift * direction.cos(), b2: shift * direction.sin() };
+                let settings = Settings {
+                    fps: 1.0,
+                    length: SequenceLength::Frames(2),
+                    occlusion: Occlusion { fraction: occlusion, ..Occlusion::default() },
+                    seed,
+                    ..Settings::default()
+                };
+                let simulator =
+                    Simulator::new(Scene::new(shape.clone(), motion, Camera::default()), settings).expect("ok");
+                let mut filter = MotionFilter::new(FilterSettings::default()).expect("ok");
+                for frame in simulator.frames() {
+                    filter.step(frame.time, &frame.outline).expect("increasing times");
+                }
+                let hit = filter.estimate().is_some_and(|estimate| (estimate.values()[0] - turn).abs() < 0.1);
+                here += f64::from(u8::from(hit));
+            }
+            found += here;
+            by_shape += &format!(" {}:{:.3}", shape.name(), here / runs as f64);
+        }
+        println!("{name:<16} found {:.4} {by_shape}", found / (runs as f64 * shapes.len() as f64));
     }
 }
