@@ -20,6 +20,8 @@ const NO_WEIGHT: f64 = 6.0;
 const AGREEING: f64 = 3.5;
 /// Residuals below this many spacings agree too: corners lie off the straight cells by as much.
 const BEND: f64 = 0.2;
+/// Without noise the innovation is what straight cells leave, in spacings.
+const CELL_ERROR: f64 = 0.1;
 /// Most linearisations per frame.
 const MOST_ITERATIONS: usize = 6;
 /// A step that moves points by less than this many standard deviations of the noise is the last.
@@ -279,7 +281,8 @@ impl OutlineMap {
         // Points beyond the ends may be anything: they count for a third.
         let total = known as f64 + new_points as f64 / 3.0;
         let agreement = if total > 0.0 { agreeing as f64 / total } else { 0.0 };
-        let innovation = (state.transpose() * self.marginal * state).x / (self.sigma * self.sigma);
+        let innovation =
+            (state.transpose() * self.marginal * state).x / self.sigma.max(CELL_ERROR * self.spacing).powi(2);
         MapUpdate { accepted: false, agreement, new_points, innovation, iterations, noise }
     }
 

@@ -14,6 +14,8 @@ use crate::estimate::MotionEstimate;
 const LARGEST_INNOVATION: f64 = 80.0;
 /// A frame with so many times the noise known does not show the known outline, however well the map is bent to it.
 const LARGEST_NOISE_RATIO: f64 = 1.8;
+/// Noise below this many lengths of a cell is never too much.
+const BEND: f64 = 0.1;
 /// Share of the points that one pose must explain beyond another to be preferred to a likelier one.
 const CLEARLY_BETTER: f64 = 0.03;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
@@ -289,6 +291,7 @@ impl MotionFilter {
 
 /// Whether a frame shows the outline that the map knows.
 fn fits(map: &OutlineMap, smallest_agreement: f64) -> impl Fn(&MapUpdate) -> bool + use<> {
-    let largest_noise = LARGEST_NOISE_RATIO * map.noise();
+    // Exact points leave what the cells do not follow.
+    let largest_noise = (LARGEST_NOISE_RATIO * map.noise()).max(BEND * map.spacing * map.radius);
     move |update| update.agreement >= smallest_agreement && update.noise.is_none_or(|noise| noise <= largest_noise)
 }

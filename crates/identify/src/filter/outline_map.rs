@@ -17,8 +17,11 @@ use crate::{
 
 /// Fewest points that a map is started from.
 pub(crate) const FEWEST_POINTS: usize = 8;
-/// Points of the first frame for each cell. More of them leave fewer offsets to be estimated, and a coarser outline.
-const POINTS_PER_CELL: f64 = 2.0;
+/// Length of a cell in standard deviations of the noise. Shorter ones leave more offsets to be estimated, and points that come to the
+/// wrong cell; longer ones a coarser outline.
+const NOISE_PER_CELL: f64 = 3.0;
+/// Fewest points of the first frame for each cell.
+const POINTS_PER_CELL: f64 = 1.0;
 /// Most cells of the first frame.
 const MOST_CELLS: f64 = 800.0;
 /// Weight of the first pose, in points: it only fixes the gauge, since pose and offsets can move together.
@@ -173,8 +176,8 @@ impl OutlineMap {
         // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
         self.sigma = (variance / f64::max(count, 1.0)).sqrt().max(SMALLEST_NOISE);
         self.half_window = window;
-        let cells = (count / POINTS_PER_CELL).clamp(4.0, MOST_CELLS);
-        self.spacing = length / cells;
+        let finest = (count / POINTS_PER_CELL).clamp(4.0, MOST_CELLS);
+        self.spacing = (NOISE_PER_CELL * self.sigma).max(length / finest).min(length / 12.0);
     }
 
     /// The pieces of the loaded outline in the body frame.
