@@ -1,0 +1,184 @@
+use freeform_riccati::MotionModel;
+use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector2};
+
+use crate::{
+    estimate::MAX_PARAMETERS,
+    motion_algebra::{adjoint, columns, normal_velocities},
+};
+
+/// Below this fraction of the largest eigenvalue of the information, scaled to unit diagonal, nothing is known.
+const RANK_TOLERANCE: f64 = 1e-10;
+
+/// Why a [`CramerRaoBound`] cannot be given.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BoundError {
+    /// Wrong number of motion parameters.
+    #[error("{found} motion parameters where the model has {needed}")]
+    ParameterCount {
+        /// Parameters given.
+        found: usize,
+        /// Parameters of the model.
+        needed: usize,
+    },
+    /// A motion parameter is not finite.
+    #[error("motion parameter {index} is {value}")]
+    ParameterNotFinite {
+        /// Its position.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The noise is not positive and finite.
+    #[error("noise of {value} where a positive number is needed")]
+    Noise {
+        /// Standard deviation given.
+        value: f64,
+    },
+    /// A time or weight that is not finite, or one at which the motion overflows.
+    #[error("a frame at {time} s with weight {weight} tells nothing")]
+    Frame {
+        /// Time of the frame in seconds.
+        time: f64,
+        /// Weight given.
+        weight: f64,
+    },
+    /// Points or motion overflow.
+    #[error("the information is not finite")]
+    InformationNotFinite,
+}
+
+/// A point of the boundary as it stands in the image, and the unit normal there (either way).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundaryPoint {
+    /// The point, image lengths.
+    pub point: Point2<f64>,
+    /// Unit normal of the boundary in the image.
+    pub normal: Vector2<f64>,
+}
+
+/// The Cramer-Rao bound of motion identification from outlines: no unbiased estimator of a constant motion has a smaller
+/// covariance, the shape being known and the initial pose not.
+///
+/// A boundary point seen with isotropic noise sigma informs only along its normal, so the Fisher information is `J = sum g
+/// g' / sigma^2` with g the derivative of the normal displacement by the pose at time 0 and the motion parameters. The
+/// bound is the block of `J^-1` of the motion. It holds for points drawn independently along the outline; regular
+/// spacing can beat it slightly.
+#[derive(Debug, Clone)]
+pub struct CramerRaoBound {
+    model: MotionModel,
+    parameters: Vec<f64>,
+    /// Over the initial pose, then the motion.
+    information: DMatrix<f64>,
+}
+
+/// Covariance of the motion parameters, and which directions of them nothing is known of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoundCovariance {
+    /// Smallest covariance of the parameters, in the order of the model, in their units; as if unobservable directions
+    /// were known.
+    pub covariance: DMatrix<f64>,
+    /// Whether each parameter is observable: no direction without information touches it.
+    pub observable: Vec<bool>,
+    /// Number of directions of pose and motion together that carry information, at most twice the number of parameters.
+    pub rank: usize,
+}
+
+impl CramerRaoBound {
+    /// A bound without any frame yet, at the true motion `parameters` (in the order of the model).
+    ///
+    /// # Errors
+    /// The number of parameters is not that of the model, or one is not finite.
+    pub fn new(model: MotionModel, parameters: &[f64]) -> Result<Self, BoundError> {
+        let needed = model.parameter_count();
+        if parameters.len() != needed {
+            return Err(BoundError::ParameterCount { found: parameters.len(), needed });
+        }
+        if let Some(index) = parameters.iter().position(|value| !value.is_finite()) {
+            return Err(BoundError::ParameterNotFinite { index, value: parameters[index] });
+        }
+        let information = DMatrix::zeros(2 * needed, 2 * needed);
+        Ok(Self { model, parameters: parameters.to_vec(), information })
+    }
+
+    /// Adds the boundary points seen at a time in seconds, each with noise of standard deviation `noise` in every direction.
+    /// Points may be more or fewer than those really taken: `weight` is how many observations each stands for.
+    ///
+    /// # Errors
+    /// Noise that is not positive, a time or weight that is not finite.
+    pub fn add_frame(
+        &mut self,
+        time: f64,
+        points: impl IntoIterator<Item = BoundaryPoint>,
+        noise: f64,
+        weight: f64,
+    ) -> Result<(), BoundError> {
+        if !(noise.is_finite() && noise > 0.0) {
+            return Err(BoundError::Noise { value: noise });
+        }
+        if !(time.is_finite() && weight.is_finite() && weight >= 0.0) {
+            return Err(BoundError::Frame { time, weight });
+        }
+        let (model, k) = (self.model, self.parameters.len());
+        let flow = model.flow(&self.parameters, time).into_inner();
+        let inverse = flow.try_inverse().ok_or(BoundError::Frame { time, weight })?;
+        let by_pose = adjoint(model, &flow, &inverse);
+        let sensitivities: [Matrix3<f64>; MAX_PARAMETERS] = model.flow_sensitivities(&self.parameters, time);
+        let by_motion = columns(model, sensitivities.into_iter());
+        let mut g = DVector::zeros(2 * k);
+        let scale = weight / (noise * noise);
+        for BoundaryPoint { point, normal } in points {
+            let velocities = normal_velocities(model, &point, &normal);
+            for j in 0..k {
+                g[j] = (0..k).map(|i| velocities[i] * by_pose[i][j]).sum();
+                g[k + j] = (0..k).map(|i| velocities[i] * by_motion[i][j]).sum();
+            }
+            self.information.ger(scale, &g, &g, 1.0);
+        }
+        Ok(())
+    }
+
+    /// The Fisher information of the initial pose and the motion, in this order.
+    #[must_use]
+    pub fn information(&self) -> &DMatrix<f64> {
+        &self.information
+    }
+
+    /// The bound from the frames so far.
+    ///
+    /// # Errors
+    /// The information is not finite.
+    pub fn covariance(&self) -> Result<BoundCovariance, BoundError> {
+        let (k, size) = (self.parameters.len(), 2 * self.parameters.len());
+        if self.information.iter().any(|e| !e.is_finite()) {
+            return Err(BoundError::InformationNotFinite);
+        }
+        let scale = DVector::from_fn(size, |i, _| {
+            let diagonal = self.information[(i, i)];
+            if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 }
+        });
+        let scaled = DMatrix::from_fn(size, size, |i, j| self.information[(i, j)] * scale[i] * scale[j]);
+        let eigen = scaled.symmetric_eigen();
+        let smallest = RANK_TOLERANCE * eigen.eigenvalues.amax().max(f64::MIN_POSITIVE);
+        let mut inverse = DMatrix::zeros(size, size);
+        let mut observable = vec![true; k];
+        let mut rank = 0;
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value > smallest {
+                rank += 1;
+                inverse.ger(1.0 / value, &vector, &vector, 1.0);
+            } else {
+                (0..k).filter(|j| vector[k + j].abs() > 1e-4).for_each(|j| observable[j] = false);
+            }
+        }
+        let covariance = DMatrix::from_fn(k, k, |i, j| inverse[(k + i, k + j)] * scale[k + i] * scale[k + j]);
+        Ok(BoundCovariance { covariance, observable, rank })
+    }
+}
+
+impl BoundCovariance {
+    /// Smallest standard deviation of each parameter, `None` where it is not observable.
+    pub fn standard_deviations(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+        let diagonal = self.covariance.diagonal();
+        self.observable.iter().enumerate().map(move |(i, seen)| seen.then(|| diagonal[i].max(0.0).sqrt()))
+    }
+}

@@ -1,0 +1,337 @@
+//! The motion filter against simulated outlines: at the bound, with what a camera does to them, and with bad input.
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_identify::{
+    BoundaryPoint, CramerRaoBound, FilterError, FilterSettings, MotionFilter, Phase, ProcessNoise,
+};
+use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_sim_camera::{
+    BuiltInShape, Camera, Frame, Motion, Occlusion, Sampling, Scene, SequenceLength, Settings, Shape, Simulator,
+};
+use nalgebra::{Affine2, Matrix3, Point2, Vector2};
+use proptest::prelude::*;
+
+const RIGID: RigidMotion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -0.3, b2: 0.4 };
+const AFFINE: AffineMotion = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
+
+fn frames_of(shape: BuiltInShape, motion: impl Into<Motion>, settings: Settings) -> Vec<Frame> {
+    let scene = Scene::new(shape, motion, Camera::default());
+    Simulator::new(scene, settings).expect("good settings").frames().collect()
+}
+
+fn settings(frames: usize, seed: u64) -> Settings {
+    Settings { length: SequenceLength::Frames(frames), sampling: Sampling::Independent, seed, ..Settings::default() }
+}
+
+fn filter(model: MotionModel) -> MotionFilter {
+    MotionFilter::new(FilterSettings { model, ..FilterSettings::default() }).expect("good settings")
+}
+
+fn filtered(model: MotionModel, frames: &[Frame]) -> MotionFilter {
+    let mut filter = filter(model);
+    for frame in frames {
+        filter.step(frame.time, &frame.outline).expect("increasing times");
+    }
+    filter
+}
+
+fn values(model: MotionModel, motion: AffineMotion) -> Vec<f64> {
+    let AffineMotion { a1, a2, a3, a4, b1, b2 } = motion;
+    if model == MotionModel::Rigid { vec![a2, b1, b2] } else { vec![a1, a2, a3, a4, b1, b2] }
+}
+
+/// Bound of the built-in settings, where `share` of the 400 points inform.
+fn bound(shape: BuiltInShape, model: MotionModel, motion: AffineMotion, frames: usize, share: f64) -> Vec<f64> {
+    let shape = Shape::from(shape);
+    let mut bound = CramerRaoBound::new(model, &values(model, motion)).expect("a motion");
+    for frame in 0..frames {
+        let time = frame as f64 / 30.0;
+        let pose = motion.flow(time);
+        let cofactor = pose.matrix().fixed_view::<2, 2>(0, 0).try_inverse().expect("regular").transpose();
+        let points = (0..400).map(|i| {
+            let s = f64::from(i) / 400.0;
+            let normal = (cofactor * shape.normal_at(s).into_inner()).normalize();
+            BoundaryPoint { point: pose * shape.point_at(s), normal }
+        });
+        bound.add_frame(time, points, 0.005, share).expect("finite");
+    }
+    let covariance = bound.covariance().expect("finite");
+    covariance.standard_deviations().map(|std| std.expect("observable")).collect()
+}
+
+/// Error over bound of every parameter, and error over the filter's own standard deviation.
+fn ratios(filter: &MotionFilter, truth: &[f64], bound: &[f64]) -> Vec<(f64, f64)> {
+    let estimate = filter.estimate().expect("an estimate");
+    let list = estimate.parameters().zip(truth.iter().zip(bound)).map(|(parameter, (truth, bound))| {
+        let error = parameter.value.expect("observable") - truth;
+        (error / bound, error / parameter.standard_deviation.expect("given"))
+    });
+    list.collect()
+}
+
+fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = values.clone().count() as f64;
+    (values.map(|v| v * v).sum::<f64>() / count).sqrt()
+}
+
+/// Pools a few runs and compares them with the bound and with the intervals given.
+fn assert_at_bound(
+    model: MotionModel,
+    motion: AffineMotion,
+    change: impl Fn(&mut Settings),
+    frames: usize,
+    limit: f64,
+) {
+    let mut all = Vec::new();
+    for seed in 0..6 {
+        let mut settings = settings(frames, 100 + seed);
+        change(&mut settings);
+        let share = (1.0 - settings.occlusion.fraction) * (1.0 - settings.outliers) * (1.0 - settings.wrong_frames);
+        let run = filtered(model, &frames_of(BuiltInShape::Bird, motion, settings));
+        assert_eq!(run.restarts(), 0);
+        let bound = bound(BuiltInShape::Bird, model, motion, frames, share);
+        all.extend(ratios(&run, &values(model, motion), &bound));
+    }
+    let to_bound = root_mean_square(all.iter().map(|r| r.0));
+    let to_own = root_mean_square(all.iter().map(|r| r.1));
+    assert!(to_bound < limit, "{to_bound} times the bound");
+    // 18 or more numbers of standard deviation 1.
+    assert!((0.5..1.6).contains(&to_own), "intervals hold {to_own} times what they promise");
+}
+
+#[test]
+fn a_rigid_motion_is_found_at_the_bound_from_the_third_frame_on() {
+    for frames in [3, 8, 60] {
+        assert_at_bound(MotionModel::Rigid, RIGID.into(), |_| (), frames, 1.5);
+    }
+}
+
+#[test]
+fn an_affine_motion_is_found_at_the_bound() {
+    assert_at_bound(MotionModel::Affine, AFFINE, |_| (), 60, 1.5);
+}
+
+#[test]
+fn an_arc_missing_in_every_frame_the_first_included_leaves_the_filter_at_the_bound() {
+    let hide = |settings: &mut Settings| settings.occlusion = Occlusion { fraction: 0.2, ..Occlusion::default() };
+    assert_at_bound(MotionModel::Rigid, RIGID.into(), hide, 40, 1.5);
+}
+
+#[test]
+fn outliers_in_every_frame_the_first_included_leave_the_filter_at_the_bound() {
+    assert_at_bound(MotionModel::Rigid, RIGID.into(), |settings| settings.outliers = 0.05, 40, 1.5);
+}
+
+#[test]
+fn a_map_begun_from_a_part_grows_to_the_whole_outline() {
+    let mut settings = settings(40, 7);
+    settings.occlusion = Occlusion { fraction: 0.3, ..Occlusion::default() };
+    let frames = frames_of(BuiltInShape::Bird, RIGID, settings);
+    let first = filtered(MotionModel::Rigid, &frames[..1]);
+    let last = filtered(MotionModel::Rigid, &frames);
+    let cells = |filter: &MotionFilter| filter.map().expect("a map").cell_count() as f64;
+    let growth = cells(&last) / cells(&first);
+    assert!((1.3..1.6).contains(&growth), "0.7 of the outline grew by {growth}");
+    let (shape, pose) = (Shape::from(BuiltInShape::Bird), RIGID.flow(frames[39].time));
+    let truth: Vec<_> = (0..2000).map(|i| pose * shape.point_at(f64::from(i) / 2000.0)).collect();
+    let known: Vec<_> = last.map().expect("a map").outline_points().collect();
+    let near =
+        |p: &Point2<f64>, list: &[Point2<f64>]| list.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min);
+    assert!(known.iter().filter(|p| near(p, &truth) < 0.01).count() as f64 > 0.97 * known.len() as f64);
+    assert!(truth.iter().filter(|p| near(p, &known) < 0.02).count() as f64 > 0.97 * truth.len() as f64);
+}
+
+#[test]
+fn frames_that_show_another_object_are_rejected_and_counted_and_none_of_the_others() {
+    let mut settings = settings(90, 3);
+    settings.wrong_frames = 0.1;
+    let frames = frames_of(BuiltInShape::Bird, RIGID, settings);
+    assert!(frames[..3].iter().all(|frame| frame.corruption.wrong_shape.is_none()), "choose another seed");
+    let wrong = frames.iter().filter(|frame| frame.corruption.wrong_shape.is_some()).count();
+    assert!(wrong > 3);
+    let mut filter = filter(MotionModel::Rigid);
+    for frame in &frames {
+        let step = filter.step(frame.time, &frame.outline).expect("increasing times");
+        assert_eq!(step.accepted, frame.corruption.wrong_shape.is_none(), "frame {}", frame.index);
+    }
+    assert_eq!((filter.frames_rejected(), filter.frames_accepted()), (wrong, frames.len() - wrong));
+}
+
+#[test]
+fn a_first_frame_of_another_object_is_forgotten() {
+    let mut frames = frames_of(BuiltInShape::Bird, RIGID, settings(40, 5));
+    let other = frames_of(BuiltInShape::Van, RIGID, settings(1, 5));
+    frames[0].outline = other[0].outline.clone();
+    let run = filtered(MotionModel::Rigid, &frames);
+    assert_eq!(run.restarts(), 1);
+    let bound = bound(BuiltInShape::Bird, MotionModel::Rigid, RIGID.into(), 36, 1.0);
+    assert!(ratios(&run, &values(MotionModel::Rigid, RIGID.into()), &bound).iter().all(|r| r.0.abs() < 5.0));
+}
+
+#[test]
+fn gaps_and_uneven_times_change_nothing() {
+    let all = frames_of(BuiltInShape::Bird, RIGID, settings(90, 11));
+    let kept: Vec<_> =
+        all.into_iter().filter(|frame| frame.index % 7 != 3 && !(30..50).contains(&frame.index)).collect();
+    let run = filtered(MotionModel::Rigid, &kept);
+    assert_eq!((run.frames_rejected(), run.phase()), (0, Phase::Tracking));
+    let bound = bound(BuiltInShape::Bird, MotionModel::Rigid, RIGID.into(), 90, 0.6);
+    assert!(ratios(&run, &values(MotionModel::Rigid, RIGID.into()), &bound).iter().all(|r| r.0.abs() < 4.0));
+}
+
+#[test]
+fn a_change_of_motion_is_noticed_and_the_new_motion_found() {
+    let before = AffineMotion::from(RIGID);
+    let after = AffineMotion::from(RigidMotion { omega: -1.0, b1: 0.5, b2: 0.1 });
+    let motion = Motion::piecewise(vec![(0.0, before), (1.0, after)]).expect("two phases");
+    let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Bird, motion, settings(75, 2)));
+    assert_eq!((run.phase(), run.restarts()), (Phase::Tracking, 0));
+    let truth = values(MotionModel::Rigid, after);
+    let estimate = run.estimate().expect("an estimate");
+    for (parameter, truth) in estimate.parameters().zip(truth) {
+        let error = parameter.value.expect("observable") - truth;
+        assert!(error.abs() < 0.01, "{}: {error}", parameter.name);
+    }
+}
+
+#[test]
+fn large_turns_and_shifts_between_the_first_frames_are_found() {
+    for (seed, (turn, x, y)) in [(50.0, 0.3, 0.2), (-55.0, -0.4, 0.1), (30.0, 0.0, -0.5)].into_iter().enumerate() {
+        let motion = RigidMotion { omega: 5.0 * f64::to_radians(turn), b1: 5.0 * x, b2: 5.0 * y };
+        for shape in [BuiltInShape::Bird, BuiltInShape::Phone, BuiltInShape::Shoe] {
+            let settings = Settings { fps: 5.0, ..settings(4, seed as u64) };
+            let run = filtered(MotionModel::Rigid, &frames_of(shape, motion, settings));
+            assert_eq!(run.frames_rejected(), 0, "{shape}");
+            let estimate = run.estimate().expect("an estimate");
+            let omega = estimate.values()[0];
+            assert!((omega - motion.omega).abs() < 0.1, "{shape}: {omega} for {}", motion.omega);
+        }
+    }
+}
+
+#[test]
+fn the_rotation_of_a_circle_and_the_slide_of_an_edge_are_reported_as_unobservable() {
+    let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(20, 1)));
+    let observable = |run: &MotionFilter| -> Vec<bool> {
+        run.estimate().expect("an estimate").parameters().map(|p| p.value.is_some()).collect()
+    };
+    assert_eq!(observable(&run), [false, true, true]);
+
+    let line = |time: f64, shift: f64| {
+        let noise = |i: i32| 0.002 * (f64::from(i) * 12.9898 + 37.0 * time).sin() * (f64::from(i) * 4.1).cos();
+        let points = (0..200).map(|i| Point2::new(0.005 * f64::from(i) - 0.5, noise(i) + shift)).collect();
+        let arc = OpenArc::new(points).expect("an arc");
+        Outline::Open(OpenOutline::new(vec![arc]).expect("one arc"))
+    };
+    let mut edge = filter(MotionModel::Rigid);
+    for frame in 0..20 {
+        let time = f64::from(frame) / 30.0;
+        edge.step(time, &line(time, 0.1 * time)).expect("increasing times");
+    }
+    assert_eq!(observable(&edge), [true, false, true]);
+    let b2 = edge.estimate().expect("an estimate").values()[2];
+    assert!((b2 - 0.1).abs() < 0.02, "{b2}");
+}
+
+#[test]
+fn process_noise_lets_the_filter_follow_a_motion_that_drifts() {
+    let drifting = |t: f64| AffineMotion::from(RigidMotion { omega: 1.0 + 0.5 * t, b1: 0.2, b2: -0.1 });
+    let frames = frames_of(BuiltInShape::Bird, Motion::varying(drifting), settings(90, 4));
+    let noise = ProcessNoise { rates: 0.5, velocities: 0.1 };
+    let settings = FilterSettings { process_noise: noise, ..FilterSettings::default() };
+    let mut filter = MotionFilter::new(settings).expect("good settings");
+    for frame in &frames {
+        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").accepted, "frame {}", frame.index);
+    }
+    let estimate = filter.estimate().expect("an estimate");
+    let omega = estimate.parameters().next().expect("omega");
+    let error = omega.value.expect("observable") - (1.0 + 0.5 * frames[89].time);
+    assert!(error.abs() < 4.0 * omega.standard_deviation.expect("given"), "{error}");
+    let pose: Affine2<f64> = nalgebra::try_convert(filter.pose().expect("a pose")).expect("affine");
+    let truth = Motion::varying(drifting).flow(0.0, frames[89].time);
+    assert!((pose.matrix() - truth.matrix()).norm() < 0.02);
+}
+
+#[test]
+fn exact_points_give_the_motion_to_the_precision_of_the_cells() {
+    for sampling in [Sampling::Regular { jitter: 0.0 }, Sampling::Independent] {
+        let exact = Settings { noise: 0.0, sampling, ..settings(20, 0) };
+        let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Bird, RIGID, exact));
+        assert_eq!(run.frames_rejected(), 0, "{sampling:?}");
+        for (value, truth) in
+            run.estimate().expect("an estimate").values().iter().zip(values(MotionModel::Rigid, RIGID.into()))
+        {
+            assert!((value - truth).abs() < 1e-3, "{value} for {truth}");
+        }
+    }
+}
+
+#[test]
+fn bad_input_is_refused_and_leaves_the_filter_as_it_was() {
+    let frames = frames_of(BuiltInShape::Bird, RIGID, settings(5, 0));
+    let mut run = filtered(MotionModel::Rigid, &frames);
+    let before = (run.estimate(), run.frames_accepted(), run.frames_rejected());
+    for time in [frames[4].time, 0.0, f64::NAN, f64::INFINITY] {
+        let refused = run.step(time, &frames[4].outline);
+        assert!(matches!(refused, Err(FilterError::TimeNotIncreasing { .. })), "{time}");
+    }
+    assert_eq!(before, (run.estimate(), run.frames_accepted(), run.frames_rejected()));
+    let triangle = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point2::new(x, y));
+    let few = Outline::closed(triangle.to_vec()).expect("a triangle");
+    let mut empty = filter(MotionModel::Rigid);
+    assert_eq!(empty.step(0.0, &few).err(), Some(FilterError::TooFewPoints { found: 3, needed: 8 }));
+    assert!(!run.step(1.0, &few).expect("later frames may be bad").accepted);
+    for (agreement, patience) in [(0.0, 2), (1.0, 2), (f64::NAN, 2), (0.5, 0)] {
+        let settings = FilterSettings { smallest_agreement: agreement, patience, ..FilterSettings::default() };
+        assert!(matches!(MotionFilter::new(settings), Err(FilterError::Setting { .. })));
+    }
+    let noise = ProcessNoise { rates: -1.0, velocities: 0.0 };
+    assert!(MotionFilter::new(FilterSettings { process_noise: noise, ..FilterSettings::default() }).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn the_motion_of_a_turned_scaled_and_shifted_scene_is_the_turned_scaled_and_shifted_motion(
+        angle in -3.0_f64..3.0, scale in 0.01_f64..100.0, x in -5.0_f64..5.0, y in -5.0_f64..5.0, seed in 0_u64..100,
+    ) {
+        let frames = frames_of(BuiltInShape::Glider, RIGID, settings(6, seed));
+        let (s, c) = angle.sin_cos();
+        let shift = Vector2::new(x, y) * scale;
+        let matrix = Matrix3::new(scale * c, -scale * s, shift.x, scale * s, scale * c, shift.y, 0.0, 0.0, 1.0);
+        let map = Affine2::from_matrix_unchecked(matrix);
+        let moved: Vec<_> = frames
+            .iter()
+            .map(|f| Frame { outline: f.outline.moved(&map).expect("regular"), ..f.clone() })
+            .collect();
+        let (plain, turned) = (filtered(MotionModel::Rigid, &frames), filtered(MotionModel::Rigid, &moved));
+        let expected = matrix * plain.estimate().expect("an estimate").generator() * map.inverse().matrix();
+        let estimate = turned.estimate().expect("an estimate");
+        let difference = estimate.generator() - expected;
+        // The picture that cells are looked up in does not turn along, so that a point may come to another cell.
+        for ((i, j), size) in [((0, 1), 1.0), ((0, 2), scale * 6.0), ((1, 2), scale * 6.0)] {
+            prop_assert!(difference[(i, j)].abs() < 0.02 * size, "{difference}");
+        }
+    }
+
+    #[test]
+    fn whatever_comes_numbers_stay_finite(
+        seeds in proptest::collection::vec((0_u64..1000, 0_usize..4, 0.01_f64..3.0), 2..10),
+        which in 0_usize..4,
+    ) {
+        let mut filter = filter(MotionModel::ALL[which]);
+        let mut time = 0.0;
+        for (seed, kind, dt) in seeds {
+            time += dt;
+            let (noise, points) = [(0.0, 400), (0.3, 50), (0.005, 12), (1e-7, 30)][kind];
+            let settings = Settings { noise, points, outliers: 0.3, ..settings(1, seed) };
+            let shape = [BuiltInShape::Bird, BuiltInShape::Square, BuiltInShape::Circle, BuiltInShape::Van][kind];
+            let frames = frames_of(shape, RigidMotion::default(), settings);
+            filter.step(time, &frames[0].outline).expect("increasing times");
+            if let Some(estimate) = filter.estimate() {
+                prop_assert!(estimate.values().iter().all(|v| v.is_finite()));
+                prop_assert!(estimate.parameters().all(|p| p.standard_deviation.is_none_or(f64::is_finite)));
+            }
+            prop_assert!(filter.pose().expect("a pose").matrix().iter().all(|e| e.is_finite()));
+        }
+    }
+}
