@@ -1,97 +1,127 @@
-//! How close the adaptive identifier comes after 30 s, over built-in shapes and mask pictures given as arguments, for the
-//! three motions of the paper.
+//! How close the adaptive identifier comes after 30 s, over the built-in shapes and masks, for the three motions of the
+//! paper.
+//!
+//! ```text
+//! cargo run --release --example adaptive_accuracy -- [key=value ...] [mask.png ...]
+//! ```
+//!
+//! Keys: `law` (structured, printed, fast), `pairs` (all, best, or the number of one), `seed`, `noise`, and of the fit
+//! `offset`, `margin`, `ridge` (bounded fit) or `kappa` (GS3L); `rejections=1` prints why frames are rejected. Columns: errors of omega
+//! and of b, |w| of the chosen pair and of another, rejected frames, frames with the boundedness constraint active, and
+//! `!` for errors beyond 3 % of omega or 5 % of b, `!!!` beyond three times that.
+use std::{error::Error, path::Path};
+
 use freeform_motion::{
     Pipeline, PipelineSettings,
     curve_fit::Method,
-    identify::{AdaptiveLaw, AdaptiveSettings, PairChoice},
+    identify::{AdaptiveLaw, PairChoice},
     outline_io::read_shape,
     riccati::RigidMotion,
-    sim_camera::{BuiltInShape, Camera, Motion, Scene, SequenceLength, Settings, Shape, Simulator},
+    sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings, Shape, Simulator},
 };
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let motions =
-        [(std::f64::consts::FRAC_PI_2, -3.0, 4.0), (-std::f64::consts::FRAC_PI_3, 0.0, 4.0), (-2.0, 4.0, 0.0)];
-    let mut shapes: Vec<Shape> = BuiltInShape::ALL.into_iter().map(|s| s.shape()).collect();
-    for path in std::env::args().skip(1).filter(|a| a.ends_with(".png")) {
-        let outline = read_shape(&path)?;
-        let points: Vec<_> = outline.points().copied().collect();
-        let name = std::path::Path::new(&path).file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
-        shapes.push(Shape::from_polygon(&points)?.normalised().with_name(format!("*{name}")));
-    }
-    let env = |name: &str, default: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-    let law = match std::env::var("LAW").as_deref() {
-        Ok("printed") => AdaptiveLaw::Printed,
-        Ok("fast") => AdaptiveLaw::FilteredLeastSquares,
-        _ => AdaptiveLaw::Structured,
-    };
-    let pairs = match std::env::var("PAIRS").as_deref() {
-        Ok("all") => PairChoice::All,
-        Ok("0") => PairChoice::Given(0),
-        Ok("1") => PairChoice::Given(1),
-        Ok("best") => PairChoice::Best,
-        _ => PairChoice::All,
-    };
+/// What is measured.
+struct Measurement {
+    pipeline: PipelineSettings,
+    simulation: Settings,
+    shapes: Vec<Shape>,
+    print_rejections: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let measurement = Measurement::from_arguments(std::env::args().skip(1))?;
     println!("{:<16} {:>7} {:>8} {:>8}  |w| (chosen first)   rejected", "shape", "motion", "omega %", "b %");
-    let mut passed = [0; 3];
-    for shape in shapes {
-        for (m, &(omega, b1, b2)) in motions.iter().enumerate() {
-            let motion = RigidMotion { omega, b1, b2 };
-            let scene = Scene::new(shape.clone(), Motion::constant(motion), Camera::new(0.1)?);
-            let settings = Settings {
-                length: SequenceLength::Seconds(30.0),
-                seed: env("SEED", 1.0) as u64,
-                noise: env("NOISE", 0.005),
-                ..Settings::default()
-            };
-            let simulator = Simulator::new(scene, settings)?;
-            let mut fit = freeform_motion::curve_fit::FitSettings { offset: env("OFFSET", 0.1), ..Default::default() };
-            if let Method::Bounded { margin, ridge_weight } = &mut fit.method {
-                *margin = env("MARGIN", *margin);
-                *ridge_weight = env("RIDGE", *ridge_weight);
+    let mut counts = [0; 3];
+    let experiments = [PaperExperiment::FLIGHT_BIRD, PaperExperiment::GLIDER_OF_TEXT, PaperExperiment::CELLULAR_PHONE];
+    for shape in &measurement.shapes {
+        for (number, experiment) in experiments.iter().enumerate() {
+            if let Some(verdict) = measurement.run(shape, number, experiment.motion)? {
+                counts[verdict] += 1;
             }
-            if let Ok(kappa) = std::env::var("KAPPA") {
-                fit.method = Method::GloballyStabilised { ridge_weight: kappa.parse()? };
-            }
-            let identify = AdaptiveSettings { law, pairs, ..Default::default() };
-            let mut pipeline = Pipeline::new(PipelineSettings { fit, identify })?;
-            let mut active = 0;
-            for frame in simulator.frames() {
-                match pipeline.push(frame.time, &frame.outline) {
-                    Ok(result) => active += usize::from(result.fit.diagnostics().constraint_active),
-                    Err(error) if std::env::var("VERBOSE").is_ok() => println!("{error}"),
-                    Err(_) => {}
-                }
-            }
-            let Some(estimate) = pipeline.estimate() else {
-                println!("{} none", shape.name());
-                continue;
-            };
-            let space = estimate.in_space(0.1);
-            let v = space.values();
-            let omega_error = 100.0 * (v[0] - omega).abs() / omega.abs();
-            let b_error = 100.0 * (v[1] - b1).hypot(v[2] - b2) / b1.hypot(b2);
-            let worst = (omega_error / 3.0).max(b_error / 5.0);
-            let verdict = if worst <= 1.0 {
-                0
-            } else if worst <= 3.0 {
-                1
-            } else {
-                2
-            };
-            passed[verdict] += 1;
-            let id = pipeline.identifier();
-            let chosen = id.chosen_pair().unwrap_or(0);
-            println!(
-                "{:<16} {m:>7} {omega_error:>8.2} {b_error:>8.2}  {:.3} {:.3} {:>8} {active:>5} {}",
-                shape.name(),
-                id.rotation_content(chosen),
-                id.rotation_content(1 - chosen.min(1)),
-                pipeline.frames_rejected(),
-                ["", "!", "!!!"][verdict]
-            );
         }
     }
-    println!("within: {}, within three times: {}, beyond: {}", passed[0], passed[1], passed[2]);
+    println!("within: {}, within three times: {}, beyond: {}", counts[0], counts[1], counts[2]);
     Ok(())
+}
+
+impl Measurement {
+    fn from_arguments(arguments: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
+        let mut pipeline = PipelineSettings::default();
+        let mut simulation = Settings { length: SequenceLength::Seconds(30.0), seed: 1, ..Settings::default() };
+        let mut shapes: Vec<Shape> = BuiltInShape::ALL.into_iter().map(BuiltInShape::shape).collect();
+        let mut print_rejections = false;
+        for argument in arguments {
+            let Some((key, value)) = argument.split_once('=') else {
+                shapes.push(mask(Path::new(&argument))?);
+                continue;
+            };
+            match (key, &mut pipeline.fit.method) {
+                ("law", _) => {
+                    pipeline.identify.law = match value {
+                        "structured" => AdaptiveLaw::Structured,
+                        "printed" => AdaptiveLaw::Printed,
+                        "fast" => AdaptiveLaw::FilteredLeastSquares,
+                        _ => return Err(format!("no law {value:?}").into()),
+                    }
+                }
+                ("pairs", _) => {
+                    pipeline.identify.pairs = match value {
+                        "all" => PairChoice::All,
+                        "best" => PairChoice::Best,
+                        number => PairChoice::Given(number.parse()?),
+                    }
+                }
+                ("seed", _) => simulation.seed = value.parse()?,
+                ("noise", _) => simulation.noise = value.parse()?,
+                ("offset", _) => pipeline.fit.offset = value.parse()?,
+                ("margin", Method::Bounded { margin, .. }) => *margin = value.parse()?,
+                ("ridge", Method::Bounded { ridge_weight, .. }) => *ridge_weight = value.parse()?,
+                ("kappa", method) => *method = Method::GloballyStabilised { ridge_weight: value.parse()? },
+                ("rejections", _) => print_rejections = value == "1",
+                _ => return Err(format!("no setting {key:?} of this fit").into()),
+            }
+        }
+        Ok(Self { pipeline, simulation, shapes, print_rejections })
+    }
+
+    /// Prints one row; returns 0 within the limits, 1 within three times them, 2 beyond, `None` without an estimate.
+    fn run(&self, shape: &Shape, number: usize, motion: RigidMotion) -> Result<Option<usize>, Box<dyn Error>> {
+        let scene = Scene::new(shape.clone(), motion, Camera::new(PaperExperiment::SCALE)?);
+        let mut pipeline = Pipeline::new(self.pipeline.clone())?;
+        let mut active = 0;
+        for frame in &Simulator::new(scene, self.simulation.clone())? {
+            match pipeline.push(frame.time, &frame.outline) {
+                Ok(result) => active += usize::from(result.fit.diagnostics().constraint_active),
+                Err(error) if self.print_rejections => println!("{error}"),
+                Err(_) => {}
+            }
+        }
+        let Some(estimate) = pipeline.estimate().map(|estimate| estimate.in_space(PaperExperiment::SCALE)) else {
+            println!("{} none", shape.name());
+            return Ok(None);
+        };
+        let v = estimate.values();
+        let omega_error = 100.0 * (v[0] - motion.omega).abs() / motion.omega.abs();
+        let b_error = 100.0 * (v[1] - motion.b1).hypot(v[2] - motion.b2) / motion.b1.hypot(motion.b2);
+        let worst = (omega_error / 3.0).max(b_error / 5.0);
+        let verdict = usize::from(worst > 1.0) + usize::from(worst > 3.0);
+        let identifier = pipeline.identifier();
+        let chosen = identifier.chosen_pair().unwrap_or(0);
+        println!(
+            "{:<16} {number:>7} {omega_error:>8.2} {b_error:>8.2}  {:.3} {:.3} {:>8} {active:>5} {}",
+            shape.name(),
+            identifier.rotation_content(chosen),
+            identifier.rotation_content(1 - chosen.min(1)),
+            pipeline.frames_rejected(),
+            ["", "!", "!!!"][verdict]
+        );
+        Ok(Some(verdict))
+    }
+}
+
+/// The outline of the object in a mask, at unit size; its name with a star.
+fn mask(path: &Path) -> Result<Shape, Box<dyn Error>> {
+    let points: Vec<_> = read_shape(path)?.points().copied().collect();
+    let name = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    Ok(Shape::from_polygon(&points)?.normalised().with_name(format!("*{name}")))
 }

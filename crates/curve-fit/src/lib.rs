@@ -57,3 +57,7 @@ pub use polynomial::ImplicitPolynomial;
 pub use residuals::Residuals;
 pub use ridge::rotation_invariant_ridge;
 pub use settings::{FitSettings, Method};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

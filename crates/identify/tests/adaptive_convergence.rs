@@ -5,7 +5,7 @@ use adaptive_support::{AFFINE, RIGID, even_times, parameters_after, run, startin
 use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice};
 use freeform_riccati::MotionModel;
 use proptest::prelude::*;
-use rand::{RngExt as _, SeedableRng as _};
+use rand::SeedableRng as _;
 
 const LAWS: [AdaptiveLaw; 3] = [AdaptiveLaw::Printed, AdaptiveLaw::Structured, AdaptiveLaw::FilteredLeastSquares];
 
