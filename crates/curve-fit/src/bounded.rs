@@ -26,7 +26,7 @@ const MINIMAL_STEP: f64 = 1e-7;
 const MAX_ITERATIONS: usize = 80;
 /// Steps stop short of the boundary of the positive semidefinite cone by this fraction.
 const FRACTION_TO_BOUNDARY: f64 = 0.97;
-const BACKTRACKING: f64 = 0.95;
+const BACKTRACKING: f64 = 0.85;
 
 /// Replaces the leading form in `coefficients` (degree n) by the best one, in the sense of `system`, whose values on the
 /// unit circle are at least `margin` times their unconstrained root mean square, and the other coefficients by the best
@@ -198,8 +198,25 @@ fn upper_triangle<const ROWS: usize>() -> impl Iterator<Item = (usize, usize)> {
 /// A step, at most 1, after which the matrix is still positive definite, with some room.
 fn step_length<const ROWS: usize>(from: &SMatrix<f64, ROWS, ROWS>, step: &SMatrix<f64, ROWS, ROWS>) -> f64 {
     let mut length = 1.0;
-    while length > 0.1 * MINIMAL_STEP && (from + (length / FRACTION_TO_BOUNDARY) * step).cholesky().is_none() {
+    while length > 0.1 * MINIMAL_STEP && !is_positive_definite(from + (length / FRACTION_TO_BOUNDARY) * step) {
         length *= BACKTRACKING;
     }
     length
+}
+
+/// Whether all pivots of a symmetric elimination are positive: a Cholesky factorisation without its square roots.
+fn is_positive_definite<const ROWS: usize>(mut matrix: SMatrix<f64, ROWS, ROWS>) -> bool {
+    for k in 0..ROWS {
+        let pivot = matrix[(k, k)];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return false;
+        }
+        for j in k + 1..ROWS {
+            let factor = matrix[(j, k)] / pivot;
+            for i in j..ROWS {
+                matrix[(i, j)] -= factor * matrix[(i, k)];
+            }
+        }
+    }
+    true
 }
