@@ -86,4 +86,15 @@ mod tests {
             prop_assert!((law.parameters(MotionModel::Affine) - SVector::from(p)).norm() < 1e-12);
         }
     }
+    #[test]
+    fn the_error_of_the_state_decays_over_a_line_at_rest() {
+        let paper = Vector4::new(-0.5, -0.5, -1.0, -1.0);
+        let lyapunov = Matrix4::from_diagonal(&Vector4::new(0.5, 1.0, 1.0, 1.5));
+        let mut law = PrintedLaw::new(Matrix4::from_diagonal(&paper), lyapunov, &AffineMotion::default());
+        let input = PairInput { state: Vector4::new(0.4, 0.7, 0.1, -0.2), weight: 1.0 };
+        let mut state = input.state + Vector4::new(0.3, -0.2, 0.1, 0.4);
+        let start = (state - input.state).norm();
+        (0..1800).for_each(|_| law.step(1.0 / 30.0, &mut state, &input));
+        assert!((state - input.state).norm() < 1e-3 * start, "{start} to {}", (state - input.state).norm());
+    }
 }
