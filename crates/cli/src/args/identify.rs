@@ -80,10 +80,10 @@ pub(crate) struct TrackOptions {
     pub(crate) motion: MotionChoice,
 
     /// How the motion is identified
-    #[arg(long, value_enum, default_value_t = IdentifyMethod::Adaptive)]
+    #[arg(long, value_enum, default_value_t = IdentifyMethod::Filter)]
     pub(crate) method: IdentifyMethod,
 
-    /// Degree of the fitted polynomial: 2, 4, 6 or 8 [default: 4]
+    /// Degree of the fitted polynomial: 2, 4, 6 or 8 (adaptive; the filter fits none) [default: 4]
     #[arg(long, value_name = "N", value_parser = degree)]
     pub(crate) degree: Option<Degree>,
 
@@ -114,6 +114,8 @@ impl MotionChoice {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum IdentifyMethod {
+    /// Outline, pose and motion estimated together, with standard deviations
+    Filter,
     /// The paper's adaptive identifier on the lines of the fitted curve
     Adaptive,
 }
@@ -121,6 +123,7 @@ pub(crate) enum IdentifyMethod {
 impl IdentifyMethod {
     pub(crate) const fn name(self) -> &'static str {
         match self {
+            Self::Filter => "filter",
             Self::Adaptive => "adaptive",
         }
     }

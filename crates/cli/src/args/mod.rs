@@ -57,8 +57,9 @@ Examples:
 /// The main job with nothing to prepare: simulate a flying bird, identify its motion, write a report.
 ///
 /// Simulates the flight bird of the paper (omega = pi/2 rad/s, b = (-3, 4), f/Z0 = 0.1, noise 0.005, 30 s at 30
-/// frames/s), identifies its motion, and prints what was found beside the truth. A report, the outlines, the trace and
-/// figures are left in a folder.
+/// frames/s), identifies its motion by the filter and, for comparison, by the adaptive law of the paper, and prints what
+/// was found beside the truth. The folder then holds report.html, outlines.csv, curve.svg, trace.csv and parameters.svg
+/// (filter), trace-adaptive.csv and parameters-adaptive.svg (adaptive).
 #[derive(Debug, Args)]
 #[command(after_help = DEMO_EXAMPLES)]
 pub(crate) struct DemoArgs {
