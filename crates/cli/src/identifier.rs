@@ -66,7 +66,7 @@ impl Identifier {
                 Ok(step) => {
                     let estimate = object.filter.estimate();
                     object.last_known = estimate.map(|estimate| (time, estimate)).or(object.last_known);
-                    let rejected_because = (!step.accepted).then(|| why_rejected(&step));
+                    let rejected_because = (!step.accepted).then(|| why_rejected(&step, object.filter.settings()));
                     Step { phase: Some(phase_name(step.phase)), estimate, fit: None, rejected_because }
                 }
                 Err(error) => Step::refused(&error),
@@ -149,10 +149,13 @@ fn phase_name(phase: Phase) -> &'static str {
     }
 }
 
-fn why_rejected(step: &FilterStep) -> String {
+fn why_rejected(step: &FilterStep, settings: &FilterSettings) -> String {
     match step.update {
-        Some(update) => {
+        Some(update) if update.agreement < settings.smallest_agreement => {
             format!("does not fit the object, {:.0} % of the points lie on its outline", 100.0 * update.agreement)
+        }
+        Some(update) => {
+            format!("does not go on from the frames before it, squared innovation {:.0}", update.innovation)
         }
         None => "the object was not found".to_owned(),
     }

@@ -83,7 +83,7 @@ pub(crate) struct TrackOptions {
     #[arg(long, value_enum, default_value_t = IdentifyMethod::Filter)]
     pub(crate) method: IdentifyMethod,
 
-    /// Degree of the fitted polynomial: 2, 4, 6 or 8 (adaptive; the filter fits none) [default: 4]
+    /// Degree of the fitted polynomial: 2, 4, 6 or 8; the filter fits none [default: 4]
     #[arg(long, value_name = "N", value_parser = degree)]
     pub(crate) degree: Option<Degree>,
 
