@@ -56,7 +56,8 @@ Examples:
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
 Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
-generator and reason (why the frame was not accepted, else null).";
+generator and reason (why the frame was not accepted, else null). Phases of the filter: acquiring, tracking, lost; of \
+the adaptive method: start, adapt.";
 
 /// Identify as a stream: one line of JSON per object and frame as soon as the frame is complete.
 ///

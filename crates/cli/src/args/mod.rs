@@ -29,8 +29,9 @@ See 'freeform COMMAND --help' for more on a command.";
 
 /// Finds how a flat free-form object moves from nothing but its outlines.
 ///
-/// Fits an implicit polynomial to every outline, takes it apart into complex lines, and identifies the motion from how
-/// the lines move: x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2.
+/// The motion is x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2. A filter estimates it together with the outline and its
+/// pose; or, as in the paper, an implicit polynomial is fitted to every outline, taken apart into complex lines, and the
+/// motion identified from how the lines move.
 #[derive(Debug, Parser)]
 #[command(name = "freeform", version, after_help = EXAMPLES, arg_required_else_help = true, args_override_self = true, max_term_width = 100)]
 pub(crate) struct Cli {
