@@ -2,6 +2,7 @@
 mod args;
 mod commands;
 mod failure;
+mod identifier;
 mod input;
 mod level_set;
 mod output;

@@ -1,14 +1,15 @@
-//! One pipeline per object, and what each frame gave.
+//! What each frame of an object gave, and what was found of it in the end.
 use std::collections::HashMap;
 
+use freeform_motion::curve_fit::Fit;
 use freeform_motion::identify::{MotionEstimate, ParameterEstimate};
 use freeform_motion::outline_io::{OutlineFrame, ReadError, ReadErrorKind};
 use freeform_motion::riccati::MotionModel;
-use freeform_motion::{FrameResult, Pipeline, PipelineSettings};
 use nalgebra::Matrix3;
 
 use crate::args::{IdentifyMethod, TrackOptions};
 use crate::failure::Failure;
+use crate::identifier::Identifier;
 use crate::input::{Input, unreadable};
 use crate::progress::Progress;
 
@@ -22,16 +23,20 @@ pub(crate) struct Observation {
     pub(crate) frame: u64,
     /// In seconds; `None` where the outline could not be read.
     pub(crate) time: Option<f64>,
-    /// The result, or why the frame was rejected.
-    pub(crate) outcome: Result<Accepted, String>,
+    /// What the identifier was doing after the frame; `None` where it could not take it at all.
+    pub(crate) phase: Option<&'static str>,
+    /// The motion as known after the frame.
+    pub(crate) estimate: Option<Estimate>,
+    /// The curve fitted to the outline, where the method fits one.
+    pub(crate) fit: Option<Fit>,
+    /// Why the frame was not used; `None` where it was.
+    pub(crate) rejected_because: Option<String>,
 }
 
-/// What a frame gave that was not rejected.
-#[derive(Debug)]
-pub(crate) struct Accepted {
-    pub(crate) phase: &'static str,
-    pub(crate) result: FrameResult,
-    pub(crate) estimate: Option<Estimate>,
+impl Observation {
+    pub(crate) fn is_accepted(&self) -> bool {
+        self.rejected_because.is_none()
+    }
 }
 
 /// An identified motion as it is reported: finite, and in space where a camera scale was given.
@@ -69,6 +74,8 @@ pub(crate) struct ObjectResult {
     pub(crate) motion: MotionModel,
     pub(crate) frames: usize,
     pub(crate) frames_rejected: usize,
+    /// Why the first of them was rejected.
+    pub(crate) first_rejection: Option<String>,
     pub(crate) estimate: Option<Estimate>,
     pub(crate) warnings: Vec<String>,
 }
@@ -76,10 +83,7 @@ pub(crate) struct ObjectResult {
 /// Follows every object of a sequence.
 #[derive(Debug)]
 pub(crate) struct Tracking {
-    settings: PipelineSettings,
-    motion: MotionModel,
-    method: IdentifyMethod,
-    scale: Option<f64>,
+    options: TrackOptions,
     objects: Vec<Object>,
     positions: HashMap<String, usize>,
 }
@@ -87,31 +91,22 @@ pub(crate) struct Tracking {
 #[derive(Debug)]
 struct Object {
     name: String,
-    pipeline: Pipeline,
-    /// Frames whose outline could not be read.
-    unread: usize,
+    identifier: Identifier,
+    frames: usize,
+    rejected: usize,
     reasons: Vec<String>,
-    reasons_left_out: usize,
 }
 
 impl Tracking {
     /// With no object yet.
     pub(crate) fn new(options: &TrackOptions) -> Result<Self, Failure> {
-        let (settings, motion) = (pipeline_settings(options), options.motion.model());
         // Settings are refused before anything is read.
-        Pipeline::new(settings.clone()).map_err(Failure::unusable)?;
-        Ok(Self {
-            settings,
-            motion,
-            method: options.method,
-            scale: options.scale,
-            objects: Vec::new(),
-            positions: HashMap::new(),
-        })
+        Identifier::new(options)?;
+        Ok(Self { options: options.clone(), objects: Vec::new(), positions: HashMap::new() })
     }
 
-    /// Takes all frames of an input and hands on what each gave, with the frame itself where it could be read. Returns the error that ended the reading, if any; what
-    /// came before it has been taken.
+    /// Takes all frames of an input and hands on what each gave, with the frame itself where it could be read. Returns
+    /// the error that ended the reading, if any; what came before it has been taken.
     pub(crate) fn read(
         &mut self,
         input: Input,
@@ -135,27 +130,37 @@ impl Tracking {
 
     /// Takes the next frame of an object.
     pub(crate) fn push(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
-        let (method, scale) = (self.method, self.scale);
+        let scale = self.options.scale;
         let object = self.object(&frame.object)?;
-        let outcome = match object.pipeline.push(frame.time, &frame.outline) {
-            Ok(result) => Ok(accepted(method, scale, result)),
-            Err(error) => {
-                let reason = format!("frame {} of object {:?}: {}", frame.frame, frame.object, with_causes(&error));
-                object.note(&reason);
-                Err(reason)
-            }
-        };
-        Ok(Observation { object: frame.object.clone(), frame: frame.frame, time: Some(frame.time), outcome })
+        let step = object.identifier.push(frame.time, &frame.outline);
+        let in_place = |reason| format!("frame {} of object {:?}: {reason}", frame.frame, frame.object);
+        let rejected_because = step.rejected_because.map(in_place);
+        object.count(rejected_because.as_deref());
+        Ok(Observation {
+            object: frame.object.clone(),
+            frame: frame.frame,
+            time: Some(frame.time),
+            phase: step.phase,
+            estimate: step.estimate.and_then(|estimate| Estimate::of(estimate, scale)),
+            fit: step.fit,
+            rejected_because,
+        })
     }
 
     /// Takes note of a frame whose points are no outline.
     fn reject(&mut self, error: &ReadError) -> Result<Option<Observation>, Failure> {
         let ReadErrorKind::Degenerate { object, frame, .. } = &error.kind else { return Ok(None) };
         let reason = error.to_string();
-        let entry = self.object(object)?;
-        entry.unread += 1;
-        entry.note(&reason);
-        Ok(Some(Observation { object: object.clone(), frame: *frame, time: None, outcome: Err(reason) }))
+        self.object(object)?.count(Some(&reason));
+        Ok(Some(Observation {
+            object: object.clone(),
+            frame: *frame,
+            time: None,
+            phase: None,
+            estimate: None,
+            fit: None,
+            rejected_because: Some(reason),
+        }))
     }
 
     /// The results so far, in the order in which the objects first appeared.
@@ -164,22 +169,23 @@ impl Tracking {
     }
 
     fn result(&self, object: &Object) -> ObjectResult {
-        let raw = object.pipeline.estimate();
-        let estimate = raw.and_then(|estimate| Estimate::of(estimate, self.scale));
-        let mut warnings = object.pipeline.warnings();
+        let raw = object.identifier.estimate();
+        let estimate = raw.and_then(|estimate| Estimate::of(estimate, self.options.scale));
+        let mut warnings = object.identifier.warnings();
         if raw.is_some() && estimate.is_none() {
             warnings.push("the identifier diverged: its numbers are not finite".to_owned());
         }
         warnings.extend(object.reasons.iter().map(|reason| format!("rejected: {reason}")));
-        if object.reasons_left_out > 0 {
-            warnings.push(format!("rejected: {} more frame(s)", object.reasons_left_out));
+        if object.rejected > object.reasons.len() {
+            warnings.push(format!("rejected: {} more frame(s)", object.rejected - object.reasons.len()));
         }
         ObjectResult {
             object: object.name.clone(),
-            method: self.method,
-            motion: self.motion,
-            frames: object.pipeline.frames() + object.unread,
-            frames_rejected: object.pipeline.frames_rejected() + object.unread,
+            method: self.options.method,
+            motion: self.options.motion.model(),
+            frames: object.frames,
+            frames_rejected: object.rejected,
+            first_rejection: object.reasons.first().cloned(),
             estimate,
             warnings,
         }
@@ -189,10 +195,10 @@ impl Tracking {
         let position = match self.positions.get(name) {
             Some(position) => *position,
             None => {
-                let pipeline = Pipeline::new(self.settings.clone()).map_err(Failure::unusable)?;
+                let identifier = Identifier::new(&self.options)?;
                 let (name, position) = (name.to_owned(), self.objects.len());
                 self.positions.insert(name.clone(), position);
-                self.objects.push(Object { name, pipeline, unread: 0, reasons: Vec::new(), reasons_left_out: 0 });
+                self.objects.push(Object { name, identifier, frames: 0, rejected: 0, reasons: Vec::new() });
                 position
             }
         };
@@ -201,44 +207,13 @@ impl Tracking {
 }
 
 impl Object {
-    fn note(&mut self, reason: &str) {
+    /// Counts a frame, and keeps why it was rejected, if it was.
+    fn count(&mut self, rejected_because: Option<&str>) {
+        self.frames += 1;
+        let Some(reason) = rejected_because else { return };
+        self.rejected += 1;
         if self.reasons.len() < REASONS_KEPT {
             self.reasons.push(reason.to_owned());
-        } else {
-            self.reasons_left_out += 1;
         }
     }
-}
-
-/// What the options ask of a pipeline.
-pub(crate) fn pipeline_settings(options: &TrackOptions) -> PipelineSettings {
-    let mut settings = PipelineSettings::default();
-    settings.identify.model = options.motion.model();
-    if let Some(degree) = options.degree {
-        settings.fit.degree = degree;
-    }
-    settings
-}
-
-fn accepted(method: IdentifyMethod, scale: Option<f64>, result: FrameResult) -> Accepted {
-    let estimate = result.estimate.and_then(|estimate| Estimate::of(estimate, scale));
-    let phase = match (method, &estimate) {
-        (_, None) => "start",
-        (IdentifyMethod::Adaptive, Some(_)) => "adapt",
-    };
-    Accepted { phase, result, estimate }
-}
-
-/// An error and what caused it, without what its own text already says.
-fn with_causes(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text = format!("{text}: {cause_text}");
-        }
-        source = cause.source();
-    }
-    text
 }

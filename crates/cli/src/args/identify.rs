@@ -56,7 +56,8 @@ Examples:
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
 Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
-generator and reason (why the frame was not accepted, else null).";
+generator and reason (why the frame was not accepted, else null). Phases of the filter: acquiring, tracking, lost; of \
+the adaptive method: start, adapt.";
 
 /// Identify as a stream: one line of JSON per object and frame as soon as the frame is complete.
 ///
@@ -80,10 +81,10 @@ pub(crate) struct TrackOptions {
     pub(crate) motion: MotionChoice,
 
     /// How the motion is identified
-    #[arg(long, value_enum, default_value_t = IdentifyMethod::Adaptive)]
+    #[arg(long, value_enum, default_value_t = IdentifyMethod::Filter)]
     pub(crate) method: IdentifyMethod,
 
-    /// Degree of the fitted polynomial: 2, 4, 6 or 8 [default: 4]
+    /// Degree of the fitted polynomial: 2, 4, 6 or 8; the filter fits none [default: 4]
     #[arg(long, value_name = "N", value_parser = degree)]
     pub(crate) degree: Option<Degree>,
 
@@ -114,6 +115,8 @@ impl MotionChoice {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum IdentifyMethod {
+    /// Outline, pose and motion estimated together, with standard deviations
+    Filter,
     /// The paper's adaptive identifier on the lines of the fitted curve
     Adaptive,
 }
@@ -121,6 +124,7 @@ pub(crate) enum IdentifyMethod {
 impl IdentifyMethod {
     pub(crate) const fn name(self) -> &'static str {
         match self {
+            Self::Filter => "filter",
             Self::Adaptive => "adaptive",
         }
     }

@@ -29,8 +29,9 @@ See 'freeform COMMAND --help' for more on a command.";
 
 /// Finds how a flat free-form object moves from nothing but its outlines.
 ///
-/// Fits an implicit polynomial to every outline, takes it apart into complex lines, and identifies the motion from how
-/// the lines move: x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2.
+/// The motion is x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2. A filter estimates it together with the outline and its
+/// pose; or, as in the paper, an implicit polynomial is fitted to every outline, taken apart into complex lines, and the
+/// motion identified from how the lines move.
 #[derive(Debug, Parser)]
 #[command(name = "freeform", version, after_help = EXAMPLES, arg_required_else_help = true, args_override_self = true, max_term_width = 100)]
 pub(crate) struct Cli {
@@ -57,8 +58,9 @@ Examples:
 /// The main job with nothing to prepare: simulate a flying bird, identify its motion, write a report.
 ///
 /// Simulates the flight bird of the paper (omega = pi/2 rad/s, b = (-3, 4), f/Z0 = 0.1, noise 0.005, 30 s at 30
-/// frames/s), identifies its motion, and prints what was found beside the truth. A report, the outlines, the trace and
-/// figures are left in a folder.
+/// frames/s), identifies its motion by the filter and, for comparison, by the adaptive law of the paper, and prints what
+/// was found beside the truth. The folder then holds report.html, outlines.csv, curve.svg, trace.csv and parameters.svg
+/// (filter), trace-adaptive.csv and parameters-adaptive.svg (adaptive).
 #[derive(Debug, Args)]
 #[command(after_help = DEMO_EXAMPLES)]
 pub(crate) struct DemoArgs {

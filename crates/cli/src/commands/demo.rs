@@ -1,18 +1,21 @@
 use std::fs;
-use std::io::Write as _;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
 
-use freeform_motion::outline_io::WriteError;
+use freeform_motion::outline_io::{OutlineFrame, WriteError};
+use freeform_motion::riccati::AffineMotion;
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 
-use super::identify::settings;
+use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
 use super::{FittedOutline, History, command_line};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::failure::{Failure, plain, warn};
+use crate::identifier::pipeline_settings;
 use crate::output::{
-    Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
+    Findings, Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
 };
-use crate::tracking::Tracking;
+use crate::tracking::{ObjectResult, Observation, Tracking};
 use crate::truth::SimulatedMotion;
 
 /// Length of the sequence in seconds: the time that the paper's figures show.
@@ -20,11 +23,13 @@ const SECONDS: f64 = 30.0;
 
 const OUTLINES: &str = "outlines.csv";
 const TRACE: &str = "trace.csv";
+const TRACE_ADAPTIVE: &str = "trace-adaptive.csv";
 const PARAMETERS: &str = "parameters.svg";
+const PARAMETERS_ADAPTIVE: &str = "parameters-adaptive.svg";
 const CURVE: &str = "curve.svg";
 const REPORT: &str = "report.html";
 
-/// Simulates the paper's flight bird, identifies its motion and leaves a report.
+/// Simulates the paper's flight bird, identifies its motion by both methods and leaves a report.
 pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let folder = &args.out;
     fs::create_dir_all(folder)
@@ -34,30 +39,21 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let length = SequenceLength::Seconds(SECONDS);
     let camera = Settings { fps: 30.0, length, noise: PaperExperiment::NOISE, ..Settings::default() };
     let simulator = Simulator::new(scene, camera).map_err(Failure::unusable)?;
-    let options = TrackOptions {
-        motion: MotionChoice::Rigid,
-        method: IdentifyMethod::Adaptive,
-        degree: None,
-        scale: Some(scale),
-    };
-    let model = options.motion.model();
-    let truth = SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale }.seen_at(options.scale);
+    let truth = SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale }.seen_at(Some(scale));
+    let by_filter =
+        TrackOptions { motion: MotionChoice::Rigid, method: IdentifyMethod::Filter, degree: None, scale: Some(scale) };
+    let by_adaptive_law = TrackOptions { method: IdentifyMethod::Adaptive, ..by_filter.clone() };
 
-    let mut tracking = Tracking::new(&options)?;
+    let mut filter = Identification::new(by_filter.clone(), &folder.join(TRACE))?;
+    let mut adaptive = Identification::new(by_adaptive_law.clone(), &folder.join(TRACE_ADAPTIVE))?;
     let mut outlines = WholeFile::create(&folder.join(OUTLINES))?;
-    let trace_path = folder.join(TRACE);
-    let trace_failure =
-        |error: std::io::Error| Failure::unusable(format_args!("{}: {}", trace_path.display(), plain(&error)));
-    let mut trace = TraceWriter::new(WholeFile::create(&trace_path)?, model).map_err(trace_failure)?;
-    let mut histories = Vec::new();
     let mut first = None;
     let written = write_sequence(&mut outlines, &simulator, |frame| {
-        let observation = tracking.push(frame)?;
-        trace.write(&observation).map_err(trace_failure)?;
-        if let (None, Ok(accepted)) = (&first, &observation.outcome) {
-            first = Some((FittedOutline::new(frame, accepted.result.fit), frame.outline.clone()));
+        filter.take(frame)?;
+        let observation = adaptive.take(frame)?;
+        if let (None, Some(fit)) = (&first, observation.fit) {
+            first = Some((FittedOutline::new(frame, fit), frame.outline.clone()));
         }
-        History::take(&mut histories, &observation, Some(frame));
         Ok(())
     });
     written.map_err(|error| match error {
@@ -66,15 +62,13 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         SequenceError::Other(failure) => failure,
     })?;
     outlines.finish()?;
-    trace.into_inner().map_err(trace_failure)?.finish()?;
-
-    let results = tracking.results();
-    for warning in results.iter().flat_map(|result| &result.warnings) {
-        warn(warning);
-    }
-    WholeFile::write(&folder.join(PARAMETERS), &parameter_figure(&histories, model, Some(&truth)))?;
+    let filter = filter.finish(&folder.join(PARAMETERS), &truth)?;
+    let adaptive = adaptive.finish(&folder.join(PARAMETERS_ADAPTIVE), &truth)?;
     WholeFile::write(&folder.join(CURVE), &fit_figure(first.as_slice()))?;
-    let mut listed = settings(&options, "simulated: the flight bird of the paper");
+
+    let mut listed = settings(&by_filter, "simulated: the flight bird of the paper");
+    listed.push(("For comparison", by_adaptive_law.method.name().to_owned()));
+    listed.extend(fit_settings(&pipeline_settings(&by_adaptive_law).fit));
     listed.extend([
         ("Frames per second", simulator.settings().fps.to_string()),
         ("Points on the outline", simulator.settings().points.to_string()),
@@ -85,18 +79,73 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         title: "The flight bird: motion from nothing but its outlines".to_owned(),
         command: command_line(),
         settings: listed,
-        results: &results,
-        histories: &histories,
+        findings: [&filter, &adaptive].map(Found::findings).into(),
         truth: Some(&truth),
         read_error: None,
     };
     WholeFile::write(&folder.join(REPORT), &write_report(&report))?;
 
     let mut sink = Sink::stdout();
-    let printed = write_identify_table(&mut sink, &results, Some(&truth)).and_then(|()| {
-        let folder = folder.display();
-        writeln!(sink, "\nWritten to {folder}: {REPORT}, {OUTLINES}, {TRACE}, {PARAMETERS}, {CURVE}")
-    });
+    let printed = print(&mut sink, &filter, &adaptive, &truth, folder);
     printed.map_err(|error| sink.failure(&error))?;
     sink.finish()
+}
+
+fn print(sink: &mut Sink, filter: &Found, adaptive: &Found, truth: &AffineMotion, folder: &Path) -> io::Result<()> {
+    write_identify_table(sink, &filter.results, Some(truth))?;
+    writeln!(sink, "\nFor comparison, by the adaptive law of the paper:")?;
+    write_identify_table(sink, &adaptive.results, Some(truth))?;
+    writeln!(sink, "\nWritten to {}:", folder.display())?;
+    writeln!(sink, "  {REPORT}, {OUTLINES}, {CURVE}")?;
+    writeln!(sink, "  {TRACE}, {PARAMETERS} (filter)")?;
+    writeln!(sink, "  {TRACE_ADAPTIVE}, {PARAMETERS_ADAPTIVE} (adaptive)")
+}
+
+/// One method at work on the sequence.
+struct Identification {
+    options: TrackOptions,
+    tracking: Tracking,
+    trace: TraceWriter<WholeFile>,
+    trace_path: PathBuf,
+    histories: Vec<History>,
+}
+
+/// What one method found.
+struct Found {
+    results: Vec<ObjectResult>,
+    histories: Vec<History>,
+}
+
+impl Identification {
+    fn new(options: TrackOptions, trace_path: &Path) -> Result<Self, Failure> {
+        let tracking = Tracking::new(&options)?;
+        let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.model())
+            .map_err(|error| file_failure(trace_path, &error))?;
+        Ok(Self { options, tracking, trace, trace_path: trace_path.to_owned(), histories: Vec::new() })
+    }
+
+    fn take(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
+        let observation = self.tracking.push(frame)?;
+        self.trace.write(&observation).map_err(|error| file_failure(&self.trace_path, &error))?;
+        History::take(&mut self.histories, &observation, Some(frame));
+        Ok(observation)
+    }
+
+    /// Writes the trace and the figure, and tells what a user should know.
+    fn finish(self, figure: &Path, truth: &AffineMotion) -> Result<Found, Failure> {
+        let Self { options, tracking, trace, trace_path, histories } = self;
+        trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
+        WholeFile::write(figure, &parameter_figure(&histories, options.motion.model(), Some(truth)))?;
+        let results = tracking.results();
+        for warning in results.iter().flat_map(|result| &result.warnings) {
+            warn(&format!("{} method: {warning}", options.method.name()));
+        }
+        Ok(Found { results, histories })
+    }
+}
+
+impl Found {
+    fn findings(&self) -> Findings<'_> {
+        Findings { results: &self.results, histories: &self.histories }
+    }
 }

@@ -1,18 +1,20 @@
 use std::io::Write as _;
 
-use freeform_motion::curve_fit::{Method, Outline};
+use freeform_motion::curve_fit::{FitSettings, Method, Outline};
+use freeform_motion::identify::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
 
 use super::{FittedOutline, command_line};
-use crate::args::{IdentifyArgs, IdentifyFormat, TrackOptions};
+use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
 use crate::failure::{Failure, plain, warn};
+use crate::identifier::{filter_settings, pipeline_settings};
 use crate::input::Input;
 use crate::output::{
-    Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
+    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
     write_identify_table, write_parameters, write_report,
 };
-use crate::tracking::{Estimate, ObjectResult, Observation, Tracking, pipeline_settings};
+use crate::tracking::{Estimate, ObjectResult, Observation, Tracking};
 
 /// What was found of one object over time, kept for figures.
 #[derive(Debug)]
@@ -22,7 +24,7 @@ pub(crate) struct History {
     pub(crate) start: Option<f64>,
     /// Time in seconds and what was known then.
     pub(crate) estimates: Vec<(f64, Estimate)>,
-    /// The latest outline that was not rejected, with its curve.
+    /// The latest outline that was not rejected, with its curve; `None` where the method fits none.
     pub(crate) latest: Option<(FittedOutline, Outline)>,
 }
 
@@ -41,12 +43,11 @@ impl History {
         });
         let history = &mut histories[position];
         history.start = history.start.or(observation.time);
-        let Ok(accepted) = &observation.outcome else { return };
-        if let (Some(time), Some(estimate)) = (observation.time, accepted.estimate) {
+        if let (Some(time), Some(estimate)) = (observation.time, observation.estimate) {
             history.estimates.push((time, estimate));
         }
-        if let Some(frame) = frame {
-            history.latest = Some((FittedOutline::new(frame, accepted.result.fit), frame.outline.clone()));
+        if let (Some(frame), Some(fit)) = (frame, observation.fit) {
+            history.latest = Some((FittedOutline::new(frame, fit), frame.outline.clone()));
         }
     }
 }
@@ -99,8 +100,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
             title: format!("Motion in {name}"),
             command: command_line(),
             settings: settings(&args.options, &name),
-            results: &results,
-            histories: &histories,
+            findings: vec![Findings { results: &results, histories: &histories }],
             truth: truth.as_ref(),
             read_error: failure_text,
         };
@@ -127,9 +127,9 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
     };
     let ObjectResult { object, frames, frames_rejected, .. } = first;
     let used = frames - frames_rejected;
-    match first.warnings.first() {
-        Some(warning) => Failure::no_result(format_args!(
-            "{name}: no motion of object {object:?}: {frames_rejected} of {frames} frame(s) rejected, {warning}"
+    match first.first_rejection.as_ref().or(first.warnings.first()) {
+        Some(reason) => Failure::no_result(format_args!(
+            "{name}: no motion of object {object:?}: {frames_rejected} of {frames} frame(s) rejected, {reason}"
         )),
         None => Failure::no_result(format_args!(
             "{name}: no motion of object {object:?}: {used} frame(s), at least 2 are needed"
@@ -139,25 +139,39 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
 
 /// The settings as a report lists them.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
-    let fit = pipeline_settings(options).fit;
+    let scale =
+        options.scale.map_or_else(|| "none: b in image lengths per second".to_owned(), |scale| scale.to_string());
+    let mut listed = vec![
+        ("Input", input.to_owned()),
+        ("Motion model", options.motion.model().to_string()),
+        ("Method", options.method.name().to_owned()),
+    ];
+    match options.method {
+        IdentifyMethod::Filter => {
+            let FilterSettings { smallest_agreement, patience, .. } = filter_settings(options);
+            listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
+            listed.push(("Searched for anew", format!("after {patience} rejected frames")));
+        }
+        IdentifyMethod::Adaptive => listed.extend(fit_settings(&pipeline_settings(options).fit)),
+    }
+    listed.push(("Camera scale f/Z0", scale));
+    listed
+}
+
+/// How curves are fitted, as a report lists it.
+pub(crate) fn fit_settings(fit: &FitSettings) -> [(&'static str, String); 3] {
     let method = match fit.method {
         Method::ThreeLevel => "3L".to_owned(),
         Method::GloballyStabilised { ridge_weight } => format!("GS3L, ridge {ridge_weight}"),
         Method::Bounded { margin, ridge_weight } => format!("3L, bounded with margin {margin}, ridge {ridge_weight}"),
     };
-    let scale =
-        options.scale.map_or_else(|| "none: b in image lengths per second".to_owned(), |scale| scale.to_string());
-    vec![
-        ("Input", input.to_owned()),
-        ("Motion model", options.motion.model().to_string()),
-        ("Method", options.method.name().to_owned()),
+    [
         ("Degree of the curve", fit.degree.to_string()),
         ("Curve fit", method),
         ("Level-set offset", format!("{} RMS radii", fit.offset)),
-        ("Camera scale f/Z0", scale),
     ]
 }
 
-fn file_failure(path: &std::path::Path, error: &std::io::Error) -> Failure {
+pub(crate) fn file_failure(path: &std::path::Path, error: &std::io::Error) -> Failure {
     Failure::unusable(format_args!("{}: {}", path.display(), plain(error)))
 }

@@ -15,10 +15,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut accepted = 0_u64;
     let mut first_reason = None;
     let failure = tracking.read(input, |observation, _| {
-        match &observation.outcome {
-            Ok(_) => accepted += 1,
-            Err(reason) => first_reason = first_reason.take().or_else(|| Some(reason.clone())),
-        }
+        accepted += u64::from(observation.is_accepted());
+        first_reason = first_reason.take().or_else(|| observation.rejected_because.clone());
         let line = track_line(&observation).map_err(Failure::unusable)?;
         writeln!(sink, "{line}").and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
     })?;

@@ -22,15 +22,14 @@ impl<W: Write> TraceWriter<W> {
 
     /// Writes one frame. What is missing stays empty.
     pub(crate) fn write(&mut self, observation: &Observation) -> io::Result<()> {
-        let accepted = observation.outcome.as_ref().ok();
         let mut row = vec![
             observation.object.clone(),
             observation.frame.to_string(),
             optional(observation.time),
-            accepted.map_or_else(String::new, |accepted| accepted.phase.to_owned()),
-            accepted.is_some().to_string(),
+            observation.phase.unwrap_or_default().to_owned(),
+            observation.is_accepted().to_string(),
         ];
-        match accepted.and_then(|accepted| accepted.estimate.as_ref()) {
+        match &observation.estimate {
             Some(estimate) => row.extend(values(estimate)),
             None => row.extend(std::iter::repeat_n(String::new(), 2 * self.parameters)),
         }

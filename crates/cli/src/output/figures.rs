@@ -134,7 +134,7 @@ impl History {
         low.append(&mut high);
         let band = if low.is_empty() { Vec::new() } else { vec![low] };
         vec![
-            Curve { name: "2 standard deviations".to_owned(), look: Look::Band, runs: band },
+            Curve { name: "2 std".to_owned(), look: Look::Band, runs: band },
             Curve { name: "identified".to_owned(), look: Look::Line, runs },
         ]
     }

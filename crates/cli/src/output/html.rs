@@ -17,24 +17,36 @@ pub(crate) struct Report<'a> {
     /// The command as it was given.
     pub(crate) command: String,
     pub(crate) settings: Vec<(&'static str, String)>,
-    pub(crate) results: &'a [ObjectResult],
-    pub(crate) histories: &'a [History],
+    /// One for each method.
+    pub(crate) findings: Vec<Findings<'a>>,
     pub(crate) truth: Option<&'a AffineMotion>,
     /// What ended the reading before the end of the input.
     pub(crate) read_error: Option<&'a str>,
+}
+
+/// What one method found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Findings<'a> {
+    pub(crate) results: &'a [ObjectResult],
+    pub(crate) histories: &'a [History],
 }
 
 /// A page that needs nothing but itself.
 pub(crate) fn write_report(report: &Report<'_>) -> String {
     let title = escape(&report.title);
     let mut body = format!("<h1>{title}</h1>\n");
-    let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&summary(report.results)));
+    if let Some(first) = report.findings.first() {
+        let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&summary(first.results)));
+    }
     if let Some(error) = report.read_error {
         let error = escape(error);
         let _ = writeln!(body, "<p class=\"alert\">The input could not be read to its end: {error}</p>");
     }
-    for result in report.results {
-        write_object(&mut body, report, result);
+    for Findings { results, histories } in &report.findings {
+        for result in *results {
+            let history = histories.iter().find(|history| history.object == result.object);
+            write_object(&mut body, result, history, report.truth);
+        }
     }
     body.push_str("<h2>Settings</h2>\n<div class=\"scroll\"><table class=\"words\">\n");
     for (name, value) in &report.settings {
@@ -56,10 +68,10 @@ fn summary(results: &[ObjectResult]) -> String {
     format!("{} object(s), {frames} frames, {rejected} rejected", results.len())
 }
 
-fn write_object(body: &mut String, report: &Report<'_>, result: &ObjectResult) {
+fn write_object(body: &mut String, result: &ObjectResult, history: Option<&History>, truth: Option<&AffineMotion>) {
     let object = escape(&result.object);
     let _ = writeln!(body, "<h2>Object {object}: {} motion, {} method</h2>", result.motion, result.method.name());
-    let rows = parameter_rows(result.motion, result.estimate.as_ref(), report.truth);
+    let rows = parameter_rows(result.motion, result.estimate.as_ref(), truth);
     let count = rows.first().map_or(0, Vec::len);
     body.push_str("<div class=\"scroll\"><table>\n");
     write_row(body, "th", COLUMNS.iter().take(count).copied());
@@ -72,9 +84,9 @@ fn write_object(body: &mut String, report: &Report<'_>, result: &ObjectResult) {
         });
         body.push_str("</ul>\n");
     }
-    let Some(history) = report.histories.iter().find(|history| history.object == result.object) else { return };
+    let Some(history) = history else { return };
     body.push_str("<div class=\"panels\">\n");
-    for panel in parameter_panels(history, "", result.motion, report.truth) {
+    for panel in parameter_panels(history, "", result.motion, truth) {
         let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 300.0));
     }
     if let Some(latest) = &history.latest {

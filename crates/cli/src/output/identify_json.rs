@@ -14,18 +14,17 @@ pub(crate) fn write_identify_json(sink: &mut impl Write, results: &[ObjectResult
 
 /// One frame as one line of JSON, without its end.
 pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String> {
-    let accepted = observation.outcome.as_ref().ok();
-    let estimate = accepted.and_then(|accepted| accepted.estimate.as_ref());
+    let estimate = observation.estimate.as_ref();
     serde_json::to_string(&TrackLine {
         schema: "freeform.track/1",
         object: &observation.object,
         frame: observation.frame,
         time: observation.time,
-        phase: accepted.map(|accepted| accepted.phase),
-        accepted: accepted.is_some(),
+        phase: observation.phase,
+        accepted: observation.is_accepted(),
         parameters: estimate.map(Parameters),
         generator: estimate.and_then(generator_rows),
-        reason: observation.outcome.as_ref().err().map(String::as_str),
+        reason: observation.rejected_because.as_deref(),
     })
 }
 
@@ -128,6 +127,7 @@ mod tests {
             motion: MotionModel::Rigid,
             frames: 12,
             frames_rejected: 1,
+            first_rejection: None,
             estimate: Estimate::of(estimate.with_unobservable(0), Some(0.1)),
             warnings: vec!["a warning".to_owned()],
         };

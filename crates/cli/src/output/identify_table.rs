@@ -106,6 +106,7 @@ mod tests {
             motion: MotionModel::Rigid,
             frames: 120,
             frames_rejected: 3,
+            first_rejection: None,
             estimate: Estimate::of(estimate, None),
             warnings: Vec::new(),
         };

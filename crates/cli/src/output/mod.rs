@@ -14,6 +14,6 @@ pub(crate) use figures::{fit_figure, parameter_figure};
 pub(crate) use file::{Sink, WholeFile, refuse_overwriting};
 pub(crate) use fit_json::write_fits_json;
 pub(crate) use fit_table::write_fit_table;
-pub(crate) use html::{Report, write_report};
+pub(crate) use html::{Findings, Report, write_report};
 pub(crate) use identify_json::{track_line, write_identify_json};
 pub(crate) use identify_table::write_identify_table;

@@ -15,9 +15,21 @@ fn the_trace_has_one_row_per_frame_with_the_columns_of_the_contract() {
     assert_eq!(rows[0], header.split(',').collect::<Vec<_>>());
     assert_eq!(rows.len(), 1 + 16);
     assert!(rows.iter().all(|row| row.len() == 11));
-    assert_eq!(rows[1][..5], ["0", "0", "0", "start", "true"]);
-    assert!(rows[15][5].parse::<f64>().is_ok_and(f64::is_finite) && rows[15][6].is_empty());
+    assert_eq!(rows[1][..5], ["0", "0", "0", "acquiring", "true"]);
+    assert_eq!(rows[15][3..5], ["tracking", "true"]);
+    assert!(rows[15][5..].iter().all(|number| number.parse::<f64>().is_ok_and(f64::is_finite)));
     assert_eq!(rows[16], ["0", "20", "", "", "false", "", "", "", "", "", ""]);
+}
+
+#[test]
+fn the_trace_of_the_adaptive_method_leaves_standard_deviations_empty() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let trace = folder.path().join("trace.csv");
+    succeed(&format!("identify - --method adaptive --trace {}", trace.display()), &sequence(""));
+    let text = fs::read_to_string(trace).expect("the trace");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!((rows[1][3], rows[15][3]), ("start", "adapt"));
+    assert!(rows[15][5].parse::<f64>().is_ok_and(f64::is_finite) && rows[15][6].is_empty());
 }
 
 #[test]
@@ -27,7 +39,7 @@ fn figures_and_report_hold_what_they_should_and_nothing_from_elsewhere() {
     let (svg, report) = (path("p.svg"), path("r.html"));
     succeed(&format!("identify - --svg {svg} --report {report} --scale 0.1"), &sequence(""));
     let svg = fs::read_to_string(svg).expect("the figure");
-    for text in ["omega (rad/s)", "time (s)", "true value", "identified"] {
+    for text in ["omega (rad/s)", "time (s)", "true value", "identified", "2 std"] {
         assert!(svg.contains(text), "{text}");
     }
     let report = fs::read_to_string(report).expect("the report");
@@ -124,7 +136,18 @@ fn the_demo_leaves_a_report_and_its_data() {
     let output = freeform("demo").current_dir(folder.path()).output().expect("the binary runs");
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stdout(&output).contains("freeform-demo") && stdout(&output).contains("truth"));
-    for name in ["report.html", "outlines.csv", "trace.csv", "parameters.svg", "curve.svg"] {
+    assert!(stdout(&output).contains("filter method") && stdout(&output).contains("adaptive method"));
+    let report = fs::read_to_string(folder.path().join("freeform-demo/report.html")).expect("the report");
+    assert!(report.contains("filter method") && report.contains("adaptive method"));
+    for name in [
+        "report.html",
+        "outlines.csv",
+        "curve.svg",
+        "trace.csv",
+        "parameters.svg",
+        "trace-adaptive.csv",
+        "parameters-adaptive.svg",
+    ] {
         let length = fs::metadata(folder.path().join("freeform-demo").join(name)).expect(name).len();
         assert!(length > 1000, "{name}");
     }

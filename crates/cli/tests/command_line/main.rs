@@ -1,6 +1,7 @@
 //! The contract of the command line, tested on the binary itself.
 mod bad_input;
 mod files;
+mod filter;
 mod fit;
 mod help;
 mod identify;
