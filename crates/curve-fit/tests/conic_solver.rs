@@ -96,12 +96,15 @@ proptest! {
                 }
                 width /= 20.0;
             }
-            let largest = oracle.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
-            // Six digits for quartics; what the conditioning of the monomials leaves for sextics.
-            let tolerance = if degree == Degree::Quartic { 1e-6 } else { 1e-4 };
-            for (ours, theirs) in fit.working().coefficients().iter().zip(&oracle) {
-                prop_assert!((ours - theirs).abs() < tolerance * largest, "{degree}: {ours} {theirs}");
-            }
+            // Compared by their values on the level sets, which the problem is about: the difference in the norm of its
+            // Gram matrix. Single coefficients are less well determined, by both.
+            let ours = DVector::from_column_slice(fit.working().coefficients());
+            let theirs = DVector::from_vec(oracle);
+            let norm = |a: &DVector<f64>| (&gram * a).dot(a).sqrt();
+            let difference = norm(&(&ours - &theirs)) / norm(&theirs);
+            // Measured over 200 outlines: 2e-7 for quartics, 2e-6 for sextics.
+            let tolerance = if degree == Degree::Quartic { 1e-6 } else { 1e-5 };
+            prop_assert!(difference < tolerance, "{degree}: {difference:e}");
         }
     }
 }
