@@ -2,7 +2,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Affine2, Matrix3};
 
 /// Largest number of parameters of a motion model, that of a projective motion.
-pub(crate) const MAX_PARAMETERS: usize = 8;
+pub(crate) const MAX_PARAMETERS: usize = MotionModel::MAX_PARAMETERS;
 
 /// An identified motion in the image frame: one value per parameter of its model, and how well each is known.
 #[derive(Debug, Clone, Copy, PartialEq)]

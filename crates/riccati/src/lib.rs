@@ -42,6 +42,7 @@
 //! ```
 mod alpha_beta;
 mod camera_scale;
+mod coefficient_map;
 mod error;
 mod exponential;
 mod flow;

@@ -1,6 +1,8 @@
 use freeform_curve_fit::{Degree, ImplicitPolynomial, PolynomialError, exponents, monomial_index};
 use nalgebra::{DMatrix, Matrix3};
 
+use crate::coefficient_map::map_coefficients;
+
 /// The motion of a whole curve: its coefficient vector moves by `a' = L a`, the lift of `P' = A P`.
 ///
 /// It is the whole curve's form of equations 5 to 8, with no roots, chart or pairing, for every degree and every 3x3
@@ -47,14 +49,7 @@ impl Lift {
     /// # Errors
     /// A polynomial of another degree, or a derivative that is not finite.
     pub fn rate(&self, polynomial: &ImplicitPolynomial) -> Result<ImplicitPolynomial, PolynomialError> {
-        let mut out = [0.0; freeform_curve_fit::MAX_COEFFICIENTS];
-        let out = &mut out[..self.degree.coefficient_count()];
-        if polynomial.degree() != self.degree {
-            let (degree, found, needed) = (self.degree.value(), polynomial.coefficients().len(), out.len());
-            return Err(PolynomialError::WrongCoefficientCount { degree, found, needed });
-        }
-        self.apply(polynomial.coefficients(), out);
-        ImplicitPolynomial::new(self.degree, out)
+        map_coefficients(self.degree, polynomial, |coefficients, out| self.apply(coefficients, out))
     }
 
     /// Visits the contributions to L as `(row, column, value)`. Each monomial changes into at most seven.

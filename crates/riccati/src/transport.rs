@@ -3,7 +3,7 @@ use freeform_curve_fit::{
 };
 use nalgebra::{DMatrix, Matrix3, TCategory, Transform};
 
-use crate::{error::DynamicsError, flow::inverse_of};
+use crate::{coefficient_map::map_coefficients, error::DynamicsError, flow::inverse_of};
 
 /// What a map T of the plane does to the coefficients of an implicit polynomial: they become `T_n a`, with a matrix that
 /// depends on T alone, `T_n = expm(L t)` where T is the flow of a motion with the lift L.
@@ -71,14 +71,7 @@ impl Transport {
     /// # Errors
     /// A polynomial of another degree, or coefficients that are not finite.
     pub fn polynomial(&self, polynomial: &ImplicitPolynomial) -> Result<ImplicitPolynomial, PolynomialError> {
-        let mut out = [0.0; MAX_COEFFICIENTS];
-        let out = &mut out[..self.degree.coefficient_count()];
-        if polynomial.degree() != self.degree {
-            let (degree, found, needed) = (self.degree.value(), polynomial.coefficients().len(), out.len());
-            return Err(PolynomialError::WrongCoefficientCount { degree, found, needed });
-        }
-        self.apply(polynomial.coefficients(), out);
-        ImplicitPolynomial::new(self.degree, out)
+        map_coefficients(self.degree, polynomial, |coefficients, out| self.apply(coefficients, out))
     }
 
     /// Visits the columns of the matrix: the monomial `x^i y^j` becomes `X^i Y^j W^(n - i - j)` with the linear forms X, Y,

@@ -53,7 +53,7 @@ pub(crate) enum Command {
 const DEMO_EXAMPLES: &str = "\
 Examples:
   freeform demo
-  freeform demo --out /tmp/bird";
+  freeform demo --out bird";
 
 /// The main job with nothing to prepare: simulate a flying bird, identify its motion, write a report.
 ///

@@ -1,10 +1,10 @@
 use freeform_decompose::Line;
-use freeform_riccati::{AffineMotion, MotionModel};
+use freeform_riccati::{AffineMotion, MotionModel, RealVariables};
 use nalgebra::{Const, DimMin, Matrix4, SVector, Vector4};
 
 use super::{
     least_squares_law::{FilteredPair, LeastSquaresLaw},
-    line_path::{LinePath, state_of},
+    line_path::LinePath,
     lyapunov::solve_lyapunov,
     pair_quality::PairQuality,
     printed_law::PrintedLaw,
@@ -270,8 +270,9 @@ where
         let Some(paths) = paths else {
             // The first frame, or one after a gap: the estimator starts on the lines, without an error.
             for (slot, line) in lines.iter().enumerate() {
-                self.states[slot] = state_of(line);
-                self.filters[slot] = FilteredPair::starting_at(&state_of(line));
+                let state = RealVariables::from(*line).state();
+                self.states[slot] = state;
+                self.filters[slot] = FilteredPair::starting_at(&state);
             }
             return;
         };
@@ -280,7 +281,7 @@ where
         if let Law::LeastSquares(law) = &mut self.law {
             law.forget(seconds);
             for (slot, line) in lines.iter().enumerate() {
-                law.take(seconds, &self.filters[slot], &state_of(line), frame.weights[slot]);
+                law.take(seconds, &self.filters[slot], &RealVariables::from(*line).state(), frame.weights[slot]);
             }
         }
     }

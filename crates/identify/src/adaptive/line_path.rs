@@ -1,4 +1,5 @@
 use freeform_decompose::Line;
+use freeform_riccati::RealVariables;
 use nalgebra::{Complex, Vector3, Vector4};
 
 /// A conjugate pair between two frames.
@@ -27,17 +28,11 @@ impl LinePath {
     /// The state X of equation 19 at a fraction of the way, 0 to 1.
     pub(crate) fn state(&self, fraction: f64) -> Vector4<f64> {
         let at = |i: usize| self.from[i] * (1.0 - fraction) + self.to[i] * fraction;
-        let (l, k) = (at(1) / at(0), at(2) / at(0));
-        Vector4::new(l.re, l.im, k.re, k.im)
+        RealVariables::from(Line { l: at(1) / at(0), k: at(2) / at(0) }).state()
     }
 
     /// How far the direction of the line moves relative to itself: the angle in radians for a rotation.
     pub(crate) fn turn(&self) -> f64 {
         (self.to.xy() - self.from.xy()).norm() / self.from.xy().norm()
     }
-}
-
-/// The state X of equation 13: real and imaginary parts of l and k.
-pub(crate) fn state_of(line: &Line) -> Vector4<f64> {
-    Vector4::new(line.l.re, line.l.im, line.k.re, line.k.im)
 }

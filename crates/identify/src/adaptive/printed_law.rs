@@ -40,12 +40,8 @@ impl PrintedLaw {
         let a3 = 0.25 * (m[(0, 4)] + m[(1, 5)] + m[(2, 6)] + m[(3, 7)]);
         let (a2, b1) = (m[(0, 8)], m[(2, 8)]);
         let b2 = -0.5 * (m[(2, 0)] + m[(3, 1)]);
-        let omega = 0.5 * (a2 - a3);
-        match model {
-            MotionModel::Rigid => SVector::from([omega, b1, b2, 0.0, 0.0, 0.0]),
-            MotionModel::Similarity => SVector::from([0.5 * (a1 + a4), omega, b1, b2, 0.0, 0.0]),
-            _ => SVector::from([a1, a2, a3, a4, b1, b2]),
-        }
+        let parameters = model.parameters_of(&AffineMotion { a1, a2, a3, a4, b1, b2 }.generator());
+        SVector::from_column_slice(&parameters[..6])
     }
 }
 
