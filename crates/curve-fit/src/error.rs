@@ -33,7 +33,7 @@ pub enum OutlineError {
         /// Points given.
         count: usize,
     },
-    /// All points of a closed outline lie on one line.
+    /// All points of an outline lie on one line, to rounding.
     #[error("all {count} points lie on one line")]
     Collinear {
         /// Points given.
@@ -106,6 +106,10 @@ pub enum FitError {
         /// Estimated condition number of the least-squares matrix.
         condition: f64,
     },
+    /// The outline does not tell its inside from its outside: it runs as much one way round as the other, as a line there
+    /// and back or an even figure of eight does, or its normals cancel.
+    #[error("the outline has no inside: it runs as much one way round as the other")]
+    NoInside,
     /// The leading form of the bounded fit could not be brought above its margin.
     #[error("the bounded fit did not converge in {iterations} iterations")]
     NoConvergence {

@@ -8,19 +8,16 @@ use crate::{
     fit::{Factorisation, Fit, FitDiagnostics},
     leading_form::CircleRange,
     least_squares::TriangularSystem,
-    moments::Moments,
+    level_set_moments::{LEVELS, LevelSetMoments, OrientedPoints},
     monomials::evaluate_monomials,
     normalisation::Normalisation,
     normals::NormalRegression,
     outline::Outline,
     polynomial::ImplicitPolynomial,
     residuals::Residuals,
-    ridge::rotation_invariant_ridge,
+    ridge::ridge_of_radial_sums,
     settings::{FitSettings, Method},
 };
-
-/// The three level sets: the value f should have, and on which side of the data.
-const LEVELS: [f64; 3] = [-1.0, 0.0, 1.0];
 
 /// Fits implicit polynomials to outlines, one after the other, in buffers that are reused: after the first outline no
 /// further memory is taken unless an outline has more points than any before it.
@@ -29,10 +26,8 @@ pub struct Fitter {
     settings: FitSettings,
     points: [Vec<f64>; 2],
     normals: [Vec<f64>; 2],
-    level_set: [Vec<f64>; 2],
     regression: NormalRegression,
-    /// Of the inner level set, the data and the outer level set.
-    moments: [Moments; 3],
+    moments: LevelSetMoments,
     system: TriangularSystem,
 }
 
@@ -47,9 +42,8 @@ impl Fitter {
             settings,
             points: Default::default(),
             normals: Default::default(),
-            level_set: Default::default(),
             regression: NormalRegression::default(),
-            moments: [Moments::none(); 3],
+            moments: LevelSetMoments::ZERO,
             system: TriangularSystem::new(),
         })
     }
@@ -64,7 +58,8 @@ impl Fitter {
     /// scaled coordinates, by the method of the settings.
     ///
     /// # Errors
-    /// Too few points, or points that do not determine the coefficients.
+    /// Too few points, points that do not determine the coefficients, an outline that does not tell its inside from its
+    /// outside, or a bounded fit that does not converge.
     pub fn fit(&mut self, outline: &Outline) -> Result<Fit, FitError> {
         let normalisation = self.load(outline)?;
         let factorisation = if self.factor_moments() {
@@ -87,13 +82,6 @@ impl Fitter {
         self.finish(normalisation, Factorisation::Orthogonal)
     }
 
-    /// Covariance of the working coefficients of the last fit for unit noise on the level-set values, `(M'M)^-1` with
-    /// the ridge included; as many rows as coefficients. `None` before the first fit.
-    #[must_use]
-    pub fn unit_covariance(&self) -> Option<DMatrix<f64>> {
-        self.system.condition().is_finite().then(|| self.system.unit_covariance())
-    }
-
     /// Brings the points into working coordinates and finds their normals.
     fn load(&mut self, outline: &Outline) -> Result<Normalisation, FitError> {
         let degree = self.settings.degree;
@@ -114,42 +102,26 @@ impl Fitter {
         Ok(normalisation)
     }
 
-    /// Moves the points by `level` offsets along their normals.
-    fn place_level_set(&mut self, level: f64) {
-        let distance = level * self.settings.offset;
-        for axis in 0..2 {
-            let (points, normals) = (&self.points[axis], &self.normals[axis]);
-            self.level_set[axis].clear();
-            self.level_set[axis].extend(points.iter().zip(normals).map(|(p, n)| p + distance * n));
-        }
-    }
-
     /// Forms and factors the normal equations from moments. Returns whether they can be relied on.
     fn factor_moments(&mut self) -> bool {
         let degree = self.settings.degree.value();
-        let size = self.settings.degree.coefficient_count();
-        for (l, level) in LEVELS.into_iter().enumerate() {
-            self.place_level_set(level);
-            self.moments[l].set_to(2 * degree, &self.level_set[0], &self.level_set[1]);
-        }
-        let [inner, data, outer] = &self.moments;
-        // M'd: the levels are -1, 0 and 1.
-        let mut projection = [0.0; MAX_COEFFICIENTS];
-        for (value, (plus, minus)) in
-            projection.iter_mut().zip(outer.as_slice().iter().zip(inner.as_slice())).take(size)
-        {
-            *value = plus - minus;
-        }
-        let ridge = self.ridge(data);
-        self.system.factor_gram(degree, [inner, data, outer], &projection[..size], &ridge)
+        let data = OrientedPoints {
+            points: self.points.each_ref().map(Vec::as_slice),
+            normals: self.normals.each_ref().map(Vec::as_slice),
+        };
+        self.moments.set_to(degree, self.settings.offset, data);
+        let radial = self.moments.radial;
+        let ridge = self.ridge(|d| radial[d]);
+        self.system.factor_gram(degree, &self.moments, &ridge)
     }
 
-    fn ridge(&self, data: &Moments) -> [f64; MAX_COEFFICIENTS] {
+    /// The ridge of the settings, from `sum (x^2 + y^2)^d` over the data.
+    fn ridge(&self, radial: impl Fn(usize) -> f64) -> [f64; MAX_COEFFICIENTS] {
         match self.settings.method {
             Method::GloballyStabilised { ridge_weight } | Method::Bounded { ridge_weight, .. }
                 if ridge_weight > 0.0 =>
             {
-                rotation_invariant_ridge(self.settings.degree.value(), data).map(|d| ridge_weight * d)
+                ridge_of_radial_sums(self.settings.degree.value(), radial).map(|d| ridge_weight * d)
             }
             _ => [0.0; MAX_COEFFICIENTS],
         }
@@ -160,15 +132,18 @@ impl Fitter {
         let degree = self.settings.degree.value();
         let size = self.settings.degree.coefficient_count();
         let count = self.points[0].len();
-        let data = Moments::reference(2 * degree, &self.points[0], &self.points[1]);
-        let ridge = self.ridge(&data);
+        let ridge = self.ridge(|d| {
+            let squares = self.points[0].iter().zip(&self.points[1]).map(|(x, y)| x * x + y * y);
+            squares.map(|square| square.powi(d as i32)).sum()
+        });
         let mut rows = DMatrix::zeros(LEVELS.len() * count + size, size);
         let mut right = vec![0.0; rows.nrows()];
         let mut monomials = [0.0; MAX_COEFFICIENTS];
         for (l, level) in LEVELS.into_iter().enumerate() {
-            self.place_level_set(level);
             for i in 0..count {
-                evaluate_monomials(degree, self.level_set[0][i], self.level_set[1][i], &mut monomials);
+                let [x, y] =
+                    [0, 1].map(|axis| self.points[axis][i] + level * self.settings.offset * self.normals[axis][i]);
+                evaluate_monomials(degree, x, y, &mut monomials);
                 rows.row_mut(l * count + i).copy_from_slice(&monomials[..size]);
                 right[l * count + i] = level;
             }
@@ -179,19 +154,25 @@ impl Fitter {
 
     /// Solves the triangular system, under the constraint where it is asked for and needed, and judges the result.
     fn finish(&mut self, normalisation: Normalisation, factorisation: Factorisation) -> Result<Fit, FitError> {
+        if !self.regression.has_inside {
+            return Err(FitError::NoInside);
+        }
         let degree = self.settings.degree;
         let size = degree.coefficient_count();
         let mut coefficients = [0.0; MAX_COEFFICIENTS];
         self.system.solve(&mut coefficients[..size]);
         let leading = size - degree.value() - 1..size;
-        let mut range = CircleRange::of(&coefficients[leading.clone()]);
+        let mut range = CircleRange::of(&coefficients[leading]);
+        if range.rms == 0.0 {
+            return Err(FitError::NoInside);
+        }
         let mut constraint_active = false;
         if let Method::Bounded { margin, .. } = self.settings.method
             && range.minimum < margin * range.rms
         {
             constraint_active = true;
-            bounded::constrain_leading_form(degree.value(), &self.system, margin, &mut coefficients[..size])?;
-            range = CircleRange::of(&coefficients[leading]);
+            let floor = margin * range.rms;
+            range = bounded::constrain_leading_form(degree.value(), &self.system, floor, &mut coefficients[..size])?;
         }
         let working = ImplicitPolynomial::from_array(degree, coefficients);
         let residuals = Residuals::of(&working, &self.points[0], &self.points[1]);

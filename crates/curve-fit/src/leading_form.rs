@@ -1,4 +1,5 @@
 //! Values of a binary form on the unit circle: what decides whether a curve is bounded.
+use std::sync::LazyLock;
 
 /// Directions looked at before the extrema are refined. A form of degree 8 has at most 16 extrema on half the circle
 /// and none narrower than a few of these steps.
@@ -18,32 +19,74 @@ impl CircleRange {
     /// Range of the form with the coefficients `c_0, ..., c_n` of `x^n, x^(n-1) y, ..., y^n`, n even.
     #[must_use]
     pub fn of(form: &[f64]) -> Self {
-        let step = std::f64::consts::PI / DIRECTIONS as f64;
-        let (step_sin, step_cos) = step.sin_cos();
-        let (mut cos, mut sin) = (1.0_f64, 0.0_f64);
-        let mut values = [0.0; DIRECTIONS];
-        let mut directions = [(0.0, 0.0); DIRECTIONS];
-        for (value, direction) in values.iter_mut().zip(&mut directions) {
-            *value = evaluate(form, cos, sin);
-            *direction = (cos, sin);
-            (cos, sin) = (cos * step_cos - sin * step_sin, sin * step_cos + cos * step_sin);
-        }
-        let mut minimum = values[0];
-        for (i, &value) in values.iter().enumerate() {
-            let (before, after) = (values[(i + DIRECTIONS - 1) % DIRECTIONS], values[(i + 1) % DIRECTIONS]);
-            if value <= before && value <= after {
-                minimum = minimum.min(value).min(refined_minimum(form, directions[i], step));
-            }
-        }
-        // Exact: the square is a trigonometric polynomial of fewer harmonics than there are directions.
-        let rms = (values.iter().map(|v| v * v).sum::<f64>() / DIRECTIONS as f64).sqrt();
-        Self { minimum, rms }
+        CircleSamples::of(form).range(form)
     }
 
     /// Minimum over root mean square: positive where bounded, 1 for a circle, 0 where it is undecided.
     #[must_use]
     pub fn margin(&self) -> f64 {
         if self.rms > 0.0 { self.minimum / self.rms } else { 0.0 }
+    }
+}
+
+/// Directions in which a form is sampled, evenly spread over half the circle: their cosines, then their sines.
+static SAMPLED: LazyLock<[[f64; DIRECTIONS]; 2]> = LazyLock::new(|| {
+    let angle = |i: usize| std::f64::consts::PI * i as f64 / DIRECTIONS as f64;
+    [std::array::from_fn(|i| angle(i).cos()), std::array::from_fn(|i| angle(i).sin())]
+});
+
+/// A direction and the value of a form there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct DirectedValue {
+    /// Cosine and sine of the direction.
+    pub(crate) direction: [f64; 2],
+    pub(crate) value: f64,
+}
+
+/// Values of a binary form all around the circle.
+pub(crate) struct CircleSamples {
+    values: [f64; DIRECTIONS],
+}
+
+impl CircleSamples {
+    pub(crate) fn of(form: &[f64]) -> Self {
+        let [cosines, sines] = &*SAMPLED;
+        let mut values = [0.0; DIRECTIONS];
+        let mut cosine_powers = [1.0; DIRECTIONS];
+        // Horner in y for all directions at once, each coefficient with the power of x that makes it homogeneous.
+        for &c in form.iter().rev() {
+            let directions = cosines.iter().zip(sines);
+            for ((value, power), (cos, sin)) in values.iter_mut().zip(&mut cosine_powers).zip(directions) {
+                *value = *value * sin + c * *power;
+                *power *= cos;
+            }
+        }
+        Self { values }
+    }
+
+    /// The samples themselves.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = DirectedValue> + '_ {
+        let [cosines, sines] = &*SAMPLED;
+        let directions = cosines.iter().zip(sines).map(|(cos, sin)| [*cos, *sin]);
+        directions.zip(&self.values).map(|(direction, &value)| DirectedValue { direction, value })
+    }
+
+    /// The local minima of the form, which must be that of the samples.
+    pub(crate) fn minima<'a>(&'a self, form: &'a [f64]) -> impl Iterator<Item = DirectedValue> + 'a {
+        let values = &self.values;
+        let is_lowest = |i: usize| {
+            let (before, after) = (values[(i + DIRECTIONS - 1) % DIRECTIONS], values[(i + 1) % DIRECTIONS]);
+            values[i] <= before && values[i] <= after
+        };
+        self.iter().enumerate().filter(move |(i, _)| is_lowest(*i)).map(|(_, sample)| refined_minimum(form, sample))
+    }
+
+    /// Range of the form, which must be that of the samples.
+    pub(crate) fn range(&self, form: &[f64]) -> CircleRange {
+        let minimum = self.minima(form).fold(f64::INFINITY, |lowest, minimum| lowest.min(minimum.value));
+        // Exact: the square is a trigonometric polynomial of fewer harmonics than there are directions.
+        let squares: f64 = self.values.iter().map(|v| v * v).sum();
+        CircleRange { minimum, rms: (squares / DIRECTIONS as f64).sqrt() }
     }
 }
 
@@ -59,25 +102,32 @@ fn evaluate(form: &[f64], x: f64, y: f64) -> f64 {
 }
 
 /// Newton's method on the derivative along the circle, from a sampled minimum and within one step of it.
-fn refined_minimum(form: &[f64], (cos, sin): (f64, f64), step: f64) -> f64 {
+fn refined_minimum(form: &[f64], sampled: DirectedValue) -> DirectedValue {
     let n = form.len() - 1;
-    let (mut x, mut y) = (cos, sin);
-    let mut lowest = f64::INFINITY;
+    let mut lowest = sampled;
+    let [mut x, mut y] = sampled.direction;
     let mut turned: f64 = 0.0;
     for _ in 0..NEWTON_STEPS {
-        let (value, slope, curvature) = along_circle(form, n, x, y);
-        lowest = lowest.min(value);
+        let (_, slope, curvature) = along_circle(form, n, x, y);
         let turn = -slope / curvature;
-        if curvature <= 0.0 || (turned + turn).abs() > step {
+        turned += turn;
+        if curvature <= 0.0 || turned.abs() > std::f64::consts::PI / DIRECTIONS as f64 {
             break;
         }
-        turned += turn;
-        // A rotation by a small angle, normalised, without a sine.
-        let (nx, ny) = (x - turn * y, y + turn * x);
-        let norm = (nx * nx + ny * ny).sqrt();
-        (x, y) = (nx / norm, ny / norm);
+        [x, y] = turned_by([x, y], turn);
+        let value = evaluate(form, x, y);
+        if value < lowest.value {
+            lowest = DirectedValue { direction: [x, y], value };
+        }
     }
-    lowest.min(evaluate(form, x, y))
+    lowest
+}
+
+/// A direction turned by a small angle in radians, to first order.
+pub(crate) fn turned_by([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+    let (x, y) = (x - angle * y, y + angle * x);
+    let norm = (x * x + y * y).sqrt();
+    [x / norm, y / norm]
 }
 
 /// Value and first two derivatives by angle of `h(cos t, sin t)`.

@@ -10,9 +10,9 @@ use faer::{
 use nalgebra::DMatrix;
 
 use crate::{
-    degree::MAX_COEFFICIENTS,
+    degree::{MAX_COEFFICIENTS, coefficient_count},
     error::FitError,
-    moments::Moments,
+    level_set_moments::LevelSetMoments,
     monomials::{exponents, monomial_index},
 };
 
@@ -67,26 +67,19 @@ impl TriangularSystem {
         }
     }
 
-    /// From the moments of the three level sets (up to twice the degree), the vector `M' d`, and a ridge to be added
-    /// to the diagonal. Returns whether the Gram matrix was well-conditioned enough to be relied on.
-    pub(crate) fn factor_gram(
-        &mut self,
-        degree: usize,
-        level_sets: [&Moments; 3],
-        projection: &[f64],
-        ridge: &[f64],
-    ) -> bool {
-        let size = projection.len();
+    /// From the sums over the three level sets, and a ridge to be added to the diagonal. Returns whether the Gram matrix
+    /// was well-conditioned enough to be relied on.
+    pub(crate) fn factor_gram(&mut self, degree: usize, level_sets: &LevelSetMoments, ridge: &[f64]) -> bool {
+        let size = coefficient_count(degree);
         self.size = size;
-        let [inner, data, outer] = level_sets.map(Moments::as_slice);
-        let gram = |position: usize| inner[position] + data[position] + outer[position];
+        let LevelSetMoments { gram, projection, .. } = level_sets;
         let mut scale = [0.0; MAX_COEFFICIENTS];
         for (position, (i, j)) in exponents(degree).enumerate() {
-            scale[position] = (gram(monomial_index(2 * i, 2 * j)) + ridge[position]).sqrt();
+            scale[position] = (gram[monomial_index(2 * i, 2 * j)] + ridge[position]).sqrt();
         }
         for (column, (k, l)) in exponents(degree).enumerate() {
             for (row, (i, j)) in exponents(degree).enumerate().skip(column) {
-                let sum = gram(monomial_index(i + k, j + l));
+                let sum = gram[monomial_index(i + k, j + l)];
                 self.lower[column * size + row] = sum / (scale[row] * scale[column]);
             }
             // The diagonal of the scaled matrix, with the ridge in it, is 1.
@@ -176,14 +169,6 @@ impl TriangularSystem {
             let known: f64 = (row + 1..self.size).map(|column| self.upper(row, column) * out[column]).sum();
             out[row] = (self.right[row] - known) / self.upper(row, row);
         }
-    }
-
-    /// `(L L')^-1`: the covariance of the solution for unit noise on the right-hand side.
-    pub(crate) fn unit_covariance(&self) -> DMatrix<f64> {
-        let upper = DMatrix::from_fn(self.size, self.size, |i, j| if i <= j { self.upper(i, j) } else { 0.0 });
-        let identity = DMatrix::identity(self.size, self.size);
-        let inverse = upper.solve_upper_triangular(&identity).expect("a positive diagonal");
-        &inverse * inverse.transpose()
     }
 }
 

@@ -3,7 +3,9 @@
 //! An outline comes as ordered points without correspondence to anything. A [`Fitter`] turns it into an implicit
 //! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8, negative inside and positive outside, by the 3L method
 //! (three level sets: the data at 0, and the data moved along its normals at -1 and +1). The fit can be globally
-//! stabilised, or closed and bounded by construction. It is equivariant: the fit of a moved outline is the moved fit.
+//! stabilised, or closed and bounded by construction. It is equivariant under similarities, that is turns, shifts and changes
+//! of scale: the fit of the moved outline is the moved fit. Under an affine map that stretches or shears it is not, since
+//! distances along normals are not kept.
 //!
 //! ```
 //! use freeform_curve_fit::{FitSettings, Fitter, Outline};
@@ -26,12 +28,15 @@
 //! ```
 mod bounded;
 mod bounded_polynomial;
+mod contact;
 mod degree;
 mod error;
 mod fit;
 mod fitter;
+mod interior_point;
 mod leading_form;
 mod least_squares;
+mod level_set_moments;
 mod moments;
 mod monomials;
 mod normalisation;
@@ -51,7 +56,7 @@ pub use leading_form::CircleRange;
 pub use moments::Moments;
 pub use monomials::{evaluate_monomials, exponents, monomial_index};
 pub use normalisation::Normalisation;
-pub use normals::outward_normals;
+pub use normals::{NormalRegression, outward_normals};
 pub use outline::{ClosedOutline, OpenArc, OpenOutline, Outline, Piece};
 pub use polynomial::ImplicitPolynomial;
 pub use residuals::Residuals;

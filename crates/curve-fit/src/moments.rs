@@ -4,7 +4,7 @@ use crate::{degree::coefficient_count, monomials::monomial_index};
 
 /// Highest total degree of a moment that any fit needs: twice the degree of an octic.
 const MAX_TOTAL_DEGREE: usize = 16;
-const MAX_MOMENTS: usize = coefficient_count(MAX_TOTAL_DEGREE);
+pub(crate) const MAX_MOMENTS: usize = coefficient_count(MAX_TOTAL_DEGREE);
 
 /// Vectors that are accumulated together, so that each sum is loaded and stored once per group.
 const GROUP: usize = 4;
@@ -25,27 +25,19 @@ impl Moments {
     /// If the slices differ in length or `total_degree` exceeds 16.
     #[must_use]
     pub fn of(total_degree: usize, xs: &[f64], ys: &[f64]) -> Self {
-        let mut moments = Self::none();
-        moments.set_to(total_degree, xs, ys);
-        moments
-    }
-
-    /// The moments of no points, of degree 0.
-    pub(crate) fn none() -> Self {
-        Self { total_degree: 0, sums: [0.0; MAX_MOMENTS] }
-    }
-
-    /// Overwrites these moments with those of other points; see [`of`](Self::of).
-    pub(crate) fn set_to(&mut self, total_degree: usize, xs: &[f64], ys: &[f64]) {
         assert!(total_degree <= MAX_TOTAL_DEGREE, "moments beyond degree {MAX_TOTAL_DEGREE}");
         assert_eq!(xs.len(), ys.len(), "as many x as y");
-        self.total_degree = total_degree;
-        Arch::new().dispatch(MomentKernel { total_degree, xs, ys, sums: &mut self.sums });
+        let mut sums = [0.0; MAX_MOMENTS];
+        Arch::new().dispatch(MomentKernel { total_degree, xs, ys, sums: &mut sums });
         // The vectors of an incomplete group are padded with points at the origin, which count in this sum alone.
-        self.sums[0] = xs.len() as f64;
+        sums[0] = xs.len() as f64;
+        Self { total_degree, sums }
     }
 
     /// The same as [`of`](Self::of), written for reading; a test holds the two together.
+    ///
+    /// # Panics
+    /// If `total_degree` exceeds 16.
     #[must_use]
     pub fn reference(total_degree: usize, xs: &[f64], ys: &[f64]) -> Self {
         let mut sums = [0.0; MAX_MOMENTS];

@@ -2,7 +2,7 @@
 use std::ops::Range;
 
 use nalgebra::Vector2;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::outline::Outline;
 
@@ -26,67 +26,54 @@ pub fn outward_normals(outline: &Outline, half_window: f64) -> Vec<Vector2<f64>>
     nx.into_iter().zip(ny).map(|(x, y)| Vector2::new(x, y)).collect()
 }
 
-/// Reused buffers of the regression.
+/// Area of an outline relative to what it encloses one way round and the other, below which its sign is rounding.
+const NO_AREA: f64 = 1e-9;
+
+/// The regression of [`outward_normals`] in buffers that are reused, for points that have been moved since they were taken.
 #[derive(Debug, Default, Clone)]
-pub(crate) struct NormalRegression {
+pub struct NormalRegression {
+    /// Whether the area of the last outline told which side of it is the inside.
+    pub(crate) has_inside: bool,
     /// Distance of every point to the one before it in its piece; 0 at an open beginning.
     steps: Vec<f64>,
-    /// Arc lengths along one piece, with enough neighbours repeated beyond its ends if it is closed.
+    /// Arc lengths along one piece, with enough neighbours repeated beyond its ends if it is closed, and infinity after
+    /// the last.
     arc_lengths: Vec<f64>,
-    /// Running sums along the same, one more than there are arc lengths.
+    /// Running sums along the same, one more than there are nodes.
     sums: Vec<RunningSums>,
 }
 
-/// Sums over all points of the extended piece before one.
-#[derive(Debug, Clone, Copy, Default)]
-struct RunningSums {
-    sum_s: f64,
-    sum_x: f64,
-    sum_y: f64,
-    sum_sx: f64,
-    sum_sy: f64,
-}
+/// Sums over all nodes of the extended piece before one: of s, x, y, s x and s y.
+type RunningSums = [f64; 5];
 
 impl NormalRegression {
-    /// Fills `nx`, `ny` with the outward normals of the points `[xs, ys]`, which are those of `outline` after some
-    /// similarity without reflection. A point whose surroundings have no direction gets a zero normal.
-    pub(crate) fn run(
-        &mut self,
-        outline: &Outline,
-        [xs, ys]: [&[f64]; 2],
-        half_window: f64,
-        [nx, ny]: [&mut Vec<f64>; 2],
-    ) {
+    /// Fills `nx`, `ny` with the outward unit normals of the points `[xs, ys]`, which are those of `outline` after a smooth map
+    /// of the plane without reflection; `half_window` as in [`outward_normals`]. A point whose surroundings have no direction
+    /// gets a zero normal. Best in coordinates of about the outline's own size, near the origin.
+    ///
+    /// # Panics
+    /// If `half_window` is outside 0 to 0.25, or `xs` and `ys` do not hold one value per point of the outline.
+    pub fn run(&mut self, outline: &Outline, [xs, ys]: [&[f64]; 2], half_window: f64, [nx, ny]: [&mut Vec<f64>; 2]) {
         assert!((0.0..=0.25).contains(&half_window), "half window {half_window} outside 0 to 0.25");
+        assert_eq!([xs.len(), ys.len()], [outline.point_count(); 2], "one coordinate per point");
         for normals in [&mut *nx, &mut *ny] {
             normals.clear();
             normals.resize(xs.len(), 0.0);
         }
-        let outward = 1.0_f64.copysign(signed_area(xs, ys));
-        self.measure_steps(outline, xs, ys);
-        // A hair less than the window, so that rounding does not decide whether evenly spaced points lie on its edge.
-        let half_length = (1.0 - 1e-9) * half_window * self.steps.iter().sum::<f64>();
-        for (range, closed) in ranges(outline) {
-            let before = self.lay_out(xs, ys, range.clone(), closed, half_length);
-            let (mut low, mut high) = (0, before);
-            for (i, (nx, ny)) in (before..).zip(nx[range.clone()].iter_mut().zip(&mut ny[range])) {
-                let s = self.arc_lengths[i];
-                low = advance(low, &self.arc_lengths, s - half_length);
-                // The window ends after the first point at or beyond it.
-                high = advance(high.max(i), &self.arc_lengths, s + half_length);
-                let end = (high + 2).min(self.arc_lengths.len());
-                let begin = low.min(i.saturating_sub(1));
-                let (tx, ty) = slope(&self.sums[begin], &self.sums[end], (end - begin) as f64);
-                (*nx, *ny) = (outward * ty, -outward * tx);
-            }
-        }
-        Arch::new().dispatch(|| scale_to_unit_length(nx, ny));
+        Arch::new().dispatch(NormalKernel {
+            regression: self,
+            outline,
+            points: [xs, ys],
+            half_window,
+            normals: [nx, ny],
+        });
     }
 
+    #[inline(always)]
     fn measure_steps(&mut self, outline: &Outline, xs: &[f64], ys: &[f64]) {
         self.steps.clear();
         self.steps.resize(xs.len(), 0.0);
-        Arch::new().dispatch(|| distances_to_previous(xs, ys, &mut self.steps));
+        distances_to_previous(xs, ys, &mut self.steps);
         for (range, closed) in ranges(outline) {
             let (first, last) = (range.start, range.end - 1);
             self.steps[first] = if closed { distance(xs[first] - xs[last], ys[first] - ys[last]) } else { 0.0 };
@@ -94,53 +81,109 @@ impl NormalRegression {
     }
 
     /// Lays out a piece with its neighbours beyond both ends (closed pieces only) and the running sums. Returns how many
-    /// points stand before the first.
+    /// nodes stand before the first.
+    #[inline(always)]
     fn lay_out(&mut self, xs: &[f64], ys: &[f64], range: Range<usize>, closed: bool, half_length: f64) -> usize {
-        let (start, count) = (range.start, range.len());
-        let steps = &self.steps[range];
+        let (xs, ys, steps) = (&xs[range.clone()], &ys[range.clone()], &self.steps[range]);
+        let count = xs.len();
         let (before, after) = if closed {
             (nodes_to_cover(half_length, steps.iter().rev(), count), nodes_to_cover(half_length, steps.iter(), count))
         } else {
             (0, 0)
         };
-        self.arc_lengths.clear();
-        self.sums.clear();
-        let (mut s, mut sums) = (0.0, RunningSums::default());
-        let mut i = (count - before) % count;
-        for n in 0..before + count + after {
-            if n > 0 {
-                s += steps[i];
+        let nodes = before + count + after;
+        self.arc_lengths.resize(nodes + 1, 0.0);
+        self.sums.resize(nodes + 1, [0.0; 5]);
+        let mut slots = self.arc_lengths.iter_mut().zip(&mut self.sums);
+        // The first node stands at 0.
+        let mut s = -steps[(count - before) % count];
+        let mut sums = [0.0; 5];
+        for part in [count - before..count, 0..count, 0..after] {
+            let points = xs[part.clone()].iter().zip(&ys[part.clone()]).zip(&steps[part]);
+            for (((x, y), step), (arc_length, slot)) in points.zip(&mut slots) {
+                s += step;
+                *arc_length = s;
+                *slot = sums;
+                for (sum, term) in sums.iter_mut().zip([s, *x, *y, s * x, s * y]) {
+                    *sum += term;
+                }
             }
-            let (x, y) = (xs[start + i], ys[start + i]);
-            self.arc_lengths.push(s);
-            self.sums.push(sums);
-            sums.sum_s += s;
-            sums.sum_x += x;
-            sums.sum_y += y;
-            sums.sum_sx += s * x;
-            sums.sum_sy += s * y;
-            i = if i + 1 == count { 0 } else { i + 1 };
         }
-        self.sums.push(sums);
+        self.arc_lengths[nodes] = f64::INFINITY;
+        self.sums[nodes] = sums;
         before
+    }
+
+    /// The normals of a piece whose first point is node `before`.
+    #[inline(always)]
+    fn regress(&self, before: usize, half_length: f64, outward: f64, [nx, ny]: [&mut [f64]; 2]) {
+        let (arc_lengths, sums) = (self.arc_lengths.as_slice(), self.sums.as_slice());
+        let nodes = arc_lengths.len() - 1;
+        let (mut low, mut high) = (0, before);
+        for (node, (nx, ny)) in (before..nodes).zip(nx.iter_mut().zip(ny)) {
+            let s = arc_lengths[node];
+            low = advance(low, arc_lengths, s - half_length);
+            // A window holds the nodes within it, the first ones beyond and a neighbour on either side.
+            high = advance(high.max(node), arc_lengths, s + half_length);
+            let begin = low.min(node.saturating_sub(1));
+            let end = (high + 2).min(nodes);
+            let (tx, ty) = slope(&sums[begin], &sums[end], f64::from((end - begin) as u32));
+            let norm = outward * distance(tx, ty);
+            let scale = if norm == 0.0 { 0.0 } else { 1.0 / norm };
+            (*nx, *ny) = (scale * ty, -scale * tx);
+        }
     }
 }
 
-/// The last index from `from` on whose successor is not beyond `limit`: where evenly spread points are passed, one or two
-/// at a time, the way there has no branch to mispredict.
+/// The whole regression, in a form that is compiled for the vector instructions that the machine has.
+struct NormalKernel<'a> {
+    regression: &'a mut NormalRegression,
+    outline: &'a Outline,
+    points: [&'a [f64]; 2],
+    half_window: f64,
+    normals: [&'a mut [f64]; 2],
+}
+
+impl WithSimd for NormalKernel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { regression, outline, points: [xs, ys], half_window, normals: [nx, ny] } = self;
+        let (area, absolute) = signed_area(xs, ys);
+        regression.has_inside = area.abs() > NO_AREA * absolute;
+        let outward = 1.0_f64.copysign(area);
+        regression.measure_steps(outline, xs, ys);
+        // A hair less than the window, so that rounding does not decide whether evenly spaced points lie on its edge.
+        let half_length = (1.0 - 1e-9) * half_window * regression.steps.iter().sum::<f64>();
+        for (range, closed) in ranges(outline) {
+            let before = regression.lay_out(xs, ys, range.clone(), closed, half_length);
+            let piece = [&mut nx[range.clone()], &mut ny[range]];
+            regression.regress(before, half_length, outward, piece);
+        }
+    }
+}
+
+/// The last node at or before `limit`, from one that is or the first on.
+#[inline(always)]
 fn advance(from: usize, arc_lengths: &[f64], limit: f64) -> usize {
-    let last = arc_lengths.len() - 1;
-    let mut index = from;
-    for _ in 0..2 {
-        index += usize::from(index < last && arc_lengths[(index + 1).min(last)] <= limit);
+    let mut node = from;
+    // Evenly spread points pass one or two nodes at a time: no branch to mispredict there.
+    while let Some(ahead) = arc_lengths[node..].first_chunk::<4>() {
+        let passed: u32 = ahead[1..].iter().map(|&s| u32::from(s <= limit)).sum();
+        node += passed as usize;
+        if passed < 3 {
+            return node;
+        }
     }
-    while index < last && arc_lengths[index + 1] <= limit {
-        index += 1;
+    while arc_lengths[node + 1] <= limit {
+        node += 1;
     }
-    index
+    node
 }
 
 /// How many steps reach at least `length`, and one more; at most `count`.
+#[inline(always)]
 fn nodes_to_cover<'a>(length: f64, steps: impl Iterator<Item = &'a f64>, count: usize) -> usize {
     let mut covered = 0.0;
     let short = steps.take_while(|&step| {
@@ -150,23 +193,12 @@ fn nodes_to_cover<'a>(length: f64, steps: impl Iterator<Item = &'a f64>, count: 
     (short.count() + 2).min(count)
 }
 
-/// Covariance of arc length with position over the points from `a` to before `b`, up to a positive factor: the direction
+/// Covariance of arc length with position over the nodes from `a` to before `b`, up to a positive factor: the direction
 /// of the regression line.
-fn slope(a: &RunningSums, b: &RunningSums, count: f64) -> (f64, f64) {
-    let mean_s = (b.sum_s - a.sum_s) / count;
-    let tx = (b.sum_sx - a.sum_sx) - mean_s * (b.sum_x - a.sum_x);
-    let ty = (b.sum_sy - a.sum_sy) - mean_s * (b.sum_y - a.sum_y);
-    (tx, ty)
-}
-
-/// Scales vectors to length 1; zero vectors stay zero.
 #[inline(always)]
-fn scale_to_unit_length(xs: &mut [f64], ys: &mut [f64]) {
-    for (x, y) in xs.iter_mut().zip(ys) {
-        let norm = distance(*x, *y);
-        let scale = if norm > 0.0 { 1.0 / norm } else { 0.0 };
-        (*x, *y) = (*x * scale, *y * scale);
-    }
+fn slope(a: &RunningSums, b: &RunningSums, count: f64) -> (f64, f64) {
+    let [s, x, y, sx, sy] = std::array::from_fn(|k| b[k] - a[k]);
+    (count * sx - s * x, count * sy - s * y)
 }
 
 /// Distance of every point but the first to the one before it.
@@ -184,10 +216,18 @@ fn distance(dx: f64, dy: f64) -> f64 {
     (dx * dx + dy * dy).sqrt()
 }
 
-fn signed_area(xs: &[f64], ys: &[f64]) -> f64 {
+/// The area of the polygon through the points, positive counter-clockwise, and that of its triangles about the origin.
+#[inline(always)]
+fn signed_area(xs: &[f64], ys: &[f64]) -> (f64, f64) {
     let last = xs.len() - 1;
-    let along: f64 = (1..xs.len()).map(|i| xs[i - 1] * ys[i] - xs[i] * ys[i - 1]).sum();
-    0.5 * (along + xs[last] * ys[0] - xs[0] * ys[last])
+    let closing = xs[last] * ys[0] - xs[0] * ys[last];
+    let (mut area, mut absolute) = (closing, closing.abs());
+    for i in 1..xs.len() {
+        let cross = xs[i - 1] * ys[i] - xs[i] * ys[i - 1];
+        area += cross;
+        absolute += cross.abs();
+    }
+    (0.5 * area, 0.5 * absolute)
 }
 
 /// The index ranges of the pieces among all points, and whether each is closed.

@@ -1,17 +1,24 @@
-use crate::{degree::MAX_COEFFICIENTS, moments::Moments, monomials::exponents};
+use crate::{degree::MAX_COEFFICIENTS, moments::Moments, monomials::monomial_index};
 
 /// Diagonal of the Euclidean-invariant ridge (Tasdizen, Tarel, Cooper 2000):
 /// `D_ij = beta_(i+j) i! j! / (i+j)!` with `beta_d = sum over the data of (x^2 + y^2)^d`.
 ///
 /// `V' D V = D` for the coefficient map V of any rotation, which a plain identity ridge does not satisfy. `data` holds
 /// the moments of the outline points up to at least `2 degree`. The first `(n+1)(n+2)/2` entries are filled.
+///
+/// # Panics
+/// If `degree` exceeds 8 or twice that the total degree of the moments.
 #[must_use]
 pub fn rotation_invariant_ridge(degree: usize, data: &Moments) -> [f64; MAX_COEFFICIENTS] {
+    ridge_of_radial_sums(degree, |d| (0..=d).map(|k| binomial(d, k) * data.get(2 * k, 2 * (d - k))).sum())
+}
+
+/// The same from `beta_d` itself.
+pub(crate) fn ridge_of_radial_sums(degree: usize, beta: impl Fn(usize) -> f64) -> [f64; MAX_COEFFICIENTS] {
     let mut diagonal = [0.0; MAX_COEFFICIENTS];
-    for ((i, j), entry) in exponents(degree).zip(&mut diagonal) {
-        let d = i + j;
-        let beta: f64 = (0..=d).map(|k| binomial(d, k) * data.get(2 * k, 2 * (d - k))).sum();
-        *entry = beta / binomial(d, j);
+    for d in 0..=degree {
+        let beta = beta(d);
+        (0..=d).for_each(|j| diagonal[monomial_index(d - j, j)] = beta / binomial(d, j));
     }
     diagonal
 }

@@ -8,7 +8,7 @@ use clarabel::{
 use freeform_curve_fit::{CircleRange, Degree, FitSettings, Fitter, Method, evaluate_monomials, outward_normals};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use support::{any_star, closed};
+use support::any_visibility;
 
 /// Minimises `|M a - d|^2` subject to `h(t) >= floor` at the given directions.
 fn constrained_by_directions(
@@ -49,15 +49,18 @@ fn constrained_by_directions(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(12))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn the_bounded_fit_agrees_with_a_conic_solver(points in any_star(), keep in 0.5..1.0_f64, margin in 0.05..0.5_f64) {
-        let points = points[..(keep * points.len() as f64) as usize].to_vec();
-        for degree in [Degree::Quartic, Degree::Sextic] {
+    fn the_bounded_fit_agrees_with_a_conic_solver(
+        outlines in any_visibility(),
+        margin in 0.05..0.5_f64,
+        which in 0..3_usize,
+    ) {
+        let outline = outlines[which].clone();
+        for degree in [Degree::Quartic, Degree::Sextic, Degree::Octic] {
             let (n, size) = (degree.value(), degree.coefficient_count());
             let plain = FitSettings { degree, method: Method::ThreeLevel, ..FitSettings::default() };
-            let outline = closed(points.clone());
             let free = Fitter::new(plain).expect("settings").fit(&outline).expect("a fit");
             let bounded = FitSettings { method: Method::Bounded { margin, ridge_weight: 0.0 }, ..plain };
             let fit = Fitter::new(bounded).expect("settings").fit(&outline).expect("a fit");
@@ -102,8 +105,12 @@ proptest! {
             let theirs = DVector::from_vec(oracle);
             let norm = |a: &DVector<f64>| (&gram * a).dot(a).sqrt();
             let difference = norm(&(&ours - &theirs)) / norm(&theirs);
-            // Measured over 200 outlines: 2e-7 for quartics, 2e-6 for sextics.
-            let tolerance = if degree == Degree::Quartic { 1e-6 } else { 1e-5 };
+            // Measured over 200 outlines, whole and in one or two arcs: 5e-7, 7e-7 and 2e-5.
+            let tolerance = match degree {
+                Degree::Octic => 1e-4,
+                Degree::Sextic => 1e-5,
+                _ => 1e-6,
+            };
             prop_assert!(difference < tolerance, "{degree}: {difference:e}");
         }
     }

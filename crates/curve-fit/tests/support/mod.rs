@@ -1,6 +1,6 @@
 //! Outlines that the tests share.
 #![allow(dead_code, unreachable_pub)]
-use freeform_curve_fit::Outline;
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use nalgebra::{Affine2, Matrix2, Matrix3, Point2, Vector2};
 use proptest::prelude::*;
 use rand::SeedableRng;
@@ -50,4 +50,23 @@ pub fn affine(linear: Matrix2<f64>, shift: Vector2<f64>) -> Affine2<f64> {
 
 pub fn closed(points: Vec<Point2<f64>>) -> Outline {
     Outline::closed(points).expect("a closed outline")
+}
+
+/// What is seen of a contour, given by its points, with one or two stretches of it hidden.
+pub fn open(points: &[Point2<f64>], visible: &[std::ops::Range<f64>]) -> Outline {
+    let index = |share: f64| (share * points.len() as f64) as usize;
+    let arcs = visible.iter().map(|part| points[index(part.start)..index(part.end)].to_vec());
+    Outline::Open(OpenOutline::new(arcs.map(|arc| OpenArc::new(arc).expect("an arc")).collect()).expect("arcs"))
+}
+
+/// A random star-shaped outline whole, as one arc and as two arcs that start anywhere; one half to 95 % are seen.
+pub fn any_visibility() -> impl Strategy<Value = [Outline; 3]> {
+    (any_star(), 0.0..1.0_f64, 0.5..0.95_f64, 0.05..0.4_f64).prop_map(|(mut points, start, seen, gap)| {
+        let from = (start * points.len() as f64) as usize;
+        points.rotate_left(from);
+        let hidden = 1.0 - seen;
+        let cut = 0.5 * seen;
+        let two = [0.0..cut, cut + gap * hidden..seen + gap * hidden];
+        [open(&points, &[0.0..seen]), open(&points, &two), closed(points)]
+    })
 }
