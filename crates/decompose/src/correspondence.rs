@@ -5,8 +5,8 @@ use crate::{
     rotation_chart::rotation_chart,
 };
 
-/// Largest number of conjugate pairs in a level.
-const MAX_PAIRS: usize = 4;
+/// Largest number of conjugate pairs in a level, that of an octic.
+pub const MAX_PAIRS: usize = 4;
 
 /// Below this relative gap between two values f(d) their order counts as tied.
 ///

@@ -45,7 +45,7 @@ mod rotation_chart;
 
 pub use companion::companion_roots;
 pub use condition::Condition;
-pub use correspondence::{Correspondence, Criterion, ORDERING_MARGIN};
+pub use correspondence::{Correspondence, Criterion, MAX_PAIRS, ORDERING_MARGIN};
 pub use decomposition::Decomposition;
 pub use error::{CorrespondenceError, DecompositionError, RootError};
 pub use invariants::AffineInvariants;

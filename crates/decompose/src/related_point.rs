@@ -102,11 +102,24 @@ impl RelatedPoints {
         self.beta
     }
 
-    /// The points moved by an affine map. Their values are kept: right up to the common factor.
+    /// The points moved by an affine map. Their values are kept: right up to the common factor, which
+    /// [`scaled`](Self::scaled) puts in.
     #[must_use]
     pub fn moved(&self, map: &Affine2<f64>) -> Self {
         let mut result = *self;
         result.points[..self.count].iter_mut().for_each(|d| d.point = map * d.point);
+        result
+    }
+
+    /// The same points with their values and [`beta`](Self::beta) multiplied by a factor; those that overflow are left
+    /// out. The values of the monic polynomial of a moved curve are the old ones times `c_n(before) / c_n(after)`, with
+    /// the leading coefficients `c_n` of [`Decomposition`] before and after [`Decomposition::moved`].
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut result = *self;
+        result.beta *= factor;
+        result.points[..self.count].iter_mut().for_each(|d| d.value *= factor);
+        result.drop_overflowed();
         result
     }
 
@@ -134,10 +147,14 @@ impl RelatedPoints {
 
     /// Fills in the values and drops points that are not finite.
     fn evaluate(&mut self, value: impl Fn(&Point2<f64>) -> f64) {
+        self.points[..self.count].iter_mut().for_each(|d| d.value = value(&d.point));
+        self.drop_overflowed();
+    }
+
+    fn drop_overflowed(&mut self) {
         let mut kept = 0;
         for index in 0..self.count {
-            let mut d = self.points[index];
-            d.value = value(&d.point);
+            let d = self.points[index];
             if d.point.coords.iter().all(|c| c.is_finite()) && d.value.is_finite() {
                 self.points[kept] = d;
                 kept += 1;
