@@ -3,11 +3,9 @@ use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector2};
 
 use crate::{
     estimate::MAX_PARAMETERS,
+    information::{InverseInformation, invert_information},
     motion_algebra::{adjoint, columns, normal_velocities},
 };
-
-/// Below this fraction of the largest eigenvalue of the information, scaled to unit diagonal, nothing is known.
-const RANK_TOLERANCE: f64 = 1e-10;
 
 /// Why a [`CramerRaoBound`] cannot be given.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -148,29 +146,13 @@ impl CramerRaoBound {
     /// # Errors
     /// The information is not finite.
     pub fn covariance(&self) -> Result<BoundCovariance, BoundError> {
-        let (k, size) = (self.parameters.len(), 2 * self.parameters.len());
+        let k = self.parameters.len();
         if self.information.iter().any(|e| !e.is_finite()) {
             return Err(BoundError::InformationNotFinite);
         }
-        let scale = DVector::from_fn(size, |i, _| {
-            let diagonal = self.information[(i, i)];
-            if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 }
-        });
-        let scaled = DMatrix::from_fn(size, size, |i, j| self.information[(i, j)] * scale[i] * scale[j]);
-        let eigen = scaled.symmetric_eigen();
-        let smallest = RANK_TOLERANCE * eigen.eigenvalues.amax().max(f64::MIN_POSITIVE);
-        let mut inverse = DMatrix::zeros(size, size);
-        let mut observable = vec![true; k];
-        let mut rank = 0;
-        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value > smallest {
-                rank += 1;
-                inverse.ger(1.0 / value, &vector, &vector, 1.0);
-            } else {
-                (0..k).filter(|j| vector[k + j].abs() > 1e-4).for_each(|j| observable[j] = false);
-            }
-        }
-        let covariance = DMatrix::from_fn(k, k, |i, j| inverse[(k + i, k + j)] * scale[k + i] * scale[k + j]);
+        let InverseInformation { covariance, observable, rank } = invert_information(&self.information);
+        let covariance = covariance.view((k, k), (k, k)).into_owned();
+        let observable = observable[k..].to_vec();
         Ok(BoundCovariance { covariance, observable, rank })
     }
 }

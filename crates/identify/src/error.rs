@@ -44,6 +44,20 @@ pub enum IdentifyError {
         /// Pairs of the curve.
         count: usize,
     },
+    /// More pairs than a curve can have.
+    #[error("{found} line pairs, at most {limit} can be followed")]
+    TooManyPairs {
+        /// Pairs given.
+        found: usize,
+        /// Pairs of an octic.
+        limit: usize,
+    },
+    /// A line has a coordinate that is NaN or infinite.
+    #[error("the line of pair {pair} is not finite")]
+    LineNotFinite {
+        /// Which pair, counted from 0.
+        pair: usize,
+    },
     /// The number of line pairs changed between frames.
     #[error("{found} line pairs, the frames before had {expected}")]
     PairCountChanged {
@@ -51,6 +65,12 @@ pub enum IdentifyError {
         expected: usize,
         /// Pairs of this frame.
         found: usize,
+    },
+    /// The law ran away over the time since the frame before: its numbers are not finite.
+    #[error("the law diverges over {seconds} s")]
+    Diverged {
+        /// Time since the frame before.
+        seconds: f64,
     },
     /// Time did not advance, or is not a finite number.
     #[error("time {time} does not come after {previous}")]

@@ -28,19 +28,31 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod adaptive;
+pub mod baseline;
+mod batch;
 mod bound;
 mod error;
 mod estimate;
 mod filter;
+mod group_logarithm;
+mod information;
 mod motion_algebra;
+mod motion_state;
+mod observability;
+mod smoother;
+mod whole_curve;
 
 pub use adaptive::{
     AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice, Regressor, quadratic_terms, solve_lyapunov,
 };
+pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
 pub use error::IdentifyError;
 pub use estimate::{MotionEstimate, ParameterEstimate};
 pub use filter::{FilterError, FilterSettings, FilterStep, MapUpdate, MotionFilter, OutlineMap, Phase, ProcessNoise};
+pub use motion_state::{MotionState, PoseParameter};
+pub use smoother::{SmootherError, smooth};
+pub use whole_curve::{CurveFilterSettings, CurveStep, WholeCurveFilter};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -3,6 +3,9 @@ use freeform_identify::{BoundError, BoundaryPoint, CramerRaoBound};
 use freeform_riccati::MotionModel;
 use nalgebra::{DMatrix, DVector, Matrix3, Point2, Vector2};
 use proptest::prelude::*;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 
 const TIMES: [f64; 4] = [0.0, 0.13, 0.31, 0.4];
 const NOISE: f64 = 0.01;
@@ -127,6 +130,58 @@ fn the_bound_of_a_translation_seen_twice_is_the_textbook_one() {
     let covariance = bound.covariance().expect("finite");
     let b1 = covariance.standard_deviations().nth(1).flatten().expect("observable");
     assert!((b1 - NOISE / 0.5).abs() < 1e-9, "{b1}");
+}
+
+#[test]
+fn an_efficient_estimator_reaches_the_bound() {
+    // Least squares on the distances of noisy points from the known lines they were taken on, by finite differences: nothing
+    // of it is shared with the bound.
+    let (model, theta) = (MotionModel::Rigid, [0.9, -0.3, 0.4]);
+    let mut bound = CramerRaoBound::new(model, &theta).expect("a motion");
+    let truth: Vec<_> = TIMES.iter().map(|time| curve(&flow(model, &theta, *time))).collect();
+    for (time, points) in TIMES.iter().zip(&truth) {
+        bound.add_frame(*time, points.iter().copied(), NOISE, 1.0).expect("a frame");
+    }
+    // Where the points go with the pose at time 0 (first three) and the motion (last three).
+    let places = |state: &DVector<f64>| -> Vec<Point2<f64>> {
+        let (pose, motion) = state.as_slice().split_at(3);
+        let frame = |time: &f64| curve(&(flow(model, motion, *time) * flow(model, pose, 1.0)));
+        TIMES.iter().flat_map(frame).map(|p| p.point).collect()
+    };
+    let centre = DVector::from_iterator(6, [0.0; 3].into_iter().chain(theta));
+    let lines: Vec<BoundaryPoint> = truth.concat();
+    let mut jacobian = DMatrix::zeros(lines.len(), 6);
+    for j in 0..6 {
+        let step = DVector::from_fn(6, |i, _| if i == j { 1e-5 } else { 0.0 });
+        let (after, before) = (places(&(&centre + &step)), places(&(&centre - &step)));
+        for (i, line) in lines.iter().enumerate() {
+            jacobian[(i, j)] = line.normal.dot(&(after[i] - before[i])) / 2e-5;
+        }
+    }
+    let solve = (jacobian.transpose() * &jacobian).try_inverse().expect("observable") * jacobian.transpose();
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let mut draw = || -> f64 { NOISE * rng.sample::<f64, _>(StandardNormal) };
+    let deviations: Vec<f64> =
+        bound.covariance().expect("finite").standard_deviations().map(|std| std.expect("observable")).collect();
+    let (mut squares, runs) = ([0.0; 3], 400);
+    for _ in 0..runs {
+        let seen: Vec<_> = lines.iter().map(|line| line.point + Vector2::new(draw(), draw())).collect();
+        let mut state = centre.clone();
+        for _ in 0..4 {
+            let now = places(&state);
+            let missing =
+                lines.iter().zip(seen.iter().zip(&now)).map(|(line, (seen, now))| line.normal.dot(&(seen - now)));
+            state += &solve * DVector::from_iterator(lines.len(), missing);
+        }
+        for (j, square) in squares.iter_mut().enumerate() {
+            *square += ((state[3 + j] - theta[j]) / deviations[j]).powi(2) / f64::from(runs);
+        }
+    }
+    // Each is uncertain by 3.5 %.
+    for (name, square) in ["omega", "b1", "b2"].iter().zip(squares) {
+        let ratio = square.sqrt();
+        assert!((ratio - 1.0).abs() < 0.12, "{name}: {ratio}");
+    }
 }
 
 #[test]

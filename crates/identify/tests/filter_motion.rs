@@ -335,3 +335,76 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_motion_that_changes_is_followed_without_being_told_to() {
+    let slow = |t: f64| AffineMotion::from(RigidMotion { omega: 1.0 + 0.5 * (1.5 * t).sin(), b1: 0.2, b2: -0.1 });
+    let frames = frames_of(BuiltInShape::Bird, Motion::varying(slow), settings(120, 4));
+    let mut filter = filter(MotionModel::Rigid);
+    for frame in &frames {
+        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").accepted, "frame {}", frame.index);
+    }
+    let omega = filter.estimate().expect("an estimate").parameters().next().expect("omega");
+    let error = omega.value.expect("observable") - slow(frames[119].time).a2;
+    assert!(error.abs() < 0.1, "{error}");
+}
+
+#[test]
+fn an_object_that_shrinks_or_grows_a_lot_keeps_the_intervals_honest() {
+    for growth in [-0.5, 0.5] {
+        let motion = AffineMotion { a1: growth, a2: 1.2, a3: -1.2, a4: growth, b1: -0.3, b2: 0.4 };
+        let mut squares = Vec::new();
+        for seed in 0..4 {
+            let frames = frames_of(BuiltInShape::Phone, motion, settings(100, seed));
+            let estimate = filtered(MotionModel::Similarity, &frames).estimate().expect("an estimate");
+            for (parameter, truth) in estimate.parameters().zip([growth, 1.2, -0.3, 0.4]) {
+                let error = parameter.value.expect("observable") - truth;
+                squares.push(error / parameter.standard_deviation.expect("given"));
+            }
+        }
+        let size = root_mean_square(squares.iter().copied());
+        assert!(size < 1.7, "growth {growth}: {size} standard deviations");
+    }
+}
+
+#[test]
+fn turns_that_a_symmetric_outline_cannot_tell_apart_are_listed() {
+    let turned = |shape| {
+        let motion = RigidMotion { omega: -0.3, b1: 0.1, b2: 0.0 };
+        let frames = frames_of(shape, motion, Settings { fps: 1.0, ..settings(2, 1) });
+        filtered(MotionModel::Rigid, &frames).rival_turns().to_vec()
+    };
+    assert!(turned(BuiltInShape::Bird).is_empty());
+    let ellipse = turned(BuiltInShape::Ellipse);
+    assert!(ellipse.iter().any(|turn| (turn.abs() - (std::f64::consts::PI - 0.3)).abs() < 0.1), "{ellipse:?}");
+}
+
+#[test]
+fn real_masks_with_correlated_errors_are_followed_and_broken_ones_rejected() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/sequences/microrobot_h");
+    let Ok(tracker) = std::fs::read_to_string(folder.join("authors_tracker.csv")) else {
+        println!("skipped: no recorded sequence at {}", folder.display());
+        return;
+    };
+    let angles: Vec<f64> =
+        tracker.lines().skip(1).map(|l| l.rsplit(',').next().expect("a column").parse().expect("degrees")).collect();
+    let (mut filter, mut seen) = (filter(MotionModel::Rigid), Vec::new());
+    for (index, angle) in angles.iter().enumerate() {
+        let picture = freeform_outline_io::read_picture(folder.join(format!("masks/{index:04}.png"))).expect("a mask");
+        let traced = freeform_outline_io::trace_mask(&picture, &freeform_outline_io::TraceSettings::default());
+        let step = filter.step(index as f64 / 15.07, &traced.expect("an object").outline).expect("increasing times");
+        if step.accepted {
+            let pose = filter.pose().expect("a pose");
+            let m = pose.matrix();
+            seen.push(((m[(1, 0)] - m[(0, 1)]).atan2(m[(0, 0)] + m[(1, 1)]).to_degrees(), *angle));
+        }
+    }
+    assert!((115..=132).contains(&seen.len()), "{} of {} frames", seen.len(), angles.len());
+    let difference =
+        |from: (f64, f64), to: (f64, f64)| ((to.0 - from.0 - to.1 + from.1) + 180.0).rem_euclid(360.0) - 180.0;
+    let mut steps: Vec<f64> = seen.windows(2).map(|pair| difference(pair[0], pair[1]).abs()).collect();
+    steps.sort_by(f64::total_cmp);
+    assert!(steps[steps.len() / 2] < 2.0, "median {}", steps[steps.len() / 2]);
+    let total = difference(seen[0], seen[seen.len() - 1]);
+    assert!(total.abs() < 4.0, "total {total}");
+}

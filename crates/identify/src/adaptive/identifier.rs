@@ -1,4 +1,4 @@
-use freeform_decompose::Line;
+use freeform_decompose::{Line, MAX_PAIRS};
 use freeform_riccati::{AffineMotion, MotionModel, RealVariables};
 use nalgebra::{Const, DimMin, Matrix4, SVector, Vector4};
 
@@ -14,8 +14,6 @@ use super::{
 };
 use crate::{error::IdentifyError, estimate::MotionEstimate};
 
-/// Largest number of conjugate pairs, that of an octic.
-const MAX_PAIRS: usize = 4;
 /// A line that turns further than this between two frames (radians) is not interpolated; the law starts anew from it.
 const LARGEST_TURN: f64 = 0.5;
 /// X changes by at most about this fraction of itself in one step of the integration.
@@ -29,9 +27,13 @@ const MAX_STEPS: usize = 64;
 pub struct AdaptiveIdentifier {
     settings: AdaptiveSettings,
     laws: Laws,
+    /// The laws before the present frame, to go back to.
+    laws_before: Laws,
     qualities: [PairQuality; MAX_PAIRS],
     last: Option<Last>,
     frames: usize,
+    /// Intervals between frames over which the law ran, one pair at least being followed.
+    followed: usize,
 }
 
 /// The frame before.
@@ -48,6 +50,29 @@ enum Laws {
     Three(Vec<RunningLaw<3>>),
     Four(Vec<RunningLaw<4>>),
     Six(Vec<RunningLaw<6>>),
+}
+
+impl Laws {
+    /// Keeps the laws as they are in `before` and takes a frame. Returns whether the lines could be followed by any of the
+    /// laws; `None` where a number did not stay finite.
+    fn take(&mut self, frame: &Frame, before: &mut Self) -> Option<bool> {
+        before.set_to(self);
+        match self {
+            Self::Three(laws) => take_all(laws, frame),
+            Self::Four(laws) => take_all(laws, frame),
+            Self::Six(laws) => take_all(laws, frame),
+        }
+    }
+
+    /// Copies other laws of the same kind and number, without allocation.
+    fn set_to(&mut self, other: &Self) {
+        match (self, other) {
+            (Self::Three(laws), Self::Three(other)) => laws.clone_from_slice(other),
+            (Self::Four(laws), Self::Four(other)) => laws.clone_from_slice(other),
+            (Self::Six(laws), Self::Six(other)) => laws.clone_from_slice(other),
+            (laws, other) => *laws = other.clone(),
+        }
+    }
 }
 
 impl AdaptiveIdentifier {
@@ -71,7 +96,8 @@ impl AdaptiveIdentifier {
             MotionModel::Affine => Laws::Six(RunningLaw::candidates(&settings, lyapunov)),
             MotionModel::Projective => return Err(IdentifyError::UnsupportedModel { model: settings.model }),
         };
-        Ok(Self { settings, laws, qualities: Default::default(), last: None, frames: 0 })
+        let laws_before = laws.clone();
+        Ok(Self { settings, laws, laws_before, qualities: Default::default(), last: None, frames: 0, followed: 0 })
     }
 
     /// The settings.
@@ -82,13 +108,20 @@ impl AdaptiveIdentifier {
 
     /// Takes the conjugate pairs of the next frame, one line of each, in the same order as in the frame before and with
     /// `Im l` of the same sign. Any time may pass between frames; over a long gap, in which a line turns too far to be
-    /// followed, nothing is learned.
+    /// followed, nothing is learned: see [`intervals_followed`](Self::intervals_followed).
     ///
     /// # Errors
-    /// Time that does not advance or is not finite, another number of pairs than before, none at all, or fewer than the
-    /// given pair asks for. The identifier is then as before.
+    /// Time that does not advance or is not finite, another number of pairs than before, none at all, more than four, or
+    /// fewer than the given pair asks for, a line that is not finite; a law that runs away to numbers that are not
+    /// finite. The identifier is then as before.
     pub fn step(&mut self, time: f64, lines: &[Line]) -> Result<(), IdentifyError> {
-        let count = lines.len().min(MAX_PAIRS);
+        let count = lines.len();
+        if count > MAX_PAIRS {
+            return Err(IdentifyError::TooManyPairs { found: count, limit: MAX_PAIRS });
+        }
+        if let Some(pair) = lines.iter().position(|line| !(line.l.is_finite() && line.k.is_finite())) {
+            return Err(IdentifyError::LineNotFinite { pair });
+        }
         let index = if let PairChoice::Given(index) = self.settings.pairs { index } else { 0 };
         if index >= count {
             return Err(IdentifyError::NoSuchPair { index, count });
@@ -102,25 +135,40 @@ impl AdaptiveIdentifier {
         if let Some(last) = self.last.filter(|last| last.count != count) {
             return Err(IdentifyError::PairCountChanged { expected: last.count, found: count });
         }
+        let qualities_before = self.qualities;
         for (quality, line) in self.qualities.iter_mut().zip(&padded[..count]) {
             quality.take(line);
         }
         let frame = Frame { time, lines: padded, count, last: self.last, weights: weights(&self.qualities[..count]) };
-        match &mut self.laws {
-            Laws::Three(laws) => laws.iter_mut().for_each(|law| law.take(&frame)),
-            Laws::Four(laws) => laws.iter_mut().for_each(|law| law.take(&frame)),
-            Laws::Six(laws) => laws.iter_mut().for_each(|law| law.take(&frame)),
-        }
+        let Some(followed) = self.laws.take(&frame, &mut self.laws_before) else {
+            self.laws.set_to(&self.laws_before);
+            self.qualities = qualities_before;
+            return Err(IdentifyError::Diverged { seconds: time - previous });
+        };
+        self.followed += usize::from(followed);
         self.last = Some(Last { time, lines: padded, count });
         self.frames += 1;
         Ok(())
     }
 
-    /// The motion as identified so far, in the image frame; `None` before the second frame. The adaptive laws give no
+    /// Number of frames taken.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Over how many of the intervals between the frames the lines could be followed: nothing is learned where a line turns
+    /// by more than half a radian, twice the turn of the object.
+    #[must_use]
+    pub fn intervals_followed(&self) -> usize {
+        self.followed
+    }
+
+    /// The motion as identified so far, in the image frame; `None` before the lines were followed once. The laws give no
     /// standard deviations. All parameters are unobservable where [`is_observable`](Self::is_observable) is false.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
-        (self.frames > 1).then(|| {
+        (self.followed > 0).then(|| {
             let parameters = match &self.laws {
                 Laws::Three(laws) => laws[self.chosen_law(laws.len())].parameters(),
                 Laws::Four(laws) => laws[self.chosen_law(laws.len())].parameters(),
@@ -171,6 +219,15 @@ impl AdaptiveIdentifier {
         let errors = self.qualities[..self.pair_count().min(laws)].iter().map(PairQuality::relative_error);
         errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index)
     }
+}
+
+/// Every law takes the frame. Returns whether any could follow the lines; `None` where a number did not stay finite.
+fn take_all<const N: usize>(laws: &mut [RunningLaw<N>], frame: &Frame) -> Option<bool>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    let followed = laws.iter_mut().fold(false, |any, law| law.take(frame) | any);
+    laws.iter().all(RunningLaw::is_finite).then_some(followed)
 }
 
 /// Weights of the pairs by expected error, 1 for the best.
@@ -260,10 +317,11 @@ where
         parameters
     }
 
-    fn take(&mut self, frame: &Frame) {
+    /// Takes a frame; returns whether the lines could be followed from the one before.
+    fn take(&mut self, frame: &Frame) -> bool {
         let pairs = self.pair.map_or(0..frame.count, |pair| pair..pair + 1);
         if pairs.end > frame.count {
-            return;
+            return false;
         }
         let lines = &frame.lines[pairs.clone()];
         let paths = frame.last.and_then(|last| paths(&last.lines[pairs.clone()], lines));
@@ -274,16 +332,24 @@ where
                 self.states[slot] = state;
                 self.filters[slot] = FilteredPair::starting_at(&state);
             }
-            return;
+            return false;
         };
         let seconds = frame.time - frame.last.map_or(frame.time, |last| last.time);
-        self.advance(seconds, &paths[..lines.len()], &frame.weights[pairs]);
+        // A pair that is used alone has nothing to be weighed against.
+        let weights = if self.pair.is_some() { [1.0; MAX_PAIRS] } else { frame.weights };
+        self.advance(seconds, &paths[..lines.len()], &weights);
         if let Law::LeastSquares(law) = &mut self.law {
             law.forget(seconds);
             for (slot, line) in lines.iter().enumerate() {
-                law.take(seconds, &self.filters[slot], &RealVariables::from(*line).state(), frame.weights[slot]);
+                law.take(seconds, &self.filters[slot], &RealVariables::from(*line).state(), weights[slot]);
             }
         }
+        true
+    }
+
+    fn is_finite(&self) -> bool {
+        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        finite(self.parameters().as_slice()) && self.states.iter().all(|state| finite(state.as_slice()))
     }
 
     /// Runs the law from one frame to the next, in steps small enough for X to change little in each.
@@ -300,7 +366,6 @@ where
             let middle = (i as f64 + 0.5) / steps as f64;
             let mut inputs = [PairInput { state: Vector4::zeros(), weight: 1.0 }; MAX_PAIRS];
             for ((input, path), &weight) in inputs.iter_mut().zip(paths).zip(weights) {
-                let weight = if self.pair.is_some() { 1.0 } else { weight };
                 *input = PairInput { state: path.state(middle), weight };
             }
             let inputs = &inputs[..paths.len()];

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
+use nalgebra::{SMatrix, SVector, Vector4};
 
 use super::regressor::Regressor;
 
@@ -64,8 +64,8 @@ impl<const N: usize> LeastSquaresLaw<N> {
     pub(crate) fn take(&mut self, seconds: f64, filtered: &FilteredPair<N>, x: &Vector4<f64>, weight: f64) {
         let right = x - FILTER_RATE * filtered.state - filtered.transient;
         let precision = noise_precision(x) * (weight * seconds);
-        self.information += filtered.regressor.transpose() * precision * filtered.regressor;
-        self.projection += filtered.regressor.transpose() * precision * right;
+        self.information += precision * filtered.regressor.tr_mul(&filtered.regressor);
+        self.projection += precision * filtered.regressor.tr_mul(&right);
     }
 
     pub(crate) fn parameters(&self) -> SVector<f64, N> {
@@ -73,9 +73,9 @@ impl<const N: usize> LeastSquaresLaw<N> {
     }
 }
 
-/// Inverse of the relative noise variance of X: noise is the same for all orientations in the rotation chart w, and
+/// Inverse of the relative variance of the noise on each entry of X: noise is the same for all orientations in the rotation chart w, and
 /// `l = j (1 + w) / (1 - w)` magnifies it by `|1 + |l|^2 + ...|`, that is by `|l + j|^2 / 2` where the line swings out.
-fn noise_precision(x: &Vector4<f64>) -> Matrix4<f64> {
+fn noise_precision(x: &Vector4<f64>) -> f64 {
     let magnification = 0.5 * (x[0] * x[0] + (x[1].abs() + 1.0).powi(2));
-    Matrix4::identity() / (magnification * magnification)
+    1.0 / (magnification * magnification)
 }

@@ -21,7 +21,7 @@ const SEARCH_STEPS: usize = 8;
 const REFINEMENT_STEPS: usize = 15;
 /// Hypotheses that are refined, and that are handed back at most.
 const REFINED: usize = 6;
-const KEPT: usize = 3;
+pub(crate) const KEPT: usize = 3;
 /// Poses whose turns differ by less than this are the same, rad.
 const SAME_TURN: f64 = 0.15;
 /// A score up to this many times the best is a tie, which the smaller turn wins.
@@ -34,8 +34,8 @@ pub(crate) struct Hypothesis {
     pub(crate) pose: Matrix3<f64>,
     /// Trimmed mean distance of the points from the map, normalised.
     score: f64,
-    /// Turn from the pose before, rad.
-    turn: f64,
+    /// Turn from the pose before, rad, anticlockwise where y points up.
+    pub(crate) turn: f64,
 }
 
 /// Related points of one outline, those of the quartic's two line pairs.

@@ -2,22 +2,25 @@ use freeform_curve_fit::Outline;
 use nalgebra::{Affine2, Projective2};
 
 use super::{
-    acquisition::{Landmarks, find_pose, motion_between},
+    acquisition::{Hypothesis, KEPT, Landmarks, find_pose, motion_between},
     error::FilterError,
     map_update::MapUpdate,
+    motion_change::{MotionChange, SUDDEN},
     outline_map::{FEWEST_POINTS, OutlineMap},
-    settings::FilterSettings,
+    settings::{FilterSettings, ProcessNoise},
 };
 use crate::estimate::MotionEstimate;
 
 /// Squared innovation of one frame beyond which the motion has not gone on as it was.
 const LARGEST_INNOVATION: f64 = 80.0;
-/// A frame with so many times the noise known does not show the known outline, however well the map is bent to it.
-const LARGEST_NOISE_RATIO: f64 = 1.8;
 /// Noise below this many lengths of a cell is never too much.
 const BEND: f64 = 0.1;
 /// Share of the points that one pose must explain beyond another to be preferred to a likelier one.
 const CLEARLY_BETTER: f64 = 0.03;
+/// Spread about the map, as a multiple of the best, with which another turn explains a frame as well.
+const AS_GOOD: f64 = 1.15;
+/// Turns that differ by less are the same, rad.
+const DIFFERENT_TURN: f64 = 0.15;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
 const FALSE_START: usize = 3;
 /// Frames rejected in a row after which the object is given up and a new one taken.
@@ -87,11 +90,13 @@ pub struct MotionFilter {
     landmarks: Option<Landmarks>,
     last_time: f64,
     /// Time that the map stands at.
-    map_time: f64,
+    pub(super) map_time: f64,
     accepted: usize,
     rejected: usize,
     rejected_in_a_row: usize,
     restarts: usize,
+    change: MotionChange,
+    rivals: Rivals,
 }
 
 impl MotionFilter {
@@ -112,6 +117,8 @@ impl MotionFilter {
             rejected: 0,
             rejected_in_a_row: 0,
             restarts: 0,
+            change: MotionChange::default(),
+            rivals: Rivals::default(),
         })
     }
 
@@ -174,10 +181,28 @@ impl MotionFilter {
         let map = self.map.as_mut()?;
         let seconds = time - self.map_time;
         map.predict(seconds);
-        map.add_process_noise(&self.settings.process_noise, seconds);
         self.map_time = time;
-        let smallest = self.settings.smallest_agreement;
-        Some(map.update(outline, |update| update.agreement >= smallest && update.innovation <= LARGEST_INNOVATION))
+        map.add_process_noise(&self.settings.process_noise, seconds);
+        let adaptive = self.settings.adaptive && self.settings.process_noise == ProcessNoise::default();
+        if adaptive && self.change.variance > 0.0 {
+            map.add_change(self.change.variance);
+        }
+        let parameters = map.information.k;
+        let limit = SUDDEN * parameters as f64;
+        let fits = fits(map, self.settings.smallest_agreement);
+        let mut update = map.update(outline, |update| fits(update) && update.innovation <= limit);
+        let innovation = map.innovation;
+        let has_changed = !update.accepted && fits(&update) && self.rejected_in_a_row > 0;
+        if adaptive && has_changed && innovation.fisher > 0.0 {
+            // The outline is there, but for the second time not where it was going: the motion has changed.
+            map.add_change((innovation.gradient / innovation.fisher).max(0.0));
+            update = map.update(outline, fits);
+        }
+        if adaptive && update.accepted {
+            self.change.take(&innovation, parameters);
+        }
+        map.noise_level.take(update.spread / map.radius);
+        Some(update)
     }
 
     /// Goes on as predicted if that fits, searches for the object otherwise.
@@ -200,9 +225,38 @@ impl MotionFilter {
             Some([landmarks.moved(&pose), Landmarks::of(outline)?])
         });
         let hypotheses = find_pose(map, outline, landmarks);
-        let mut best: Option<(MapUpdate, OutlineMap, Phase)> = None;
+        // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
+        // where nothing fits without.
+        let mut best = self.try_poses(&hypotheses, outline, seconds, false);
+        if best.as_ref().is_none_or(|(update, ..)| !update.accepted) {
+            best = self.try_poses(&hypotheses, outline, seconds, true).or(best);
+        }
+        let (update, candidate, phase, rivals) = best?;
+        let known = update.accepted || self.phase == Phase::Lost;
+        if update.accepted {
+            self.rivals = rivals;
+            self.replace(candidate, time, phase);
+        }
+        if let Some(map) = self.map.as_mut().filter(|_| known) {
+            map.noise_level.take(update.spread / map.radius);
+        }
+        Some(update)
+    }
+
+    /// Measures the frame in the poses given; best the first that fits clearly better than those before it.
+    fn try_poses(
+        &self,
+        hypotheses: &[Hypothesis],
+        outline: &Outline,
+        seconds: f64,
+        relaxed: bool,
+    ) -> Option<(MapUpdate, OutlineMap, Phase, Rivals)> {
+        let mut best: Option<(MapUpdate, OutlineMap, Phase, f64)> = None;
+        let mut candidates = Vec::with_capacity(2 * KEPT);
         for hypothesis in hypotheses {
             let mut candidate = self.map.clone()?;
+            candidate.noise_level.relaxed = relaxed;
+            let fits = fits(&candidate, self.settings.smallest_agreement);
             let phase = if self.phase == Phase::Lost {
                 // Where it is now says nothing of how it moves now.
                 candidate.relocate(hypothesis.pose);
@@ -214,20 +268,22 @@ impl MotionFilter {
                 candidate.predict(seconds);
                 Phase::Tracking
             };
-            let update = candidate.update(outline, &fits);
+            let update = candidate.update(outline, fits);
+            candidates.push((hypothesis.turn, update));
             // The hypotheses come in order: a later one has to be clearly better.
             let better = best.as_ref().is_none_or(|(other, ..)| {
-                (update.accepted, update.agreement) > (other.accepted, other.agreement + CLEARLY_BETTER)
+                (update.accepted && !other.accepted)
+                    || (update.accepted == other.accepted
+                        && ((relaxed && AS_GOOD * update.spread < other.spread)
+                            || update.agreement > other.agreement + CLEARLY_BETTER))
             });
             if better {
-                best = Some((update, candidate, phase));
+                best = Some((update, candidate, phase, hypothesis.turn));
             }
         }
-        let (update, candidate, phase) = best?;
-        if update.accepted {
-            self.replace(candidate, time, phase);
-        }
-        Some(update)
+        let (update, mut candidate, phase, turn) = best?;
+        candidate.noise_level.relaxed = false;
+        Some((update, candidate, phase, Rivals::of(turn, &update, &candidates)))
     }
 
     fn replace(&mut self, map: OutlineMap, time: f64, phase: Phase) {
@@ -282,6 +338,14 @@ impl MotionFilter {
         self.rejected
     }
 
+    /// Turns in radians, anticlockwise where y points up, by which the object may just as well have come to the frame in which it was
+    /// last searched for and found, besides the one taken: its outline fits equally well there. Of equals the smallest turn is
+    /// taken. Empty for outlines without symmetry.
+    #[must_use]
+    pub fn rival_turns(&self) -> &[f64] {
+        &self.rivals.turns[..self.rivals.count]
+    }
+
     /// Times the filter has given up an object and begun anew.
     #[must_use]
     pub fn restarts(&self) -> usize {
@@ -289,9 +353,37 @@ impl MotionFilter {
     }
 }
 
+/// Turns that explain a frame as well as the one taken.
+#[derive(Debug, Clone, Copy, Default)]
+struct Rivals {
+    turns: [f64; KEPT],
+    count: usize,
+}
+
+impl Rivals {
+    fn of(taken: f64, best: &MapUpdate, candidates: &[(f64, MapUpdate)]) -> Self {
+        let mut rivals = Self::default();
+        let apart = |a: f64, b: f64| {
+            let turn = (a - b + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+            turn.abs() > DIFFERENT_TURN
+        };
+        for (turn, update) in candidates {
+            let equal = update.accepted
+                && update.agreement + CLEARLY_BETTER >= best.agreement
+                && update.spread <= AS_GOOD * best.spread;
+            let known = rivals.turns[..rivals.count].iter().any(|other| !apart(*other, *turn));
+            if equal && apart(*turn, taken) && !known && rivals.count < KEPT {
+                rivals.turns[rivals.count] = *turn;
+                rivals.count += 1;
+            }
+        }
+        rivals
+    }
+}
+
 /// Whether a frame shows the outline that the map knows.
-fn fits(map: &OutlineMap, smallest_agreement: f64) -> impl Fn(&MapUpdate) -> bool + use<> {
+fn fits(map: &OutlineMap, smallest_agreement: f64) -> impl Fn(&MapUpdate) -> bool + Copy + use<> {
     // Exact points leave what the cells do not follow.
-    let largest_noise = (LARGEST_NOISE_RATIO * map.noise()).max(BEND * map.spacing * map.radius);
+    let largest_noise = map.noise_level.tolerated(map.sigma).max(BEND * map.spacing) * map.radius;
     move |update| update.agreement >= smallest_agreement && update.noise.is_none_or(|noise| noise <= largest_noise)
 }

@@ -1,18 +1,22 @@
 use freeform_curve_fit::Outline;
 use freeform_riccati::MotionModel;
-use nalgebra::{Matrix3, Point2, Projective2, SMatrix, Vector2};
+use nalgebra::{Matrix3, Point2, Projective2, Vector2};
 
 use super::{
-    arrow_information::{ArrowInformation, CellInformation, StateMatrix, StateVector, moved_marginal},
+    arrow_information::{ArrowInformation, StateMatrix},
+    cell_scatter::Scatter,
     contour::Contour,
     error::FilterError,
-    map_update::Scratch,
+    innovation::PoseInnovation,
+    map_update::{Piece, Scratch},
     nearest_field::NearestField,
+    noise_level::NoiseLevel,
+    outline_drift::OutlineDrift,
     settings::ProcessNoise,
 };
 use crate::{
-    estimate::{MAX_PARAMETERS, MotionEstimate},
-    motion_algebra::{CoordinateMatrix, Coordinates, adjoint, columns, map_point, normal_velocities},
+    estimate::MAX_PARAMETERS,
+    motion_algebra::{Coordinates, map_point},
 };
 
 /// Fewest points that a map is started from.
@@ -20,6 +24,10 @@ pub(crate) const FEWEST_POINTS: usize = 8;
 /// Length of a cell in standard deviations of the noise. Shorter ones leave more offsets to be estimated, and points that come to the
 /// wrong cell; longer ones a coarser outline.
 const NOISE_PER_CELL: f64 = 3.0;
+/// The same where there are plenty of points...
+const LEAST_NOISE_PER_CELL: f64 = 1.5;
+/// ...which are so many for each cell.
+const PLENTY_PER_CELL: f64 = 4.0;
 /// Fewest points of the first frame for each cell.
 const POINTS_PER_CELL: f64 = 1.0;
 /// Most cells of the first frame.
@@ -27,13 +35,7 @@ const MOST_CELLS: f64 = 800.0;
 /// Weight of the first pose, in points: it only fixes the gauge, since pose and offsets can move together.
 const GAUGE_WEIGHT: f64 = 10.0;
 /// Information on the motion that makes the first equations solvable, per squared second: next to nothing.
-const MOTION_PRIOR: f64 = 1e-10;
-/// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
-const DEGENERATE: f64 = 0.003;
-/// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
-const WORTHLESS: f64 = 0.25;
-/// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
-const SEEN_BY_PATH: f64 = 0.02;
+pub(crate) const MOTION_PRIOR: f64 = 1e-10;
 /// Smallest standard deviation of the noise that is reckoned with, in RMS radii.
 const SMALLEST_NOISE: f64 = 1e-9;
 /// What straight cells leave of an outline where it bends most, in spacings: noise is not told from it below.
@@ -48,15 +50,12 @@ pub(crate) struct Cell {
     pub(crate) normal: Vector2<f64>,
     /// Signed distance of the outline from the centre along the normal.
     pub(crate) offset: f64,
+    /// How much its points scatter.
+    pub(crate) scatter: Scatter,
+    /// Of the offset in the last frame, in units of the noise; 0 where it was not seen.
+    pub(crate) innovation: f64,
     /// The cells before and after it; its own number where none is known.
     pub(crate) neighbours: [usize; 2],
-}
-
-/// A direction of the pose that the outline does not show, in the image: rows of measurements lose `(h . direction) dual`.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Unseen {
-    pub(crate) direction: Coordinates,
-    pub(crate) dual: Coordinates,
 }
 
 /// The recursive outline map: the pose of an object, its motion, and its outline as cells along it whose signed offsets are
@@ -88,13 +87,18 @@ pub struct OutlineMap {
     sigma_floor: f64,
     pub(crate) half_window: usize,
     /// In the body frame.
-    unseen_in_body: Vec<Coordinates>,
+    pub(crate) unseen_in_body: Vec<Coordinates>,
     /// From centred coordinates of unit RMS radius to the body frame.
-    body_frame: Matrix3<f64>,
+    pub(crate) body_frame: Matrix3<f64>,
     pub(crate) scratch: Scratch,
-    process_noise: ProcessNoise,
+    pub(crate) process_noise: ProcessNoise,
+    pub(crate) noise_level: NoiseLevel,
+    pub(crate) drift: OutlineDrift,
+    pub(crate) innovation: PoseInnovation,
+    /// Of the last prediction.
+    pub(crate) step_seconds: f64,
     /// Seconds predicted over since the motion was last unknown.
-    span: f64,
+    pub(crate) span: f64,
 }
 
 impl OutlineMap {
@@ -134,6 +138,10 @@ impl OutlineMap {
             body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
             process_noise: ProcessNoise::default(),
+            noise_level: NoiseLevel::NEW,
+            drift: OutlineDrift::default(),
+            innovation: PoseInnovation::default(),
+            step_seconds: 0.0,
             span: 0.0,
         };
         map.load(outline);
@@ -177,7 +185,8 @@ impl OutlineMap {
         self.sigma = (variance / f64::max(count, 1.0)).sqrt().max(SMALLEST_NOISE);
         self.half_window = window;
         let finest = (count / POINTS_PER_CELL).clamp(4.0, MOST_CELLS);
-        self.spacing = (NOISE_PER_CELL * self.sigma).max(length / finest).min(length / 12.0);
+        let plenty = (LEAST_NOISE_PER_CELL * self.sigma).max(PLENTY_PER_CELL * length / count);
+        self.spacing = plenty.min(NOISE_PER_CELL * self.sigma).max(length / finest).min(length / 12.0);
     }
 
     /// The pieces of the loaded outline in the body frame.
@@ -196,146 +205,12 @@ impl OutlineMap {
     pub(crate) fn load(&mut self, outline: &Outline) {
         let (origin, scale) = (self.origin, 1.0 / self.radius);
         self.scratch.points.clear();
+        self.scratch.pieces.clear();
         for piece in outline.pieces() {
+            let (start, count) = (self.scratch.points.len(), piece.points.len());
+            self.scratch.pieces.push(Piece { start, count, closed: piece.closed });
             self.scratch.points.extend(piece.points.iter().map(|p| Point2::from((p - origin) * scale)));
         }
-    }
-
-    /// Moves on by `seconds` of the estimated motion.
-    pub fn predict(&mut self, seconds: f64) {
-        let k = self.information.k;
-        let flow = self.model.flow(&self.motion[..k], seconds).into_inner();
-        let Some(inverse) = flow.try_inverse().filter(|m| m.iter().all(|e| e.is_finite())) else { return };
-        let sensitivities = self.model.flow_sensitivities(&self.motion[..k], seconds);
-        let by_motion = columns(self.model, sensitivities.into_iter());
-        let ad_inverse = adjoint(self.model, &inverse, &flow);
-        let mut product: CoordinateMatrix = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
-        for i in 0..k {
-            for j in 0..k {
-                product[i][j] = (0..k).map(|m| ad_inverse[i][m] * by_motion[m][j]).sum();
-            }
-        }
-        self.pose = flow * self.pose;
-        self.information.predict(&ad_inverse, &product);
-        self.marginal = moved_marginal(&self.marginal, k, &ad_inverse, &product);
-        self.span += seconds;
-    }
-
-    /// Lets the motion have changed at random over `seconds`. The offsets keep what they are known to be, and their regression on
-    /// pose and motion; only what they would come to know of each other is dropped.
-    pub fn add_process_noise(&mut self, noise: &ProcessNoise, seconds: f64) {
-        if noise.rates == 0.0 && noise.velocities == 0.0 {
-            return;
-        }
-        self.process_noise = *noise;
-        let k = self.information.k;
-        let units = self.sigma * self.sigma;
-        let mut added = StateMatrix::zeros();
-        for (j, name) in self.model.parameter_names().iter().enumerate() {
-            let per_second = match name.as_bytes()[0] {
-                b'b' => noise.velocities / self.radius,
-                b'c' => noise.rates * self.radius,
-                _ => noise.rates,
-            };
-            added[(k + j, k + j)] = per_second * per_second * seconds / units;
-        }
-        let Some(covariance) = self.marginal.try_inverse() else { return };
-        // Before (x) given after (x'): x = K x' + rest.
-        let Some(after) = (covariance + added).try_inverse() else { return };
-        let gain = covariance * after;
-        let rest = covariance - gain * covariance;
-        let mut dense = after;
-        for cell in &mut self.information.cells {
-            if cell.own <= 0.0 {
-                continue;
-            }
-            let slope = StateVector::from(cell.coupling) / cell.own;
-            let own = 1.0 / (1.0 / cell.own + (slope.transpose() * rest * slope).x.max(0.0));
-            let coupling = gain.transpose() * slope * own;
-            dense += coupling * coupling.transpose() / own;
-            cell.own = own;
-            cell.coupling = coupling.into();
-        }
-        for (i, row) in self.information.dense.iter_mut().enumerate().take(2 * k) {
-            (0..2 * k).for_each(|j| row[j] = dense[(i, j)]);
-        }
-        self.marginal = after;
-    }
-
-    /// Puts the object into a new pose and forgets motion and pose, keeping the outline.
-    pub(crate) fn relocate(&mut self, pose: Matrix3<f64>) {
-        let k = self.information.k;
-        self.pose = pose;
-        self.information.dense = ArrowInformation::new(k).dense;
-        for i in 0..k {
-            self.information.dense[i][i] = MOTION_PRIOR;
-            self.information.dense[k + i][k + i] = MOTION_PRIOR;
-        }
-        for cell in &mut self.information.cells {
-            *cell = CellInformation { own: cell.own, ..CellInformation::NOTHING };
-        }
-        self.marginal = self.information.marginal();
-        self.span = 0.0;
-    }
-
-    /// Directions of the pose that the cells do not show, from their lever arms about their mean.
-    pub(crate) fn find_unseen_directions(&mut self, normal_noise: f64) {
-        let count = self.cells.len() as f64;
-        let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
-        let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
-        let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
-        levers.view_mut((0, 0), (self.information.k, self.information.k)).fill(0.0);
-        for cell in &self.cells {
-            let p = Point2::from((cell.centre - centroid) / spread);
-            let row = normal_velocities(self.model, &p, &cell.normal);
-            let row = nalgebra::SVector::from(row);
-            levers += row * row.transpose() / count;
-        }
-        let eigen = levers.symmetric_eigen();
-        let threshold = DEGENERATE + 1.5 * normal_noise * normal_noise;
-        let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
-        self.unseen_in_body.clear();
-        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value < threshold {
-                let generator = self.model.generator(&vector.as_slice()[..self.information.k]);
-                let Some(inverse) = to_body.try_inverse() else { continue };
-                self.unseen_in_body
-                    .push(crate::motion_algebra::coordinates(self.model, &(to_body * generator * inverse)));
-            }
-        }
-        self.body_frame = to_body;
-    }
-
-    /// The same in the image, for the pose given.
-    pub(crate) fn unseen_in_image(&self, pose: &Matrix3<f64>) -> Vec<Unseen> {
-        if self.unseen_in_body.is_empty() {
-            return Vec::new();
-        }
-        let k = self.information.k;
-        let Some(inverse) = pose.try_inverse() else { return Vec::new() };
-        let (ad, ad_inverse) = (adjoint(self.model, pose, &inverse), adjoint(self.model, &inverse, pose));
-        // Duals in centred coordinates, where the directions are orthonormal.
-        let to_body = self.body_frame;
-        let Some(from_body) = to_body.try_inverse() else { return Vec::new() };
-        let centring = adjoint(self.model, &from_body, &to_body);
-        let list = self.unseen_in_body.iter().map(|u| {
-            let mut direction = [0.0; MAX_PARAMETERS];
-            let mut centred = [0.0; MAX_PARAMETERS];
-            for i in 0..k {
-                direction[i] = (0..k).map(|j| ad[i][j] * u[j]).sum();
-                centred[i] = (0..k).map(|j| centring[i][j] * u[j]).sum();
-            }
-            let mut in_body = [0.0; MAX_PARAMETERS];
-            let mut dual = [0.0; MAX_PARAMETERS];
-            for j in 0..k {
-                in_body[j] = (0..k).map(|i| centred[i] * centring[i][j]).sum();
-            }
-            for j in 0..k {
-                dual[j] = (0..k).map(|i| in_body[i] * ad_inverse[i][j]).sum();
-            }
-            Unseen { direction, dual }
-        });
-        list.collect()
     }
 
     /// Takes a frame's estimate of the noise into the running mean.
@@ -376,84 +251,4 @@ impl OutlineMap {
         let to_image = self.to_image() * self.pose;
         self.cells.iter().map(move |cell| map_point(&to_image, &(cell.centre + cell.offset * cell.normal)))
     }
-
-    /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed.
-    #[must_use]
-    pub fn covariance(&self) -> Option<nalgebra::DMatrix<f64>> {
-        let k = self.information.k;
-        let to_image = self.to_image();
-        let change = adjoint(self.model, &to_image, &to_image.try_inverse()?);
-        let inverse = scaled_inverse(&self.marginal)?;
-        let change = nalgebra::DMatrix::from_fn(k, k, |i, j| change[i][j]);
-        let motion = nalgebra::DMatrix::from_fn(k, k, |i, j| inverse[(k + i, k + j)] * self.sigma * self.sigma);
-        Some(&change * motion * change.transpose())
-    }
-
-    /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time seen so
-    /// far, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable; so is one
-    /// that takes part in a motion which the outline does not show, such as the turning of a circle about its centre.
-    #[must_use]
-    pub fn estimate(&self) -> Option<MotionEstimate> {
-        let covariance = self.covariance()?;
-        let k = self.information.k;
-        let to_image = self.to_image();
-        let generator = to_image * self.model.generator(&self.motion[..k]) * to_image.try_inverse()?;
-        let values = crate::motion_algebra::coordinates(self.model, &generator);
-        let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
-        let mut estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
-        let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
-        let reach = self.radius + self.origin.coords.norm();
-        for (j, name) in self.model.parameter_names().iter().enumerate() {
-            let (limit, drift) = match name.as_bytes()[0] {
-                b'b' => (reach, self.process_noise.velocities),
-                b'c' => (1.0 / reach, self.process_noise.rates),
-                _ => (1.0, self.process_noise.rates),
-            };
-            // A motion that drifts is known no longer than it takes to drift by its standard deviation.
-            let span = self.span.min((deviations[j] / drift).powi(2));
-            let known = deviations[j] * span <= WORTHLESS * limit;
-            if !known || blind[j] {
-                estimate = estimate.with_unobservable(j);
-            }
-        }
-        Some(estimate)
-    }
-}
-
-impl OutlineMap {
-    /// Parameters that take part in a motion which the outline does not show, and which the path of the object has not shown either.
-    fn blind_parameters(&self) -> Option<[bool; MAX_PARAMETERS]> {
-        let mut blind = [false; MAX_PARAMETERS];
-        if self.unseen_in_body.is_empty() {
-            return Some(blind);
-        }
-        let k = self.information.k;
-        let covariance = scaled_inverse(&self.marginal)?;
-        let covariance = nalgebra::DMatrix::from_fn(k, k, |i, j| covariance[(k + i, k + j)]);
-        let frame = self.pose * self.body_frame;
-        let from_centred = adjoint(self.model, &frame, &frame.try_inverse()?);
-        let from_centred = nalgebra::DMatrix::from_fn(k, k, |i, j| from_centred[i][j]);
-        let to_centred = from_centred.clone().try_inverse()?;
-        let information = (&to_centred * covariance * to_centred.transpose()).try_inverse()?;
-        let typical = information.trace() / k as f64;
-        for unseen in self.unseen_in_image(&self.pose) {
-            let direction = nalgebra::DVector::from_column_slice(&unseen.direction[..k]);
-            let centred = &to_centred * &direction;
-            let seen = (centred.transpose() * &information * &centred)[(0, 0)] / centred.norm_squared();
-            if seen < SEEN_BY_PATH * typical {
-                let largest = direction.amax();
-                (0..k).filter(|j| direction[*j].abs() > 0.1 * largest).for_each(|j| blind[j] = true);
-            }
-        }
-        Some(blind)
-    }
-}
-
-/// Inverse of a positive definite matrix, scaled to unit diagonal on the way.
-fn scaled_inverse(matrix: &StateMatrix) -> Option<StateMatrix> {
-    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
-    let scaled = StateMatrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
-    // Directions that nothing is known of may come out a rounding below zero.
-    let inverse = (scaled + StateMatrix::identity() * 1e-14).cholesky()?.inverse();
-    Some(StateMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }

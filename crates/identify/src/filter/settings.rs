@@ -16,8 +16,11 @@ pub struct ProcessNoise {
 pub struct FilterSettings {
     /// Which motions are looked for.
     pub model: MotionModel,
-    /// How fast the motion may change; none at all by default.
+    /// How fast the motion may change, where that is known; zeros by default.
     pub process_noise: ProcessNoise,
+    /// Whether changes of a motion without process noise are estimated from the innovations: none until there is evidence. `true` by
+    /// default; otherwise it is held for constant.
+    pub adaptive: bool,
     /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken. In (0, 1).
     pub smallest_agreement: f64,
     /// Frames rejected in a row after which the object is looked for anew, at least 1.
@@ -25,19 +28,25 @@ pub struct FilterSettings {
 }
 
 impl Default for FilterSettings {
-    /// Rigid motion that does not change; a frame is taken if 70 % of its points agree; patience of 2 frames.
+    /// Rigid motion that changes as far as the frames show it; a frame is taken if 70 % of its points agree; patience of 2 frames.
     fn default() -> Self {
-        Self { model: MotionModel::Rigid, process_noise: ProcessNoise::default(), smallest_agreement: 0.7, patience: 2 }
+        Self {
+            model: MotionModel::Rigid,
+            process_noise: ProcessNoise::default(),
+            adaptive: true,
+            smallest_agreement: 0.7,
+            patience: 2,
+        }
     }
 }
 
 impl FilterSettings {
     pub(crate) fn check(&self) -> Result<(), FilterError> {
         let fail = |setting, value, range| Err(FilterError::Setting { setting, value, range });
-        for (setting, value) in [
-            ("process noise of rates", self.process_noise.rates),
-            ("process noise of velocities", self.process_noise.velocities),
-        ] {
+        let noise = self.process_noise;
+        for (setting, value) in
+            [("process noise of rates", noise.rates), ("process noise of velocities", noise.velocities)]
+        {
             if !(value.is_finite() && value >= 0.0) {
                 return fail(setting, value, "finite and not negative");
             }

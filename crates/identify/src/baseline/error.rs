@@ -1,0 +1,20 @@
+use freeform_riccati::MotionModel;
+
+/// Why a baseline could not be made or could not take a frame. Frames that merely do not fit are no errors.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BaselineError {
+    /// Area moments up to the third order do not fix a pose of this model.
+    #[error("area moments have no pose of {model} motion")]
+    UnsupportedModel {
+        /// The model asked for.
+        model: MotionModel,
+    },
+    /// Times must be finite and increase.
+    #[error("a frame at {time} s after one at {previous} s")]
+    TimeNotIncreasing {
+        /// Time of the frame before in seconds, or negative infinity.
+        previous: f64,
+        /// Time given.
+        time: f64,
+    },
+}

@@ -1,0 +1,88 @@
+//! What a frame says of the pose beyond what was predicted, and what that says of how fast the motion changes.
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+use super::{
+    arrow_information::{StateMatrix, StateVector},
+    outline_map::OutlineMap,
+};
+use crate::{
+    estimate::MAX_PARAMETERS,
+    motion_algebra::{adjoint, map_point},
+};
+
+type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
+type PoseVector = SVector<f64, MAX_PARAMETERS>;
+
+/// Innovation of the pose in one frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct PoseInnovation {
+    /// Squared, in units of its covariance: chi-squared with one degree of freedom per parameter.
+    pub(crate) squared: f64,
+    /// Derivative of the log-likelihood by the variance of the motion's change per second, in normalised units.
+    pub(crate) gradient: f64,
+    /// Its Fisher information.
+    pub(crate) fisher: f64,
+}
+
+impl OutlineMap {
+    /// From the marginal information before and after a frame and the step that it made; `variance` is that of the noise, with
+    /// its correlation. The covariance of the pose step is `P - P+`; with `A = P^-1` of the pose alone the innovation v obeys
+    /// `S^-1 v = A step` and `S^-1 = A (P - P+) A`.
+    pub(crate) fn pose_innovation(&self, after: &StateMatrix, state: &StateVector, variance: f64) -> PoseInnovation {
+        let k = self.information.k;
+        let innovation = || {
+            let (before, after) = (pose_information(&self.marginal, k)?, pose_information(after, k)?);
+            let (p, p_after) = (inverse(&before)?, inverse(&after)?);
+            let step = PoseVector::from_fn(|i, _| if i < k { state[i] } else { 0.0 });
+            let gained = p - p_after;
+            // Directions that the frame does not show have no step either.
+            let regular = gained + PoseMatrix::from_diagonal(&(p.diagonal() * 1e-9));
+            let squared = step.dot(&(inverse(&regular)? * step)) / variance;
+            let weighted = before * step / variance.sqrt();
+            let change = self.change_of_pose()?;
+            let s_inverse = before * gained * before;
+            let by_change = s_inverse * change;
+            let gradient = 0.5 * ((weighted.transpose() * change * weighted).x - by_change.trace());
+            let fisher = 0.5 * (by_change * by_change).trace();
+            let all = PoseInnovation { squared, gradient: gradient / variance, fisher: fisher / (variance * variance) };
+            (squared >= 0.0 && all.gradient.is_finite() && all.fisher > 0.0).then_some(all)
+        };
+        innovation().unwrap_or_default()
+    }
+
+    /// Covariance of the pose per unit variance of the motion's change per second, over the last step: the rates of turning,
+    /// growth and shear, about the object's centre, and the velocities in RMS radii change alike.
+    fn change_of_pose(&self) -> Option<PoseMatrix> {
+        let by_motion = self.unit_change()?;
+        Some(by_motion * by_motion.transpose() * self.step_seconds.powi(3))
+    }
+
+    /// Motion parameters by the rates and velocities about the object's present centre.
+    pub(crate) fn unit_change(&self) -> Option<PoseMatrix> {
+        let k = self.information.k;
+        let centre = map_point(&self.pose, &nalgebra::Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)]));
+        let shift = Matrix3::new(1.0, 0.0, centre.x, 0.0, 1.0, centre.y, 0.0, 0.0, 1.0);
+        let change = adjoint(self.model, &shift, &shift.try_inverse()?);
+        Some(PoseMatrix::from_fn(|i, j| if i < k && j < k { change[i][j] } else { 0.0 }))
+    }
+}
+
+/// Information of the pose with the motion eliminated; unit diagonal beyond the parameters.
+fn pose_information(marginal: &StateMatrix, k: usize) -> Option<PoseMatrix> {
+    let block = |r: usize, c: usize| {
+        PoseMatrix::from_fn(|i, j| {
+            if i < k && j < k { marginal[(r + i, c + j)] } else { f64::from(u8::from(i == j && r == c)) }
+        })
+    };
+    let (pose, cross, motion) = (block(0, 0), block(0, k), block(k, k));
+    let cross = PoseMatrix::from_fn(|i, j| if i < k && j < k { cross[(i, j)] } else { 0.0 });
+    Some(pose - cross * inverse(&motion)? * cross.transpose())
+}
+
+/// Inverse of a positive definite matrix, scaled to unit diagonal on the way.
+fn inverse(matrix: &PoseMatrix) -> Option<PoseMatrix> {
+    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
+    let scaled = PoseMatrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+    let inverse = (scaled + PoseMatrix::identity() * 1e-12).cholesky()?.inverse();
+    Some(PoseMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+}

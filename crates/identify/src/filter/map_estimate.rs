@@ -1,0 +1,67 @@
+//! What the map says of the motion.
+use super::{arrow_information::StateMatrix, outline_map::OutlineMap};
+use crate::{
+    estimate::{MAX_PARAMETERS, MotionEstimate},
+    motion_algebra::adjoint,
+};
+
+/// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
+const WORTHLESS: f64 = 0.25;
+
+impl OutlineMap {
+    /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
+    pub(crate) fn effective_variance(&self) -> f64 {
+        self.sigma * self.sigma * self.noise_level.correlation()
+    }
+
+    /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed.
+    #[must_use]
+    pub fn covariance(&self) -> Option<nalgebra::DMatrix<f64>> {
+        let k = self.information.k;
+        let to_image = self.to_image();
+        let change = adjoint(self.model, &to_image, &to_image.try_inverse()?);
+        let inverse = scaled_inverse(&self.marginal)?;
+        let change = nalgebra::DMatrix::from_fn(k, k, |i, j| change[i][j]);
+        let motion = nalgebra::DMatrix::from_fn(k, k, |i, j| inverse[(k + i, k + j)] * self.effective_variance());
+        Some(&change * motion * change.transpose())
+    }
+
+    /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time seen so
+    /// far, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable; so is one
+    /// that takes part in a motion which the outline does not show, such as the turning of a circle about its centre.
+    #[must_use]
+    pub fn estimate(&self) -> Option<MotionEstimate> {
+        let covariance = self.covariance()?;
+        let k = self.information.k;
+        let to_image = self.to_image();
+        let generator = to_image * self.model.generator(&self.motion[..k]) * to_image.try_inverse()?;
+        let values = crate::motion_algebra::coordinates(self.model, &generator);
+        let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
+        let mut estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
+        let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
+        let reach = self.radius + self.origin.coords.norm();
+        for (j, name) in self.model.parameter_names().iter().enumerate() {
+            let (limit, drift) = match name.as_bytes()[0] {
+                b'b' => (reach, self.process_noise.velocities),
+                b'c' => (1.0 / reach, self.process_noise.rates),
+                _ => (1.0, self.process_noise.rates),
+            };
+            // A motion that drifts is known no longer than it takes to drift by its standard deviation.
+            let span = self.span.min((deviations[j] / drift).powi(2));
+            let known = deviations[j] * span <= WORTHLESS * limit;
+            if !known || blind[j] {
+                estimate = estimate.with_unobservable(j);
+            }
+        }
+        Some(estimate)
+    }
+}
+
+/// Inverse of a positive definite matrix, scaled to unit diagonal on the way.
+pub(crate) fn scaled_inverse(matrix: &StateMatrix) -> Option<StateMatrix> {
+    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
+    let scaled = StateMatrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+    // Directions that nothing is known of may come out a rounding below zero.
+    let inverse = (scaled + StateMatrix::identity() * 1e-14).cholesky()?.inverse();
+    Some(StateMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+}

@@ -1,0 +1,149 @@
+//! The map grown by what a frame shows for the first time.
+use freeform_curve_fit::Outline;
+use nalgebra::Point2;
+
+use super::{
+    arrow_information::{CellInformation, StateVector},
+    cell_scatter::Scatter,
+    contour::SmoothPiece,
+    map_update::Scratch,
+    outline_map::{Cell, OutlineMap},
+    reading::NO_CELL,
+};
+
+/// Places further than this many spacings from all cells are new.
+const UNCOVERED: f64 = 1.1;
+/// Shortest run of new places that is taken.
+const SHORTEST_RUN: usize = 2;
+
+impl OutlineMap {
+    /// Adds cells for the parts of the loaded outline that the map does not have yet, and measures them.
+    pub(crate) fn grow(&mut self, outline: &Outline) {
+        let first_new = self.cells.len();
+        let contours: Vec<_> = self.contours(outline).collect();
+        let scale = self.pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
+        let sigma = self.sigma / scale;
+        for mut contour in contours {
+            if let Some(piece) = contour.resampled(sigma, self.half_window, self.spacing) {
+                self.add_places(&piece, first_new);
+            }
+        }
+        if self.cells.len() == first_new {
+            return;
+        }
+        let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
+        self.field.build(&centres, self.spacing);
+        self.information.cells.resize(self.cells.len(), CellInformation::NOTHING);
+        let w = self.half_window as f64;
+        let levers = (w * (w + 1.0) * (2.0 * w + 1.0) / 3.0).sqrt();
+        let normal_noise = (self.sigma / (levers * 0.5 * self.spacing)).min(0.2);
+        self.find_unseen_directions(normal_noise);
+        let mut scratch = std::mem::take(&mut self.scratch);
+        self.measure_new_cells(&mut scratch, first_new);
+        self.scratch = scratch;
+    }
+
+    /// Appends the runs of places that no cell covers, linked along the contour.
+    fn add_places(&mut self, piece: &SmoothPiece, first_new: usize) {
+        let count = piece.places.len();
+        let covering: Vec<Option<usize>> =
+            piece.places.iter().map(|place| self.covering(&place.centre, first_new)).collect();
+        let new = |i: usize| covering[i].is_none();
+        if !(0..count).any(new) {
+            return;
+        }
+        if (0..count).all(new) {
+            let base = self.cells.len();
+            for (i, place) in piece.places.iter().enumerate() {
+                let neighbours = if piece.closed {
+                    [base + (i + count - 1) % count, base + (i + 1) % count]
+                } else {
+                    [base + i.saturating_sub(1), base + (i + 1).min(count - 1)]
+                };
+                self.cells.push(Cell {
+                    centre: place.centre,
+                    normal: place.normal,
+                    offset: 0.0,
+                    scatter: Scatter::NEW,
+                    innovation: 0.0,
+                    neighbours,
+                });
+            }
+            return;
+        }
+        // Start behind a covered place, so that no run wraps around.
+        let start = if piece.closed { (0..count).find(|i| !new(*i)).unwrap_or(0) } else { 0 };
+        let order: Vec<usize> = (0..count).map(|i| (start + i) % count).collect();
+        for run in order.chunk_by(|a, b| new(*a) == new(*b)) {
+            if !new(run[0]) || run.len() < SHORTEST_RUN {
+                continue;
+            }
+            let base = self.cells.len();
+            for (i, place) in run.iter().map(|i| piece.places[*i]).enumerate() {
+                let neighbours = [base + i.saturating_sub(1), base + (i + 1).min(run.len() - 1)];
+                self.cells.push(Cell {
+                    centre: place.centre,
+                    normal: place.normal,
+                    offset: 0.0,
+                    scatter: Scatter::NEW,
+                    innovation: 0.0,
+                    neighbours,
+                });
+            }
+            let (head, tail) = (run[0], run[run.len() - 1]);
+            let wraps = |i: usize, on: bool| {
+                if on && (piece.closed || i != 0) { covering[(i + count - 1) % count] } else { None }
+            };
+            self.link(wraps(head, true), base, 0);
+            let after = (tail + 1 < count || piece.closed).then(|| covering[(tail + 1) % count]).flatten();
+            let last = self.cells.len() - 1;
+            self.link(after, last, 1);
+        }
+    }
+
+    /// Joins a new end cell to the end of the known outline next to it.
+    fn link(&mut self, old: Option<usize>, new: usize, side: usize) {
+        let Some(mut old) = old else { return };
+        // The free end is at most a few cells on.
+        for _ in 0..4 {
+            if let Some(free) = (0..2).find(|s| self.cells[old].neighbours[*s] == old) {
+                self.cells[old].neighbours[free] = new;
+                self.cells[new].neighbours[side] = old;
+                return;
+            }
+            let target = self.cells[new].centre;
+            let distance = |n: &usize| (self.cells[*n].centre - target).norm_squared();
+            let [a, b] = self.cells[old].neighbours;
+            old = if distance(&a) < distance(&b) { a } else { b };
+        }
+    }
+
+    /// The cell that covers a place, among those older than `first_new`.
+    fn covering(&self, place: &Point2<f64>, first_new: usize) -> Option<usize> {
+        if first_new == 0 {
+            return None;
+        }
+        let number = self.nearest_cell(place)?;
+        let cell = &self.cells[number];
+        let at = cell.centre + cell.offset * cell.normal;
+        ((at - place).norm() < UNCOVERED * self.spacing).then_some(number)
+    }
+
+    /// Takes the loaded points on cells from `first_new` on as their first measurement.
+    fn measure_new_cells(&mut self, scratch: &mut Scratch, first_new: usize) {
+        let unseen = self.unseen_in_image(&self.pose);
+        scratch.shifts.clear();
+        scratch.shifts.resize(self.cells.len(), 0.0);
+        self.read_points(scratch, &self.pose, &unseen, true);
+        scratch.readings.retain(|r| r.cell != NO_CELL && r.cell >= first_new);
+        let mut work = self.information.clone();
+        self.accumulate(scratch, &mut work, &StateVector::zeros());
+        for (number, right) in scratch.right.iter().enumerate().skip(first_new) {
+            if work.cells[number].own > 0.0 {
+                self.cells[number].offset += right / work.cells[number].own;
+            }
+        }
+        self.information = work;
+        self.marginal = self.information.marginal();
+    }
+}

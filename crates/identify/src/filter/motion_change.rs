@@ -1,0 +1,48 @@
+//! How fast the motion changes, estimated from the innovations.
+use super::innovation::PoseInnovation;
+
+/// Frames that the estimate looks back on.
+const MEMORY: f64 = 15.0;
+/// Standard deviations of the likelihood's slope from which a change counts as seen. Constant motion must stay at the bound.
+const SIGNIFICANT: f64 = 7.0;
+/// Squared innovation per parameter beyond which two frames in a row show a sudden change.
+pub(crate) const SUDDEN: f64 = 25.0;
+/// Squared innovation per parameter that counts at most in the running estimate: squares have long tails, and by this limit
+/// it takes several frames that agree to see a change.
+const LIMIT: f64 = 4.0;
+
+/// Recursive maximum-likelihood estimate, by Fisher's scoring, of the variance by which the motion changes per second; none until
+/// the evidence is significant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct MotionChange {
+    /// Normalised units, per second.
+    pub(crate) variance: f64,
+    gradient: f64,
+    fisher: f64,
+}
+
+impl MotionChange {
+    /// Takes the innovation of an accepted frame of a motion with so many parameters.
+    pub(crate) fn take(&mut self, innovation: &PoseInnovation, parameters: usize) {
+        if innovation.fisher <= 0.0 {
+            return;
+        }
+        let limit = LIMIT * parameters as f64;
+        let share = if innovation.squared > limit { limit / innovation.squared } else { 1.0 };
+        let gradient = innovation.gradient * share;
+        if self.variance > 0.0 {
+            self.variance += gradient / (MEMORY * innovation.fisher);
+            if self.variance <= 0.0 {
+                *self = Self::default();
+            }
+            return;
+        }
+        let kept = 1.0 - 1.0 / MEMORY;
+        self.gradient = kept * self.gradient + gradient;
+        self.fisher = kept * self.fisher + innovation.fisher;
+        if self.gradient > SIGNIFICANT * self.fisher.sqrt() {
+            self.variance = self.gradient / self.fisher;
+            (self.gradient, self.fisher) = (0.0, 0.0);
+        }
+    }
+}

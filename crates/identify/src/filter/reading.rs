@@ -1,0 +1,289 @@
+//! Points of a frame read off against the cells of the map.
+use nalgebra::{Matrix3, Point2, Vector2};
+
+use super::{
+    arrow_information::{ArrowInformation, StateVector},
+    contour::median,
+    map_update::Scratch,
+    outline_map::OutlineMap,
+    unseen_direction::Unseen,
+};
+use crate::{
+    estimate::MAX_PARAMETERS,
+    motion_algebra::{Coordinates, map_point, normal_velocities, pull_back},
+};
+
+/// Residuals up to this many standard deviations count in full...
+const FULL_WEIGHT: f64 = 3.0;
+/// ...and beyond this many not at all, with Tukey's biweight between.
+const NO_WEIGHT: f64 = 6.0;
+/// With this share of the points near the prediction, their spread need not be looked at before they are weighted.
+const NEAR_ENOUGH: f64 = 0.75;
+/// Standard deviation that the place of a point along the outline may have, in spacings.
+const PLACE_NOISE: f64 = 0.13;
+/// Share of all points that the mean is taken over at most.
+const WIDEST_WINDOW: f64 = 0.04;
+/// Points further than this many spacings beyond a known end belong to what is not known yet.
+const BEYOND_END: f64 = 0.75;
+
+pub(crate) const NO_CELL: usize = usize::MAX;
+
+/// What becomes of one point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reading {
+    /// Its cell, or `usize::MAX`.
+    pub(crate) cell: usize,
+    pub(crate) residual: f64,
+    /// How fast the residual falls as the offset grows.
+    pub(crate) slope: f64,
+    /// Of the outline in the image.
+    normal: Vector2<f64>,
+    pub(crate) row: Coordinates,
+    pub(crate) weight: f64,
+}
+
+impl OutlineMap {
+    /// The cell of every point and the linearised distance from it, with robust weights.
+    ///
+    /// A point belongs to the cell that it was seen of, not to the nearest: noise along the outline moves a point out of a bend, so
+    /// that its distance from the nearest cell is too large by about `curvature sigma^2 / 2`, which thousands of points add up.
+    /// The mean of its neighbours along the contour has little of that noise, and its nearest cell is taken.
+    pub(crate) fn read_points(&self, scratch: &mut Scratch, pose: &Matrix3<f64>, unseen: &[Unseen], first: bool) {
+        let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
+        let Scratch { points, readings, values, shifts, pieces, smooth, .. } = scratch;
+        if first {
+            readings.clear();
+            readings.extend(points.iter().map(|p| {
+                let q = map_point(&inverse, p);
+                self.measure(p, &q, self.cell_of(&q), &inverse, shifts)
+            }));
+            self.weigh(readings, values, first);
+        }
+        let half_window = self.half_window_of_places(pose, points.len());
+        if half_window == 0 {
+            smooth.clone_from(points);
+        } else {
+            smooth.clear();
+            for piece in pieces.iter() {
+                smooth_piece(&points[piece.range()], &readings[piece.range()], piece.closed, half_window, smooth);
+            }
+        }
+        for ((reading, p), place) in readings.iter_mut().zip(points.iter()).zip(smooth.iter()) {
+            let q = map_point(&inverse, p);
+            let cell = if reading.weight > 0.0 { self.cell_of(&map_point(&inverse, place)) } else { self.cell_of(&q) };
+            *reading = self.measure(p, &q, cell, &inverse, shifts);
+            self.linearise(reading, p, unseen);
+        }
+        self.weigh(readings, values, first);
+    }
+
+    /// Points on either side whose mean says which cell a point belongs to: enough for the noise to be small against a cell, and few
+    /// against the outline.
+    fn half_window_of_places(&self, pose: &Matrix3<f64>, count: usize) -> usize {
+        let scale = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
+        let needed = (self.sigma / (scale * self.spacing * PLACE_NOISE)).powi(2);
+        let most = count as f64 * WIDEST_WINDOW;
+        (0.5 * (needed.min(most) - 1.0)).round().max(0.0) as usize
+    }
+
+    fn cell_of(&self, q: &Point2<f64>) -> usize {
+        self.nearest_cell(q).filter(|number| !self.is_beyond_end(*number, q)).unwrap_or(NO_CELL)
+    }
+
+    /// Tukey's weights.
+    fn weigh(&self, readings: &mut [Reading], values: &mut Vec<f64>, first: bool) {
+        let mut scale = self.sigma;
+        let limit = FULL_WEIGHT * scale;
+        let near = readings.iter().filter(|r| r.residual.abs() < limit).count();
+        let mut share = 1.0;
+        if (near as f64) < NEAR_ENOUGH * readings.len() as f64 {
+            values.clear();
+            values.extend(readings.iter().filter(|r| r.cell != NO_CELL).map(|r| r.residual.abs()));
+            scale = scale.max(1.4826 * median(values).unwrap_or(0.0));
+            if !first {
+                // A frame with more noise than most counts for less. A prediction that is off by more than the noise, though, must not
+                // lose the points it has to be corrected by.
+                scale = scale.min(self.noise_level.tolerated(self.sigma));
+                share = (self.sigma / scale).powi(2);
+            }
+        }
+        let scale = 1.0 / scale;
+        for reading in readings {
+            if reading.cell == NO_CELL {
+                reading.weight = 0.0;
+                continue;
+            }
+            let variance = self.cells[reading.cell].scatter.variance;
+            let residual = if variance > 1.0 { reading.residual / variance.sqrt() } else { reading.residual };
+            let excess = (residual.abs() * scale - FULL_WEIGHT) / (NO_WEIGHT - FULL_WEIGHT);
+            reading.weight = match excess {
+                e if e <= 0.0 => 1.0,
+                e if e < 1.0 => (1.0 - e * e).powi(2),
+                _ => 0.0,
+            } * share
+                / variance;
+        }
+    }
+
+    /// Distance of an image point from a cell, its body point given.
+    fn measure(
+        &self,
+        p: &Point2<f64>,
+        q: &Point2<f64>,
+        number: usize,
+        inverse: &Matrix3<f64>,
+        shifts: &[f64],
+    ) -> Reading {
+        let mut reading = Reading {
+            cell: number,
+            residual: 0.0,
+            slope: 0.0,
+            normal: Vector2::zeros(),
+            row: [0.0; MAX_PARAMETERS],
+            weight: 0.0,
+        };
+        if number != NO_CELL {
+            let cell = &self.cells[number];
+            let z = cell.normal.dot(&(q - cell.centre)) - cell.offset - shifts[number];
+            // A unit step along the image normal moves the body point by |D' n| along n.
+            let pulled = pull_back(inverse, p, q, &cell.normal);
+            reading.slope = 1.0 / pulled.norm();
+            reading.normal = pulled * reading.slope;
+            reading.residual = z * reading.slope;
+        }
+        reading
+    }
+
+    /// How the distance changes with the pose.
+    fn linearise(&self, reading: &mut Reading, p: &Point2<f64>, unseen: &[Unseen]) {
+        if reading.cell == NO_CELL {
+            return;
+        }
+        let foot = p - reading.residual * reading.normal;
+        reading.row = normal_velocities(self.model, &foot, &reading.normal);
+        for Unseen { direction, dual } in unseen {
+            let along: f64 = reading.row.iter().zip(direction).map(|(a, b)| a * b).sum();
+            reading.row.iter_mut().zip(dual).for_each(|(r, d)| *r -= along * d);
+        }
+    }
+
+    /// Number of the cell nearest to a body point.
+    pub(crate) fn nearest_cell(&self, q: &Point2<f64>) -> Option<usize> {
+        let mut number = self.field.lookup(q)?;
+        let mut distance = (self.cells[number].centre - q).norm_squared();
+        loop {
+            let mut better = number;
+            for neighbour in self.cells[number].neighbours {
+                let d = (self.cells[neighbour].centre - q).norm_squared();
+                if d < distance {
+                    (better, distance) = (neighbour, d);
+                }
+            }
+            if better == number {
+                return Some(number);
+            }
+            number = better;
+        }
+    }
+
+    /// Whether a body point lies beyond a known end of the outline, its nearest cell given.
+    fn is_beyond_end(&self, number: usize, q: &Point2<f64>) -> bool {
+        let cell = &self.cells[number];
+        let [a, b] = cell.neighbours;
+        if a != number && b != number {
+            return false;
+        }
+        let tangent = Vector2::new(-cell.normal.y, cell.normal.x);
+        let along = tangent.dot(&(q - cell.centre));
+        let known = if a == number { b } else { a };
+        let to_known = tangent.dot(&(self.cells[known].centre - cell.centre));
+        along.abs() > BEYOND_END * self.spacing && (known == number || along * to_known < 0.0)
+    }
+
+    /// Adds the readings to the information; returns the right-hand side of pose and motion, and leaves those of the offsets.
+    pub(crate) fn accumulate(
+        &self,
+        scratch: &mut Scratch,
+        work: &mut ArrowInformation,
+        state: &StateVector,
+    ) -> StateVector {
+        scratch.right.clear();
+        scratch.right.resize(self.cells.len(), 0.0);
+        match self.information.k {
+            3 => accumulate_sized::<3>(scratch, work, state),
+            4 => accumulate_sized::<4>(scratch, work, state),
+            6 => accumulate_sized::<6>(scratch, work, state),
+            _ => accumulate_sized::<8>(scratch, work, state),
+        }
+    }
+}
+
+fn accumulate_sized<const K: usize>(
+    scratch: &mut Scratch,
+    work: &mut ArrowInformation,
+    state: &StateVector,
+) -> StateVector {
+    let mut right = StateVector::zeros();
+    let mut dense = [[0.0; K]; K];
+    for Reading { cell, residual, slope, row, weight, .. } in &scratch.readings {
+        if *weight == 0.0 {
+            continue;
+        }
+        let mut along = 0.0;
+        (0..K).for_each(|i| along += row[i] * state[i]);
+        let target = residual + along + slope * scratch.shifts[*cell];
+        let information = &mut work.cells[*cell];
+        let weighted = weight * slope;
+        for i in 0..K {
+            let wi = weight * row[i];
+            for j in 0..K {
+                dense[i][j] += wi * row[j];
+            }
+            right[i] += wi * target;
+            information.coupling[i] += weighted * row[i];
+        }
+        information.own += weighted * slope;
+        scratch.right[*cell] += weighted * target;
+    }
+    for (sum, row) in work.dense.iter_mut().zip(&dense) {
+        sum.iter_mut().zip(row).for_each(|(s, d)| *s += d);
+    }
+    right
+}
+
+/// Mean of the neighbours of every point along a piece of the contour, weighted, the point itself included.
+fn smooth_piece(
+    points: &[Point2<f64>],
+    readings: &[Reading],
+    closed: bool,
+    half_window: usize,
+    smooth: &mut Vec<Point2<f64>>,
+) {
+    let count = points.len();
+    let w = half_window.min((count - 1) / 2);
+    let weighted = |i: usize| (readings[i].weight * points[i].coords).push(readings[i].weight);
+    let at = |i: usize| weighted(i % count);
+    let mut sum = nalgebra::Vector3::zeros();
+    if closed {
+        // The window of the first point reaches back over the end.
+        (count - w..=count + w).for_each(|i| sum += at(i));
+    } else {
+        sum += at(0);
+    }
+    for (i, point) in points.iter().enumerate() {
+        if i > 0 && closed {
+            sum += at(i + w) - at(i + count - w - 1);
+        } else if i > 0 {
+            // Symmetric windows, narrower towards the ends: a lopsided mean lies off along the contour.
+            let (before, now) = (w.min(i - 1).min(count - i), w.min(i).min(count - 1 - i));
+            sum = if now > before {
+                sum + at(2 * i - 1) + at(2 * i)
+            } else if now < before {
+                sum - at(i - 1 - before) - at(i - before)
+            } else {
+                sum + at(i + now) - at(i - 1 - before)
+            };
+        }
+        smooth.push(if sum.z > 1e-3 { Point2::from(sum.xy() / sum.z) } else { *point });
+    }
+}

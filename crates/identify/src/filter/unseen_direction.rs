@@ -1,0 +1,109 @@
+//! Directions of the pose that an outline does not show, such as the turning of a circle about its centre.
+use nalgebra::{Matrix3, Point2, SMatrix, Vector2};
+
+use super::{map_estimate::scaled_inverse, outline_map::OutlineMap};
+use crate::{
+    estimate::MAX_PARAMETERS,
+    motion_algebra::{Coordinates, adjoint, normal_velocities},
+};
+
+/// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
+const DEGENERATE: f64 = 0.003;
+/// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
+const SEEN_BY_PATH: f64 = 0.02;
+
+/// A direction of the pose that the outline does not show, in the image: rows of measurements lose `(h . direction) dual`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Unseen {
+    pub(crate) direction: Coordinates,
+    pub(crate) dual: Coordinates,
+}
+
+impl OutlineMap {
+    /// Directions of the pose that the cells do not show, from their lever arms about their mean.
+    pub(crate) fn find_unseen_directions(&mut self, normal_noise: f64) {
+        let count = self.cells.len() as f64;
+        let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
+        let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
+        let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
+        levers.view_mut((0, 0), (self.information.k, self.information.k)).fill(0.0);
+        for cell in &self.cells {
+            let p = Point2::from((cell.centre - centroid) / spread);
+            let row = normal_velocities(self.model, &p, &cell.normal);
+            let row = nalgebra::SVector::from(row);
+            levers += row * row.transpose() / count;
+        }
+        let eigen = levers.symmetric_eigen();
+        let threshold = DEGENERATE + 1.5 * normal_noise * normal_noise;
+        let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
+        self.unseen_in_body.clear();
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value < threshold {
+                let generator = self.model.generator(&vector.as_slice()[..self.information.k]);
+                let Some(inverse) = to_body.try_inverse() else { continue };
+                self.unseen_in_body
+                    .push(crate::motion_algebra::coordinates(self.model, &(to_body * generator * inverse)));
+            }
+        }
+        self.body_frame = to_body;
+    }
+
+    /// The same in the image, for the pose given.
+    pub(crate) fn unseen_in_image(&self, pose: &Matrix3<f64>) -> Vec<Unseen> {
+        if self.unseen_in_body.is_empty() {
+            return Vec::new();
+        }
+        let k = self.information.k;
+        let Some(inverse) = pose.try_inverse() else { return Vec::new() };
+        let (ad, ad_inverse) = (adjoint(self.model, pose, &inverse), adjoint(self.model, &inverse, pose));
+        // Duals in centred coordinates, where the directions are orthonormal.
+        let to_body = self.body_frame;
+        let Some(from_body) = to_body.try_inverse() else { return Vec::new() };
+        let centring = adjoint(self.model, &from_body, &to_body);
+        let list = self.unseen_in_body.iter().map(|u| {
+            let mut direction = [0.0; MAX_PARAMETERS];
+            let mut centred = [0.0; MAX_PARAMETERS];
+            for i in 0..k {
+                direction[i] = (0..k).map(|j| ad[i][j] * u[j]).sum();
+                centred[i] = (0..k).map(|j| centring[i][j] * u[j]).sum();
+            }
+            let mut in_body = [0.0; MAX_PARAMETERS];
+            let mut dual = [0.0; MAX_PARAMETERS];
+            for j in 0..k {
+                in_body[j] = (0..k).map(|i| centred[i] * centring[i][j]).sum();
+            }
+            for j in 0..k {
+                dual[j] = (0..k).map(|i| in_body[i] * ad_inverse[i][j]).sum();
+            }
+            Unseen { direction, dual }
+        });
+        list.collect()
+    }
+
+    /// Parameters that take part in a motion which the outline does not show, and which the path of the object has not shown either.
+    pub(crate) fn blind_parameters(&self) -> Option<[bool; MAX_PARAMETERS]> {
+        let mut blind = [false; MAX_PARAMETERS];
+        if self.unseen_in_body.is_empty() {
+            return Some(blind);
+        }
+        let k = self.information.k;
+        let covariance = scaled_inverse(&self.marginal)?;
+        let covariance = nalgebra::DMatrix::from_fn(k, k, |i, j| covariance[(k + i, k + j)]);
+        let frame = self.pose * self.body_frame;
+        let from_centred = adjoint(self.model, &frame, &frame.try_inverse()?);
+        let from_centred = nalgebra::DMatrix::from_fn(k, k, |i, j| from_centred[i][j]);
+        let to_centred = from_centred.clone().try_inverse()?;
+        let information = (&to_centred * covariance * to_centred.transpose()).try_inverse()?;
+        let typical = information.trace() / k as f64;
+        for unseen in self.unseen_in_image(&self.pose) {
+            let direction = nalgebra::DVector::from_column_slice(&unseen.direction[..k]);
+            let centred = &to_centred * &direction;
+            let seen = (centred.transpose() * &information * &centred)[(0, 0)] / centred.norm_squared();
+            if seen < SEEN_BY_PATH * typical {
+                let largest = direction.amax();
+                (0..k).filter(|j| direction[*j].abs() > 0.1 * largest).for_each(|j| blind[j] = true);
+            }
+        }
+        Some(blind)
+    }
+}
