@@ -1,4 +1,5 @@
 use freeform_curve_fit::OutlineError;
+use freeform_riccati::DynamicsError;
 use thiserror::Error;
 
 use crate::shapes::BuiltInShape;
@@ -69,6 +70,9 @@ pub enum SimulationError {
         /// Time in seconds.
         time: f64,
     },
+    /// A varying motion that is not finite at some time of the sequence, or too rough to be integrated.
+    #[error("the motion cannot be simulated: {0}")]
+    Motion(#[from] DynamicsError),
     /// A list of motion phases that is empty or does not start at time 0.
     #[error("a piecewise motion needs a first phase that starts at time 0")]
     NoFirstPhase,

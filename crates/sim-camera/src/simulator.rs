@@ -68,13 +68,15 @@ impl Simulator {
     /// Checks the settings and the whole motion.
     ///
     /// # Errors
-    /// As [`Settings::frame_count`]; or the object's pose in some frame is too large, too small, too flat or too far off.
+    /// As [`Settings::frame_count`]; as [`Motion::try_flow`](crate::Motion::try_flow); or the object's pose in some frame
+    /// is too large, too small, too flat or too far off.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self, SimulationError> {
         let count = settings.frame_count()?;
         let time = |k: usize| k as f64 / settings.fps;
         let mut poses = vec![scene.true_pose(0.0)];
         for k in 1..count {
-            poses.push(scene.image_flow(time(k - 1), time(k)) * poses[k - 1]);
+            let flow = scene.motion().try_flow(time(k - 1), time(k))?;
+            poses.push(scene.camera().image_map(&flow) * poses[k - 1]);
         }
         if let Some(k) = poses.iter().position(|pose| !can_be_pictured(pose)) {
             return Err(SimulationError::PoseOutOfRange { time: time(k) });

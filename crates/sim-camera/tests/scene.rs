@@ -1,8 +1,8 @@
 //! Motions, the camera and the pose of the object.
 use std::f64::consts::FRAC_PI_2;
 
-use freeform_riccati::{AffineMotion, RigidMotion};
-use freeform_sim_camera::{BuiltInShape, Camera, Motion, PaperExperiment, Scene, SimulationError};
+use freeform_riccati::{AffineMotion, DynamicsError, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Camera, Motion, PaperExperiment, Scene, Settings, SimulationError, Simulator};
 use nalgebra::{Affine2, Matrix3, Point2, Translation2};
 use proptest::prelude::*;
 
@@ -59,6 +59,23 @@ fn a_varying_motion_is_the_limit_of_many_short_constant_ones() {
 }
 
 #[test]
+fn a_varying_motion_that_stops_being_finite_is_refused() {
+    for bad in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e308] {
+        let motion =
+            Motion::varying(move |t| RigidMotion { omega: 0.0, b1: if t < 0.4 { 1.0 } else { bad }, b2: 0.0 }.into());
+        assert!(motion.try_flow(0.0, 0.3).is_ok());
+        assert!(motion.try_flow(0.0, 1.0).is_err() || bad == 1e308);
+        assert!(motion.flow(0.0, 1.0).matrix().iter().any(|e| e.is_nan() || e.abs() >= 1e300));
+        let scene = Scene::new(BuiltInShape::Bird, motion, Camera::default());
+        let settings = Settings { fps: 10.0, ..Settings::default() };
+        let error = Simulator::new(scene, settings).expect_err("refused");
+        let expected = matches!(error, SimulationError::Motion(DynamicsError::GeneratorNotFinite { time }) if time >= 0.4)
+            || bad == 1e308;
+        assert!(expected, "{error}");
+    }
+}
+
+#[test]
 fn phases_must_start_at_zero_and_follow_each_other() {
     let rest = AffineMotion::default();
     assert!(matches!(Motion::piecewise(vec![]), Err(SimulationError::NoFirstPhase)));
@@ -81,8 +98,10 @@ fn a_camera_needs_a_positive_scale() {
 fn the_experiments_are_those_of_the_paper() {
     let names = PaperExperiment::ALL.map(|e| e.shape.name());
     assert_eq!(names, ["bird", "glider", "glider", "phone"]);
-    let speeds = PaperExperiment::ALL.map(|e| e.motion.b1.hypot(e.motion.b2));
-    assert_eq!(speeds, [5.0, 4.0, 4.0, 4.0]);
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3};
+    let motions = PaperExperiment::ALL.map(|e| [e.motion.omega, e.motion.b1, e.motion.b2]);
+    let printed = [[FRAC_PI_2, -3.0, 4.0], [-FRAC_PI_3, 0.0, 4.0], [-FRAC_PI_3, 4.0, 0.0], [-2.0, 4.0, 0.0]];
+    assert_eq!(motions, printed);
 }
 
 fn any_motion() -> impl Strategy<Value = AffineMotion> {
