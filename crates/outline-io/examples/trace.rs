@@ -1,23 +1,36 @@
-//! Traces the largest object of each picture and writes the outlines as CSV to standard output, one frame per picture,
-//! 30 frames per second: `trace mask-0000.png mask-0001.png > outlines.csv`.
+//! Traces the largest object of each picture and writes the outlines as CSV to standard output: `trace frames/ > outlines.csv`.
 use std::error::Error;
 use std::io;
+use std::path::PathBuf;
 
 use freeform_outline_io::{
-    Clipping, DEFAULT_OBJECT, OutlineFrame, OutlineWriter, TraceSettings, WriterOptions, read_picture, trace_mask,
+    Clipping, DEFAULT_OBJECT, OutlineFrame, OutlineWriter, PictureOutlines, PictureSequence, PictureSettings,
+    SequenceSettings, TraceSettings, WriterOptions,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let settings = TraceSettings { clipping: Clipping::Open, ..TraceSettings::default() };
+    let paths: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
+    let trace = TraceSettings { clipping: Clipping::Open, ..TraceSettings::default() };
+    let settings = PictureSettings { trace, ..PictureSettings::default() };
+    let pictures = PictureSequence::open(&paths, SequenceSettings::default())?;
     let options = WriterOptions { arc_column: true, ..WriterOptions::default() };
     let mut writer = OutlineWriter::new(io::stdout().lock(), options)?;
-    for (frame, path) in (0..).zip(std::env::args().skip(1)) {
-        match trace_mask(&read_picture(&path)?, &settings) {
-            Ok(traced) => {
-                let (time, object) = (frame as f64 / 30.0, DEFAULT_OBJECT.to_owned());
-                writer.write(&OutlineFrame { frame, time, object, outline: traced.outline })?;
+    for traced in PictureOutlines::new(pictures, settings)? {
+        let traced = match traced {
+            Ok(traced) => traced,
+            Err(error) => {
+                eprintln!("{error}");
+                continue;
             }
-            Err(error) => eprintln!("{path}: {error}"),
+        };
+        match traced.objects {
+            Ok(objects) => {
+                for (_, found) in objects {
+                    let (frame, time, object) = (traced.frame.frame, traced.frame.time, DEFAULT_OBJECT.to_owned());
+                    writer.write(&OutlineFrame { frame, time, object, outline: found.outline })?;
+                }
+            }
+            Err(error) => eprintln!("{}: {error}", traced.frame.file),
         }
     }
     writer.flush()?;

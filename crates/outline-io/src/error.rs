@@ -2,10 +2,10 @@ use std::fmt;
 use std::io;
 
 use freeform_curve_fit::OutlineError;
-use image::ImageError;
 use thiserror::Error;
 
 use crate::csv_columns::Column;
+use crate::picture_error::{PictureError, TraceError};
 
 /// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40` or `name`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,14 +20,7 @@ pub struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // A name may hold line breaks; the message must stay one line.
-        for character in self.file.chars() {
-            if character.is_control() {
-                write!(f, "{}", character.escape_default())?;
-            } else {
-                write!(f, "{character}")?;
-            }
-        }
+        write_name(f, &self.file)?;
         match self.lines {
             Some((first, last)) if first == last => write!(f, ":{first}")?,
             Some((first, last)) => write!(f, ":{first}-{last}")?,
@@ -38,6 +31,14 @@ impl fmt::Display for Place {
             None => Ok(()),
         }
     }
+}
+
+/// Writes a file's name. It may hold line breaks; a message must stay one line.
+pub(crate) fn write_name(f: &mut fmt::Formatter<'_>, name: &str) -> fmt::Result {
+    name.chars().try_for_each(|character| match character.is_control() {
+        true => write!(f, "{}", character.escape_default()),
+        false => write!(f, "{character}"),
+    })
 }
 
 /// Outlines could not be read: where and why. Displays as one line.
@@ -262,100 +263,6 @@ pub enum WriteError {
         /// The time.
         time: f64,
     },
-}
-
-/// A picture could not be read. Displays as one line.
-#[derive(Debug, Error)]
-#[error("{file}: {kind}")]
-pub struct PictureError {
-    /// The file's name.
-    pub file: String,
-    /// The reason.
-    #[source]
-    pub kind: PictureErrorKind,
-}
-
-/// Why a picture could not be read.
-#[derive(Debug, Error)]
-pub enum PictureErrorKind {
-    /// The file could not be opened or read.
-    #[error("{0}")]
-    Io(#[from] io::Error),
-    /// A file of no bytes.
-    #[error("the file is empty")]
-    Empty,
-    /// The content is that of no picture format.
-    #[error("not a picture")]
-    NotAPicture,
-    /// A picture format that is not built in.
-    #[error("pictures of type {format} are not supported")]
-    Unsupported {
-        /// Its media type.
-        format: &'static str,
-    },
-    /// More pixels than are accepted.
-    #[error("{width} x {height} pixels, more than {limit} in all")]
-    TooLarge {
-        /// Columns.
-        width: u32,
-        /// Rows.
-        height: u32,
-        /// Largest number of pixels accepted.
-        limit: u64,
-    },
-    /// The file ends early or contradicts itself.
-    #[error("the picture is damaged: {0}")]
-    Damaged(#[source] ImageError),
-}
-
-/// Why no outline could be traced in a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-pub enum TraceError {
-    /// A setting is out of range.
-    #[error("the setting {name} is {value}, expected {expected}")]
-    Setting {
-        /// Name of the setting.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// The range accepted.
-        expected: &'static str,
-    },
-    /// A picture of no pixels.
-    #[error("the picture has no pixels")]
-    NoPixels,
-    /// All pixels have one grey value.
-    #[error("no object: every pixel has the grey value {value}")]
-    Uniform {
-        /// The grey value.
-        value: u8,
-    },
-    /// No pixel passes the threshold.
-    #[error("no object: no pixel passes the threshold {threshold}")]
-    NoObject {
-        /// The threshold as a grey value of the picture.
-        threshold: f64,
-    },
-    /// The largest object is too small.
-    #[error("no object: the largest has {pixels} pixel(s), at least {needed} are asked for")]
-    TooSmall {
-        /// Pixels of the largest object.
-        pixels: u64,
-        /// Smallest number accepted.
-        needed: u64,
-    },
-    /// The object is so thin that smoothing takes it below the threshold.
-    #[error("smoothing by {sigma} pixels leaves nothing of the object")]
-    SmoothedAway {
-        /// Standard deviation of the smoothing, in pixels.
-        sigma: f64,
-    },
-    /// No part of the outline is within the picture.
-    #[error("the object fills the picture: nothing of its outline is visible")]
-    FillsPicture,
-    /// The points are no outline.
-    #[error("the traced points are no outline: {0}")]
-    Degenerate(#[from] OutlineError),
 }
 
 /// Why a file gave no shape.

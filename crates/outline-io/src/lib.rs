@@ -1,4 +1,4 @@
-//! Outlines from and to files: streamed CSV, and the outlines of objects in masks and pictures.
+//! Outlines from and to files: streamed CSV, and the outlines of objects in pictures, animations and video.
 //!
 //! ```
 //! use freeform_outline_io::{OutlineReader, read_shape};
@@ -17,7 +17,11 @@
 //!
 //! - [`OutlineReader`] and [`OutlineWriter`] stream outlines as CSV.
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
+//! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`read_shape`] reads one closed outline from either.
+mod background;
+mod basins;
+mod channel;
 mod csv_columns;
 mod csv_field;
 mod csv_reader;
@@ -26,25 +30,42 @@ mod csv_writer;
 mod error;
 mod field;
 mod frame;
+mod identity;
 mod isoline;
+mod morphology;
+mod natural_order;
 mod object_mask;
 mod outline_rows;
 mod picture;
+mod picture_error;
+mod picture_outlines;
+mod picture_sequence;
+mod ring;
 mod row_limit;
 mod segment;
 mod shape;
 mod threshold;
 mod trace;
+mod trace_settings;
+mod y4m;
 
+pub use background::{Background, Difference};
+pub use channel::Channel;
 pub use csv_columns::Column;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
-pub use error::{PictureError, PictureErrorKind, Place, ReadError, ReadErrorKind, ShapeError, TraceError, WriteError};
+pub use error::{Place, ReadError, ReadErrorKind, ShapeError, WriteError};
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
+pub use identity::Selection;
 pub use image::GrayImage;
 pub use picture::{decode_picture, read_picture};
+pub use picture_error::{PictureError, PictureErrorKind, TraceError};
+pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
+pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings};
+pub use ring::Ring;
 pub use shape::read_shape;
-pub use trace::{Clipping, Contrast, Smoothing, Threshold, TraceSettings, TracedOutline, trace_mask};
+pub use trace::{TracedOutline, trace_mask, trace_objects};
+pub use trace_settings::{Clipping, Contrast, PixelGrid, Smoothing, Threshold, TraceSettings};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

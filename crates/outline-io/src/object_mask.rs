@@ -1,9 +1,9 @@
 use image::GrayImage;
 
-use crate::error::TraceError;
+use crate::picture_error::TraceError;
 use crate::segment::{Components, Connectivity, Run};
 
-/// The largest object of a picture in a window around it.
+/// An object of a picture in a window around it.
 #[derive(Debug)]
 pub(crate) struct ObjectMask {
     /// First column of the window.
@@ -16,43 +16,56 @@ pub(crate) struct ObjectMask {
     pub(crate) filled: Vec<bool>,
     /// Pixels of the object, without its holes.
     pub(crate) pixel_count: u64,
-    /// Objects of at least the smallest area.
-    pub(crate) object_count: usize,
 }
 
-impl ObjectMask {
-    /// Finds the largest of the objects that the pixels with `set(value)` form; the upper one if several have the same
-    /// size, none if there is none. The window reaches `margin` pixels beyond it, as far as the picture goes.
-    pub(crate) fn largest(
-        picture: &GrayImage,
-        set: impl Fn(u8) -> bool,
-        minimum_area: u64,
-        margin: usize,
-    ) -> Result<Option<Self>, TraceError> {
+/// The objects of a picture: 8-connected sets of pixels.
+#[derive(Debug)]
+pub(crate) struct Objects {
+    components: Components,
+    /// First run and pixels of each, the largest first.
+    sizes: Vec<(usize, u64)>,
+    columns: usize,
+    rows: usize,
+}
+
+impl Objects {
+    /// Finds the objects of at least the smallest area among those that the pixels with `set(value)` form; the upper one
+    /// first where several have the same size.
+    pub(crate) fn of(picture: &GrayImage, set: impl Fn(u8) -> bool, minimum_area: u64) -> Result<Self, TraceError> {
         let (columns, rows) = (picture.width() as usize, picture.height() as usize);
         let pixels = picture.as_raw();
         let is_set = |column: usize, row: usize| set(pixels[row * columns + column]);
         let components = Components::of(columns, rows, Connectivity::Eight, is_set);
-        let counts = components.pixel_counts();
-        let largest = counts.iter().copied().reduce(|best, next| if next.1 > best.1 { next } else { best });
-        let Some((root, pixel_count)) = largest else { return Ok(None) };
-        if pixel_count < minimum_area {
-            return Err(TraceError::TooSmall { pixels: pixel_count, needed: minimum_area });
+        let mut sizes = components.pixel_counts();
+        sizes.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        if let Some((_, pixels)) = sizes.first().filter(|(_, count)| *count < minimum_area) {
+            return Err(TraceError::TooSmall { pixels: *pixels, needed: minimum_area });
         }
-        let object_count = counts.iter().filter(|(_, count)| *count >= minimum_area).count();
+        sizes.retain(|(_, count)| *count >= minimum_area);
+        Ok(Self { components, sizes, columns, rows })
+    }
 
-        let bounds = Bounds::of(components.runs_of(root));
-        let left = bounds.left.saturating_sub(margin);
-        let top = bounds.top.saturating_sub(margin);
-        let width = (bounds.right + margin).min(columns) - left;
-        let height = (bounds.bottom + margin).min(rows) - top;
-        let mut filled = vec![false; width * height];
-        for run in components.runs_of(root) {
-            let from = (run.row - top) * width;
-            filled[from + run.start - left..from + run.end - left].fill(true);
-        }
-        fill_holes(&mut filled, width, height);
-        Ok(Some(Self { left, top, width, height, filled, pixel_count, object_count }))
+    /// Number of objects.
+    pub(crate) fn count(&self) -> usize {
+        self.sizes.len()
+    }
+
+    /// The objects, each in a window that reaches `margin` pixels beyond it, as far as the picture goes.
+    pub(crate) fn masks(&self, margin: usize) -> impl Iterator<Item = ObjectMask> + '_ {
+        self.sizes.iter().map(move |&(root, pixel_count)| {
+            let bounds = Bounds::of(self.components.runs_of(root));
+            let left = bounds.left.saturating_sub(margin);
+            let top = bounds.top.saturating_sub(margin);
+            let width = (bounds.right + margin).min(self.columns) - left;
+            let height = (bounds.bottom + margin).min(self.rows) - top;
+            let mut filled = vec![false; width * height];
+            for run in self.components.runs_of(root) {
+                let from = (run.row - top) * width;
+                filled[from + run.start - left..from + run.end - left].fill(true);
+            }
+            fill_holes(&mut filled, width, height);
+            ObjectMask { left, top, width, height, filled, pixel_count }
+        })
     }
 }
 
@@ -77,7 +90,7 @@ impl Bounds {
 }
 
 /// Fills what is not connected, over edges, with the outside of the window.
-fn fill_holes(filled: &mut [bool], width: usize, height: usize) {
+pub(crate) fn fill_holes(filled: &mut [bool], width: usize, height: usize) {
     // One more pixel of ground all round, so that the outside is one component and its first run the first of all.
     let is_ground = |column: usize, row: usize| {
         let within = (1..=width).contains(&column) && (1..=height).contains(&row);

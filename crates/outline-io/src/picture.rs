@@ -2,17 +2,23 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
-use image::{DynamicImage, GrayImage, ImageDecoder, ImageError, ImageReader, Limits};
+use image::codecs::gif::GifDecoder;
+use image::{AnimationDecoder, DynamicImage, Frames, GrayImage, ImageDecoder, ImageError, ImageReader, Limits};
 
-use crate::error::{PictureError, PictureErrorKind};
+use crate::channel::Channel;
+use crate::picture_error::{PictureError, PictureErrorKind};
 
 /// Largest number of pixels accepted, 8192 x 8192: tracing then needs less than 1.5 GiB in the worst case.
-const PIXEL_LIMIT: u64 = 1 << 26;
+pub(crate) const PIXEL_LIMIT: u64 = 1 << 26;
 
 /// Most memory that a decoder may take, in bytes: 16 bits in each of 4 channels of the largest picture, twice.
 const DECODER_LIMIT: u64 = 1 << 30;
 
-/// Reads a picture (PNG) as grey values. Its content tells the format, not its name.
+/// Time that a frame of an animation stands where the file says 0, in seconds: what browsers do.
+const DEFAULT_DELAY: f64 = 0.1;
+
+/// Reads a picture (PNG, JPEG, TIFF, BMP, or the first frame of a GIF) as grey values. Its content tells the format, not
+/// its name.
 ///
 /// Colours become their luminance. Where some pixels are transparent the alpha channel is taken instead, so that the
 /// visible part is light on dark.
@@ -21,11 +27,7 @@ const DECODER_LIMIT: u64 = 1 << 30;
 /// The file cannot be read, is empty, is no picture, has a format that is not supported, has more than 2^26 pixels, or
 /// is damaged.
 pub fn read_picture(path: impl AsRef<Path>) -> Result<GrayImage, PictureError> {
-    let name = path.as_ref().display().to_string();
-    match File::open(path.as_ref()) {
-        Ok(file) => decode_picture(BufReader::new(file), &name),
-        Err(error) => Err(PictureError { file: name, kind: PictureErrorKind::Io(error) }),
-    }
+    read_channel(path.as_ref(), Channel::Luminance)
 }
 
 /// Like [`read_picture`], from any source; the name stands in error messages.
@@ -33,10 +35,16 @@ pub fn read_picture(path: impl AsRef<Path>) -> Result<GrayImage, PictureError> {
 /// # Errors
 /// As [`read_picture`].
 pub fn decode_picture(source: impl BufRead + Seek, name: &str) -> Result<GrayImage, PictureError> {
-    decode(source).map_err(|kind| PictureError { file: name.to_owned(), kind })
+    decode(source, Channel::Luminance).map_err(|kind| PictureError::of_file(name, kind))
 }
 
-fn decode(mut source: impl BufRead + Seek) -> Result<GrayImage, PictureErrorKind> {
+pub(crate) fn read_channel(path: &Path, channel: Channel) -> Result<GrayImage, PictureError> {
+    let picture = File::open(path).map_err(PictureErrorKind::Io);
+    let picture = picture.and_then(|file| decode(BufReader::new(file), channel));
+    picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))
+}
+
+pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Result<GrayImage, PictureErrorKind> {
     if source.fill_buf()?.is_empty() {
         return Err(PictureErrorKind::Empty);
     }
@@ -45,32 +53,96 @@ fn decode(mut source: impl BufRead + Seek) -> Result<GrayImage, PictureErrorKind
     if !format.reading_enabled() {
         return Err(PictureErrorKind::Unsupported { format: format.to_mime_type() });
     }
-    let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(DECODER_LIMIT);
-    reader.limits(limits);
+    reader.limits(limits());
     let decoder = reader.into_decoder().map_err(damaged)?;
     // The header has been read, the pixels have not: nothing large is allocated yet.
     let (width, height) = decoder.dimensions();
+    check_size(width, height)?;
+    Ok(channel.of(DynamicImage::from_decoder(decoder).map_err(damaged)?))
+}
+
+fn limits() -> Limits {
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(DECODER_LIMIT);
+    limits
+}
+
+pub(crate) fn check_size(width: u32, height: u32) -> Result<(), PictureErrorKind> {
     if u64::from(width) * u64::from(height) > PIXEL_LIMIT {
         return Err(PictureErrorKind::TooLarge { width, height, limit: PIXEL_LIMIT });
     }
-    let picture = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-    Ok(visible_part(&picture).unwrap_or_else(|| picture.into_luma8()))
-}
-
-/// The alpha channel, if any of the pixels is transparent.
-fn visible_part(picture: &DynamicImage) -> Option<GrayImage> {
-    if !picture.color().has_alpha() {
-        return None;
-    }
-    let alpha: Vec<u8> = picture.to_luma_alpha8().pixels().map(|pixel| pixel.0[1]).collect();
-    let transparent = alpha.iter().any(|&value| value < u8::MAX);
-    if transparent { GrayImage::from_raw(picture.width(), picture.height(), alpha) } else { None }
+    Ok(())
 }
 
 fn damaged(error: ImageError) -> PictureErrorKind {
     match error {
         ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => PictureErrorKind::Io(error),
         error => PictureErrorKind::Damaged(error),
+    }
+}
+
+enum Source {
+    Gif(Frames<'static>),
+    One(GrayImage),
+    /// All frames have been read, or an error behind which nothing can be trusted.
+    Ended,
+}
+
+/// The frames of an animated GIF, one in memory at a time, or one picture.
+pub(crate) struct Animation {
+    frames: Source,
+    channel: Channel,
+    /// Time of the next frame in seconds.
+    time: f64,
+}
+
+impl Animation {
+    /// Reads the header.
+    pub(crate) fn open(source: impl BufRead + Seek + 'static, channel: Channel) -> Result<Self, PictureErrorKind> {
+        let mut decoder = GifDecoder::new(source).map_err(damaged)?;
+        let (width, height) = decoder.dimensions();
+        check_size(width, height)?;
+        decoder.set_limits(limits()).map_err(damaged)?;
+        Ok(Self { frames: Source::Gif(decoder.into_frames()), channel, time: 0.0 })
+    }
+
+    pub(crate) fn of_one(picture: GrayImage) -> Self {
+        Self { frames: Source::One(picture), channel: Channel::Luminance, time: 0.0 }
+    }
+}
+
+impl Iterator for Animation {
+    /// A frame and its time in seconds.
+    type Item = Result<(GrayImage, f64), PictureErrorKind>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let frames = match &mut self.frames {
+            Source::Gif(frames) => frames,
+            Source::One(picture) => {
+                let picture = std::mem::take(picture);
+                self.frames = Source::Ended;
+                return Some(Ok((picture, 0.0)));
+            }
+            Source::Ended => return None,
+        };
+        match frames.next()? {
+            Ok(frame) => {
+                let (numerator, denominator) = frame.delay().numer_denom_ms();
+                let delay = f64::from(numerator) / f64::from(denominator) / 1000.0;
+                let time = self.time;
+                self.time += if delay > 0.0 { delay } else { DEFAULT_DELAY };
+                Some(Ok((self.channel.of(DynamicImage::ImageRgba8(frame.into_buffer())), time)))
+            }
+            Err(error) => {
+                self.frames = Source::Ended;
+                Some(Err(damaged(error)))
+            }
+        }
+    }
+}
+
+impl std::fmt::Debug for Animation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Animation").field("time", &self.time).finish_non_exhaustive()
     }
 }

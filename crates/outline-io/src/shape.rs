@@ -13,7 +13,8 @@ use crate::error::{Place, ReadError, ReadErrorKind, ShapeError};
 use crate::frame::DEFAULT_OBJECT;
 use crate::outline_rows::OutlineRows;
 use crate::picture::read_picture;
-use crate::trace::{TraceSettings, trace_mask};
+use crate::trace::trace_mask;
+use crate::trace_settings::TraceSettings;
 
 /// Longest beginning of a file that tells a picture format.
 const MAGIC_LENGTH: u64 = 16;

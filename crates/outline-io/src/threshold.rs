@@ -1,7 +1,11 @@
 use image::GrayImage;
 
-use crate::error::TraceError;
-use crate::trace::{Contrast, Threshold};
+use crate::picture_error::TraceError;
+use crate::trace_settings::{Contrast, Threshold};
+
+/// Least difference of the medians of ground and objects, in robust standard deviations of the ground: Otsu's method splits
+/// pure noise into halves 2.3 of them apart and an even gradient into halves 2.7 apart.
+const STANDS_OUT: f64 = 3.0;
 
 /// The grey values that tell an object from its ground, on a scale where the object is lighter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,12 +54,27 @@ impl Levels {
             (_, None) if counts.iter().all(|count| *count == 0) => Err(TraceError::NoPixels),
             (_, None) => Err(TraceError::NoObject { threshold: level_in_picture(fixed.unwrap_or(0.0), contrast) }),
             (ground, Some(object)) => {
+                if fixed.is_none() && values > 2 {
+                    stands_out(&counts[..split], ground.unwrap_or(0.0), object)?;
+                }
                 let ground = ground.unwrap_or(0.0);
                 let threshold = fixed.unwrap_or(0.5 * (ground + object));
                 Ok(Self { threshold, ground, object, two_valued: values <= 2 })
             }
         }
     }
+}
+
+/// Refuses classes that are no further apart than noise, or a ground that grows lighter to one side, is split into.
+fn stands_out(ground_counts: &[u64], ground: f64, object: f64) -> Result<(), TraceError> {
+    let mut deviations = [0_u64; 256];
+    for (value, count) in ground_counts.iter().enumerate() {
+        deviations[(value as f64 - ground).abs() as usize] += count;
+    }
+    // The median absolute deviation to a grey value is half a grey value too small in the mean.
+    let spread = 1.4826 * (median(&deviations, 0).unwrap_or(0.0) + 0.5);
+    let difference = object - ground;
+    if difference < STANDS_OUT * spread { Err(TraceError::NoContrast { difference, spread }) } else { Ok(()) }
 }
 
 /// From a grey value of the picture to the scale where the object is lighter, or back.

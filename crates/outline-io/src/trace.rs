@@ -2,139 +2,31 @@ use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use image::GrayImage;
 use nalgebra::Point2;
 
-use crate::error::TraceError;
 use crate::field::{Field, blur_reach};
 use crate::isoline::{Crossing, area, isolines};
-use crate::object_mask::ObjectMask;
+use crate::object_mask::{ObjectMask, Objects};
+use crate::picture_error::TraceError;
+use crate::ring::Ring;
 use crate::threshold::{Levels, level_in_picture, signal};
+use crate::trace_settings::{Clipping, Contrast, TraceSettings};
 
-/// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
-const MASK_SIGMA: f64 = 1.0;
-
-/// The same for pictures of more grey values, in pixels.
-const GREY_SIGMA: f64 = 0.5;
-
-/// Largest standard deviation of the smoothing, in pixels.
-const SIGMA_LIMIT: f64 = 100.0;
-
-/// Whether objects are lighter or darker than the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Contrast {
-    /// Light objects, as in masks.
-    #[default]
-    LightOnDark,
-    /// Dark objects.
-    DarkOnLight,
-}
-
-/// The grey value that parts objects from the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Threshold {
-    /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
-    /// its two values.
-    #[default]
-    Automatic,
-    /// A grey value of the picture, above 0 and up to 255.
-    Level(f64),
-}
-
-/// How much the picture is smoothed before its outline is traced.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Smoothing {
-    /// By a Gaussian of 1 pixel for a picture of two grey values, whose edges are stairs; of half a pixel for others,
-    /// whose grey values place the edge within a pixel but are seldom linear across it.
-    #[default]
-    Automatic,
-    /// By a Gaussian of this standard deviation in pixels, 0 to 100; 0 for none.
-    Gaussian(f64),
-}
-
-/// What to make of an object that the edge of the picture clips.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Clipping {
-    /// Close the outline along the edge of the picture.
-    #[default]
-    Close,
-    /// Keep only what is seen of the object's own outline, as open arcs.
-    Open,
-}
-
-/// How an outline is traced in a picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TraceSettings {
-    /// Light objects on dark ground, or the other way round.
-    pub contrast: Contrast,
-    /// The grey value on the outline.
-    pub threshold: Threshold,
-    /// Smoothing before tracing.
-    pub smoothing: Smoothing,
-    /// Smallest object accepted, in pixels.
-    pub minimum_area: u64,
-    /// What to make of an object that the edge of the picture clips.
-    pub clipping: Clipping,
-    /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
-    pub y_up: bool,
-    /// Height of a pixel in the length unit of the outline.
-    pub pixel_size: f64,
-    /// Width of a pixel over its height.
-    pub pixel_aspect: f64,
-}
-
-impl Default for TraceSettings {
-    /// Light on dark, everything automatic, at least 9 pixels, closed along the edge, y upwards, pixels as unit.
-    fn default() -> Self {
-        Self {
-            contrast: Contrast::default(),
-            threshold: Threshold::default(),
-            smoothing: Smoothing::default(),
-            minimum_area: 9,
-            clipping: Clipping::default(),
-            y_up: true,
-            pixel_size: 1.0,
-            pixel_aspect: 1.0,
-        }
-    }
-}
-
-impl TraceSettings {
-    fn check(&self) -> Result<(), TraceError> {
-        let refuse = |name, value, expected| Err(TraceError::Setting { name, value, expected });
-        let is_length = |value: f64| (1e-50..=1e50).contains(&value);
-        match (self.threshold, self.smoothing) {
-            (Threshold::Level(level), _) if !(level > 0.0 && level <= 255.0) => {
-                refuse("threshold", level, "a grey value above 0 and up to 255")
-            }
-            (_, Smoothing::Gaussian(sigma)) if !(0.0..=SIGMA_LIMIT).contains(&sigma) => {
-                refuse("smoothing", sigma, "0 to 100 pixels")
-            }
-            _ if !is_length(self.pixel_size) => refuse("pixel_size", self.pixel_size, "a positive length"),
-            _ if !is_length(self.pixel_aspect) => refuse("pixel_aspect", self.pixel_aspect, "a positive ratio"),
-            _ => Ok(()),
-        }
-    }
-
-    fn sigma(&self, levels: &Levels) -> f64 {
-        match self.smoothing {
-            Smoothing::Automatic if levels.two_valued => MASK_SIGMA,
-            Smoothing::Automatic => GREY_SIGMA,
-            Smoothing::Gaussian(sigma) => sigma,
-        }
-    }
-}
-
-/// The outline of the largest object in a picture.
+/// The outline of an object in a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TracedOutline {
     /// The outline, running counter-clockwise in its own coordinates (positive area).
     pub outline: Outline,
     /// Whether the edge of the picture clips the object, so that part of its own outline is not seen.
     pub touches_border: bool,
-    /// Pixels of the object, holes not counted.
+    /// Pixels of the object; holes are not counted, but for an object in a ring.
     pub pixel_count: u64,
-    /// Objects of at least the smallest area in the picture; one was traced.
+    /// Objects of at least the smallest area in the picture.
     pub object_count: usize,
-    /// The grey value on the outline.
+    /// The grey value on the outline; for an object in a ring 0.5, the share of the strength of the ring.
     pub threshold: f64,
+    /// Centre of the area seen, in the coordinates of the outline.
+    pub centre: Point2<f64>,
+    /// The area seen, in the squared unit of the outline.
+    pub area: f64,
 }
 
 /// Traces the outer outline of the largest object in a picture, to a fraction of a pixel.
@@ -151,47 +43,140 @@ pub struct TracedOutline {
 /// radius of curvature R by about `s^2 / (2 R)` towards its centre of curvature.
 ///
 /// # Errors
-/// A setting out of range; a picture without an object or with none of the area asked for; an object that smoothing
-/// removes or, where arcs are asked for, one that fills the picture.
+/// A setting out of range; a picture without an object, with none of the area asked for, or none that stands out; an
+/// object that smoothing removes or, where arcs are asked for, one that fills the picture.
 pub fn trace_mask(picture: &GrayImage, settings: &TraceSettings) -> Result<TracedOutline, TraceError> {
+    trace_objects(picture, settings, 1).and_then(|traced| traced.into_iter().next().ok_or(TraceError::NoPixels))
+}
+
+/// Like [`trace_mask`], for up to `limit` objects, the largest first; those in rings, the clearest first.
+///
+/// # Errors
+/// As [`trace_mask`]; an error of one object is returned only where there is no other.
+pub fn trace_objects(
+    picture: &GrayImage,
+    settings: &TraceSettings,
+    limit: usize,
+) -> Result<Vec<TracedOutline>, TraceError> {
     settings.check()?;
+    let traced = match settings.ring {
+        Some(ring) => ring_outlines(picture, settings, ring, limit)?,
+        None => mask_outlines(picture, settings, limit)?,
+    };
+    let mut outlines = Vec::new();
+    let mut refused = None;
+    for traced in traced {
+        match traced {
+            Ok(traced) => outlines.push(traced),
+            Err(error) => refused = refused.or(Some(error)),
+        }
+    }
+    match refused {
+        Some(error) if outlines.is_empty() => Err(error),
+        _ => Ok(outlines),
+    }
+}
+
+type Traced = Vec<Result<TracedOutline, TraceError>>;
+
+fn ring_outlines(
+    picture: &GrayImage,
+    settings: &TraceSettings,
+    ring: Ring,
+    limit: usize,
+) -> Result<Traced, TraceError> {
+    let objects = ring.objects(picture, settings.minimum_area, limit)?;
+    let object_count = objects.len();
+    let traced = objects.into_iter().map(|object| {
+        let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5 };
+        let seen = window.outline(picture, settings)?.ok_or(TraceError::NoRing)?;
+        Ok(seen.traced(object.pixel_count, object_count, 0.5))
+    });
+    Ok(traced.collect())
+}
+
+fn mask_outlines(picture: &GrayImage, settings: &TraceSettings, limit: usize) -> Result<Traced, TraceError> {
     let levels = Levels::of(picture, settings.contrast, settings.threshold)?;
     let sigma = settings.sigma(&levels);
     let set = |value: u8| f64::from(signal(value, settings.contrast)) >= levels.threshold;
-    let mask = ObjectMask::largest(picture, set, settings.minimum_area, blur_reach(sigma) + 2)?
-        .ok_or(TraceError::NoObject { threshold: level_in_picture(levels.threshold, settings.contrast) })?;
-
-    let mut field = object_field(picture, &mask, &levels, settings.contrast, set);
-    if sigma > 0.0 {
-        field.blur(sigma);
+    let threshold = level_in_picture(levels.threshold, settings.contrast);
+    let objects = Objects::of(picture, set, settings.minimum_area)?;
+    if objects.count() == 0 {
+        return Err(TraceError::NoObject { threshold });
     }
-    let lines = isolines(&field, levels.threshold);
-    let outer = lines.into_iter().max_by(|a, b| area(a).total_cmp(&area(b)));
-    let line = outer.ok_or(TraceError::SmoothedAway { sigma })?;
+    let traced = objects.masks(blur_reach(sigma) + 2).take(limit).map(|mask| {
+        let mut field = object_field(picture, &mask, &levels, settings.contrast, set);
+        if sigma > 0.0 {
+            field.blur(sigma);
+        }
+        let window = Window { left: mask.left, top: mask.top, field: &field, level: levels.threshold };
+        let seen = window.outline(picture, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
+        Ok(seen.traced(mask.pixel_count, objects.count(), threshold))
+    });
+    Ok(traced.collect())
+}
 
-    let touches_border = line.iter().any(|crossing| crossing.at_edge);
-    let to_point = |crossing: &Crossing| {
-        let x = mask.left as f64 + crossing.x + 0.5;
-        let y = mask.top as f64 + crossing.y + 0.5;
-        let y = if settings.y_up { f64::from(picture.height()) - y } else { y };
-        Point2::new(settings.pixel_size * settings.pixel_aspect * x, settings.pixel_size * y)
-    };
-    let mut points: Vec<(Point2<f64>, bool)> =
-        line.iter().map(|crossing| (to_point(crossing), crossing.at_edge)).collect();
-    if !settings.y_up {
-        points.reverse();
+/// A part of a picture with an object in it.
+struct Window<'a> {
+    left: usize,
+    top: usize,
+    field: &'a Field,
+    /// Value on the outline.
+    level: f64,
+}
+
+/// What is seen of an object.
+struct Seen {
+    outline: Outline,
+    touches_border: bool,
+    centre: Point2<f64>,
+    area: f64,
+}
+
+impl Seen {
+    fn traced(self, pixel_count: u64, object_count: usize, threshold: f64) -> TracedOutline {
+        let Self { outline, touches_border, centre, area } = self;
+        TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area }
     }
-    let outline = match settings.clipping {
-        Clipping::Open if touches_border => visible_arcs(points)?,
-        _ => Outline::closed(points.into_iter().map(|(point, _)| point).collect())?,
-    };
-    Ok(TracedOutline {
-        outline,
-        touches_border,
-        pixel_count: mask.pixel_count,
-        object_count: mask.object_count,
-        threshold: level_in_picture(levels.threshold, settings.contrast),
-    })
+}
+
+impl Window<'_> {
+    /// The longest outer outline in the window; `None` where nothing passes the level.
+    fn outline(&self, picture: &GrayImage, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
+        let lines = isolines(self.field, self.level);
+        let outer = lines.into_iter().max_by(|a, b| area(a).total_cmp(&area(b)));
+        let Some(line) = outer else { return Ok(None) };
+        let grid = settings.pixel_grid(picture.height());
+        let touches_border = line.iter().any(|crossing| crossing.at_edge);
+        let to_point = |crossing: &Crossing| {
+            grid.to_plane(self.left as f64 + crossing.x + 0.5, self.top as f64 + crossing.y + 0.5)
+        };
+        let mut points: Vec<(Point2<f64>, bool)> =
+            line.iter().map(|crossing| (to_point(crossing), crossing.at_edge)).collect();
+        if !settings.y_up {
+            points.reverse();
+        }
+        let (area, centre) = area_and_centre(&points);
+        let outline = match settings.clipping {
+            Clipping::Open if touches_border => visible_arcs(points)?,
+            _ => Outline::closed(points.into_iter().map(|(point, _)| point).collect())?,
+        };
+        Ok(Some(Seen { outline, touches_border, centre, area }))
+    }
+}
+
+/// Area and centre of area of a closed polygon.
+fn area_and_centre(points: &[(Point2<f64>, bool)]) -> (f64, Point2<f64>) {
+    let origin = points.first().map_or(Point2::origin(), |(point, _)| *point);
+    let (mut doubled, mut moment) = (0.0, nalgebra::Vector2::zeros());
+    for ((p, _), (q, _)) in points.iter().zip(points.iter().cycle().skip(1)) {
+        let (p, q) = (p - origin, q - origin);
+        let cross = p.perp(&q);
+        doubled += cross;
+        moment += cross * (p + q);
+    }
+    let centre = if doubled == 0.0 { origin } else { origin + moment / (3.0 * doubled) };
+    (0.5 * doubled, centre)
 }
 
 /// The grey values around the object, with other objects and its own holes painted over.
@@ -227,5 +212,5 @@ fn visible_arcs(mut points: Vec<(Point2<f64>, bool)>) -> Result<Outline, TraceEr
     if arcs.is_empty() {
         return Err(TraceError::FillsPicture);
     }
-    Ok(OpenOutline::new(arcs)?.into())
+    Ok(OpenOutline::in_sequence(arcs)?.into())
 }

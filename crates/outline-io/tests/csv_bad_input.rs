@@ -226,7 +226,7 @@ fn a_degenerate_outline_before_a_bad_row_is_told_too() {
 #[test]
 fn arcs_without_two_points_are_dropped_unless_nothing_remains() {
     let header = "frame,time,x,y,arc\n";
-    let good = "0,0,0,0,a\n0,0,1,0,a\n";
+    let good = "0,0,0,0,a\n0,0,1,0,a\n0,0,1,1,a\n";
     assert_eq!(read_all(format!("{header}{good}0,0,5,5,b\n0,0,6,6,c\n0,0,6,6,c\n")), (vec![0], vec![]));
     let message = "in.csv:2-4: frame 0 of object \"0\": 1 point(s), at least 2 are needed";
     let none = format!("{header}0,0,5,5,b\n0,0,6,6,c\n0,0,6,6,c\n");

@@ -1,0 +1,56 @@
+use image::{DynamicImage, GrayImage, Luma};
+
+/// What is looked at of a colour picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Channel {
+    /// The luminance. Where some pixels of a picture are transparent its alpha channel is taken instead, so that the
+    /// visible part is light on dark.
+    #[default]
+    Luminance,
+    /// The red channel.
+    Red,
+    /// The green channel.
+    Green,
+    /// The blue channel.
+    Blue,
+    /// How far a colour is from grey: the largest of its channels less the smallest.
+    Saturation,
+}
+
+impl Channel {
+    /// The channel of a decoded picture, as grey values.
+    pub(crate) fn of(self, picture: DynamicImage) -> GrayImage {
+        match self {
+            Self::Luminance => visible_part(&picture).unwrap_or_else(|| picture.into_luma8()),
+            channel => {
+                let colours = picture.into_rgb8();
+                let grey = colours.pixels().map(|pixel| channel.of_colour(pixel.0)).collect();
+                GrayImage::from_raw(colours.width(), colours.height(), grey).unwrap_or_default()
+            }
+        }
+    }
+
+    /// The channel of one colour: red, green, blue.
+    pub(crate) fn of_colour(self, [red, green, blue]: [u8; 3]) -> u8 {
+        match self {
+            Self::Red => red,
+            Self::Green => green,
+            Self::Blue => blue,
+            Self::Saturation => red.max(green).max(blue) - red.min(green).min(blue),
+            Self::Luminance => {
+                let Luma([grey]) = image::Pixel::to_luma(&image::Rgb([red, green, blue]));
+                grey
+            }
+        }
+    }
+}
+
+/// The alpha channel, if any of the pixels is transparent.
+fn visible_part(picture: &DynamicImage) -> Option<GrayImage> {
+    if !picture.color().has_alpha() {
+        return None;
+    }
+    let alpha: Vec<u8> = picture.to_luma_alpha8().pixels().map(|pixel| pixel.0[1]).collect();
+    let transparent = alpha.iter().any(|&value| value < u8::MAX);
+    if transparent { GrayImage::from_raw(picture.width(), picture.height(), alpha) } else { None }
+}

@@ -1,0 +1,192 @@
+use std::fmt;
+use std::io;
+
+use freeform_curve_fit::OutlineError;
+use image::ImageError;
+use thiserror::Error;
+
+use crate::error::write_name;
+
+/// A picture could not be read. Displays as one line: file, frame where the file has several, and reason.
+#[derive(Debug, Error)]
+pub struct PictureError {
+    /// The file's name.
+    pub file: String,
+    /// Number of the frame where the file holds several, counted from 0.
+    pub frame: Option<u64>,
+    /// The reason.
+    #[source]
+    pub kind: PictureErrorKind,
+}
+
+impl PictureError {
+    pub(crate) fn of_file(file: impl Into<String>, kind: PictureErrorKind) -> Self {
+        Self { file: file.into(), frame: None, kind }
+    }
+}
+
+impl fmt::Display for PictureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_name(f, &self.file)?;
+        match self.frame {
+            Some(frame) => write!(f, ": frame {frame}: {}", self.kind),
+            None => write!(f, ": {}", self.kind),
+        }
+    }
+}
+
+/// Why a picture could not be read.
+#[derive(Debug, Error)]
+pub enum PictureErrorKind {
+    /// The file could not be opened or read.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// A file of no bytes.
+    #[error("the file is empty")]
+    Empty,
+    /// A folder without pictures, or a pattern that matches no file.
+    #[error("no pictures found")]
+    NoPictures,
+    /// A file pattern that cannot be understood.
+    #[error("not a pattern of file names")]
+    WrongPattern,
+    /// The content is that of no picture format.
+    #[error("not a picture")]
+    NotAPicture,
+    /// A picture format that is not built in.
+    #[error("pictures of type {format} are not supported")]
+    Unsupported {
+        /// Its media type.
+        format: &'static str,
+    },
+    /// More pixels than are accepted.
+    #[error("{width} x {height} pixels, more than {limit} in all")]
+    TooLarge {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Largest number of pixels accepted.
+        limit: u64,
+    },
+    /// Another size than that of the first picture of the sequence.
+    #[error("{width} x {height} pixels, the frames before it have {first_width} x {first_height}")]
+    SizeChanged {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Columns of the first picture.
+        first_width: u32,
+        /// Rows of the first picture.
+        first_height: u32,
+    },
+    /// A header of a y4m video without width or height.
+    #[error("the video header {header:?} lacks the size")]
+    VideoWithoutSize {
+        /// The header, shortened.
+        header: String,
+    },
+    /// A parameter in the header of a y4m video that is wrong or not supported.
+    #[error("the video parameter {name}{value} is wrong or not supported")]
+    VideoParameter {
+        /// Its letter.
+        name: char,
+        /// Its value, shortened.
+        value: String,
+    },
+    /// Something else where a frame of a y4m video should begin.
+    #[error("{found:?} where a frame of the video should begin")]
+    NotAVideoFrame {
+        /// What is there, shortened.
+        found: String,
+    },
+    /// A y4m video ends within a frame.
+    #[error("the video ends within a frame, after {found} of {expected} bytes")]
+    FrameCutShort {
+        /// Bytes of the frame that are there.
+        found: usize,
+        /// Bytes of a frame.
+        expected: usize,
+    },
+    /// The file ends early or contradicts itself.
+    #[error("the picture is damaged: {0}")]
+    Damaged(#[source] ImageError),
+}
+
+/// Why no outline could be traced in a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum TraceError {
+    /// A setting is out of range.
+    #[error("the setting {name} is {value}, expected {expected}")]
+    Setting {
+        /// Name of the setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The range accepted.
+        expected: &'static str,
+    },
+    /// A picture of no pixels.
+    #[error("the picture has no pixels")]
+    NoPixels,
+    /// All pixels have one grey value.
+    #[error("no object: every pixel has the grey value {value}")]
+    Uniform {
+        /// The grey value.
+        value: u8,
+    },
+    /// No pixel passes the threshold.
+    #[error("no object: no pixel passes the threshold {threshold}")]
+    NoObject {
+        /// The threshold as a grey value of the picture.
+        threshold: f64,
+    },
+    /// The largest object is too small.
+    #[error("no object: the largest has {pixels} pixel(s), at least {needed} are asked for")]
+    TooSmall {
+        /// Pixels of the largest object.
+        pixels: u64,
+        /// Smallest number accepted.
+        needed: u64,
+    },
+    /// Light and dark pixels are no further apart than the ground itself varies.
+    #[error(
+        "no object stands out from the ground: {difference:.1} grey values apart, the ground varies by {spread:.1}"
+    )]
+    NoContrast {
+        /// Difference of the median grey values of the two classes.
+        difference: f64,
+        /// Robust standard deviation of the darker or lighter class taken for the ground.
+        spread: f64,
+    },
+    /// The background picture has another size.
+    #[error("the background has {width} x {height} pixels, the picture has not")]
+    BackgroundSize {
+        /// Columns of the background.
+        width: u32,
+        /// Rows of the background.
+        height: u32,
+    },
+    /// No closed line stands out from the picture.
+    #[error("no object: no closed ring stands out from the ground")]
+    NoRing,
+    /// No object is where the one of the frames before it should be.
+    #[error("no object where the one of the frames before should be, the nearest is {distance:.1} of its sizes away")]
+    NotNear {
+        /// Distance from the place expected, in diameters of the object.
+        distance: f64,
+    },
+    /// The object is so thin that smoothing takes it below the threshold.
+    #[error("smoothing by {sigma} pixels leaves nothing of the object")]
+    SmoothedAway {
+        /// Standard deviation of the smoothing, in pixels.
+        sigma: f64,
+    },
+    /// No part of the outline is within the picture.
+    #[error("the object fills the picture: nothing of its outline is visible")]
+    FillsPicture,
+    /// The points are no outline.
+    #[error("the traced points are no outline: {0}")]
+    Degenerate(#[from] OutlineError),
+}

@@ -1,0 +1,190 @@
+use image::GrayImage;
+
+use crate::basins::{Basin, basins};
+use crate::field::Field;
+use crate::morphology::{dilated, eroded};
+use crate::object_mask::fill_holes;
+use crate::picture_error::TraceError;
+use crate::threshold::signal;
+use crate::trace_settings::Contrast;
+
+/// Widest ring expected where none is given, as a share of the shorter side of the picture.
+const WIDTH_SHARE: f64 = 1.0 / 60.0;
+
+/// The same, at least, in pixels.
+const LEAST_WIDTH: f64 = 4.0;
+
+/// Standard deviation of the smoothing before rings are looked for, in pixels.
+const SIGMA: f64 = 1.0;
+
+/// A ring stands out where its weakest point is so many times as strong as the median of the picture.
+const STANDS_OUT: f32 = 2.0;
+
+/// Rings of at least this share of the score of the clearest one are objects too.
+const CLEAR_SHARE: f64 = 0.5;
+
+/// An object that is told from the ground by a line around it only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ring {
+    /// Whether the line is lighter or darker than the ground and the object.
+    pub contrast: Contrast,
+    /// Widest line expected in pixels, 1 to 100; `None` for a sixtieth of the shorter side of the picture, at least 4.
+    pub width: Option<f64>,
+}
+
+/// What a ring closes in, in a window around it: 1 within, falling to 0 over the outer edge of the ring.
+#[derive(Debug)]
+pub(crate) struct RingObject {
+    /// First column of the window.
+    pub(crate) left: usize,
+    /// First row of the window.
+    pub(crate) top: usize,
+    pub(crate) field: Field,
+    /// Pixels of the object with its ring.
+    pub(crate) pixel_count: u64,
+}
+
+impl Ring {
+    fn reach(&self, picture: &GrayImage) -> usize {
+        let shorter = f64::from(picture.width().min(picture.height()));
+        let width = self.width.unwrap_or_else(|| (WIDTH_SHARE * shorter).max(LEAST_WIDTH));
+        width.ceil() as usize
+    }
+
+    /// The objects with the clearest rings, the clearest first: those with the largest product of the strength of the
+    /// weakest point of the ring and the root of the area that it closes in.
+    ///
+    /// The strength of a ring is how far it stands out from the ground within its width (a top-hat transform), so that
+    /// neither the lightness of the picture nor that of a part of it matters, and no threshold is needed.
+    pub(crate) fn objects(
+        &self,
+        picture: &GrayImage,
+        smallest_area: u64,
+        limit: usize,
+    ) -> Result<Vec<RingObject>, TraceError> {
+        let reach = self.reach(picture);
+        let strength = self.strength(picture, reach);
+        let median = median(&strength.values);
+        let area = u32::try_from(smallest_area).unwrap_or(u32::MAX).max(1);
+        let mut candidates = basins(&strength, area);
+        candidates.retain(|basin| basin.level > STANDS_OUT * median);
+        let score = |basin: &Basin| f64::from(basin.level) * f64::from(basin.area).sqrt();
+        candidates.sort_by(|a, b| score(b).total_cmp(&score(a)));
+        let least = candidates.first().map(|best| CLEAR_SHARE * score(best)).ok_or(TraceError::NoRing)?;
+        let mut taken = vec![false; strength.values.len()];
+        let mut objects = Vec::new();
+        for basin in candidates.iter().take_while(|basin| score(basin) >= least) {
+            if objects.len() == limit {
+                break;
+            }
+            if !taken[basin.seed] {
+                objects.push(around(basin, &strength, reach, &mut taken));
+            }
+        }
+        Ok(objects)
+    }
+
+    fn strength(&self, picture: &GrayImage, reach: usize) -> Field {
+        let (width, height) = (picture.width() as usize, picture.height() as usize);
+        let values = picture.as_raw().iter().map(|value| f32::from(signal(*value, self.contrast))).collect();
+        let mut lines = Field { width, height, values };
+        lines.blur(SIGMA);
+        let ground = dilated(&eroded(&lines, reach), reach);
+        lines.values.iter_mut().zip(&ground.values).for_each(|(line, ground)| *line -= ground);
+        lines
+    }
+}
+
+/// The object that a ring closes in. Its edge is where the strength falls to half of the largest nearby.
+fn around(basin: &Basin, strength: &Field, reach: usize, taken: &mut [bool]) -> RingObject {
+    let (columns, rows) = (strength.width, strength.height);
+    let within = flooded(basin, strength, taken);
+    let column = |index: &usize| index % columns;
+    let row = |index: &usize| index / columns;
+    let margin = 3 * reach + 2;
+    let bounds = |of: &dyn Fn(&usize) -> usize, count: usize| {
+        let (low, high) = within.iter().map(of).fold((usize::MAX, 0), |(l, h), v| (l.min(v), h.max(v)));
+        (low.saturating_sub(margin), (high + 1 + margin).min(count))
+    };
+    let ((left, right), (top, bottom)) = (bounds(&column, columns), bounds(&row, rows));
+    let (width, height) = (right - left, bottom - top);
+    let rows_of = (top..bottom).flat_map(|row| &strength.values[row * columns + left..row * columns + right]);
+    let local = Field { width, height, values: rows_of.copied().collect() };
+    let strongest = dilated(&local, reach);
+    let mut region = Field { width, height, values: vec![0.0; width * height] };
+    within.iter().for_each(|index| region.values[(row(index) - top) * width + column(index) - left] = 1.0);
+    let near = dilated(&region, reach + 1);
+    climb(&mut region, &local, &near);
+
+    let share = |index: usize| local.values[index] / strongest.values[index].max(f32::MIN_POSITIVE);
+    let is_ring = |i: usize| near.values[i] > 0.0 && local.values[i] >= 0.5 * basin.level && share(i) >= 0.5;
+    let mut filled: Vec<bool> = (0..width * height).map(|i| region.values[i] > 0.0 || is_ring(i)).collect();
+    fill_holes(&mut filled, width, height);
+    let ring = |i: usize| if near.values[i] > 0.0 { share(i) } else { 0.0 };
+    let value = |i: usize| match (filled[i], is_ring(i)) {
+        (true, true) => ring(i),
+        (true, false) => 1.0,
+        (false, _) => ring(i).min(0.49),
+    };
+    let pixel_count = filled.iter().filter(|filled| **filled).count() as u64;
+    let mut field = Field { width, height, values: (0..width * height).map(value).collect() };
+    // What is clearly within is not to be thinned by the fall of the strength towards it.
+    let deep = eroded(&Field { width, height, values: filled.iter().map(|f| f32::from(u8::from(*f))).collect() }, 2);
+    field.values.iter_mut().zip(&deep.values).filter(|(_, deep)| **deep > 0.0).for_each(|(value, _)| *value = 1.0);
+    RingObject { left, top, field, pixel_count }
+}
+
+/// Adds to a region what is uphill from it, up to the crest of the ring: a basin ends where its weakest point overflows,
+/// which is far below the crest elsewhere.
+fn climb(region: &mut Field, strength: &Field, near: &Field) {
+    let (width, height) = (region.width, region.height);
+    let mut open: Vec<usize> = (0..region.values.len()).filter(|&index| region.values[index] > 0.0).collect();
+    while let Some(index) = open.pop() {
+        let (x, y) = (index % width, index / width);
+        let neighbours = [
+            (x > 0).then(|| index - 1),
+            (x + 1 < width).then_some(index + 1),
+            (y > 0).then(|| index - width),
+            (y + 1 < height).then_some(index + width),
+        ];
+        for next in neighbours.into_iter().flatten() {
+            let is_uphill = strength.values[next] > strength.values[index];
+            if is_uphill && near.values[next] > 0.0 && region.values[next] == 0.0 {
+                region.values[next] = 1.0;
+                open.push(next);
+            }
+        }
+    }
+}
+
+/// Indices of the samples of a basin, which are marked as taken.
+fn flooded(basin: &Basin, strength: &Field, taken: &mut [bool]) -> Vec<usize> {
+    let (width, height) = (strength.width, strength.height);
+    let mut within = vec![basin.seed];
+    taken[basin.seed] = true;
+    let mut next = 0;
+    while let Some(&index) = within.get(next) {
+        next += 1;
+        let (x, y) = (index % width, index / width);
+        let neighbours = [
+            (x > 0).then(|| index - 1),
+            (x + 1 < width).then_some(index + 1),
+            (y > 0).then(|| index - width),
+            (y + 1 < height).then_some(index + width),
+        ];
+        for neighbour in neighbours.into_iter().flatten() {
+            if strength.values[neighbour] < basin.level && !taken[neighbour] {
+                taken[neighbour] = true;
+                within.push(neighbour);
+            }
+        }
+    }
+    within
+}
+
+/// Median of values that are not negative.
+fn median(values: &[f32]) -> f32 {
+    let mut sample: Vec<f32> = values.iter().step_by(1 + values.len() / 100_000).copied().collect();
+    let middle = sample.len() / 2;
+    if sample.is_empty() { 0.0 } else { *sample.select_nth_unstable_by(middle, f32::total_cmp).1 }
+}

@@ -1,0 +1,157 @@
+use nalgebra::Point2;
+
+use crate::picture_error::TraceError;
+use crate::ring::Ring;
+use crate::threshold::Levels;
+
+/// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
+const MASK_SIGMA: f64 = 1.0;
+
+/// The same for pictures of more grey values, in pixels.
+const GREY_SIGMA: f64 = 0.5;
+
+/// Largest standard deviation of the smoothing, in pixels.
+const SIGMA_LIMIT: f64 = 100.0;
+
+/// Whether objects are lighter or darker than the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Contrast {
+    /// Light objects, as in masks.
+    #[default]
+    LightOnDark,
+    /// Dark objects.
+    DarkOnLight,
+}
+
+/// The grey value that parts objects from the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Threshold {
+    /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
+    /// its two values.
+    #[default]
+    Automatic,
+    /// A grey value of the picture, above 0 and up to 255.
+    Level(f64),
+}
+
+/// How much the picture is smoothed before its outline is traced.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Smoothing {
+    /// By a Gaussian of 1 pixel for a picture of two grey values, whose edges are stairs; of half a pixel for others,
+    /// whose grey values place the edge within a pixel but are seldom linear across it.
+    #[default]
+    Automatic,
+    /// By a Gaussian of this standard deviation in pixels, 0 to 100; 0 for none.
+    Gaussian(f64),
+}
+
+/// What to make of an object that the edge of the picture clips.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Clipping {
+    /// Close the outline along the edge of the picture.
+    #[default]
+    Close,
+    /// Keep only what is seen of the object's own outline, as open arcs.
+    Open,
+}
+
+/// How an outline is traced in a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TraceSettings {
+    /// Light objects on dark ground, or the other way round.
+    pub contrast: Contrast,
+    /// The grey value on the outline.
+    pub threshold: Threshold,
+    /// Smoothing before tracing.
+    pub smoothing: Smoothing,
+    /// Smallest object accepted, in pixels.
+    pub minimum_area: u64,
+    /// What to make of an object that the edge of the picture clips.
+    pub clipping: Clipping,
+    /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
+    pub y_up: bool,
+    /// A line around the object by whose outer edge it is told, in place of contrast, threshold and smoothing.
+    pub ring: Option<Ring>,
+    /// Height of a pixel in the length unit of the outline.
+    pub pixel_size: f64,
+    /// Width of a pixel over its height.
+    pub pixel_aspect: f64,
+}
+
+impl Default for TraceSettings {
+    /// Light on dark, everything automatic, at least 9 pixels, closed along the edge, y upwards, pixels as unit.
+    fn default() -> Self {
+        Self {
+            contrast: Contrast::default(),
+            threshold: Threshold::default(),
+            smoothing: Smoothing::default(),
+            minimum_area: 9,
+            clipping: Clipping::default(),
+            y_up: true,
+            ring: None,
+            pixel_size: 1.0,
+            pixel_aspect: 1.0,
+        }
+    }
+}
+
+impl TraceSettings {
+    pub(crate) fn check(&self) -> Result<(), TraceError> {
+        let refuse = |name, value, expected| Err(TraceError::Setting { name, value, expected });
+        let is_length = |value: f64| (1e-50..=1e50).contains(&value);
+        match (self.threshold, self.smoothing) {
+            (Threshold::Level(level), _) if !(level > 0.0 && level <= 255.0) => {
+                refuse("threshold", level, "a grey value above 0 and up to 255")
+            }
+            (_, Smoothing::Gaussian(sigma)) if !(0.0..=SIGMA_LIMIT).contains(&sigma) => {
+                refuse("smoothing", sigma, "0 to 100 pixels")
+            }
+            _ if self.ring.and_then(|ring| ring.width).is_some_and(|width| !(1.0..=100.0).contains(&width)) => {
+                refuse("ring width", self.ring.and_then(|ring| ring.width).unwrap_or(f64::NAN), "1 to 100 pixels")
+            }
+            _ if !is_length(self.pixel_size) => refuse("pixel_size", self.pixel_size, "a positive length"),
+            _ if !is_length(self.pixel_aspect) => refuse("pixel_aspect", self.pixel_aspect, "a positive ratio"),
+            _ => Ok(()),
+        }
+    }
+
+    pub(crate) fn sigma(&self, levels: &Levels) -> f64 {
+        match self.smoothing {
+            Smoothing::Automatic if levels.two_valued => MASK_SIGMA,
+            Smoothing::Automatic => GREY_SIGMA,
+            Smoothing::Gaussian(sigma) => sigma,
+        }
+    }
+
+    /// How the pixels of a picture of this height lie in the plane of its outlines.
+    #[must_use]
+    pub fn pixel_grid(&self, height: u32) -> PixelGrid {
+        PixelGrid { height, y_up: self.y_up, pixel_size: self.pixel_size, pixel_aspect: self.pixel_aspect }
+    }
+}
+
+/// How the pixels of a picture lie in the plane of its outlines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PixelGrid {
+    height: u32,
+    y_up: bool,
+    pixel_size: f64,
+    pixel_aspect: f64,
+}
+
+impl PixelGrid {
+    /// From columns and rows, pixel centres at half numbers, to the plane.
+    #[must_use]
+    pub fn to_plane(&self, column: f64, row: f64) -> Point2<f64> {
+        let y = if self.y_up { f64::from(self.height) - row } else { row };
+        Point2::new(self.pixel_size * self.pixel_aspect * column, self.pixel_size * y)
+    }
+
+    /// From the plane to columns and rows, pixel centres at half numbers.
+    #[must_use]
+    pub fn to_pixels(&self, point: &Point2<f64>) -> [f64; 2] {
+        let y = point.y / self.pixel_size;
+        let row = if self.y_up { f64::from(self.height) - y } else { y };
+        [point.x / (self.pixel_size * self.pixel_aspect), row]
+    }
+}
