@@ -1,6 +1,9 @@
 //! The identifier of one object, whichever method it is.
 use freeform_motion::curve_fit::{Fit, Outline};
-use freeform_motion::identify::{FilterSettings, FilterStep, MotionEstimate, MotionFilter, Phase};
+use freeform_motion::identify::{
+    CurveFilterSettings, CurveStep, FilterSettings, FilterStep, MotionEstimate, MotionFilter, MotionState, Phase,
+    ProcessNoise, WholeCurveFilter,
+};
 use freeform_motion::{Pipeline, PipelineSettings};
 
 use crate::args::{IdentifyMethod, TrackOptions};
@@ -15,13 +18,15 @@ pub(crate) enum Identifier {
     /// The paper's identifier on the lines of fitted curves.
     Adaptive(Box<Pipeline>),
     /// The motion filter on the points of the outlines.
-    Filter(Box<TrackedObject>),
+    Filter(Box<TrackedObject<MotionFilter>>),
+    /// One curve for all outlines.
+    Curve(Box<TrackedObject<WholeCurveFilter>>),
 }
 
-/// The filter, and what it knew before it began to look for the object again.
+/// A filter, and what it knew before it began to look for the object again.
 #[derive(Debug)]
-pub(crate) struct TrackedObject {
-    filter: MotionFilter,
+pub(crate) struct TrackedObject<F> {
+    filter: F,
     /// Time in seconds and motion when it was last known.
     last_known: Option<(f64, MotionEstimate)>,
 }
@@ -33,6 +38,12 @@ pub(crate) struct Step {
     pub(crate) phase: Option<&'static str>,
     pub(crate) estimate: Option<MotionEstimate>,
     pub(crate) fit: Option<Fit>,
+    /// Root mean square distance of the points from the curve, or this frame's noise, in image lengths.
+    pub(crate) residual: Option<f64>,
+    /// Squared innovation of pose and motion, as a filter gives it.
+    pub(crate) innovation: Option<f64>,
+    /// Pose and motion, where the method tells them.
+    pub(crate) state: Option<MotionState>,
     pub(crate) rejected_because: Option<String>,
 }
 
@@ -48,6 +59,10 @@ impl Identifier {
                 let filter = MotionFilter::new(filter_settings(options)).map_err(Failure::unusable)?;
                 Self::Filter(Box::new(TrackedObject { filter, last_known: None }))
             }
+            IdentifyMethod::Curve => {
+                let filter = WholeCurveFilter::new(curve_settings(options)).map_err(Failure::unusable)?;
+                Self::Curve(Box::new(TrackedObject { filter, last_known: None }))
+            }
         })
     }
 
@@ -57,8 +72,10 @@ impl Identifier {
             Self::Adaptive(pipeline) => match pipeline.push(time, outline) {
                 Ok(result) => {
                     let phase = if result.estimate.is_some() { "adapt" } else { "start" };
+                    let residual = Some(result.fit.diagnostics().geometric_residual);
                     let (estimate, fit) = (result.estimate, Some(result.fit));
-                    Step { phase: Some(phase), estimate, fit, rejected_because: None }
+                    let (residual, innovation, state) = (residual, None, None);
+                    Step { phase: Some(phase), estimate, fit, residual, innovation, state, rejected_because: None }
                 }
                 Err(error) => Step::refused(&error),
             },
@@ -67,7 +84,21 @@ impl Identifier {
                     let estimate = object.filter.estimate();
                     object.last_known = estimate.map(|estimate| (time, estimate)).or(object.last_known);
                     let rejected_because = (!step.accepted).then(|| why_rejected(&step, object.filter.settings()));
-                    Step { phase: Some(phase_name(step.phase)), estimate, fit: None, rejected_because }
+                    let residual = step.update.and_then(|update| update.noise);
+                    let innovation = step.update.map(|update| update.innovation);
+                    let (phase, state) = (Some(phase_name(step.phase)), object.filter.state());
+                    Step { phase, estimate, fit: None, residual, innovation, state, rejected_because }
+                }
+                Err(error) => Step::refused(&error),
+            },
+            Self::Curve(object) => match object.filter.step(time, outline) {
+                Ok(step) => {
+                    let estimate = object.filter.estimate();
+                    object.last_known = estimate.map(|estimate| (time, estimate)).or(object.last_known);
+                    let rejected_because = (!step.accepted).then(|| why_off_curve(&step));
+                    let (phase, state) = (Some(phase_name(step.phase)), object.filter.state());
+                    let (residual, innovation) = (None, None);
+                    Step { phase, estimate, fit: None, residual, innovation, state, rejected_because }
                 }
                 Err(error) => Step::refused(&error),
             },
@@ -79,6 +110,7 @@ impl Identifier {
         match self {
             Self::Adaptive(pipeline) => pipeline.estimate(),
             Self::Filter(object) => object.last_known.map(|(_, estimate)| estimate),
+            Self::Curve(object) => object.last_known.map(|(_, estimate)| estimate),
         }
     }
 
@@ -86,42 +118,61 @@ impl Identifier {
     pub(crate) fn warnings(&self) -> Vec<String> {
         match self {
             Self::Adaptive(pipeline) => pipeline.warnings(),
-            Self::Filter(object) => object.warnings(),
+            Self::Filter(object) => {
+                let filter = &object.filter;
+                let frames = (filter.frames_accepted(), filter.frames_rejected());
+                filter_warnings(object.last_known.as_ref(), filter.phase(), filter.restarts(), frames)
+            }
+            Self::Curve(object) => {
+                let filter = &object.filter;
+                let frames = (filter.frames_accepted(), filter.frames_rejected());
+                filter_warnings(object.last_known.as_ref(), filter.phase(), filter.restarts(), frames)
+            }
         }
     }
 }
 
-impl TrackedObject {
-    fn warnings(&self) -> Vec<String> {
-        let Self { filter, last_known } = self;
-        let mut warnings = Vec::new();
-        if let Some((_, estimate)) = last_known {
-            let unknown: Vec<_> = estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect();
-            if !unknown.is_empty() {
-                warnings.push(format!("not observable from these outlines: {}", unknown.join(", ")));
-            }
+fn filter_warnings(
+    last_known: Option<&(f64, MotionEstimate)>,
+    phase: Phase,
+    restarts: usize,
+    (accepted, rejected): (usize, usize),
+) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some((_, estimate)) = last_known {
+        let unknown: Vec<_> = estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect();
+        if !unknown.is_empty() {
+            warnings.push(format!("not observable from these outlines: {}", unknown.join(", ")));
         }
-        match (filter.phase(), last_known) {
-            (Phase::Lost, _) => warnings.push("the object was lost at the end".to_owned()),
-            (Phase::Acquiring, Some((time, _))) => {
-                warnings.push(format!("the object was looked for again at the end; this is its motion at {time} s"));
-            }
-            _ => {}
-        }
-        if filter.restarts() > 0 {
-            warnings.push(format!("given up and begun anew {} time(s)", filter.restarts()));
-        }
-        let (rejected, frames) = (filter.frames_rejected(), filter.frames_rejected() + filter.frames_accepted());
-        if rejected as f64 > MANY_REJECTED * frames as f64 {
-            warnings.push(format!("{rejected} of {frames} frames rejected"));
-        }
-        warnings
     }
+    match (phase, last_known) {
+        (Phase::Lost, _) => warnings.push("the object was lost at the end".to_owned()),
+        (Phase::Acquiring, Some((time, _))) => {
+            warnings.push(format!("the object was looked for again at the end; this is its motion at {time} s"));
+        }
+        _ => {}
+    }
+    if restarts > 0 {
+        warnings.push(format!("given up and begun anew {restarts} time(s)"));
+    }
+    let frames = accepted + rejected;
+    if rejected as f64 > MANY_REJECTED * frames as f64 {
+        warnings.push(format!("{rejected} of {frames} frames rejected"));
+    }
+    warnings
 }
 
 impl Step {
     fn refused(error: &dyn std::error::Error) -> Self {
-        Self { phase: None, estimate: None, fit: None, rejected_because: Some(with_causes(error)) }
+        Self {
+            phase: None,
+            estimate: None,
+            fit: None,
+            residual: None,
+            innovation: None,
+            state: None,
+            rejected_because: Some(with_causes(error)),
+        }
     }
 }
 
@@ -138,6 +189,20 @@ pub(crate) fn pipeline_settings(options: &TrackOptions) -> PipelineSettings {
 /// What the options ask of the filter.
 pub(crate) fn filter_settings(options: &TrackOptions) -> FilterSettings {
     FilterSettings { model: options.motion.model(), ..FilterSettings::default() }
+}
+
+/// What the options ask of the whole-curve filter.
+pub(crate) fn curve_settings(options: &TrackOptions) -> CurveFilterSettings {
+    let settings = CurveFilterSettings { model: options.motion.model(), ..CurveFilterSettings::default() };
+    CurveFilterSettings { degree: options.degree.unwrap_or(settings.degree), ..settings }
+}
+
+/// How fast the motion may change by the options.
+pub(crate) fn process_noise(options: &TrackOptions) -> ProcessNoise {
+    match options.method {
+        IdentifyMethod::Curve => curve_settings(options).process_noise,
+        _ => filter_settings(options).process_noise,
+    }
 }
 
 fn phase_name(phase: Phase) -> &'static str {
@@ -158,6 +223,17 @@ fn why_rejected(step: &FilterStep, settings: &FilterSettings) -> String {
             format!("does not go on from the frames before it, squared innovation {:.0}", update.innovation)
         }
         None => "the object was not found".to_owned(),
+    }
+}
+
+fn why_off_curve(step: &CurveStep) -> String {
+    if step.innovation > 0.0 {
+        format!(
+            "does not go on from the frames before it, misfit {:.2}, squared innovation {:.0}",
+            step.misfit, step.innovation
+        )
+    } else {
+        format!("does not fit the curve, misfit {:.2}", step.misfit)
     }
 }
 

@@ -1,15 +1,40 @@
-//! Outlines from a file or standard input.
+//! Outlines from a file, pictures or standard input.
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
-use std::path::Path;
+use std::path::PathBuf;
+use std::rc::Rc;
 
-use freeform_motion::outline_io::{OutlineReader, ReadError};
+use freeform_motion::outline_io::{
+    GrayImage, OutlineFrame, OutlineReader, PictureSequence, PixelGrid, ReadError, ReadErrorKind,
+};
 
+use crate::args::PictureOptions;
 use crate::failure::{Failure, plain};
+use crate::picture_input::PictureInput;
+use crate::stdin::Stdin;
 use crate::truth::SimulatedMotion;
 
 /// Longest head of comment lines that is looked through for the truth, in bytes.
 const HEAD_LIMIT: u64 = 1 << 16;
+
+/// A picture that outlines were seen in.
+#[derive(Debug)]
+pub(crate) struct SeenIn {
+    pub(crate) frame: u64,
+    pub(crate) picture: GrayImage,
+    pub(crate) grid: PixelGrid,
+}
+
+/// The next thing in an input.
+#[derive(Debug)]
+pub(crate) enum Item {
+    /// An outline, and the picture that it was seen in, if it was.
+    Outline(OutlineFrame, Option<Rc<SeenIn>>),
+    /// An outline that is none, with the reason.
+    Rejected { object: String, frame: u64, reason: String },
+    /// A picture without an object, or one that cannot be read.
+    Missing { reason: String, is_damage: bool },
+}
 
 /// A sequence of outlines, open for reading.
 pub(crate) struct Input {
@@ -17,37 +42,99 @@ pub(crate) struct Input {
     pub(crate) name: String,
     /// The motion that the head of the file says it was simulated with.
     pub(crate) truth: Option<SimulatedMotion>,
-    /// The outlines.
-    pub(crate) outlines: OutlineReader<Box<dyn Read>>,
+    source: Source,
+}
+
+enum Source {
+    Csv(Box<OutlineReader<Box<dyn Read>>>),
+    Pictures(Box<PictureInput>),
 }
 
 impl Input {
-    /// Opens a file, or standard input where the path is `-`, and reads its head.
-    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+    /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with.
+    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions) -> Result<Self, Failure> {
+        let name = match paths {
+            [path] if path.as_os_str() == "-" => "<stdin>".to_owned(),
+            [path] => path.display().to_string(),
+            [first, rest @ ..] => format!("{} and {} more", first.display(), rest.len()),
+            [] => return Err(Failure::unusable("no input is named")),
+        };
+        let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
         if path.as_os_str() == "-" {
-            return Self::from_source(io::stdin().lock(), "<stdin>".to_owned());
+            return Self::from_source(Stdin::open(), name, options);
         }
-        let name = path.display().to_string();
+        if PictureSequence::is_named_by(path) {
+            return Self::of_pictures(PictureInput::open(paths, options)?, name);
+        }
         match File::open(path) {
-            Ok(file) => Self::from_source(BufReader::new(file), name),
+            Ok(file) => Self::from_source(BufReader::new(file), name, options),
             Err(error) => Err(Failure::unusable(format_args!("{name}: {}", plain(&error)))),
         }
     }
 
-    fn from_source(mut source: impl BufRead + 'static, name: String) -> Result<Self, Failure> {
-        let head = comment_lines(&mut source).map_err(|error| Failure::unusable(format_args!("{name}: {error}")))?;
+    fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
+        Ok(Self { name, truth: None, source: Source::Pictures(Box::new(pictures)) })
+    }
+
+    fn from_source(
+        mut source: impl BufRead + 'static,
+        name: String,
+        options: &PictureOptions,
+    ) -> Result<Self, Failure> {
+        let failed = |error: io::Error| Failure::unusable(format_args!("{name}: {}", plain(&error)));
+        if PictureSequence::begins_with(source.fill_buf().map_err(failed)?) {
+            let pictures = PictureInput::from_stream(source, &name, options)?;
+            return Self::of_pictures(pictures, name);
+        }
+        let head = comment_lines(&mut source).map_err(failed)?;
         let truth = String::from_utf8_lossy(&head)
             .lines()
             .find_map(|line| SimulatedMotion::parse(line.trim_start_matches('#')));
         // The head is read again with the rest, so that line numbers are right.
         let whole: Box<dyn Read> = Box::new(Cursor::new(head).chain(source));
         let outlines = OutlineReader::new(whole, name.clone()).map_err(|error| unreadable(&error))?;
-        Ok(Self { name, truth, outlines })
+        Ok(Self { name, truth, source: Source::Csv(Box::new(outlines)) })
+    }
+
+    /// Number of frames, where it is known before they are read.
+    pub(crate) fn frame_count(&self) -> Option<u64> {
+        match &self.source {
+            Source::Csv(_) => None,
+            Source::Pictures(pictures) => pictures.frame_count(),
+        }
+    }
+
+    /// Whether the outlines come from pictures.
+    pub(crate) fn has_pictures(&self) -> bool {
+        matches!(self.source, Source::Pictures(_))
+    }
+}
+
+impl Iterator for Input {
+    type Item = Result<Item, Failure>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        match &mut self.source {
+            Source::Pictures(pictures) => pictures.next().map(Ok),
+            Source::Csv(outlines) => Some(match outlines.next()? {
+                Ok(frame) => Ok(Item::Outline(frame, None)),
+                Err(error) => rejected(error),
+            }),
+        }
+    }
+}
+
+/// An outline that is none lets the reading go on, any other error ends it.
+fn rejected(error: ReadError) -> Result<Item, Failure> {
+    let reason = error.to_string();
+    match error.kind {
+        ReadErrorKind::Degenerate { object, frame, .. } => Ok(Item::Rejected { object, frame, reason }),
+        _ => Err(Failure::unusable(reason)),
     }
 }
 
 /// What is said of a file that cannot be read.
-pub(crate) fn unreadable(error: &ReadError) -> Failure {
+fn unreadable(error: &ReadError) -> Failure {
     Failure::unusable(error)
 }
 

@@ -4,11 +4,16 @@ mod commands;
 mod failure;
 mod identifier;
 mod input;
+mod interrupt;
 mod level_set;
 mod output;
+mod overlay;
+mod picture_input;
 mod plot;
 mod progress;
+mod stdin;
 mod tracking;
+mod trajectory;
 mod truth;
 
 use std::process::ExitCode;

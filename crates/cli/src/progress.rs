@@ -11,23 +11,40 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Of a known or unknown number of frames.
-    pub(crate) fn of_frames(total: Option<u64>) -> Self {
+    pub(crate) fn of_frames(total: Option<u64>, quiet: bool) -> Self {
+        if quiet { Self { bar: None } } else { Self::of(total, "frames") }
+    }
+
+    /// Of a number of Monte Carlo runs.
+    pub(crate) fn of_runs(total: u64) -> Self {
+        Self::of(Some(total), "runs, {eta} left")
+    }
+
+    fn of(total: Option<u64>, what: &str) -> Self {
         if !stderr().is_terminal() {
             return Self { bar: None };
         }
         let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
-        let template = if total.is_some() { "{bar:40} {pos}/{len} frames" } else { "{spinner} {pos} frames" };
-        if let Ok(style) = ProgressStyle::with_template(template) {
+        let count = if total.is_some() { "{bar:40} {pos}/{len}" } else { "{spinner} {pos}" };
+        if let Ok(style) = ProgressStyle::with_template(&format!("{count} {what}")) {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(100));
         Self { bar: Some(bar) }
     }
 
-    /// One more frame is done.
+    /// One more of them is done.
     pub(crate) fn advance(&self) {
         if let Some(bar) = &self.bar {
             bar.inc(1);
+        }
+    }
+
+    /// Lets something be printed on the terminal.
+    pub(crate) fn pause(&self, print: impl FnOnce()) {
+        match &self.bar {
+            Some(bar) => bar.suspend(print),
+            None => print(),
         }
     }
 }

@@ -1,16 +1,18 @@
 //! What each frame of an object gave, and what was found of it in the end.
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use freeform_motion::curve_fit::Fit;
-use freeform_motion::identify::{MotionEstimate, ParameterEstimate};
-use freeform_motion::outline_io::{OutlineFrame, ReadError, ReadErrorKind};
+use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate};
+use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::MotionModel;
 use nalgebra::Matrix3;
 
 use crate::args::{IdentifyMethod, TrackOptions};
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use crate::identifier::Identifier;
-use crate::input::{Input, unreadable};
+use crate::input::{Input, Item, SeenIn};
+use crate::interrupt;
 use crate::progress::Progress;
 
 /// Reasons of rejected frames kept for each object.
@@ -27,8 +29,14 @@ pub(crate) struct Observation {
     pub(crate) phase: Option<&'static str>,
     /// The motion as known after the frame.
     pub(crate) estimate: Option<Estimate>,
+    /// Pose and motion, where the method tells them.
+    pub(crate) state: Option<MotionState>,
     /// The curve fitted to the outline, where the method fits one.
     pub(crate) fit: Option<Fit>,
+    /// Root mean square distance of the points from the curve or outline known, in image lengths.
+    pub(crate) residual: Option<f64>,
+    /// Squared innovation of pose and motion in units of its predicted covariance (filter).
+    pub(crate) innovation: Option<f64>,
     /// Why the frame was not used; `None` where it was.
     pub(crate) rejected_because: Option<String>,
 }
@@ -56,6 +64,16 @@ impl Estimate {
     /// The parameters in the order of the model.
     pub(crate) fn parameters(&self) -> impl Iterator<Item = ParameterEstimate> + '_ {
         self.0.parameters()
+    }
+
+    /// The generator in image lengths, for an estimate that was reported in space.
+    pub(crate) fn generator_in_image(&self, scale: Option<f64>) -> Option<Matrix3<f64>> {
+        let mut generator = self.generator()?;
+        if let Some(scale) = scale {
+            generator[(0, 2)] *= scale;
+            generator[(1, 2)] *= scale;
+        }
+        Some(generator)
     }
 
     /// The generator of the motion; `None` where a parameter is not observable.
@@ -109,23 +127,40 @@ impl Tracking {
     /// the error that ended the reading, if any; what came before it has been taken.
     pub(crate) fn read(
         &mut self,
-        input: Input,
-        mut observe: impl FnMut(Observation, Option<&OutlineFrame>) -> Result<(), Failure>,
+        input: &mut Input,
+        quiet: bool,
+        mut observe: impl FnMut(Observation, Option<&OutlineFrame>, Option<&Rc<SeenIn>>) -> Result<(), Failure>,
     ) -> Result<Option<Failure>, Failure> {
-        let progress = Progress::of_frames(None);
-        for item in input.outlines {
+        let progress = Progress::of_frames(input.frame_count(), quiet);
+        let single = input.frame_count() == Some(1);
+        let mut first_missing = None;
+        for item in input {
+            // What came after Ctrl-C may be cut short.
+            if interrupt::was_asked_for() {
+                break;
+            }
             match item {
-                Ok(frame) => observe(self.push(&frame)?, Some(&frame))?,
-                Err(error) if error.is_recoverable() => {
-                    if let Some(observation) = self.reject(&error)? {
-                        observe(observation, None)?;
-                    }
+                Ok(Item::Outline(frame, seen_in)) => observe(self.push(&frame)?, Some(&frame), seen_in.as_ref())?,
+                Ok(Item::Rejected { object, frame, reason }) => {
+                    observe(self.reject(object, frame, reason)?, None, None)?;
                 }
-                Err(error) => return Ok(Some(unreadable(&error))),
+                Ok(Item::Missing { reason, is_damage }) => {
+                    // The reason of a single picture is told in the end.
+                    if !quiet && !single {
+                        progress.pause(|| warn(&reason));
+                    }
+                    first_missing.get_or_insert((reason, is_damage));
+                }
+                Err(failure) => return Ok(Some(failure)),
             }
             progress.advance();
         }
-        Ok(None)
+        // Nothing but pictures without an object: the first says why.
+        Ok(match first_missing {
+            Some((reason, true)) if self.objects.is_empty() => Some(Failure::unusable(reason)),
+            Some((reason, false)) if self.objects.is_empty() => Some(Failure::no_result(reason)),
+            _ => None,
+        })
     }
 
     /// Takes the next frame of an object.
@@ -142,25 +177,29 @@ impl Tracking {
             time: Some(frame.time),
             phase: step.phase,
             estimate: step.estimate.and_then(|estimate| Estimate::of(estimate, scale)),
+            state: step.state,
             fit: step.fit,
+            residual: step.residual,
+            innovation: step.innovation,
             rejected_because,
         })
     }
 
     /// Takes note of a frame whose points are no outline.
-    fn reject(&mut self, error: &ReadError) -> Result<Option<Observation>, Failure> {
-        let ReadErrorKind::Degenerate { object, frame, .. } = &error.kind else { return Ok(None) };
-        let reason = error.to_string();
-        self.object(object)?.count(Some(&reason));
-        Ok(Some(Observation {
-            object: object.clone(),
-            frame: *frame,
+    fn reject(&mut self, object: String, frame: u64, reason: String) -> Result<Observation, Failure> {
+        self.object(&object)?.count(Some(&reason));
+        Ok(Observation {
+            object,
+            frame,
             time: None,
             phase: None,
             estimate: None,
+            state: None,
             fit: None,
+            residual: None,
+            innovation: None,
             rejected_because: Some(reason),
-        }))
+        })
     }
 
     /// The results so far, in the order in which the objects first appeared.

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use freeform_motion::curve_fit::{Degree, FitSettings, Method};
 
+use super::pictures::{PICTURE_INPUTS, PictureOptions};
 use super::values::{degree, not_negative, positive};
 use crate::failure::Failure;
 
@@ -10,7 +11,8 @@ const EXAMPLES: &str = "\
 Examples:
   freeform fit outlines.csv --frame 0
   freeform fit outlines.csv --frame 0 --degree 6 --svg curve.svg
-  freeform fit outlines.csv --method gs3l --kappa 1e-5 --format json";
+  freeform fit outlines.csv --method gs3l --kappa 1e-5 --format json
+  freeform fit mask.png --svg curve.svg";
 
 /// Fit a curve to every outline and take it apart into lines.
 ///
@@ -18,10 +20,11 @@ Examples:
 /// lie from it, the complex lines x + l y + k of every level, the related points that move with the curve, and its affine
 /// invariants.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{PICTURE_INPUTS}"))]
 pub(crate) struct FitArgs {
-    /// Outlines as CSV; '-' is standard input
-    pub(crate) input: PathBuf,
+    /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
 
     /// Only the outlines of this frame
     #[arg(long, value_name = "N")]
@@ -37,6 +40,9 @@ pub(crate) struct FitArgs {
     /// Draw the first frame (or that of --frame): points, fitted curves and related points
     #[arg(long, value_name = "FILE")]
     pub(crate) svg: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) pictures: PictureOptions,
 }
 
 /// How curves are fitted.

@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 use freeform_motion::curve_fit::Degree;
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 
+use super::pictures::{PICTURE_INPUTS, PictureOptions};
 use super::values::{degree, motion, positive};
 
 const EXAMPLES: &str = "\
@@ -11,6 +12,8 @@ Examples:
   freeform identify outlines.csv
   freeform identify outlines.csv --scale 0.1 --trace trace.csv --report report.html
   freeform simulate --seconds 5 | freeform identify - --format json
+  freeform identify 'frames/*.jpg' --ring dark --fps 15 --overlay drawn
+  freeform identify outlines.csv --trajectory poses.csv --smooth
   freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
 
 INPUT has a header frame,time,x,y and optional columns object and arc. Rows of one outline follow each other along the \
@@ -19,10 +22,11 @@ the result.";
 
 /// Identify the motion of every object in a sequence of outlines.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{PICTURE_INPUTS}"))]
 pub(crate) struct IdentifyArgs {
-    /// Outlines as CSV; '-' is standard input
-    pub(crate) input: PathBuf,
+    /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
 
     #[command(flatten)]
     pub(crate) options: TrackOptions,
@@ -37,9 +41,25 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_enum, default_value_t = IdentifyFormat::Table)]
     pub(crate) format: IdentifyFormat,
 
+    /// The same as --format json
+    #[arg(long, conflicts_with = "format")]
+    pub(crate) json: bool,
+
     /// Write one row per frame with the parameters as identified so far
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trace: Option<PathBuf>,
+
+    /// Write one row per object and frame with its pose and motion, and their standard deviations
+    ///
+    /// The pose is told since the first frame: rigid, angle (rad, positive where omega is), x and y, where the middle of the
+    /// points of the first outline is now; similarity, scale before them; affine, the matrix m11, m12, m21, m22, x and y. Not with
+    /// the adaptive method.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) trajectory: Option<PathBuf>,
+
+    /// Let all frames, also later ones, take part in every row of the trajectory
+    #[arg(long, requires = "trajectory")]
+    pub(crate) smooth: bool,
 
     /// Draw the parameters against time
     #[arg(long, value_name = "FILE")]
@@ -48,29 +68,58 @@ pub(crate) struct IdentifyArgs {
     /// Write a self-contained report
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
+
+    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
+    #[arg(long, value_name = "DIR|FILE.gif")]
+    pub(crate) overlay: Option<PathBuf>,
+
+    /// Say nothing but errors beside the result
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) pictures: PictureOptions,
 }
 
 const TRACK_EXAMPLES: &str = "\
 Examples:
   freeform track outlines.csv
+  freeform track frames/ --ring dark --pixel-aspect 1.14
+  ffmpeg -loglevel error -i video.mp4 -f yuv4mpegpipe -pix_fmt yuv420p - | freeform track - --background median
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
 Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
-generator and reason (why the frame was not accepted, else null). Phases of the filter: acquiring, tracking, lost; of \
-the adaptive method: start, adapt.";
+generator and reason (why the frame was not accepted, else null). Phases of filter and curve: acquiring, \
+tracking, lost; of the adaptive method: start, adapt.
+
+A line is written and flushed as soon as its frame is complete. At the end of the input the command ends with status 0, \
+or 1 if no frame could be used. A frame that is no outline gives a line with accepted false and its reason, and a picture \
+without an object a warning; a line of CSV that does not follow the format ends the command with status 2 after all lines \
+before it. Ctrl-C ends it after the line being written.";
 
 /// Identify as a stream: one line of JSON per object and frame as soon as the frame is complete.
 ///
 /// A frame is complete when the row after it has been read. Memory does not grow with the number of frames.
 #[derive(Debug, Args)]
-#[command(after_help = TRACK_EXAMPLES)]
+#[command(after_help = TRACK_EXAMPLES, after_long_help = format!("{TRACK_EXAMPLES}\n\n{PICTURE_INPUTS}"))]
 pub(crate) struct TrackArgs {
-    /// Outlines as CSV; '-' is standard input
-    #[arg(default_value = "-")]
-    pub(crate) input: PathBuf,
+    /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
+    #[arg(default_value = "-", value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
 
     #[command(flatten)]
     pub(crate) options: TrackOptions,
+
+    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
+    #[arg(long, value_name = "DIR|FILE.gif")]
+    pub(crate) overlay: Option<PathBuf>,
+
+    /// Say nothing but errors
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) pictures: PictureOptions,
 }
 
 /// What is identified and how.
@@ -84,7 +133,7 @@ pub(crate) struct TrackOptions {
     #[arg(long, value_enum, default_value_t = IdentifyMethod::Filter)]
     pub(crate) method: IdentifyMethod,
 
-    /// Degree of the fitted polynomial: 2, 4, 6 or 8; the filter fits none [default: 4]
+    /// Degree of the fitted polynomial: 2, 4, 6 or 8; the filter fits none [default: 4, with curve 6]
     #[arg(long, value_name = "N", value_parser = degree)]
     pub(crate) degree: Option<Degree>,
 
@@ -119,6 +168,8 @@ pub(crate) enum IdentifyMethod {
     Filter,
     /// The paper's adaptive identifier on the lines of the fitted curve
     Adaptive,
+    /// One curve for all frames, estimated together with the motion, with standard deviations
+    Curve,
 }
 
 impl IdentifyMethod {
@@ -126,6 +177,7 @@ impl IdentifyMethod {
         match self {
             Self::Filter => "filter",
             Self::Adaptive => "adaptive",
+            Self::Curve => "curve",
         }
     }
 }

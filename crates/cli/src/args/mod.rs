@@ -1,7 +1,10 @@
 //! What can be asked for on the command line.
+mod evaluate;
 mod fit;
 mod identify;
 mod outline;
+mod pictures;
+mod reproduce;
 mod simulate;
 mod values;
 
@@ -9,9 +12,12 @@ use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, Parser, Subcommand, error::ErrorKind};
 
+pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat, EvaluatedMethod, SamplingChoice};
 pub(crate) use fit::{FitArgs, FitFormat};
 pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
 pub(crate) use outline::OutlineArgs;
+pub(crate) use pictures::{ChannelChoice, ObjectsChoice, PictureOptions};
+pub(crate) use reproduce::{Part, ReproduceArgs};
 pub(crate) use simulate::SimulateArgs;
 
 use crate::failure::Failure;
@@ -47,7 +53,11 @@ pub(crate) enum Command {
     Identify(IdentifyArgs),
     Track(TrackArgs),
     Outline(OutlineArgs),
+    Evaluate(EvaluateArgs),
+    Reproduce(ReproduceArgs),
     Completions(CompletionsArgs),
+    /// Print the manual page: freeform man > freeform.1
+    Man,
 }
 
 const DEMO_EXAMPLES: &str = "\

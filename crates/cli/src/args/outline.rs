@@ -2,34 +2,38 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::values::positive;
+use super::pictures::{PICTURE_INPUTS, PictureOptions};
 
 const EXAMPLES: &str = "\
 Examples:
-  freeform outline mask-0001.png > outline.csv
   freeform outline mask-*.png --fps 25 --output outlines.csv
-  freeform outline frame-*.png --dark | freeform identify -";
+  freeform outline frames/ --dark | freeform identify -
+  freeform outline parts.gif --background median --objects all --overlay drawn.gif
+  freeform outline 'frames/*.jpg' --ring dark --pixel-size 0.35 --pixel-aspect 1.14";
 
-/// Trace outlines in masks and pictures (PNG), as CSV.
+/// Trace outlines in pictures and video, as CSV.
 ///
-/// Each picture is one frame, in the order given. The outline of its largest object is traced to a fraction of a pixel; y
-/// runs upwards from the lower edge. A picture without an object leaves a gap and a warning.
+/// Each picture is one frame. The outer outline of its largest object, or of all, is traced to a fraction of a pixel, its
+/// holes filled; what the edge of the picture clips becomes open arcs. y runs upwards from the lower edge.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{PICTURE_INPUTS}"))]
 pub(crate) struct OutlineArgs {
-    /// The pictures, in the order of time
-    #[arg(required = true, value_name = "IMAGE")]
-    pub(crate) images: Vec<PathBuf>,
-
-    /// Frames per second
-    #[arg(long, value_parser = positive, default_value_t = 30.0)]
-    pub(crate) fps: f64,
-
-    /// The object is darker than the ground
-    #[arg(long)]
-    pub(crate) dark: bool,
+    /// The pictures in the order of time: files, folders, quoted patterns; '-' is standard input
+    #[arg(required = true, value_name = "INPUT")]
+    pub(crate) inputs: Vec<PathBuf>,
 
     /// Where to write the outlines; '-' is standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     pub(crate) output: PathBuf,
+
+    /// Draw the outlines on every picture: a folder for PNG files, or FILE.gif
+    #[arg(long, value_name = "DIR|FILE.gif")]
+    pub(crate) overlay: Option<PathBuf>,
+
+    /// Say nothing but errors
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) pictures: PictureOptions,
 }

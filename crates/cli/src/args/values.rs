@@ -26,6 +26,18 @@ pub(crate) fn fraction(text: &str) -> Result<f64, String> {
     if (0.0..1.0).contains(&value) { Ok(value) } else { Err(format!("{text} is not in [0, 1)")) }
 }
 
+/// A whole number, 1 or above.
+pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
+    let count: usize = text.trim().parse().map_err(|_| format!("{text:?} is not a whole number"))?;
+    if count >= 1 { Ok(count) } else { Err(format!("{text} is below 1")) }
+}
+
+/// A number of frames that can show a motion.
+pub(crate) fn frame_count(text: &str) -> Result<usize, String> {
+    let count = at_least_one(text)?;
+    if count >= 2 { Ok(count) } else { Err("a motion needs at least 2 frames".to_owned()) }
+}
+
 /// Numbers between commas.
 fn list(text: &str) -> Result<Vec<f64>, String> {
     text.split(',').map(finite).collect()

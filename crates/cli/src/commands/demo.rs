@@ -15,6 +15,7 @@ use crate::identifier::pipeline_settings;
 use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
 };
+use crate::overlay::CurveFitter;
 use crate::tracking::{ObjectResult, Observation, Tracking};
 use crate::truth::SimulatedMotion;
 
@@ -107,6 +108,7 @@ struct Identification {
     tracking: Tracking,
     trace: TraceWriter<WholeFile>,
     trace_path: PathBuf,
+    curves: CurveFitter,
     histories: Vec<History>,
 }
 
@@ -121,19 +123,20 @@ impl Identification {
         let tracking = Tracking::new(&options)?;
         let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.model())
             .map_err(|error| file_failure(trace_path, &error))?;
-        Ok(Self { options, tracking, trace, trace_path: trace_path.to_owned(), histories: Vec::new() })
+        let curves = CurveFitter::new(&options)?;
+        Ok(Self { options, tracking, trace, trace_path: trace_path.to_owned(), curves, histories: Vec::new() })
     }
 
     fn take(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
         let observation = self.tracking.push(frame)?;
         self.trace.write(&observation).map_err(|error| file_failure(&self.trace_path, &error))?;
-        History::take(&mut self.histories, &observation, Some(frame));
+        History::take(&mut self.histories, &observation, Some(frame), &mut self.curves);
         Ok(observation)
     }
 
     /// Writes the trace and the figure, and tells what a user should know.
     fn finish(self, figure: &Path, truth: &AffineMotion) -> Result<Found, Failure> {
-        let Self { options, tracking, trace, trace_path, histories } = self;
+        let Self { options, tracking, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
         WholeFile::write(figure, &parameter_figure(&histories, options.motion.model(), Some(truth)))?;
         let results = tracking.results();

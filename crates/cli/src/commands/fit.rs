@@ -6,7 +6,7 @@ use freeform_motion::outline_io::OutlineFrame;
 
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
-use crate::input::{Input, unreadable};
+use crate::input::{Input, Item};
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
 
@@ -25,6 +25,7 @@ pub(crate) struct FittedOutline {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Parts {
     pub(crate) decomposition: Decomposition,
+    /// With the values of the monic polynomial in image coordinates.
     pub(crate) related_points: RelatedPoints,
     pub(crate) invariants: Option<AffineInvariants>,
 }
@@ -34,8 +35,11 @@ impl FittedOutline {
     pub(crate) fn new(frame: &OutlineFrame, fit: Fit) -> Self {
         // In working coordinates, where nothing is lost to rounding, and then moved.
         let parts = Decomposition::of(fit.working()).and_then(|working| {
-            let decomposition = working.moved(&fit.normalisation().image_from_working())?;
-            let related_points = RelatedPoints::of(&working).moved(&fit.normalisation().image_from_working());
+            let image_from_working = fit.normalisation().image_from_working();
+            let decomposition = working.moved(&image_from_working)?;
+            let n = working.degree().value();
+            let factor = working.coefficient(n) / decomposition.coefficient(n);
+            let related_points = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
             Ok(Parts { decomposition, related_points, invariants: AffineInvariants::of(&working) })
         });
         Self { object: frame.object.clone(), frame: frame.frame, time: frame.time, fit, parts }
@@ -46,25 +50,31 @@ impl FittedOutline {
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let mut fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
     if let Some(svg) = &args.svg {
-        refuse_overwriting(&args.input, &[svg])?;
+        args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &[svg]))?;
     }
-    let input = Input::open(&args.input)?;
+    let input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
     let mut sink = Sink::stdout();
     let mut collected = Collected::default();
     let mut reasons = Vec::new();
     let mut failure = None;
-    let progress = Progress::of_frames(None);
-    for item in input.outlines {
+    let mut damaged = false;
+    let progress = Progress::of_frames(input.frame_count(), false);
+    for item in input {
         progress.advance();
         let frame = match item {
-            Ok(frame) => frame,
-            Err(error) if error.is_recoverable() => {
-                reasons.push(error.to_string());
+            Ok(Item::Outline(frame, _)) => frame,
+            Ok(Item::Rejected { reason, .. }) => {
+                reasons.push(reason);
+                continue;
+            }
+            Ok(Item::Missing { reason, is_damage }) => {
+                damaged |= is_damage;
+                reasons.push(reason);
                 continue;
             }
             Err(error) => {
-                failure = Some(unreadable(&error));
+                failure = Some(error);
                 break;
             }
         };
@@ -88,6 +98,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     drop(progress);
     if collected.count == 0 {
         let nothing = match (args.frame, reasons.into_iter().next()) {
+            (_, Some(reason)) if damaged => return Err(Failure::unusable(reason)),
             (_, Some(reason)) => reason,
             (Some(frame), None) => format!("{name}: no frame {frame} in the file"),
             (None, None) => format!("{name}: no outline in the file"),

@@ -1,20 +1,23 @@
 use std::io::Write as _;
 
 use freeform_motion::curve_fit::{FitSettings, Method, Outline};
-use freeform_motion::identify::FilterSettings;
+use freeform_motion::identify::{CurveFilterSettings, FilterSettings};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
 
 use super::{FittedOutline, command_line};
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
 use crate::failure::{Failure, plain, warn};
-use crate::identifier::{filter_settings, pipeline_settings};
+use crate::identifier::{curve_settings, filter_settings, pipeline_settings, process_noise};
 use crate::input::Input;
+use crate::interrupt;
 use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
-    write_identify_table, write_parameters, write_report,
+    write_identify_table, write_parameters, write_report, write_trajectory,
 };
+use crate::overlay::{CurveFitter, ObservedOverlay, needs_pictures};
 use crate::tracking::{Estimate, ObjectResult, Observation, Tracking};
+use crate::trajectory::Trajectory;
 
 /// What was found of one object over time, kept for figures.
 #[derive(Debug)]
@@ -24,19 +27,33 @@ pub(crate) struct History {
     pub(crate) start: Option<f64>,
     /// Time in seconds and what was known then.
     pub(crate) estimates: Vec<(f64, Estimate)>,
+    /// Time in seconds and root mean square residual, of frames that were used.
+    pub(crate) residuals: Vec<[f64; 2]>,
+    /// Time in seconds and squared innovation, of frames that were used.
+    pub(crate) innovations: Vec<[f64; 2]>,
+    /// Number and time in seconds of every frame that was rejected, as far as its time is known.
+    pub(crate) rejected: Vec<(u64, Option<f64>)>,
     /// The latest outline that was not rejected, with its curve; `None` where the method fits none.
     pub(crate) latest: Option<(FittedOutline, Outline)>,
 }
 
 impl History {
     /// Adds a frame to the history of its object.
-    pub(crate) fn take(histories: &mut Vec<Self>, observation: &Observation, frame: Option<&OutlineFrame>) {
+    pub(crate) fn take(
+        histories: &mut Vec<Self>,
+        observation: &Observation,
+        frame: Option<&OutlineFrame>,
+        curves: &mut CurveFitter,
+    ) {
         let position = histories.iter().position(|history| history.object == observation.object);
         let position = position.unwrap_or_else(|| {
             histories.push(Self {
                 object: observation.object.clone(),
                 start: None,
                 estimates: Vec::new(),
+                residuals: Vec::new(),
+                innovations: Vec::new(),
+                rejected: Vec::new(),
                 latest: None,
             });
             histories.len() - 1
@@ -46,7 +63,15 @@ impl History {
         if let (Some(time), Some(estimate)) = (observation.time, observation.estimate) {
             history.estimates.push((time, estimate));
         }
-        if let (Some(frame), Some(fit)) = (frame, observation.fit) {
+        if !observation.is_accepted() {
+            history.rejected.push((observation.frame, observation.time));
+            return;
+        }
+        if let Some(time) = observation.time {
+            history.residuals.extend(observation.residual.map(|residual| [time, residual]));
+            history.innovations.extend(observation.innovation.map(|innovation| [time, innovation]));
+        }
+        if let Some((frame, fit)) = frame.and_then(|frame| Some((frame, curves.of(observation, frame)?))) {
             history.latest = Some((FittedOutline::new(frame, fit), frame.outline.clone()));
         }
     }
@@ -54,10 +79,19 @@ impl History {
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
-    let outputs: Vec<_> = [&args.trace, &args.svg, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
-    refuse_overwriting(&args.input, &outputs)?;
+    let outputs: Vec<_> =
+        [&args.trace, &args.trajectory, &args.svg, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
+    args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &outputs))?;
+    if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
+        return Err(Failure::unusable(
+            "--trajectory: the adaptive method tells no poses, use --method filter or curve",
+        ));
+    }
+    if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
+        warn("--degree: the motion filter fits no polynomial, the degree changes nothing");
+    }
     let mut tracking = Tracking::new(&args.options)?;
-    let input = Input::open(&args.input)?;
+    let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
     let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
 
@@ -68,38 +102,73 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         }
         None => None,
     };
+    let mut trajectory = match &args.trajectory {
+        Some(path) => Some((WholeFile::create(path)?, Trajectory::default())),
+        None => None,
+    };
+    let mut overlay = match &args.overlay {
+        Some(path) => {
+            needs_pictures(&input)?;
+            Some(ObservedOverlay::open(path, &args.options)?)
+        }
+        None => None,
+    };
+    interrupt::listen();
+    let mut curves = CurveFitter::new(&args.options)?;
     let keeps_history = args.svg.is_some() || args.report.is_some();
     let mut histories = Vec::new();
-    let failure = tracking.read(input, |observation, frame| {
+    let failure = tracking.read(&mut input, args.quiet, |observation, frame, seen_in| {
         if let (Some(trace), Some(path)) = (&mut trace, &args.trace) {
             trace.write(&observation).map_err(|error| file_failure(path, &error))?;
         }
+        if let Some((_, trajectory)) = &mut trajectory {
+            trajectory.take(&observation);
+        }
+        if let Some(overlay) = &mut overlay {
+            overlay.take(&observation, frame, seen_in)?;
+        }
         if keeps_history {
-            History::take(&mut histories, &observation, frame);
+            History::take(&mut histories, &observation, frame, &mut curves);
         }
         Ok(())
     })?;
 
+    if let Some(overlay) = overlay {
+        overlay.finish()?;
+    }
     let results = tracking.results();
     if results.iter().all(|result| result.estimate.is_none()) {
         return Err(failure.unwrap_or_else(|| nothing_found(&name, &results)));
     }
-    for result in &results {
+    for result in results.iter().filter(|_| !args.quiet) {
         result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
     }
-    let printed = print(args.format, &results, truth.as_ref());
+    let format = if args.json { IdentifyFormat::Json } else { args.format };
+    let printed = print(format, &results, truth.as_ref());
     if let (Some(trace), Some(path)) = (trace, &args.trace) {
         trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
+    }
+    if let (Some((mut file, mut trajectory)), Some(path)) = (trajectory, &args.trajectory) {
+        if args.smooth {
+            trajectory.smooth(&process_noise(&args.options)).map_err(Failure::unusable)?;
+        }
+        let written = write_trajectory(&mut file, &trajectory, args.options.motion.model(), args.options.scale);
+        written.map_err(|error| file_failure(path, &error))?;
+        file.finish()?;
     }
     if let Some(path) = &args.svg {
         WholeFile::write(path, &parameter_figure(&histories, args.options.motion.model(), truth.as_ref()))?;
     }
     if let Some(path) = &args.report {
         let failure_text = failure.as_ref().map(Failure::text);
+        let mut listed = settings(&args.options, &name);
+        if input.has_pictures() {
+            listed.extend(args.pictures.listed());
+        }
         let report = Report {
             title: format!("Motion in {name}"),
             command: command_line(),
-            settings: settings(&args.options, &name),
+            settings: listed,
             findings: vec![Findings { results: &results, histories: &histories }],
             truth: truth.as_ref(),
             read_error: failure_text,
@@ -127,6 +196,11 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
     };
     let ObjectResult { object, frames, frames_rejected, .. } = first;
     let used = frames - frames_rejected;
+    if used < 2 && *frames_rejected == 0 {
+        return Failure::no_result(format_args!(
+            "{name}: no motion of object {object:?}: {used} frame(s), at least 2 are needed"
+        ));
+    }
     match first.first_rejection.as_ref().or(first.warnings.first()) {
         Some(reason) => Failure::no_result(format_args!(
             "{name}: no motion of object {object:?}: {frames_rejected} of {frames} frame(s) rejected, {reason}"
@@ -150,6 +224,12 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
         IdentifyMethod::Filter => {
             let FilterSettings { smallest_agreement, patience, .. } = filter_settings(options);
             listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
+            listed.push(("Searched for anew", format!("after {patience} rejected frames")));
+        }
+        IdentifyMethod::Curve => {
+            let CurveFilterSettings { degree, offset, patience, .. } = curve_settings(options);
+            listed.push(("Degree of the curve", degree.to_string()));
+            listed.push(("Level-set offset", format!("{offset} RMS radii")));
             listed.push(("Searched for anew", format!("after {patience} rejected frames")));
         }
         IdentifyMethod::Adaptive => listed.extend(fit_settings(&pipeline_settings(options).fit)),

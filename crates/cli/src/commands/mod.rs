@@ -1,14 +1,19 @@
 //! What each command does.
 mod completions;
 mod demo;
+mod evaluate;
 mod fit;
 mod identify;
+mod man;
 mod outline;
+mod reproduce;
 mod simulate;
 mod track;
 
+pub(crate) use evaluate::{Acquisition, Evaluation, Found, MethodResult, Report, Setting, Statistics};
 pub(crate) use fit::{FittedOutline, Parts};
 pub(crate) use identify::History;
+pub(crate) use reproduce::{Drawing, Section, Table};
 
 use crate::args::{Cli, Command};
 use crate::failure::Failure;
@@ -22,7 +27,10 @@ pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Identify(args) => identify::run(args),
         Command::Track(args) => track::run(args),
         Command::Outline(args) => outline::run(args),
+        Command::Evaluate(args) => evaluate::run(args),
+        Command::Reproduce(args) => reproduce::run(args),
         Command::Completions(args) => completions::run(args),
+        Command::Man => man::run(),
     }
 }
 

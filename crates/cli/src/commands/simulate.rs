@@ -46,7 +46,7 @@ pub(crate) fn write_sequence(
     let arc_column = simulator.settings().occlusion.fraction > 0.0;
     let options = WriterOptions { arc_column, ..WriterOptions::default() };
     let mut writer = OutlineWriter::new(sink, options).map_err(SequenceError::Write)?;
-    let progress = Progress::of_frames(Some(simulator.frame_count() as u64));
+    let progress = Progress::of_frames(Some(simulator.frame_count() as u64), false);
     for Frame { index, time, outline, .. } in simulator.frames() {
         let frame = OutlineFrame { frame: index as u64, time, object: DEFAULT_OBJECT.to_owned(), outline };
         writer.write(&frame).map_err(SequenceError::Write)?;
@@ -75,7 +75,7 @@ fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
 }
 
 /// A built-in shape, or that of a file at unit size.
-fn shape(name_or_file: &str) -> Result<Shape, Failure> {
+pub(super) fn shape(name_or_file: &str) -> Result<Shape, Failure> {
     let unknown = match name_or_file.parse::<BuiltInShape>() {
         Ok(shape) => return Ok(shape.shape()),
         Err(error) => error,

@@ -54,8 +54,8 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
         x_label: "x (image length)".to_owned(),
         y_label: "y (image length)".to_owned(),
         curves,
-        x_from: None,
         view: view.map(|area| [xy(&area.low), xy(&area.high)]),
+        ..Panel::default()
     }
 }
 
@@ -91,8 +91,33 @@ pub(crate) fn parameter_panels(
                 y_label: format!("{name} ({unit})"),
                 curves,
                 x_from: history.start,
-                view: None,
+                ..Panel::default()
             }
+        })
+        .collect()
+}
+
+/// How well the frames of one object fit, one panel for each measure that its method gives. Rejected frames are crosses on
+/// the lower edge.
+pub(crate) fn residual_panels(history: &History) -> Vec<Panel> {
+    let measures = [
+        ("Residual of the points", "rms (image length)", &history.residuals),
+        ("Innovation of the motion", "squared, in units of its variance", &history.innovations),
+    ];
+    let times = history.rejected.iter().filter_map(|(_, time)| *time);
+    let rejected: Vec<[f64; 2]> = times.map(|time| [time, 0.0]).collect();
+    let drawn = measures.into_iter().filter(|(_, _, values)| !values.is_empty());
+    drawn
+        .map(|(title, y_label, values)| Panel {
+            title: title.to_owned(),
+            x_label: "time (s)".to_owned(),
+            y_label: y_label.to_owned(),
+            curves: vec![
+                Curve { name: "frames used".to_owned(), look: Look::Dots, runs: vec![values.clone()] },
+                Curve { name: "rejected".to_owned(), look: Look::Crosses, runs: vec![rejected.clone()] },
+            ],
+            x_from: history.start,
+            ..Panel::default()
         })
         .collect()
 }

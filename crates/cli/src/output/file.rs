@@ -1,6 +1,9 @@
+use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, StdoutLock, Write};
+use std::io::{self, BufWriter, IntoInnerError, StdoutLock, Write};
 use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
 
 use crate::failure::{Failure, plain};
 
@@ -8,56 +11,35 @@ use crate::failure::{Failure, plain};
 /// regular file (a device, a pipe) is written to as it is.
 #[derive(Debug)]
 pub(crate) struct WholeFile {
-    writer: BufWriter<File>,
+    writer: BufWriter<Place>,
     /// Name as given, for messages.
     name: String,
-    /// Where it is being written and where it is to go; `None` once it is there.
-    pending: Option<(PathBuf, PathBuf)>,
+}
+
+/// Where a file is being written.
+#[derive(Debug)]
+enum Place {
+    /// Beside the path that it is to go to; removed when it is dropped before.
+    Beside(NamedTempFile, PathBuf),
+    /// In place.
+    Device(File),
 }
 
 impl WholeFile {
     /// Starts a file.
     pub(crate) fn create(path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
-        Self::begin(path, name.clone()).map_err(|error| Failure::unusable(format_args!("{name}: {}", plain(&error))))
-    }
-
-    fn begin(path: &Path, name: String) -> io::Result<Self> {
-        // Through links, so that what they point to is replaced and not they.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        if let Ok(metadata) = fs::metadata(&target) {
-            if !metadata.is_file() {
-                let writer = BufWriter::new(OpenOptions::new().write(true).open(&target)?);
-                return Ok(Self { writer, name, pending: None });
-            }
-            if metadata.permissions().readonly() {
-                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
-            }
+        match Place::open(path) {
+            Ok(place) => Ok(Self { writer: BufWriter::new(place), name }),
+            Err(error) => Err(Failure::unusable(format_args!("{name}: {}", plain(&error)))),
         }
-        let Some(file_name) = target.file_name() else {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"));
-        };
-        let mut hidden = std::ffi::OsString::from(".");
-        hidden.push(file_name);
-        hidden.push(format!(".{}.part", std::process::id()));
-        let temporary = target.with_file_name(hidden);
-        let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        Ok(Self { writer: BufWriter::new(file), name, pending: Some((temporary, target)) })
     }
 
     /// Puts the file in its place.
-    pub(crate) fn finish(mut self) -> Result<(), Failure> {
-        let result = self.writer.flush().and_then(|()| match &self.pending {
-            Some((temporary, target)) => fs::rename(temporary, target),
-            None => Ok(()),
-        });
-        match result {
-            Ok(()) => {
-                self.pending = None;
-                Ok(())
-            }
-            Err(error) => Err(self.failure(&error)),
-        }
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        let Self { writer, name } = self;
+        let result = writer.into_inner().map_err(IntoInnerError::into_error).and_then(Place::settle);
+        result.map_err(|error| Failure::unusable(format_args!("{name}: {}", plain(&error))))
     }
 
     /// An error in writing this file.
@@ -65,13 +47,72 @@ impl WholeFile {
         Failure::unusable(format_args!("{}: {}", self.name, plain(error)))
     }
 
-    /// Writes a whole file at once.
+    /// Writes a whole file of text at once.
     pub(crate) fn write(path: &Path, content: &str) -> Result<(), Failure> {
+        Self::write_bytes(path, content.as_bytes())
+    }
+
+    /// Writes a whole file at once.
+    pub(crate) fn write_bytes(path: &Path, content: &[u8]) -> Result<(), Failure> {
         let mut file = Self::create(path)?;
-        match file.write_all(content.as_bytes()) {
+        match file.write_all(content) {
             Ok(()) => file.finish(),
             Err(error) => Err(file.failure(&error)),
         }
+    }
+}
+
+impl Place {
+    fn open(path: &Path) -> io::Result<Self> {
+        // Through links, so that what they point to is replaced and not they.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let old = fs::metadata(&target).ok();
+        if let Some(old) = &old {
+            if !old.is_file() {
+                return Ok(Self::Device(OpenOptions::new().write(true).open(&target)?));
+            }
+            if old.permissions().readonly() {
+                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+            }
+        }
+        let Some(file_name) = target.file_name() else {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"));
+        };
+        let mut prefix = OsString::from(".");
+        prefix.push(file_name);
+        prefix.push(".");
+        // A name without a folder has an empty one.
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        // A name of its own, whatever a run that was killed has left behind.
+        let file = Builder::new()
+            .prefix(&prefix)
+            .suffix(".part")
+            .make_in(folder, |path| OpenOptions::new().write(true).create_new(true).open(path))?;
+        if let Some(old) = old {
+            // Where the file system has no permissions there are none to keep.
+            let _ = file.as_file().set_permissions(old.permissions());
+        }
+        Ok(Self::Beside(file, target))
+    }
+
+    fn settle(self) -> io::Result<()> {
+        let Self::Beside(file, target) = self else { return Ok(()) };
+        // Some file systems tell only now that they are full.
+        file.as_file().sync_all()?;
+        file.persist(target).map(drop).map_err(|error| error.error)
+    }
+}
+
+impl Write for Place {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Beside(file, _) => file.as_file_mut().write(bytes),
+            Self::Device(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 
@@ -82,14 +123,6 @@ impl Write for WholeFile {
 
     fn flush(&mut self) -> io::Result<()> {
         self.writer.flush()
-    }
-}
-
-impl Drop for WholeFile {
-    fn drop(&mut self) {
-        if let Some((temporary, _)) = &self.pending {
-            let _ = fs::remove_file(temporary);
-        }
     }
 }
 

@@ -2,7 +2,7 @@ use std::fmt::Write as _;
 
 use freeform_motion::riccati::AffineMotion;
 
-use super::figures::{fit_panel, parameter_panels};
+use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
 use crate::commands::History;
 use crate::plot::{escape, panel_svg};
@@ -48,13 +48,23 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
             write_object(&mut body, result, history, report.truth);
         }
     }
+    write_settings(&mut body, &report.settings, &report.command);
+    document(&title, &body)
+}
+
+/// The settings as a table and the command as it was given.
+pub(super) fn write_settings(body: &mut String, settings: &[(&'static str, String)], command: &str) {
     body.push_str("<h2>Settings</h2>\n<div class=\"scroll\"><table class=\"words\">\n");
-    for (name, value) in &report.settings {
+    for (name, value) in settings {
         let _ = writeln!(body, "<tr><th>{}</th><td>{}</td></tr>", escape(name), escape(value));
     }
     let version = env!("CARGO_PKG_VERSION");
     let _ = writeln!(body, "<tr><th>Version</th><td>freeform {version}</td></tr>\n</table></div>");
-    let _ = writeln!(body, "<h2>Command</h2>\n<pre>{}</pre>", escape(&report.command));
+    let _ = writeln!(body, "<h2>Command</h2>\n<pre>{}</pre>", escape(command));
+}
+
+/// A whole document of an escaped title and a body.
+pub(super) fn document(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -89,15 +99,49 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
     for panel in parameter_panels(history, "", result.motion, truth) {
         let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 300.0));
     }
+    for panel in residual_panels(history) {
+        let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 300.0));
+    }
     if let Some(latest) = &history.latest {
         let title = format!("Frame {}, the last one used", latest.0.frame);
         let panel = fit_panel(title, std::slice::from_ref(latest));
         let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 400.0));
     }
     body.push_str("</div>\n");
+    if !history.rejected.is_empty() {
+        let frames = ranges(history.rejected.iter().map(|(frame, _)| *frame));
+        let _ = writeln!(body, "<p>Rejected frames: {frames}</p>");
+    }
+}
+
+/// Numbers in rising order, runs of them as `first-last`.
+fn ranges(numbers: impl Iterator<Item = u64>) -> String {
+    let mut runs: Vec<(u64, u64)> = Vec::new();
+    for number in numbers {
+        match runs.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
+            _ => runs.push((number, number)),
+        }
+    }
+    let text = |(first, last): &(u64, u64)| match first == last {
+        true => first.to_string(),
+        false => format!("{first}-{last}"),
+    };
+    runs.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
 fn write_row<'a>(body: &mut String, tag: &str, cells: impl Iterator<Item = &'a str>) {
     let cells: String = cells.map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect();
     let _ = writeln!(body, "<tr>{cells}</tr>");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_frames_are_written_short() {
+        assert_eq!(ranges([3, 5, 6, 7, 9, u64::MAX].into_iter()), format!("3, 5-7, 9, {}", u64::MAX));
+        assert_eq!(ranges([].into_iter()), "");
+    }
 }

@@ -2,6 +2,7 @@ use std::io::{self, Write};
 
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 
+use super::aligned::write_aligned;
 use super::number::significant;
 use crate::tracking::{Estimate, ObjectResult};
 use crate::truth::parameters_in;
@@ -66,27 +67,9 @@ pub(crate) fn write_identify_table(
             "object {object}: {motion} motion, {method} method, {frames} frames, {frames_rejected} rejected"
         )?;
         let rows = parameter_rows(*motion, result.estimate.as_ref(), truth);
-        write_aligned(sink, &COLUMNS, &rows)?;
+        write_aligned(sink, &COLUMNS, &rows, &[0, 3])?;
     }
     Ok(())
-}
-
-/// Columns as wide as their widest entry; the first and the one with units to the left, numbers to the right.
-fn write_aligned(sink: &mut impl Write, heads: &[&str], rows: &[Vec<String>]) -> io::Result<()> {
-    let count = rows.first().map_or(heads.len(), Vec::len);
-    let cells = |column: usize| rows.iter().map(move |row| row[column].chars().count());
-    let widths: Vec<usize> = (0..count).map(|c| cells(c).chain([heads[c].len()]).max().unwrap_or(0)).collect();
-    let mut line = |cells: &mut dyn Iterator<Item = &str>| {
-        let mut text = String::new();
-        for (column, (cell, &width)) in cells.zip(&widths).enumerate() {
-            let gap = if column == 0 { "  " } else { "   " };
-            let is_text = column == 0 || column == 3;
-            text.push_str(&if is_text { format!("{gap}{cell:<width$}") } else { format!("{gap}{cell:>width$}") });
-        }
-        writeln!(sink, "{}", text.trim_end())
-    };
-    line(&mut heads.iter().take(count).copied())?;
-    rows.iter().try_for_each(|row| line(&mut row.iter().map(String::as_str)))
 }
 
 #[cfg(test)]

@@ -1,5 +1,10 @@
 //! What is written: one file per format.
+mod aligned;
 mod csv;
+mod evaluate_csv;
+mod evaluate_json;
+mod evaluate_markdown;
+mod evaluate_table;
 mod figures;
 mod file;
 mod fit_json;
@@ -8,8 +13,14 @@ mod html;
 mod identify_json;
 mod identify_table;
 mod number;
+mod page;
+mod trajectory_csv;
 
 pub(crate) use csv::{TraceWriter, write_parameters};
+pub(crate) use evaluate_csv::write_evaluation_csv;
+pub(crate) use evaluate_json::write_evaluation_json;
+pub(crate) use evaluate_markdown::write_evaluation_markdown;
+pub(crate) use evaluate_table::write_evaluation_table;
 pub(crate) use figures::{fit_figure, parameter_figure};
 pub(crate) use file::{Sink, WholeFile, refuse_overwriting};
 pub(crate) use fit_json::write_fits_json;
@@ -17,3 +28,6 @@ pub(crate) use fit_table::write_fit_table;
 pub(crate) use html::{Findings, Report, write_report};
 pub(crate) use identify_json::{track_line, write_identify_json};
 pub(crate) use identify_table::write_identify_table;
+pub(crate) use number::significant;
+pub(crate) use page::write_page;
+pub(crate) use trajectory_csv::write_trajectory;

@@ -6,6 +6,12 @@ use super::ticks::Ticks;
 /// Most points drawn of one line; of longer ones the lowest and highest of each stretch are.
 const POINTS_DRAWN: usize = 3000;
 
+/// Height of a row of the legend, in pixels.
+const LEGEND_ROW: f64 = 20.0;
+
+/// What stands beside the legend, in pixels: labels of the y axis and the right margin.
+const LEGEND_MARGINS: f64 = 80.0;
+
 /// What a curve looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
@@ -19,11 +25,28 @@ pub(crate) enum Look {
     Dots,
     /// Crosses.
     Crosses,
+    /// Smaller dots, for many points in a small panel.
+    FineDots,
+    /// A thin grey line, for what is only there for comparison.
+    Faint,
+    /// A solid line in one of the [`SERIES`] colours.
+    Series(usize),
+    /// A dashed line in one of the [`SERIES`] colours.
+    Dashed(usize),
 }
+
+/// Number of colours that several curves of one panel are told apart by.
+pub(crate) const SERIES: usize = 6;
 
 impl Look {
     const fn class(self) -> &'static str {
+        const SOLID: [&str; SERIES] = ["s s0", "s s1", "s s2", "s s3", "s s4", "s s5"];
+        const DASHED: [&str; SERIES] = ["s d s0", "s d s1", "s d s2", "s d s3", "s d s4", "s d s5"];
         match self {
+            Self::FineDots => "dots fine",
+            Self::Faint => "faint",
+            Self::Series(colour) => SOLID[colour % SERIES],
+            Self::Dashed(colour) => DASHED[colour % SERIES],
             Self::Line => "line",
             Self::Truth => "truth",
             Self::Band => "band",
@@ -43,7 +66,7 @@ pub(crate) struct Curve {
 }
 
 /// One pair of axes.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Panel {
     pub(crate) title: String,
     pub(crate) x_label: String,
@@ -51,9 +74,17 @@ pub(crate) struct Panel {
     pub(crate) curves: Vec<Curve>,
     /// Where the x axis begins, if before all curves.
     pub(crate) x_from: Option<f64>,
+    /// Where the x axis ends, if after all curves.
+    pub(crate) x_to: Option<f64>,
     /// Lower left and upper right corner of what is to be seen, with a length drawn the same along both axes; curves are
     /// cut off at the frame. Without it, axes are as long as the curves.
     pub(crate) view: Option<[[f64; 2]; 2]>,
+    /// Whether the y axis is logarithmic; only values above 0 are drawn then.
+    pub(crate) y_logarithmic: bool,
+    /// Lower and upper end of the y axis, if not those of the curves; what lies beyond is cut off at the frame.
+    pub(crate) y_limits: Option<[f64; 2]>,
+    /// Whether only title and curves are drawn, without frame, ticks and labels.
+    pub(crate) is_bare: bool,
 }
 
 /// Where a panel stands in the picture, in pixels.
@@ -72,11 +103,25 @@ struct Axis {
     high: f64,
     from: f64,
     to: f64,
+    logarithmic: bool,
 }
 
 impl Axis {
     fn pixel(&self, value: f64) -> f64 {
-        self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
+        let share = if self.logarithmic {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        self.from + share * (self.to - self.from)
+    }
+
+    fn ticks(&self, count: usize) -> Ticks {
+        if self.logarithmic {
+            Ticks::of_decades(self.low, self.high, count)
+        } else {
+            Ticks::within(self.low, self.high, count)
+        }
     }
 
     /// Widens the range to so many values per pixel.
@@ -88,61 +133,105 @@ impl Axis {
 }
 
 impl Panel {
-    /// The panel as SVG elements.
-    pub(crate) fn render(&self, place: Place) -> String {
-        let margin_top = if self.legend().next().is_some() { 48.0 } else { 28.0 };
-        let (bottom, top) = (place.top + place.height - 42.0, place.top + margin_top);
-        let right = place.left + place.width - 16.0;
+    /// The panel as SVG elements, with its legend or without.
+    pub(crate) fn render(&self, place: Place, has_legend: bool) -> String {
+        let rows = if has_legend { self.legend_rows(place.width - LEGEND_MARGINS) } else { Vec::new() };
+        let margin_top = if self.title.is_empty() { 10.0 } else { 28.0 } + LEGEND_ROW * rows.len() as f64;
+        let below = if self.is_bare { 6.0 } else { 42.0 };
+        let (bottom, top) = (place.top + place.height - below, place.top + margin_top);
+        let right = place.left + place.width - if self.is_bare { 6.0 } else { 16.0 };
         let (low, high) = self.range(1, 0.06);
-        let mut y = Axis { low, high, from: bottom, to: top };
-        let y_count = ((bottom - top) / if self.view.is_some() { 60.0 } else { 32.0 }) as usize;
-        let y_ticks = Ticks::within(y.low, y.high, y_count);
+        let mut y = Axis { low, high, from: bottom, to: top, logarithmic: self.y_logarithmic };
+        let y_count = ((bottom - top)
+            / match (self.view, self.y_logarithmic) {
+                (Some(_), _) => 50.0,
+                (None, true) => 28.0,
+                (None, false) => 32.0,
+            }) as usize;
+        let y_ticks = y.ticks(y_count);
         let widest = y_ticks.labels.iter().map(String::len).max().unwrap_or(0);
-        let left = place.left + 34.0 + CHARACTER_WIDTH * widest as f64;
+        let left = place.left + if self.is_bare { 6.0 } else { 34.0 + CHARACTER_WIDTH * widest as f64 };
         let (low, high) = self.range(0, 0.0);
-        let mut x = Axis { low, high, from: left, to: right };
+        let mut x = Axis { low, high, from: left, to: right, logarithmic: false };
         if self.view.is_some() {
             let density = |axis: &Axis| (axis.high - axis.low) / (axis.to - axis.from).abs();
             let density = density(&x).max(density(&y));
             x.set_density(density);
             y.set_density(density);
         }
-        let y_ticks = if self.view.is_some() { Ticks::within(y.low, y.high, y_count) } else { y_ticks };
-        let x_ticks = Ticks::within(x.low, x.high, ((right - left) / 60.0) as usize);
 
         let mut svg = String::new();
-        self.draw_frame(&mut svg, (&x, &x_ticks), (&y, &y_ticks));
+        if !self.is_bare {
+            let y_ticks = if self.view.is_some() { y.ticks(y_count) } else { y_ticks };
+            let x_ticks = x.ticks(((right - left) / 60.0) as usize);
+            self.draw_frame(&mut svg, (&x, &x_ticks), (&y, &y_ticks));
+        }
         let (width, height) = (right - left, bottom - top);
         let frame = format!(r#"x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}""#);
-        if self.view.is_some() {
+        let is_cut = self.view.is_some() || self.y_limits.is_some();
+        if is_cut {
             let _ = writeln!(svg, r#"<svg {frame} viewBox="{left:.1} {top:.1} {width:.1} {height:.1}">"#);
         }
         for curve in &self.curves {
             draw_curve(&mut svg, curve, &x, &y);
         }
-        if self.view.is_some() {
+        if is_cut {
             svg.push_str("</svg>\n");
         }
-        // Over the data, so that a line along the edge does not hide it.
-        let _ = writeln!(svg, r#"<rect class="axis" {frame}/>"#);
-        let (middle_x, middle_y) = (0.5 * (left + right), 0.5 * (top + bottom));
         let title_top = place.top + 17.0;
         let _ = writeln!(svg, r#"<text class="title" x="{left:.1}" y="{title_top:.1}">{}</text>"#, escape(&self.title));
-        let label_bottom = bottom + 35.0;
-        let x_label = escape(&self.x_label);
-        let _ = writeln!(svg, r#"<text class="label" x="{middle_x:.1}" y="{label_bottom:.1}">{x_label}</text>"#);
-        let label_left = place.left + 14.0;
-        let y_label = escape(&self.y_label);
-        let _ = writeln!(
-            svg,
-            r#"<text class="label" transform="translate({label_left:.1} {middle_y:.1}) rotate(-90)">{y_label}</text>"#
-        );
-        self.draw_legend(&mut svg, left, place.top + 36.0);
+        if !self.is_bare {
+            // Over the data, so that a line along the edge does not hide it.
+            let _ = writeln!(svg, r#"<rect class="axis" {frame}/>"#);
+            self.draw_labels(
+                &mut svg,
+                [0.5 * (left + right), bottom + 35.0],
+                [place.left + 14.0, 0.5 * (top + bottom)],
+            );
+        }
+        for (row, curves) in rows.iter().enumerate() {
+            draw_legend_row(&mut svg, curves, left, place.top + 36.0 + LEGEND_ROW * row as f64);
+        }
         svg
+    }
+
+    /// The legend alone, at a place of some width, and its height.
+    pub(crate) fn legend_alone(&self, left: f64, top: f64, width: f64) -> (String, f64) {
+        let rows = self.legend_rows(width);
+        let mut svg = String::new();
+        for (row, curves) in rows.iter().enumerate() {
+            draw_legend_row(&mut svg, curves, left, top + LEGEND_ROW * (row as f64 + 0.5));
+        }
+        (svg, LEGEND_ROW * rows.len() as f64)
+    }
+
+    fn draw_labels(&self, svg: &mut String, [x_left, x_top]: [f64; 2], [y_left, y_top]: [f64; 2]) {
+        let (x_label, y_label) = (escape(&self.x_label), escape(&self.y_label));
+        let _ = writeln!(svg, r#"<text class="label" x="{x_left:.1}" y="{x_top:.1}">{x_label}</text>"#);
+        let turned = format!("translate({y_left:.1} {y_top:.1}) rotate(-90)");
+        let _ = writeln!(svg, r#"<text class="label" transform="{turned}">{y_label}</text>"#);
     }
 
     fn legend(&self) -> impl Iterator<Item = &Curve> {
         self.curves.iter().filter(|curve| !curve.name.is_empty() && curve.runs.iter().any(|run| !run.is_empty()))
+    }
+
+    /// The entries of the legend, as many to a row as fit into a width.
+    fn legend_rows(&self, width: f64) -> Vec<Vec<&Curve>> {
+        let mut rows: Vec<Vec<&Curve>> = Vec::new();
+        let mut used = f64::INFINITY;
+        for curve in self.legend() {
+            let needed = legend_width(curve);
+            if used + needed > width {
+                rows.push(Vec::new());
+                used = 0.0;
+            }
+            used += needed;
+            if let Some(row) = rows.last_mut() {
+                row.push(curve);
+            }
+        }
+        rows
     }
 
     /// Range of all finite values on an axis, widened by a share of itself.
@@ -150,12 +239,21 @@ impl Panel {
         if let Some([low, high]) = self.view {
             return (low[axis], high[axis]);
         }
+        if let (Some([low, high]), 1) = (self.y_limits, axis) {
+            return (low, high);
+        }
+        let is_logarithmic = axis == 1 && self.y_logarithmic;
         let points = self.curves.iter().flat_map(|curve| curve.runs.iter().flatten());
-        let start = self.x_from.filter(|_| axis == 0);
-        let values = points.map(|point| point[axis]).chain(start).filter(|value| value.is_finite());
+        let ends = [self.x_from, self.x_to].into_iter().flatten().filter(|_| axis == 0);
+        let values = points.map(|point| point[axis]).chain(ends).filter(|value| value.is_finite());
+        let values = values.filter(|value| !is_logarithmic || *value > 0.0);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low > high {
-            return (0.0, 1.0);
+            return if is_logarithmic { (0.1, 1.0) } else { (0.0, 1.0) };
+        }
+        if is_logarithmic {
+            let room = (high / low).powf(margin).max(1.2);
+            return (low / room, high * room);
         }
         // Room for at least a few units of the last digit that a tick shows.
         let smallest = 1e-6 * low.abs().max(high.abs());
@@ -177,38 +275,50 @@ impl Panel {
             let _ = writeln!(svg, r#"<text class="tick end" x="{text_left:.1}" y="{text_top:.1}">{label}</text>"#);
         }
     }
+}
 
-    fn draw_legend(&self, svg: &mut String, mut left: f64, middle: f64) {
-        for curve in self.legend() {
-            let (class, right) = (curve.look.class(), left + 22.0);
-            let _ = match curve.look {
-                Look::Line | Look::Truth => {
-                    writeln!(svg, r#"<path class="{class}" d="M{left:.1} {middle:.1}H{right:.1}"/>"#)
-                }
-                Look::Band => {
-                    let top = middle - 4.0;
-                    writeln!(svg, r#"<rect class="{class}" x="{left:.1}" y="{top:.1}" width="22" height="8"/>"#)
-                }
-                Look::Dots => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, dots(&[[left + 11.0, middle]])),
-                Look::Crosses => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, crosses(&[[left + 11.0, middle]])),
-            };
-            let (text_left, text_top) = (right + 5.0, middle + 4.0);
-            let name = escape(&curve.name);
-            let _ = writeln!(svg, r#"<text class="tick" x="{text_left:.1}" y="{text_top:.1}">{name}</text>"#);
-            left = text_left + CHARACTER_WIDTH * curve.name.chars().count() as f64 + 16.0;
-        }
+fn legend_width(curve: &Curve) -> f64 {
+    27.0 + CHARACTER_WIDTH * curve.name.chars().count() as f64 + 16.0
+}
+
+fn draw_legend_row(svg: &mut String, curves: &[&Curve], mut left: f64, middle: f64) {
+    for curve in curves {
+        let (class, right) = (curve.look.class(), left + 22.0);
+        let _ = match curve.look {
+            Look::Band => {
+                let top = middle - 4.0;
+                writeln!(svg, r#"<rect class="{class}" x="{left:.1}" y="{top:.1}" width="22" height="8"/>"#)
+            }
+            Look::Dots => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, dots(&[[left + 11.0, middle]])),
+            Look::FineDots => {
+                let row = [3.0, 7.0, 11.0, 15.0, 19.0].map(|x| [left + x, middle]);
+                writeln!(svg, r#"<path class="{class}" d="{}"/>"#, dots(&row))
+            }
+            Look::Crosses => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, crosses(&[[left + 11.0, middle]])),
+            Look::Line | Look::Truth | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
+                writeln!(svg, r#"<path class="{class}" d="M{left:.1} {middle:.1}H{right:.1}"/>"#)
+            }
+        };
+        let (text_left, text_top) = (right + 5.0, middle + 4.0);
+        let name = escape(&curve.name);
+        let _ = writeln!(svg, r#"<text class="tick" x="{text_left:.1}" y="{text_top:.1}">{name}</text>"#);
+        left += legend_width(curve);
     }
 }
 
 fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
     let mut path = String::new();
     for run in &curve.runs {
-        let finite = run.iter().filter(|point| point.iter().all(|value| value.is_finite()));
+        let can_be_drawn =
+            |point: &&[f64; 2]| point.iter().all(|value| value.is_finite()) && !(y.logarithmic && point[1] <= 0.0);
+        let finite = run.iter().filter(can_be_drawn);
         let pixels: Vec<[f64; 2]> = finite.map(|point| [x.pixel(point[0]), y.pixel(point[1])]).collect();
         path.push_str(&match curve.look {
-            Look::Line | Look::Truth => connected(&thinned(&pixels), ""),
+            Look::Line | Look::Truth | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
+                connected(&thinned(&pixels), "")
+            }
             Look::Band => connected(&pixels, "Z"),
-            Look::Dots => dots(&pixels),
+            Look::Dots | Look::FineDots => dots(&pixels),
             Look::Crosses => crosses(&pixels),
         });
     }
@@ -247,4 +357,36 @@ fn thinned(pixels: &[[f64; 2]]) -> Vec<[f64; 2]> {
         [chunk[low.min(high)], chunk[low.max(high)]]
     });
     extremes.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel(values: &[f64]) -> Panel {
+        let line = |value: &f64| Curve {
+            name: format!("the value {value}"),
+            look: Look::Dashed(1),
+            runs: vec![vec![[0.0, *value], [1.0, *value]]],
+        };
+        Panel { curves: values.iter().map(line).collect(), ..Panel::default() }
+    }
+
+    #[test]
+    fn a_true_value_beyond_the_data_is_within_the_axis() {
+        let (low, high) = panel(&[0.0, 1.0, -7.0]).range(1, 0.06);
+        assert!(low < -7.0 && high > 1.0);
+        let logarithmic = Panel { y_logarithmic: true, ..panel(&[0.0, -3.0, 0.01, 100.0]) };
+        let (low, high) = logarithmic.range(1, 0.06);
+        assert!(low > 0.001 && low < 0.01 && high > 100.0, "what is not above 0 takes no part: {low} {high}");
+    }
+
+    #[test]
+    fn a_legend_takes_as_many_rows_as_it_needs() {
+        let panel = panel(&[1.0, 2.0, 3.0, 4.0, 5.0]);
+        let lengths = |width: f64| panel.legend_rows(width).iter().map(Vec::len).collect::<Vec<_>>();
+        assert_eq!(lengths(10_000.0), [5]);
+        assert_eq!(lengths(260.0), [2, 2, 1]);
+        assert_eq!(lengths(1.0), [1; 5]);
+    }
 }

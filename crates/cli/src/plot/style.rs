@@ -3,7 +3,8 @@ use super::panel::{Panel, Place};
 /// Mean width of a character at the size of tick labels, in pixels.
 pub(crate) const CHARACTER_WIDTH: f64 = 6.5;
 
-/// Colours and lines on white paper. Blue and vermilion can be told apart by everyone (Okabe and Ito, 2008).
+/// Colours and lines on white paper. All can be told apart by everyone (Okabe and Ito, 2008; the last three
+/// somewhat darker, for thin lines).
 const PAPER: &str = "\
 .paper{fill:#fff}\
 text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#222}\
@@ -15,29 +16,95 @@ text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#2
 .truth{fill:none;stroke:#d55e00;stroke-width:1.6;stroke-dasharray:7 4}\
 .band{fill:#0072b2;fill-opacity:.2;stroke:none}\
 .dots{fill:none;stroke:#777;stroke-width:2.6;stroke-linecap:round}\
-.crosses{fill:none;stroke:#d55e00;stroke-width:2}";
+.fine{stroke-width:1.8}\
+.crosses{fill:none;stroke:#d55e00;stroke-width:2}\
+.faint{fill:none;stroke:#aaa;stroke-width:1.2}\
+.s{fill:none;stroke-width:1.6;stroke-linejoin:round}.d{stroke-dasharray:7 4}\
+.s0{stroke:#0072b2}.s1{stroke:#d55e00}.s2{stroke:#009e73}.s3{stroke:#b3589a}.s4{stroke:#c98a00}.s5{stroke:#3fa4de}";
 
-/// One panel as an SVG element to stand in a page, which gives it its colours.
-pub(crate) fn panel_svg(panel: &Panel, width: f64, height: f64) -> String {
-    let place = Place { left: 0.0, top: 0.0, width, height };
-    let title = escape(&panel.title);
-    format!(r#"<svg viewBox="0 0 {width} {height}" role="img" aria-label="{title}">{}</svg>"#, panel.render(place))
+/// Panels of equal size, row by row.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Figure {
+    /// Over all panels; none if empty.
+    pub(crate) title: String,
+    /// Whether one legend, that of the first panel, stands for all.
+    pub(crate) shares_legend: bool,
+    pub(crate) panels: Vec<Panel>,
+    /// Panels in a row, at least 1.
+    pub(crate) columns: usize,
+    /// Width and height of each panel in pixels.
+    pub(crate) panel_size: [f64; 2],
 }
 
-/// Panels below one another as a file of their own, on white paper.
-pub(crate) fn stacked_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
-    let height = panel_height * panels.len() as f64;
-    let places =
-        (0..panels.len()).map(|k| Place { left: 0.0, top: k as f64 * panel_height, width, height: panel_height });
-    let content: String = panels.iter().zip(places).map(|(panel, place)| panel.render(place)).collect();
-    format!(
-        r#"<?xml version="1.0" encoding="UTF-8"?>
+impl Figure {
+    /// The figure as a file of its own, on white paper.
+    pub(crate) fn file(&self) -> String {
+        let ([width, height], content) = (self.size(), self.content());
+        format!(
+            r#"<?xml version="1.0" encoding="UTF-8"?>
 <svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">
 <style>{PAPER}</style>
 <rect class="paper" width="{width}" height="{height}"/>
 {content}</svg>
 "#
-    )
+        )
+    }
+
+    /// The figure as an SVG element to stand in a page, which gives it its colours.
+    pub(crate) fn element(&self) -> String {
+        let ([width, height], content) = (self.size(), self.content());
+        let first = self.panels.first().map_or("", |panel| &panel.title);
+        let title = escape(if self.title.is_empty() { first } else { &self.title });
+        format!(r#"<svg viewBox="0 0 {width} {height}" role="img" aria-label="{title}">{content}</svg>"#)
+    }
+
+    /// Width and height in pixels.
+    pub(crate) fn size(&self) -> [f64; 2] {
+        let rows = self.panels.len().div_ceil(self.columns.max(1));
+        [self.width(), self.head().1 + self.panel_size[1] * rows as f64]
+    }
+
+    fn width(&self) -> f64 {
+        self.panel_size[0] * self.columns.clamp(1, self.panels.len().max(1)) as f64
+    }
+
+    /// Title and legend over all panels, and their height.
+    fn head(&self) -> (String, f64) {
+        const LEFT: f64 = 14.0;
+        let (mut svg, mut height) = (String::new(), 0.0);
+        if !self.title.is_empty() {
+            svg = format!(r#"<text class="title" x="{LEFT}" y="20">{}</text>"#, escape(&self.title));
+            height = 28.0;
+        }
+        if let Some(first) = self.panels.first().filter(|_| self.shares_legend) {
+            let (legend, legend_height) = first.legend_alone(LEFT, height, self.width() - 2.0 * LEFT);
+            svg.push_str(&legend);
+            height += legend_height + 6.0;
+        }
+        (svg, height)
+    }
+
+    fn content(&self) -> String {
+        let [width, height] = self.panel_size;
+        let columns = self.columns.max(1);
+        let (head, head_height) = self.head();
+        let place = |k: usize| {
+            let (column, row) = ((k % columns) as f64, (k / columns) as f64);
+            Place { left: column * width, top: head_height + row * height, width, height }
+        };
+        let panels = self.panels.iter().enumerate().map(|(k, panel)| panel.render(place(k), !self.shares_legend));
+        head + &panels.collect::<String>()
+    }
+}
+
+/// One panel as an SVG element to stand in a page, which gives it its colours.
+pub(crate) fn panel_svg(panel: &Panel, width: f64, height: f64) -> String {
+    Figure { panels: vec![panel.clone()], columns: 1, panel_size: [width, height], ..Figure::default() }.element()
+}
+
+/// Panels below one another as a file of their own, on white paper.
+pub(crate) fn stacked_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
+    Figure { panels: panels.to_vec(), columns: 1, panel_size: [width, panel_height], ..Figure::default() }.file()
 }
 
 /// Text as it stands in SVG and HTML.

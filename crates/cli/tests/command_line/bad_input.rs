@@ -1,7 +1,7 @@
 use crate::support::{json, run, sequence, stderr, stdout};
 
 /// Bad inputs, the exit status, and what the message names.
-const CASES: [(&str, &str, i32, &str); 20] = [
+const CASES: [(&str, &str, i32, &str); 21] = [
     ("empty file", "", 2, "<stdin>: "),
     ("only comments", "# nothing\n", 2, "<stdin>: "),
     ("only a header", "frame,time,x,y\n", 1, "<stdin>: "),
@@ -9,6 +9,12 @@ const CASES: [(&str, &str, i32, &str); 20] = [
     ("two points", "frame,time,x,y\n0,0,1,1\n0,0,1,2\n", 1, "<stdin>:2-3"),
     ("equal points", "frame,time,x,y\n0,0,1,1\n0,0,1,1\n0,0,1,1\n0,0,1,1\n", 1, "<stdin>:2-5"),
     ("collinear points", "frame,time,x,y\n0,0,0,0\n0,0,1,1\n0,0,2,2\n0,0,3,3\n", 1, "<stdin>:2-5"),
+    (
+        "arcs on one line",
+        "frame,time,x,y,arc\n0,0,0,0,a\n0,0,1,1,a\n0,0,2,2,a\n0,0,3,3,b\n0,0,4,4,b\n0,0,5,5,b\n",
+        1,
+        "all 6 points lie on one line",
+    ),
     ("NaN", "frame,time,x,y\n0,0,NaN,1\n", 2, "<stdin>:2: column x"),
     ("infinity", "frame,time,x,y\n0,0,1,inf\n", 2, "<stdin>:2: column y"),
     ("a huge number", "frame,time,x,y\n0,0,1e300,1\n", 2, "<stdin>:2: column x"),

@@ -72,7 +72,7 @@ fn names_from_the_input_are_no_markup_in_the_report() {
 #[test]
 fn a_file_that_cannot_be_written_is_told_and_leaves_nothing_behind() {
     let folder = tempfile::tempdir().expect("a folder");
-    for option in ["--trace", "--svg", "--report"] {
+    for option in ["--trace", "--trajectory", "--svg", "--report"] {
         let output = run(&format!("identify - {option} {}/no/where", folder.path().display()), &sequence(""));
         assert_eq!(output.status.code(), Some(2), "{option}");
         assert_eq!(stderr(&output).lines().count(), 1, "{option}: {}", stderr(&output));
@@ -98,7 +98,7 @@ fn the_input_is_not_overwritten_by_an_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let csv = sequence("");
     let input = file(folder.path(), "outlines.csv", &csv);
-    for option in ["--trace", "--svg", "--report"] {
+    for option in ["--trace", "--trajectory", "--svg", "--report"] {
         let output = run(&format!("identify {input} {option} {input}"), "");
         assert_eq!(output.status.code(), Some(2), "{option}");
     }

@@ -39,6 +39,34 @@ fn a_quartic_has_six_lines_three_related_points_and_four_invariants() {
 }
 
 #[test]
+fn the_value_of_a_related_point_is_that_of_the_printed_polynomial_made_monic() {
+    let csv = sequence("--seconds 0.1");
+    for degree in [2, 4, 6, 8] {
+        let document = json(&succeed(&format!("fit - --degree {degree} --frame 1 --format json"), &csv));
+        let outline = &document["outlines"][0];
+        let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+        let coefficients = outline["coefficients"].as_object().expect("coefficients");
+        let leading = number(&coefficients[&format!("a_{degree}0")]);
+        let points = outline["related_points"].as_array().expect("related points");
+        assert!(!points.is_empty());
+        for d in points {
+            let (x, y, value) = (number(&d["x"]), number(&d["y"]), number(&d["value"]));
+            let terms: Vec<f64> = coefficients
+                .iter()
+                .map(|(name, a)| {
+                    let exponent = |at: usize| i32::from(name.as_bytes()[at] - b'0');
+                    number(a) / leading * x.powi(exponent(2)) * y.powi(exponent(3))
+                })
+                .collect();
+            let (sum, size) = (terms.iter().sum::<f64>(), terms.iter().map(|term| term.abs()).sum::<f64>());
+            assert!((sum - value).abs() < 1e-10 * size, "degree {degree}: {sum} and {value}");
+            // The comparison means something: the value is not lost among the terms.
+            assert!(value.abs() > 1e-8 * size, "degree {degree}: {value} of {size}");
+        }
+    }
+}
+
+#[test]
 fn every_method_and_degree_prints_a_table() {
     let csv = sequence("--seconds 0.02");
     for degree in [2, 4, 6, 8] {

@@ -2,7 +2,7 @@ use crate::support::{freeform, run, stderr, stdout, succeed};
 
 #[test]
 fn every_command_has_a_help_with_examples() {
-    for command in ["demo", "simulate", "fit", "identify", "track", "outline"] {
+    for command in ["demo", "simulate", "fit", "identify", "track", "outline", "evaluate", "reproduce"] {
         let help = succeed(&format!("{command} --help"), "");
         assert!(help.contains(&format!("  freeform {command}")), "{help}");
         assert!(help.contains("Example"), "{help}");
@@ -12,8 +12,10 @@ fn every_command_has_a_help_with_examples() {
 #[test]
 fn the_help_reads_as_it_should() {
     insta::assert_snapshot!("help", succeed("--help", ""));
+    insta::assert_snapshot!("help_evaluate", succeed("evaluate --help", ""));
     insta::assert_snapshot!("help_identify", succeed("identify --help", ""));
     insta::assert_snapshot!("help_simulate", succeed("simulate --help", ""));
+    insta::assert_snapshot!("help_reproduce", succeed("reproduce --help", ""));
 }
 
 #[test]
@@ -40,4 +42,20 @@ fn there_are_completions_for_the_shells() {
     for shell in ["bash", "zsh", "fish"] {
         assert!(succeed(&format!("completions {shell}"), "").contains("identify"), "{shell}");
     }
+}
+
+#[test]
+fn the_manual_page_has_every_command() {
+    let page = succeed("man", "");
+    assert!(page.starts_with(".ie") || page.contains(".TH freeform"), "{page}");
+    for command in ["DEMO", "SIMULATE", "FIT", "IDENTIFY", "TRACK", "OUTLINE"] {
+        assert!(page.contains(&format!(".SH \"FREEFORM {command}\"")), "{command}");
+    }
+}
+
+#[test]
+fn the_table_fits_a_terminal_of_80_columns() {
+    let csv = crate::support::sequence("--omega -1.2345678 --b -123.45678,0.00012345");
+    let table = succeed("identify - --quiet --motion affine", &csv);
+    assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
 }

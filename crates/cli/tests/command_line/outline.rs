@@ -1,6 +1,6 @@
 use image::{GrayImage, Luma};
 
-use crate::support::{file, run, stderr, stdout, succeed};
+use crate::support::{file, freeform, json, run, stderr, stdout, succeed};
 
 /// A mask of a disc.
 fn disc(centre: f32) -> Vec<u8> {
@@ -31,7 +31,7 @@ fn every_picture_is_one_frame_at_its_time() {
 }
 
 #[test]
-fn a_picture_without_an_object_leaves_a_gap_and_a_damaged_one_ends_the_work() {
+fn pictures_without_an_object_and_damaged_ones_leave_gaps() {
     let folder = tempfile::tempdir().expect("a folder");
     let good = file(folder.path(), "good.png", disc(30.0));
     let mut empty = std::io::Cursor::new(Vec::new());
@@ -48,7 +48,126 @@ fn a_picture_without_an_object_leaves_a_gap_and_a_damaged_one_ends_the_work() {
     assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(1), ""));
     assert_eq!(stderr(&output).lines().count(), 1);
 
-    let output = run(&format!("outline {good} {damaged}"), "");
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stdout(&output).contains("\n0,") && stderr(&output).contains("damaged.png"));
+    let output = run(&format!("outline {damaged} {good}"), "");
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stdout(&output).contains("\n1,") && stderr(&output).contains("damaged.png"));
+    let output = run(&format!("outline {damaged}"), "");
+    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""));
+    assert_eq!(stderr(&output).lines().count(), 1);
+}
+
+/// The names of the files in a folder, and the size of one of them as a picture.
+fn drawn(folder: &std::path::Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn pictures_are_identified_directly_and_drawn_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    std::fs::create_dir(&frames).expect("a folder");
+    for frame in 0..12_u32 {
+        let centre = 24.0 + frame as f32;
+        file(&frames, &format!("f{frame}.png"), disc(centre));
+    }
+    let (frames, base) = (frames.to_str().expect("UTF-8"), folder.path().to_str().expect("UTF-8"));
+    let text = succeed(&format!("identify {frames} --fps 10 --json --quiet --overlay {base}/drawn"), "");
+    let b1 = json(&text)["objects"][0]["parameters"]["b1"]["value"].as_f64().expect("observable");
+    assert!((b1 - 10.0).abs() < 0.3, "{b1}");
+    let names = drawn(&folder.path().join("drawn"));
+    assert_eq!((names.len(), names[11].as_str()), (12, "000011.png"));
+    let picture = image::open(folder.path().join("drawn/000011.png")).expect("a picture").into_rgb8();
+    assert!(picture.pixels().any(|pixel| pixel.0[1] > pixel.0[0].saturating_add(60)), "green arrows");
+
+    let lines = succeed(&format!("track {frames}/*.png --fps 10 --overlay {base}/drawn.gif"), "");
+    assert_eq!(lines.lines().count(), 12);
+    let again = succeed(&format!("outline {base}/drawn.gif --output {base}/again.csv"), "");
+    assert_eq!(again, "");
+
+    let csv = succeed(&format!("outline {frames} --fps 10"), "");
+    let from_csv = succeed("identify - --json --quiet", &csv);
+    assert_eq!(json(&from_csv)["objects"][0]["parameters"], json(&text)["objects"][0]["parameters"]);
+    let refused = run(&format!("identify - --overlay {base}/none"), &csv);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).contains("--overlay draws on pictures"), "{}", stderr(&refused));
+}
+
+#[test]
+fn video_comes_through_a_pipe() {
+    let mut video = b"YUV4MPEG2 W64 H64 F10:1 Cmono\n".to_vec();
+    for frame in 0..6 {
+        let picture = image::load_from_memory(&disc(26.0 + 2.0 * frame as f32)).expect("a picture").into_luma8();
+        video.extend(b"FRAME\n");
+        video.extend(picture.as_raw());
+    }
+    let output = freeform("identify - --json --quiet").write_stdin(video.clone()).output().expect("the binary runs");
+    let b1 = json(&stdout(&output))["objects"][0]["parameters"]["b1"]["value"].as_f64().expect("observable");
+    assert!((b1 - 20.0).abs() < 0.6, "{b1}");
+    video.truncate(video.len() - 100);
+    let output = freeform("track -").write_stdin(video).output().expect("the binary runs");
+    assert_eq!((output.status.code(), stdout(&output).lines().count()), (Some(0), 5));
+    assert!(stderr(&output).contains("<stdin>: frame 5: the video ends within a frame"), "{}", stderr(&output));
+}
+
+/// A PNG that says it is 20000 x 20000 pixels large, as far as its header.
+fn huge_png() -> Vec<u8> {
+    let mut chunk = Vec::from(b"IHDR");
+    chunk.extend(20_000_u32.to_be_bytes());
+    chunk.extend(20_000_u32.to_be_bytes());
+    chunk.extend([8, 0, 0, 0, 0]);
+    let crc = !chunk.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg()))
+    });
+    let mut png = Vec::from(b"\x89PNG\r\n\x1a\n");
+    png.extend(13_u32.to_be_bytes());
+    png.extend(&chunk);
+    png.extend(crc.to_be_bytes());
+    png.extend([0, 0, 1, 0]);
+    png.extend(b"IDAT");
+    png
+}
+
+#[test]
+fn bad_pictures_are_named_in_one_line_and_the_good_ones_still_count() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path();
+    let mut black = std::io::Cursor::new(Vec::new());
+    GrayImage::new(64, 64).write_to(&mut black, image::ImageFormat::Png).expect("a picture");
+    let mut small = std::io::Cursor::new(Vec::new());
+    GrayImage::new(20, 20).write_to(&mut small, image::ImageFormat::Png).expect("a picture");
+    let bad = [
+        ("1-empty.png", Vec::new(), 2, "the file is empty"),
+        ("2-text.png", b"this is text".to_vec(), 2, "not a picture"),
+        ("3-cut.png", disc(30.0)[..60].to_vec(), 2, "the picture is damaged"),
+        ("4-huge.png", huge_png(), 2, "20000 x 20000 pixels, more than"),
+        ("5-cut.gif", b"GIF89a\x10\x00".to_vec(), 2, "the picture is damaged"),
+        ("6-black.png", black.into_inner(), 1, "no object: every pixel has the grey value 0"),
+    ];
+    for (name, content, status, message) in &bad {
+        let name = file(path, name, content);
+        for command in ["outline", "identify", "track", "fit"] {
+            let output = run(&format!("{command} {name} --pixel-size 2"), "");
+            let errors = stderr(&output);
+            assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(*status), ""), "{command}: {errors}");
+            let last = errors.lines().last().expect("a message");
+            assert!(
+                last.contains(&name) && last.contains(message) && errors.lines().count() == 1,
+                "{command}: {errors}"
+            );
+        }
+    }
+    file(path, "7-small.png", small.into_inner());
+    for (name, centre) in [("0.png", 26.0), ("8.png", 30.0), ("9.png", 32.0)] {
+        file(path, name, disc(centre));
+    }
+    let output = run(&format!("outline {}", path.display()), "");
+    assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(0), 7), "{}", stderr(&output));
+    assert!(stderr(&output).contains("7-small.png: 20 x 20 pixels, the frames before it have 64 x 64"));
+    for frame in ["\n0,", "\n8,", "\n9,"] {
+        assert!(stdout(&output).contains(frame));
+    }
 }

@@ -1,0 +1,84 @@
+//! Outlines, their quartics and paths as curves of a panel.
+use freeform_motion::curve_fit::{Fit, FitSettings, Fitter, Outline};
+use nalgebra::Point2;
+
+use super::document::Table;
+use crate::failure::Failure;
+use crate::level_set::{Area, curve_of};
+use crate::plot::{Curve, Look, Panel};
+
+/// What is looked through for a curve around its points, as a share of their extent.
+const SURROUNDINGS: f64 = 0.3;
+
+/// Points of a curve within this share of the extent of the outline are near it.
+const NEAR: f64 = 0.1;
+
+/// The closed-bounded quartic of an outline, as `freeform fit` makes it.
+pub(crate) fn closed_quartic(outline: &Outline) -> Result<Fit, Failure> {
+    let mut fitter = Fitter::new(FitSettings::default()).map_err(Failure::unusable)?;
+    fitter.fit(outline).map_err(Failure::no_result)
+}
+
+/// A fitted curve as it is drawn.
+pub(crate) struct DrawnCurve {
+    pub(crate) runs: Vec<Vec<[f64; 2]>>,
+    /// Whether there are further ovals, away from the points, which are left out.
+    pub(crate) has_far_ovals: bool,
+}
+
+/// The ovals of a fit that the points lie along.
+pub(crate) fn curve_near(fit: &Fit, outline: &Outline) -> DrawnCurve {
+    let Some(area) = Area::around(outline.points()) else {
+        return DrawnCurve { runs: Vec::new(), has_far_ovals: false };
+    };
+    let near = NEAR * (area.high - area.low).max();
+    let is_near = |p: &Point2<f64>| outline.points().any(|q| (p - q).norm() < near);
+    let (near, far): (Vec<_>, Vec<_>) =
+        curve_of(fit, &area.widened(SURROUNDINGS)).into_iter().partition(|run| run.iter().any(is_near));
+    DrawnCurve { runs: near.iter().map(|run| run.iter().map(xy).collect()).collect(), has_far_ovals: !far.is_empty() }
+}
+
+/// What a caption says of ovals that are left out.
+pub(crate) const FAR_OVALS: &str = " A quartic may be more than one oval: one that lies away from the points is not drawn, \
+                                    here for";
+
+/// All points of an outline as one run.
+pub(crate) fn points_of(outline: &Outline) -> Vec<[f64; 2]> {
+    outline.points().map(xy).collect()
+}
+
+pub(crate) fn xy(p: &Point2<f64>) -> [f64; 2] {
+    [p.x, p.y]
+}
+
+pub(crate) fn curve(name: &str, look: Look, runs: Vec<Vec<[f64; 2]>>) -> Curve {
+    Curve { name: name.to_owned(), look, runs }
+}
+
+/// A panel of the image plane.
+pub(crate) fn image_panel(title: String, view: &Area, curves: Vec<Curve>) -> Panel {
+    Panel {
+        title,
+        x_label: "x (image lengths)".to_owned(),
+        y_label: "y (image lengths)".to_owned(),
+        curves,
+        view: Some([xy(&view.low), xy(&view.high)]),
+        ..Panel::default()
+    }
+}
+
+/// The points of all curves of panels: which panel, which curve, which of its runs, x and y.
+pub(crate) fn data_of(panels: &[Panel]) -> Table {
+    let mut data = Table::of_data(&["panel", "curve", "run", "x", "y"]);
+    for panel in panels {
+        for curve in &panel.curves {
+            for (run, points) in curve.runs.iter().enumerate() {
+                points.iter().for_each(|[x, y]| {
+                    let place = [&panel.title, &curve.name, &run.to_string()];
+                    data.push(&place.map(String::as_str), &[*x, *y]);
+                });
+            }
+        }
+    }
+    data
+}

@@ -1,0 +1,117 @@
+use std::path::Path;
+use std::rc::Rc;
+
+use freeform_motion::curve_fit::{Fit, Outline};
+use freeform_motion::outline_io::PixelGrid;
+use image::Rgb;
+use nalgebra::{Matrix3, Point2};
+
+use super::canvas::Canvas;
+use super::target::Target;
+use crate::commands::Parts;
+use crate::failure::Failure;
+use crate::input::SeenIn;
+use crate::level_set::{Area, curve_of};
+
+const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
+const REJECTED: Rgb<u8> = Rgb([230, 60, 60]);
+const CURVE: Rgb<u8> = Rgb([86, 180, 233]);
+const RELATED: Rgb<u8> = Rgb([240, 120, 220]);
+const MOTION: Rgb<u8> = Rgb([0, 220, 150]);
+
+/// Arrows of the motion field around an outline.
+const ARROWS: usize = 24;
+
+/// Length of the longest arrow in the first field drawn of a frame, as a share of the size of the object.
+const LONGEST_ARROW: f64 = 0.35;
+
+/// Half the size of the crosses at related points, in pixels.
+const CROSS: f64 = 4.0;
+
+/// What is drawn of one object in one frame.
+pub(crate) struct Drawn<'a> {
+    pub(crate) outline: &'a Outline,
+    pub(crate) accepted: bool,
+    /// The curve fitted to the outline and what it is made of.
+    pub(crate) fit: Option<(&'a Fit, Option<&'a Parts>)>,
+    /// The generator of the motion in image lengths.
+    pub(crate) generator: Option<Matrix3<f64>>,
+}
+
+/// Draws frame after frame and writes each when the next one begins.
+pub(crate) struct Overlay {
+    target: Target,
+    present: Option<(u64, Canvas)>,
+}
+
+impl Overlay {
+    /// Drawings for a folder or a GIF.
+    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+        Ok(Self { target: Target::open(path)?, present: None })
+    }
+
+    /// Draws an object on the picture that it was seen in.
+    pub(crate) fn draw(&mut self, seen_in: &Rc<SeenIn>, drawn: &Drawn<'_>) -> Result<(), Failure> {
+        if self.present.as_ref().is_none_or(|(frame, _)| *frame != seen_in.frame) {
+            self.write_present()?;
+            self.present = Some((seen_in.frame, Canvas::of(&seen_in.picture)));
+        }
+        if let Some((_, canvas)) = &mut self.present {
+            draw(canvas, &seen_in.grid, drawn);
+        }
+        Ok(())
+    }
+
+    /// Writes what has not been written.
+    pub(crate) fn finish(mut self) -> Result<(), Failure> {
+        self.write_present()?;
+        self.target.finish()
+    }
+
+    fn write_present(&mut self) -> Result<(), Failure> {
+        match self.present.take() {
+            Some((frame, canvas)) => self.target.write(frame, canvas.into_picture()),
+            None => Ok(()),
+        }
+    }
+}
+
+fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
+    let pixel = |point: &Point2<f64>| grid.to_pixels(point);
+    let Some(area) = Area::around(drawn.outline.points()) else { return };
+    if let Some((fit, _)) = drawn.fit {
+        for run in curve_of(fit, &area.widened(0.15)) {
+            canvas.polyline(run.iter().map(pixel), CURVE);
+        }
+    }
+    let colour = if drawn.accepted { OUTLINE } else { REJECTED };
+    for piece in drawn.outline.pieces() {
+        canvas.polyline(piece.points.iter().map(pixel), colour);
+        if let (Outline::Closed(_), Some(first), Some(last)) =
+            (drawn.outline, piece.points.first(), piece.points.last())
+        {
+            canvas.line(pixel(last), pixel(first), colour);
+        }
+    }
+    if let Some((_, Some(parts))) = drawn.fit {
+        let related = parts.related_points.as_slice().iter().map(|related| related.point);
+        related.filter(|point| area.widened(1.0).contains(point)).for_each(|p| canvas.cross(pixel(&p), CROSS, RELATED));
+    }
+    if let Some(generator) = drawn.generator {
+        draw_motion(canvas, grid, drawn.outline, &area, &generator);
+    }
+}
+
+/// The velocity at points around the outline, the longest arrow a fixed share of the object.
+fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &Area, generator: &Matrix3<f64>) {
+    let velocity = |p: &Point2<f64>| (generator * p.to_homogeneous()).xy();
+    let count = outline.points().count();
+    let chosen: Vec<&Point2<f64>> = outline.points().step_by((count / ARROWS).max(1)).collect();
+    let fastest = chosen.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);
+    let seconds = LONGEST_ARROW * (area.high - area.low).max() / fastest;
+    if seconds.is_finite() {
+        for p in chosen {
+            canvas.arrow(grid.to_pixels(p), grid.to_pixels(&(p + seconds * velocity(p))), MOTION);
+        }
+    }
+}

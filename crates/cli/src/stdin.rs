@@ -1,0 +1,78 @@
+//! Standard input that Ctrl-C ends, also while nothing comes.
+use std::io::{self, BufRead, Read};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::thread;
+use std::time::Duration;
+
+use crate::interrupt;
+
+/// Bytes read at once.
+const CHUNK: usize = 1 << 16;
+
+/// Chunks read ahead.
+const AHEAD: usize = 4;
+
+/// How often Ctrl-C is looked for while nothing comes.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Standard input, read by a thread of its own since a read that waits cannot be called off.
+pub(crate) struct Stdin {
+    chunks: Receiver<io::Result<Vec<u8>>>,
+    chunk: Vec<u8>,
+    used: usize,
+}
+
+impl Stdin {
+    /// Starts reading.
+    pub(crate) fn open() -> Self {
+        let (sender, chunks) = sync_channel(AHEAD);
+        thread::spawn(move || {
+            let mut stdin = io::stdin().lock();
+            loop {
+                let mut chunk = vec![0; CHUNK];
+                let read = match stdin.read(&mut chunk) {
+                    Ok(0) => return,
+                    Ok(count) => {
+                        chunk.truncate(count);
+                        Ok(chunk)
+                    }
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                    Err(error) => Err(error),
+                };
+                let failed = read.is_err();
+                if sender.send(read).is_err() || failed {
+                    return;
+                }
+            }
+        });
+        Self { chunks, chunk: Vec::new(), used: 0 }
+    }
+}
+
+impl BufRead for Stdin {
+    /// Empty at the end of the input, or when Ctrl-C has asked for one.
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        while self.used == self.chunk.len() {
+            match self.chunks.recv_timeout(LOOK) {
+                Ok(chunk) => (self.chunk, self.used) = (chunk?, 0),
+                Err(RecvTimeoutError::Timeout) if !interrupt::was_asked_for() => {}
+                Err(_) => break,
+            }
+        }
+        Ok(&self.chunk[self.used..])
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.used += count;
+    }
+}
+
+impl Read for Stdin {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let available = self.fill_buf()?;
+        let count = available.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&available[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}

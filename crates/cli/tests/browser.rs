@@ -1,0 +1,75 @@
+//! The report in a real browser: no errors on the console, nothing wider than the page, on wide and narrow, light and dark
+//! screens. Skipped where no Chromium is installed.
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// The browser's name on different systems.
+const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+
+fn browser() -> Option<&'static str> {
+    NAMES
+        .into_iter()
+        .find(|name| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success()))
+}
+
+fn report(folder: &Path) -> String {
+    let freeform = |arguments: &[&str]| {
+        let output = assert_cmd::Command::cargo_bin("freeform").expect("the binary is built");
+        let mut output = output;
+        let output = output.current_dir(folder).args(arguments).output().expect("the binary runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    freeform(&["simulate", "--seconds", "1", "--points", "150", "--output", "outlines.csv"]);
+    // An outline that belongs to no frame before it, so that there is a rejected frame to tell of.
+    let mut csv = std::fs::read_to_string(folder.join("outlines.csv")).expect("outlines");
+    csv.push_str("40,2,5,5\n40,2,6,5\n40,2,5.5,6\n40,2,5.2,5.5\n");
+    std::fs::write(folder.join("outlines.csv"), csv).expect("outlines");
+    freeform(&["identify", "outlines.csv", "--scale", "0.1", "--report", "report.html", "--quiet"]);
+    std::fs::read_to_string(folder.join("report.html")).expect("a report")
+}
+
+fn load(browser: &str, profile: &Path, page: &Path, width: u32, scheme: &str, arguments: &[&str]) -> Output {
+    Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--enable-logging=stderr"])
+        .arg(format!("--window-size={width},900"))
+        .arg(format!("--blink-settings=preferredColorScheme={scheme}"))
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .args(arguments)
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .expect("the browser runs")
+}
+
+#[test]
+fn the_report_loads_without_errors_and_fits_the_page() {
+    let Some(browser) = browser() else {
+        println!("skipped: no Chromium is installed");
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let html = report(folder.path());
+    assert!(!html.contains("http://") && !html.contains("https://"), "the report needs nothing but itself");
+    for needed in ["Rejected frames", "Residual of the points", "Innovation", "freeform identify outlines.csv"] {
+        assert!(html.contains(needed), "{needed}");
+    }
+    let measure = "<script>const e = document.documentElement; \
+                   document.title = e.scrollWidth + ' ' + e.clientWidth + ' ' + getComputedStyle(document.body).backgroundColor;\
+                   </script></body>";
+    let page = folder.path().join("measured.html");
+    std::fs::write(&page, html.replace("</body>", measure)).expect("a page");
+    let mut grounds = Vec::new();
+    // 0 prefers dark, 1 light.
+    for (width, scheme) in [(1280, "1"), (400, "1"), (400, "0")] {
+        let output = load(browser, &folder.path().join("profile"), &page, width, scheme, &["--dump-dom"]);
+        let (dom, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert!(!log.contains("CONSOLE"), "{log}");
+        let title = dom.split("<title>").nth(1).and_then(|rest| rest.split("</title>").next()).expect("a title");
+        let mut words = title.splitn(3, ' ');
+        let mut number = || words.next().and_then(|word| word.parse::<u32>().ok()).expect("a width");
+        let (content, screen) = (number(), number());
+        println!("{width} px wide: page {screen}, content {content}, {title}");
+        assert!(content <= screen, "{title}");
+        grounds.push(words.next().expect("a colour").to_owned());
+    }
+    assert!(grounds[0] == grounds[1] && grounds[1] != grounds[2], "{grounds:?}");
+}

@@ -1,0 +1,117 @@
+use std::fs;
+
+use crate::support::{json, run, sequence, stderr, succeed};
+
+/// Rows of the trajectory that `identify` writes of a sequence, the header first.
+fn trajectory(options: &str, csv: &str) -> Vec<Vec<String>> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("trajectory.csv");
+    succeed(&format!("identify - --trajectory {} {options}", path.display()), csv);
+    let text = fs::read_to_string(path).expect("the trajectory");
+    text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+}
+
+fn number(rows: &[Vec<String>], row: usize, column: &str) -> f64 {
+    let position = rows[0].iter().position(|name| name == column).expect("a column");
+    rows[row][position].parse().expect("a number")
+}
+
+#[test]
+fn the_trajectory_has_one_row_per_object_and_frame_with_pose_and_motion() {
+    let rows = trajectory("", &(sequence("") + "20,5.0,1,1\n"));
+    let header = "object,frame,time,accepted,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std";
+    assert_eq!(rows[0].join(","), header);
+    assert_eq!(rows.len(), 1 + 16);
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()));
+    // Nothing is known of the motion in the first frame, and nothing of a frame that is no outline.
+    assert_eq!(rows[1].join(","), format!("0,0,0,true{}", ",".repeat(12)));
+    assert_eq!(rows[16].join(","), format!("0,20,,false{}", ",".repeat(12)));
+    for row in 2..=15 {
+        let (angle, std) = (number(&rows, row, "angle"), number(&rows, row, "angle_std"));
+        let truth = std::f64::consts::FRAC_PI_2 * (row - 1) as f64 / 30.0;
+        assert!(std > 0.0 && std < 0.05 && (angle - truth).abs() < 5.0 * std, "{row}: {angle} {truth} {std}");
+    }
+}
+
+#[test]
+fn a_smoothed_trajectory_begins_with_the_first_frame_and_holds_the_motion_that_is_printed() {
+    let csv = sequence("");
+    let (filtered, smoothed) = (trajectory("", &csv), trajectory("--smooth", &csv));
+    let printed = json(&succeed("identify - --format json", &csv));
+    for (name, scale) in [("omega", 1.0), ("b1", 1.0), ("b2", 1.0)] {
+        let value = printed["objects"][0]["parameters"][name]["value"].as_f64().expect("a number") * scale;
+        for row in 1..=15 {
+            assert!((number(&smoothed, row, name) - value).abs() < 1e-9, "{name} in row {row}");
+        }
+    }
+    let (angle, std) = (number(&smoothed, 1, "angle"), number(&smoothed, 1, "angle_std"));
+    assert!(angle.abs() < 4.0 * std + 1e-3, "{angle} {std}");
+    assert!(number(&smoothed, 2, "omega_std") < 0.2 * number(&filtered, 2, "omega_std"));
+    assert!(number(&smoothed, 2, "angle_std") < number(&filtered, 2, "angle_std"));
+}
+
+#[test]
+fn angles_go_on_beyond_half_a_turn_and_positions_are_told_in_space() {
+    let csv = sequence("--omega 3 --seconds 2.5");
+    let (image, space) = (trajectory("", &csv), trajectory("--scale 0.1", &csv));
+    let last = image.len() - 1;
+    assert!((number(&image, last, "angle") - 3.0 * (last - 1) as f64 / 30.0).abs() < 0.05);
+    for column in ["x", "x_std", "y", "b1", "b2_std"] {
+        let (image, space) = (number(&image, last, column), number(&space, last, column));
+        assert!((10.0 * image - space).abs() < 1e-9 * space.abs(), "{column}");
+    }
+    assert_eq!(number(&image, last, "angle"), number(&space, last, "angle"));
+}
+
+#[test]
+fn other_models_and_the_curve_method_have_trajectories_too() {
+    let csv = sequence("");
+    for (options, pose) in [
+        ("--motion similarity", "scale,scale_std,angle,angle_std,x,x_std,y,y_std,sigma,"),
+        ("--motion affine", "m11,m11_std,m12,m12_std,m21,m21_std,m22,m22_std,x,x_std,y,y_std,a1,"),
+        ("--method curve --smooth", "angle,angle_std,x,x_std,y,y_std,omega,"),
+    ] {
+        let rows = trajectory(options, &csv);
+        assert!(rows[0].join(",").contains(&format!("accepted,{pose}")), "{options}: {:?}", rows[0]);
+        assert!(rows[15].iter().skip(4).all(|field| field.parse::<f64>().is_ok_and(f64::is_finite)), "{options}");
+    }
+}
+
+#[test]
+fn every_object_is_smoothed_by_itself() {
+    let one = sequence("--shape glider --omega -1 --b 0,1");
+    let other = sequence("--shape bird");
+    let rows =
+        |csv: &str, name: &str| -> Vec<String> { csv.lines().skip(3).map(|line| format!("{line},{name}\n")).collect() };
+    // Frame by frame: both objects in each.
+    let (first, second) = (rows(&one, "a"), rows(&other, "b"));
+    let mixed: String = first.chunks(120).zip(second.chunks(120)).flat_map(|(a, b)| [a.concat(), b.concat()]).collect();
+    let both = trajectory("--smooth", &format!("frame,time,x,y,object\n{mixed}"));
+    let alone = trajectory("--smooth", &one);
+    let of_first: Vec<_> = both.iter().filter(|row| row[0] == "a").map(|row| row[1..].to_vec()).collect();
+    assert_eq!(of_first, alone[1..].iter().map(|row| row[1..].to_vec()).collect::<Vec<_>>());
+}
+
+#[test]
+fn what_cannot_be_had_is_wrong_usage() {
+    for (options, reason) in
+        [("--method adaptive --trajectory t.csv", "the adaptive method tells no poses"), ("--smooth", "--trajectory")]
+    {
+        let output = run(&format!("identify - {options}"), &sequence(""));
+        assert_eq!(output.status.code(), Some(2), "{options}");
+        assert!(stderr(&output).contains(reason), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn the_curve_method_finds_the_motion_with_a_degree_of_choice() {
+    for degree in ["", "--degree 4", "--degree 8"] {
+        let document = json(&succeed(&format!("identify - --method curve {degree} --format json"), &sequence("")));
+        let object = &document["objects"][0];
+        assert_eq!((&object["method"], &object["frames_rejected"]), (&"curve".into(), &0.into()));
+        let omega = &object["parameters"]["omega"];
+        let (value, std) = (omega["value"].as_f64().expect("a number"), omega["std"].as_f64().expect("a number"));
+        let error = value - std::f64::consts::FRAC_PI_2;
+        assert!(std > 0.0 && std < 0.1 && error.abs() < 5.0 * std, "{degree}: {value} +- {std}");
+    }
+}

@@ -1,0 +1,146 @@
+//! Full disks, runs that are killed, and Ctrl-C.
+use std::fs::{self, File};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use crate::support::{file, json, run, sequence, stderr, stdout, succeed};
+
+fn command() -> Command {
+    Command::new(assert_cmd::cargo::cargo_bin("freeform"))
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill runs");
+    assert!(sent.success());
+}
+
+fn entries(folder: &Path) -> usize {
+    fs::read_dir(folder).expect("the folder").count()
+}
+
+#[test]
+fn a_full_disk_is_told_on_one_line() {
+    if !Path::new("/dev/full").exists() {
+        println!("skipped: no /dev/full here");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = file(folder.path(), "outlines.csv", sequence(""));
+    for arguments in [
+        vec!["simulate"],
+        vec!["track", &input],
+        vec!["identify", &input],
+        vec!["fit", &input],
+        vec!["completions", "bash"],
+    ] {
+        let full = File::options().write(true).open("/dev/full").expect("the device");
+        let output = command().args(&arguments).stdout(full).stderr(Stdio::piped()).output().expect("the binary runs");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert_eq!(stderr(&output), "freeform: standard output: No space left on device\n", "{arguments:?}");
+    }
+    for option in ["--trace", "--svg", "--report"] {
+        let output = run(&format!("identify {input} {option} /dev/full"), "");
+        assert_eq!(output.status.code(), Some(2), "{option}");
+        assert!(stderr(&output).contains("/dev/full: No space left on device"), "{option}: {}", stderr(&output));
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_file_that_does_not_fit_leaves_the_old_one_and_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let target = file(folder.path(), "outlines.csv", "old");
+    // A limit of 8 blocks stands for the full disk: beyond it writing fails.
+    let script = r#"trap "" XFSZ; ulimit -f 8; exec "$0" "$@""#;
+    let output = Command::new("sh")
+        .args(["-c", script])
+        .arg(assert_cmd::cargo::cargo_bin("freeform"))
+        .args(["simulate", "--output", &target])
+        .output()
+        .expect("a shell");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
+    assert!(stderr(&output).contains("outlines.csv: "), "{}", stderr(&output));
+    assert_eq!(fs::read_to_string(&target).expect("the file"), "old");
+    assert_eq!(entries(folder.path()), 1);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_run_that_is_killed_leaves_the_old_file_and_the_next_one_is_not_in_its_way() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = tempfile::tempdir().expect("a folder");
+    let target = file(folder.path(), "outlines.csv", "old");
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).expect("our file");
+    let mut child = command()
+        .args(["simulate", "--seconds", "3000", "--output", &target])
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the binary runs");
+    while entries(folder.path()) < 2 {
+        assert!(child.try_wait().expect("our child").is_none(), "it ended before it began to write");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().expect("our child");
+    child.wait().expect("our child");
+    assert_eq!(fs::read_to_string(&target).expect("the file"), "old");
+    succeed(&format!("simulate --seconds 0.1 --output {target}"), "");
+    assert!(fs::read_to_string(&target).expect("the file").contains("frame,time,x,y"));
+    assert_eq!(fs::metadata(&target).expect("the file").permissions().mode() & 0o777, 0o640);
+}
+
+/// Starts a command that reads from a pipe, and hands it more than any buffer on the way holds, so that it is at work.
+#[cfg(unix)]
+fn at_work(arguments: &[&str], csv: &str) -> (Child, std::process::ChildStdin) {
+    let mut child = command()
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let mut input = child.stdin.take().expect("a pipe");
+    input.write_all(csv.as_bytes()).expect("the binary reads");
+    (child, input)
+}
+
+#[test]
+#[cfg(unix)]
+fn ctrl_c_ends_identify_with_what_is_known_so_far_though_the_input_stands_still() {
+    let csv = sequence("--seconds 12");
+    assert!(csv.len() > 1 << 20, "{}", csv.len());
+    let folder = tempfile::tempdir().expect("a folder");
+    let trace = folder.path().join("trace.csv");
+    let arguments = ["identify", "-", "--format", "json", "--trace", trace.to_str().expect("UTF-8")];
+    let (child, input) = at_work(&arguments, &csv);
+    signal(&child, "-INT");
+    let output = child.wait_with_output().expect("it ends");
+    drop(input);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let result = json(&stdout(&output));
+    let frames = result["objects"][0]["frames"].as_u64().expect("a number");
+    assert!((2..360).contains(&frames), "{frames}");
+    assert!(result["objects"][0]["parameters"]["omega"]["value"].is_f64());
+    let rows = fs::read_to_string(&trace).expect("the trace").lines().count() as u64;
+    assert_eq!(rows, 1 + frames);
+    assert_eq!(entries(folder.path()), 1);
+}
+
+#[test]
+#[cfg(unix)]
+fn ctrl_c_ends_track_after_a_whole_line() {
+    let csv = sequence("--seconds 12");
+    let (mut child, input) = at_work(&["track"], &csv[..csv.len() / 20]);
+    let mut lines = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut line = String::new();
+    lines.read_line(&mut line).expect("a line");
+    signal(&child, "-INT");
+    let mut rest = String::new();
+    lines.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    drop(input);
+    let frames: Vec<_> = line.lines().chain(rest.lines()).map(|line| json(line)["frame"].clone()).collect();
+    assert!(frames.iter().enumerate().all(|(index, frame)| *frame == index), "{frames:?}");
+}
