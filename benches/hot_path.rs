@@ -6,10 +6,14 @@ use freeform_motion::{
     Pipeline, PipelineSettings,
     curve_fit::{Degree, FitSettings, Fitter, Method, Moments, Outline, evaluate_monomials, outward_normals},
     decompose::{Correspondence, Decomposition},
-    riccati::RigidMotion,
+    identify::{CurveFilterSettings, FilterSettings, MotionFilter, WholeCurveFilter},
+    riccati::{MotionModel, RigidMotion},
     sim_camera::{BuiltInShape, Camera, Motion, Scene, SequenceLength, Settings, Simulator},
 };
-use std::hint::black_box;
+use std::{
+    hint::black_box,
+    time::{Duration, Instant},
+};
 
 fn frames(points: usize, count: usize) -> Vec<(f64, Outline)> {
     let motion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -3.0, b2: 4.0 };
@@ -128,5 +132,72 @@ fn whole_frame(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(hot_path, baselines, stages, whole_frame);
+/// Beside the QR of the 3L matrix of its degree.
+fn whole_curve_frame(c: &mut Criterion) {
+    let mut group = c.benchmark_group("whole-curve filter");
+    let list = frames(400, 240);
+    for degree in [Degree::Quartic, Degree::Sextic] {
+        let settings = CurveFilterSettings { degree, ..CurveFilterSettings::default() };
+        let mut begun = WholeCurveFilter::new(settings).expect("settings");
+        for (time, outline) in &list[..60] {
+            assert!(begun.step(*time, outline).expect("increasing times").accepted);
+        }
+        group.bench_function(BenchmarkId::from_parameter(format!("degree {degree}, 400 points")), |b| {
+            b.iter_custom(|iterations| {
+                let mut spent = Duration::ZERO;
+                let (mut filter, mut next) = (begun.clone(), 60);
+                for _ in 0..iterations {
+                    // Back to the 60th frame from time to time, so that the motion goes on without a jump.
+                    if next == list.len() {
+                        (filter, next) = (begun.clone(), 60);
+                    }
+                    let (time, outline) = &list[next];
+                    next += 1;
+                    let start = Instant::now();
+                    let step = black_box(filter.step(*time, black_box(outline)));
+                    spent += start.elapsed();
+                    assert!(step.is_ok_and(|step| step.accepted));
+                }
+                spent
+            });
+        });
+    }
+    group.finish();
+}
+
+fn motion_filter_frame(c: &mut Criterion) {
+    let mut group = c.benchmark_group("motion filter");
+    for (points, model) in
+        [(100, MotionModel::Rigid), (400, MotionModel::Rigid), (1600, MotionModel::Rigid), (400, MotionModel::Affine)]
+    {
+        group.throughput(Throughput::Elements(points as u64));
+        let list = frames(points, 240);
+        let settings = FilterSettings { model, ..FilterSettings::default() };
+        let mut begun = MotionFilter::new(settings).expect("settings");
+        for (time, outline) in &list[..60] {
+            assert!(begun.step(*time, outline).expect("increasing times").accepted);
+        }
+        group.bench_function(BenchmarkId::from_parameter(format!("{model}, {points} points")), |b| {
+            b.iter_custom(|iterations| {
+                let mut spent = Duration::ZERO;
+                let (mut filter, mut next) = (begun.clone(), 60);
+                for _ in 0..iterations {
+                    if next == list.len() {
+                        (filter, next) = (begun.clone(), 60);
+                    }
+                    let (time, outline) = &list[next];
+                    next += 1;
+                    let start = Instant::now();
+                    let step = black_box(filter.step(*time, black_box(outline)));
+                    spent += start.elapsed();
+                    assert!(step.is_ok());
+                }
+                spent
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(hot_path, baselines, stages, whole_frame, whole_curve_frame, motion_filter_frame);
 criterion_main!(hot_path);

@@ -5,6 +5,10 @@
 //! of the frame before, and identifies the motion from their Riccati dynamics (M. Unel, B. K. Ghosh, *Motion
 //! identification of planar free-form objects*). Each stage is a crate of its own, re-exported here.
 //!
+//! Beyond the paper, with standard deviations: [`identify::MotionFilter`] takes the points of the outlines themselves,
+//! [`identify::WholeCurveFilter`] one curve for all frames; [`identify::smooth`] and [`identify::estimate_batch`] are for recorded
+//! frames, [`identify::CramerRaoBound`] says what can be reached.
+//!
 //! ```
 //! use freeform_motion::{Pipeline, PipelineSettings};
 //! use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
@@ -22,6 +26,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod pipeline;
+mod settling;
 mod warning;
 
 pub use freeform_curve_fit as curve_fit;

@@ -1,21 +1,24 @@
 use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Outline, SettingsError};
-use freeform_decompose::{Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line};
+use freeform_decompose::{
+    Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
+};
 use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError, MotionEstimate};
 use freeform_riccati::MotionModel;
 use nalgebra::Affine2;
 
-use crate::warning::Warning;
+use crate::{settling::Settling, warning::Warning};
 
-/// Largest number of conjugate pairs, that of an octic.
-const MAX_PAIRS: usize = 4;
 /// Share of rejected frames that is worth a warning.
 const MANY_REJECTED: f64 = 0.05;
 /// A match by continuity is ambiguous where the second best pairing is less than twice as far away (costs are squares).
 const AMBIGUOUS_COST_RATIO: f64 = 4.0;
 /// Share of ambiguous matches that is worth a warning.
 const MANY_AMBIGUOUS: f64 = 0.03;
-/// Seconds that the structured law takes to settle to a few percent with the paper's gains.
-const SETTLING_SECONDS: f64 = 10.0;
+/// Share of intervals over which the lines could not be followed that is worth a warning.
+const MANY_NOT_FOLLOWED: f64 = 0.05;
+/// RMS radii that the object may go from where it began: further out the lines say little of it, as `k` and its noise grow
+/// with the distance.
+const FAR: f64 = 5.0;
 
 /// RMS radius of the first outline in the coordinates of the identifier. The gains of the paper belong to objects of
 /// about size 1; a larger radius makes the law settle faster and follow the noise more.
@@ -94,6 +97,7 @@ pub struct Pipeline {
     frames: usize,
     frames_rejected: usize,
     counts: Counts,
+    settling: Settling,
 }
 
 /// What the warnings are drawn from.
@@ -103,8 +107,8 @@ struct Counts {
     without_separate_lines: usize,
     matched: usize,
     ambiguous: usize,
-    /// Times of the first and last accepted frame.
-    span: Option<(f64, f64)>,
+    /// Largest distance of the object from where it was first, in RMS radii of the first outline.
+    furthest: f64,
 }
 
 /// The lines of a frame and in which order its pairs continue those of the first frame.
@@ -129,6 +133,7 @@ impl Pipeline {
             frames: 0,
             frames_rejected: 0,
             counts: Counts::default(),
+            settling: Settling::default(),
         })
     }
 
@@ -165,7 +170,9 @@ impl Pipeline {
         self.identifier.step(time, &lines[..count])?;
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
-        self.counts.take(time, correspondence.as_ref());
+        let centre = image_from_identifier.inverse() * normalisation.centre;
+        self.counts.take(centre.coords.norm() / RMS_RADIUS, correspondence.as_ref());
+        self.settling.take(time, self.identifier.estimate());
         Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
     }
 
@@ -197,7 +204,8 @@ impl Pipeline {
         Ok((MatchedFrame { decomposition, order }, Some(correspondence)))
     }
 
-    /// The motion as identified so far, in the image frame; `None` before the second frame. Parameters of which the
+    /// The motion as identified so far, in the image frame; `None` before the lines were followed from one frame to the
+    /// next. Parameters of which the
     /// outlines tell nothing are marked unobservable: all of them for a circle.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
@@ -245,24 +253,34 @@ impl Pipeline {
         if rejected as f64 > MANY_REJECTED * frames as f64 {
             warnings.push(Warning::FramesRejected { rejected, frames });
         }
-        let Counts { ambiguous, matched, span, .. } = self.counts;
+        let intervals = self.identifier.frames().saturating_sub(1);
+        let skipped = intervals - self.identifier.intervals_followed();
+        if skipped as f64 > MANY_NOT_FOLLOWED * intervals as f64 {
+            warnings.push(Warning::LinesNotFollowed { skipped, intervals });
+        }
+        let Counts { ambiguous, matched, furthest, .. } = self.counts;
         if ambiguous as f64 > MANY_AMBIGUOUS * matched as f64 {
             warnings.push(Warning::AmbiguousCorrespondence { ambiguous, matched });
         }
         let settles_slowly = self.identifier.settings().law != AdaptiveLaw::FilteredLeastSquares;
-        if let Some(seconds) = span.map(|(first, last)| last - first)
+        if let Some(seconds) = self.settling.unsettled()
             && settles_slowly
-            && seconds < SETTLING_SECONDS
         {
             warnings.push(Warning::MayNotHaveSettled { seconds });
+        }
+        if furthest > FAR {
+            warnings.push(Warning::FarFromStart { radii: furthest });
+        }
+        if self.settings.identify.model == MotionModel::Affine && self.identifier.intervals_followed() > 0 {
+            warnings.push(Warning::AffineBias);
         }
         warnings.iter().map(ToString::to_string).collect()
     }
 }
 
 impl Counts {
-    fn take(&mut self, time: f64, correspondence: Option<&Correspondence>) {
-        self.span = Some((self.span.map_or(time, |(first, _)| first), time));
+    fn take(&mut self, distance: f64, correspondence: Option<&Correspondence>) {
+        self.furthest = self.furthest.max(distance);
         let Some(matching) = correspondence else { return };
         self.matched += 1;
         // The order of the values settles the rest, whatever the turn.
@@ -275,11 +293,8 @@ impl Counts {
 
 /// Whether a frame was refused because its lines nearly coincide, as those of a circle do.
 fn has_no_separate_lines(error: &PipelineError) -> bool {
-    use DecompositionError::{CircularLeadingForm, IllConditioned, NearDoubleLines};
-    matches!(
-        error,
-        PipelineError::Decomposition(CircularLeadingForm { .. } | NearDoubleLines { .. } | IllConditioned { .. })
-    )
+    use DecompositionError::{CircularLeadingForm, NearDoubleLines};
+    matches!(error, PipelineError::Decomposition(CircularLeadingForm { .. } | NearDoubleLines { .. }))
 }
 
 impl MatchedFrame {

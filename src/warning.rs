@@ -9,8 +9,14 @@ pub(crate) enum Warning {
     FramesRejected { rejected: usize, frames: usize },
     /// The pairs of lines could not be matched for certain in many frames.
     AmbiguousCorrespondence { ambiguous: usize, matched: usize },
-    /// The run is shorter than the adaptive law needs.
+    /// The run is shorter than the adaptive law needs, or its parameters still drift.
     MayNotHaveSettled { seconds: f64 },
+    /// The outline turned too far from frame to frame.
+    LinesNotFollowed { skipped: usize, intervals: usize },
+    /// The object went far from where it began.
+    FarFromStart { radii: f64 },
+    /// The parameters of an affine motion are biased.
+    AffineBias,
 }
 
 impl fmt::Display for Warning {
@@ -28,6 +34,20 @@ impl fmt::Display for Warning {
             Self::MayNotHaveSettled { seconds } => {
                 write!(f, "the adaptive law may not have settled after {seconds:.1} s")
             }
+            Self::LinesNotFollowed { skipped, intervals } => write!(
+                f,
+                "lines not followed over {skipped} of {intervals} intervals between frames: \
+                 the outline turns by more than about half a radian"
+            ),
+            Self::FarFromStart { radii } => write!(
+                f,
+                "the object went {radii:.0} times its RMS radius from where it began, \
+                 where its lines tell little of the motion: use the motion filter"
+            ),
+            Self::AffineBias => f.write_str(
+                "the six parameters are biased, as the fit of an outline does not follow affine motion exactly: \
+                 use the motion filter",
+            ),
         }
     }
 }

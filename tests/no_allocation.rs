@@ -4,7 +4,9 @@ mod common;
 use common::frames;
 use freeform_motion::{
     Pipeline, PipelineSettings,
-    identify::{AdaptiveLaw, PairChoice},
+    curve_fit::Degree,
+    identify::{AdaptiveLaw, CurveFilterSettings, FilterSettings, MotionFilter, PairChoice, WholeCurveFilter},
+    riccati::MotionModel,
     sim_camera::{Frame, PaperExperiment, Simulator},
 };
 
@@ -26,5 +28,38 @@ fn after_the_first_frames_none_allocates() {
                 assert!(index < 3 || counts.count_total == 0, "frame {index}, {law:?}, {pairs:?}: {counts:?}");
             }
         }
+    }
+}
+
+#[test]
+fn the_whole_curve_filter_allocates_nothing_once_it_tracks() {
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scene");
+    let frames: Vec<Frame> = Simulator::new(scene, frames(40)).expect("a simulation").frames().collect();
+    for (model, degree) in [(MotionModel::Rigid, Degree::Quartic), (MotionModel::Affine, Degree::Octic)] {
+        let settings = CurveFilterSettings { model, degree, ..CurveFilterSettings::default() };
+        let mut filter = WholeCurveFilter::new(settings).expect("settings");
+        for (index, frame) in frames.iter().enumerate() {
+            let mut accepted = false;
+            let counts = allocation_counter::measure(|| {
+                accepted = filter.step(frame.time, &frame.outline).is_ok_and(|step| step.accepted);
+            });
+            assert!(accepted);
+            assert!(index < 3 || counts.count_total == 0, "frame {index}, {model}, degree {degree}: {counts:?}");
+        }
+    }
+}
+
+#[test]
+fn once_the_outline_is_known_no_step_of_the_motion_filter_allocates() {
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scene");
+    let frames: Vec<Frame> = Simulator::new(scene, frames(60)).expect("a simulation").frames().collect();
+    let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+    for (index, frame) in frames.iter().enumerate() {
+        let mut accepted = false;
+        let counts = allocation_counter::measure(|| {
+            accepted = filter.step(frame.time, &frame.outline).expect("increasing times").accepted;
+        });
+        assert!(accepted);
+        assert!(index < 4 || counts.count_total == 0, "frame {index}: {counts:?}");
     }
 }
