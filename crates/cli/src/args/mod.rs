@@ -6,6 +6,7 @@ mod outline;
 mod pictures;
 mod reproduce;
 mod simulate;
+mod simulated;
 mod values;
 
 use std::path::PathBuf;
@@ -19,6 +20,7 @@ pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{ChannelChoice, ObjectsChoice, PictureOptions};
 pub(crate) use reproduce::{Part, ReproduceArgs};
 pub(crate) use simulate::SimulateArgs;
+pub(crate) use simulated::DisturbanceArgs;
 
 use crate::failure::Failure;
 

@@ -2,13 +2,10 @@ use std::io::Write;
 use std::path::Path;
 
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineWriter, WriteError, WriterOptions, read_shape};
-use freeform_motion::riccati::{AffineMotion, RigidMotion};
-use freeform_motion::sim_camera::{
-    BuiltInShape, Camera, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator,
-};
+use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator};
 
 use super::command_line;
-use crate::args::SimulateArgs;
+use crate::args::{DisturbanceArgs, SimulateArgs};
 use crate::failure::Failure;
 use crate::output::Sink;
 use crate::progress::Progress;
@@ -57,17 +54,16 @@ pub(crate) fn write_sequence(
 }
 
 fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
-    let rigid = RigidMotion { omega: args.omega, b1: args.b[0], b2: args.b[1] };
-    let motion = args.affine.unwrap_or_else(|| AffineMotion::from(rigid));
-    let camera = Camera::new(args.scale).map_err(Failure::unusable)?;
-    let scene = Scene::new(shape(&args.shape)?, motion, camera);
+    let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
+    let scene = Scene::new(shape(&args.shape)?, args.motion_in_space.motion(), camera);
+    let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
     let settings = Settings {
         fps: args.fps,
         length: SequenceLength::Seconds(args.seconds),
         points: args.points,
-        noise: args.noise,
-        occlusion: Occlusion { fraction: args.occlusion, ..Occlusion::default() },
-        outliers: args.outliers,
+        noise,
+        occlusion: Occlusion { fraction: occlusion, ..Occlusion::default() },
+        outliers,
         seed: args.seed,
         ..Settings::default()
     };
