@@ -5,7 +5,7 @@ use std::rc::Rc;
 use freeform_motion::curve_fit::Fit;
 use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate};
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::riccati::MotionModel;
+use freeform_motion::riccati::{CameraScale, MotionModel};
 use nalgebra::Matrix3;
 
 use crate::args::{IdentifyMethod, TrackOptions};
@@ -53,7 +53,7 @@ pub(crate) struct Estimate(MotionEstimate);
 
 impl Estimate {
     /// `None` where a number is not finite: the identifier has diverged.
-    pub(crate) fn of(estimate: MotionEstimate, scale: Option<f64>) -> Option<Self> {
+    pub(crate) fn of(estimate: MotionEstimate, scale: Option<CameraScale>) -> Option<Self> {
         let estimate = scale.map_or(estimate, |scale| estimate.in_space(scale));
         let is_finite = |p: ParameterEstimate| {
             p.value.is_none_or(f64::is_finite) && p.standard_deviation.is_none_or(f64::is_finite)
@@ -67,13 +67,8 @@ impl Estimate {
     }
 
     /// The generator in image lengths, for an estimate that was reported in space.
-    pub(crate) fn generator_in_image(&self, scale: Option<f64>) -> Option<Matrix3<f64>> {
-        let mut generator = self.generator()?;
-        if let Some(scale) = scale {
-            generator[(0, 2)] *= scale;
-            generator[(1, 2)] *= scale;
-        }
-        Some(generator)
+    pub(crate) fn generator_in_image(&self, scale: Option<CameraScale>) -> Option<Matrix3<f64>> {
+        Some(scale.unwrap_or_default().generator_in_image(&self.generator()?))
     }
 
     /// The generator of the motion; `None` where a parameter is not observable.

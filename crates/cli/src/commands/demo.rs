@@ -35,8 +35,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let folder = &args.out;
     fs::create_dir_all(folder)
         .map_err(|error| Failure::unusable(format_args!("{}: {}", folder.display(), plain(&error))))?;
-    let scale = PaperExperiment::SCALE;
-    let scene = PaperExperiment::FLIGHT_BIRD.scene(scale).map_err(Failure::unusable)?;
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).map_err(Failure::unusable)?;
+    let scale = scene.camera().scale();
     let length = SequenceLength::Seconds(SECONDS);
     let camera = Settings { fps: 30.0, length, noise: PaperExperiment::NOISE, ..Settings::default() };
     let simulator = Simulator::new(scene, camera).map_err(Failure::unusable)?;

@@ -3,7 +3,7 @@ use freeform_motion::curve_fit::Outline;
 use freeform_motion::identify::{
     AdaptiveLaw, AdaptiveSettings, FilterSettings, MotionEstimate, MotionFilter, PairChoice, ProcessNoise,
 };
-use freeform_motion::riccati::{AffineMotion, MotionModel};
+use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 use freeform_motion::sim_camera::{Motion, PaperExperiment, Scene, SequenceLength, Settings, Simulator};
 use freeform_motion::{Pipeline, PipelineSettings};
 use rand::{RngExt as _, SeedableRng as _};
@@ -35,7 +35,7 @@ pub(crate) struct Sequence {
     /// In space.
     pub(crate) truth: Motion,
     /// Camera scale f/Z0.
-    pub(crate) scale: f64,
+    pub(crate) scale: CameraScale,
 }
 
 impl Sequence {
@@ -104,7 +104,7 @@ impl Track {
                 let mut settings = settings.as_ref().clone();
                 let names = settings.identify.model.parameter_names();
                 for (value, name) in settings.identify.initial_values.iter_mut().zip(names) {
-                    *value *= if name.starts_with('b') { sequence.scale } else { 1.0 };
+                    *value *= if name.starts_with('b') { sequence.scale.value() } else { 1.0 };
                 }
                 let mut pipeline = Pipeline::new(settings).map_err(Failure::unusable)?;
                 for (time, outline) in &sequence.frames {
@@ -129,7 +129,7 @@ impl Track {
         Ok(track)
     }
 
-    fn take(&mut self, time: f64, estimate: Option<MotionEstimate>, scale: f64) {
+    fn take(&mut self, time: f64, estimate: Option<MotionEstimate>, scale: CameraScale) {
         let Some(estimate) = estimate.filter(|estimate| estimate.parameters().all(|p| p.value.is_some())) else {
             return;
         };
@@ -262,7 +262,11 @@ mod tests {
         });
         let outline = Outline::closed([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| [x, y].into()).into());
         let frame = |k: usize| (k as f64, outline.clone().expect("a triangle"));
-        let sequence = Sequence { frames: (0..errors.len()).map(frame).collect(), truth: truth.into(), scale: 0.1 };
+        let sequence = Sequence {
+            frames: (0..errors.len()).map(frame).collect(),
+            truth: truth.into(),
+            scale: CameraScale::default(),
+        };
         (Track { points: points.collect(), frames: errors.len(), ..Track::default() }, sequence)
     }
 
