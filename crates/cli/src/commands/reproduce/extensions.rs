@@ -72,7 +72,7 @@ fn outcomes(name: &str, title: &str, caption: String, tracks: &[(&str, Track)], 
 }
 
 /// What the last column of the tables counts.
-const LOST: &str = "Without estimate: frames after the first estimate in which the method gives none.";
+const LOST: &str = "Without estimate: frames after the first estimate in which the method gives none, or reports a parameter as unobservable.";
 
 pub(crate) fn affine(run: &Run) -> Result<Section, Failure> {
     let sequence = bird(run, AFFINE.into())?;
@@ -193,7 +193,8 @@ pub(crate) fn changing(run: &Run) -> Result<Section, Failure> {
              b = ({b1} + {B_SWING} sin, {b2} + {B_SWING} cos) in space. The structured law follows with a lag of seconds; the fast law forgets \
              so slowly that it averages over most of a swing. The motion filter has to see from its innovations that the motion \
              changes, or is told how fast it may (process noise {} per square root of a second for omega, {} image lengths per \
-             second for b). A curve is broken where its method gives no estimate: in {}.",
+             second for b). A curve is broken where its method gives no estimate or \
+             reports a parameter as unobservable: in {}.",
             PROCESS_NOISE.rates,
             PROCESS_NOISE.velocities,
             lost.join(", ")
