@@ -5,7 +5,7 @@ use freeform_motion::curve_fit::Degree;
 use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 
 use super::pictures::{PICTURE_INPUTS, PictureOptions};
-use super::values::{camera_scale, degree, motion, positive};
+use super::values::{camera_scale, degree, motion};
 
 const EXAMPLES: &str = "\
 Examples:

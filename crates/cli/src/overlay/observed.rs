@@ -3,6 +3,7 @@ use std::rc::Rc;
 
 use freeform_motion::curve_fit::{Fit, FitSettings, Fitter};
 use freeform_motion::outline_io::OutlineFrame;
+use freeform_motion::riccati::CameraScale;
 
 use super::drawing::{Drawn, Overlay};
 use crate::args::TrackOptions;
@@ -15,7 +16,7 @@ use crate::tracking::Observation;
 pub(crate) struct ObservedOverlay {
     overlay: Overlay,
     curves: CurveFitter,
-    scale: Option<f64>,
+    scale: Option<CameraScale>,
 }
 
 impl ObservedOverlay {

@@ -1,6 +1,6 @@
 use freeform_motion::identify::{BoundaryPoint, CramerRaoBound};
 use freeform_motion::riccati::{AffineMotion, MotionModel};
-use freeform_motion::sim_camera::{Occlusion, Sampling, Scene, SequenceLength, Settings, Shape, Simulator};
+use freeform_motion::sim_camera::{Camera, Occlusion, Sampling, Scene, SequenceLength, Settings, Shape, Simulator};
 use nalgebra::Vector2;
 
 use crate::args::{DisturbanceArgs, EvaluateArgs, MotionChoice, SamplingChoice};
