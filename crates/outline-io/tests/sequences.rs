@@ -4,7 +4,7 @@ use std::io::{BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
 use freeform_outline_io::{
-    Background, Channel, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
+    Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
     PictureSequence, PictureSettings, Ring, Selection, SequenceSettings, TraceError, TraceSettings, TracedFrame,
     trace_mask,
 };
@@ -226,6 +226,27 @@ fn an_object_told_by_a_ring_is_traced_along_the_outer_edge_of_the_ring() {
 }
 
 #[test]
+fn a_ring_that_the_border_cuts_becomes_open_arcs() {
+    let whole = ringed(0.0, 50.0);
+    let settings = TraceSettings { clipping: Clipping::Open, ..dark_ring() };
+    // The disc of radius 32 about (80, 60), cut by one border, by two, and by two with the corner between them.
+    for (left, top, width, height, arcs) in [(70, 0, 90, 120, 1), (53, 0, 107, 87, 2), (65, 45, 95, 75, 1)] {
+        let picture = image::imageops::crop_imm(&whole, left, top, width, height).to_image();
+        let found = trace_mask(&picture, &settings).expect("a ring");
+        assert!(found.touches_border);
+        assert_eq!(found.outline.pieces().filter(|piece| !piece.closed).count(), arcs, "from {left}, {top}");
+        let centre = (80.0 - f64::from(left), f64::from(height) - 60.0 + f64::from(top));
+        let distances: Vec<f64> = found.outline.points().map(|p| (p.x - centre.0).hypot(p.y - centre.1)).collect();
+        let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+        let worst = distances.iter().map(|distance| (distance - mean).abs()).fold(0.0, f64::max);
+        println!("from {left}, {top}: mean radius {mean:.2}, worst deviation {worst:.2}, {} points", distances.len());
+        assert!((mean - 32.1).abs() < 0.8 && worst < 2.5, "from {left}, {top}: {mean}, {worst}");
+    }
+    let gone = image::imageops::crop_imm(&whole, 120, 0, 40, 120).to_image();
+    assert_eq!(trace_mask(&gone, &settings), Err(TraceError::NoRing));
+}
+
+#[test]
 fn a_background_leaves_only_what_moves() {
     // Ground with structure brighter than the object.
     let ground = GrayImage::from_fn(80, 60, |x, y| Luma([if (x / 8 + y / 8) % 2 == 0 { 60 } else { 210 }]));
@@ -276,6 +297,82 @@ fn objects_keep_their_names_while_they_pass_each_other_vanish_and_come_back() {
             let expected = if *name == 0 { 20.0 + along } else { 180.0 - along };
             assert!(*name < 2 && (object.centre.x - expected).abs() < 1.5, "frame {frame}: {name} {}", object.centre);
         }
+    }
+}
+
+/// A square and a triangle of like area at these places, each turned by an angle.
+fn square_and_triangle(square: Option<(f64, f64)>, triangle: Option<(f64, f64)>, turn: f64) -> GrayImage {
+    let (sin, cos) = turn.sin_cos();
+    GrayImage::from_fn(240, 100, |x, y| {
+        let body = |(cx, cy): (f64, f64)| {
+            let (x, y) = (f64::from(x) - cx, f64::from(y) - cy);
+            (cos * x + sin * y, cos * y - sin * x)
+        };
+        let in_square = square.map(body).is_some_and(|(x, y)| x.abs() < 12.0 && y.abs() < 12.0);
+        let in_triangle =
+            triangle.map(body).is_some_and(|(x, y)| y > -12.0 && y < 24.0 && x.abs() < (24.0 - y) * 16.0 / 36.0);
+        Luma([if in_square || in_triangle { 220 } else { 10 }])
+    })
+}
+
+#[test]
+fn objects_of_like_size_keep_their_names_whether_they_pass_through_each_other_or_turn_back() {
+    for turns_back in [false, true] {
+        let along =
+            |frame: u32| if turns_back && frame > 20 { 3.0 * f64::from(40 - frame) } else { 3.0 * f64::from(frame) };
+        let pictures: Vec<GrayImage> = (0..40)
+            .map(|frame| {
+                let (square, triangle) = ((50.0 + along(frame), 46.0), (180.0 - along(frame), 50.0));
+                square_and_triangle(Some(square), Some(triangle), 0.05 * f64::from(frame))
+            })
+            .collect();
+        let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+        let seen = traced(pictures, settings);
+        let first = seen[0].objects.as_ref().expect("both");
+        let triangle = first.iter().find(|(_, object)| object.centre.x > 120.0).expect("the triangle").0;
+        let mut touching = 0;
+        for (frame, traced) in seen.iter().enumerate() {
+            let objects = match &traced.objects {
+                Ok(objects) => objects,
+                Err(error) => {
+                    assert_eq!(error, &TraceError::Touching { objects: 2 }, "frame {frame}");
+                    touching += 1;
+                    continue;
+                }
+            };
+            for (name, object) in objects {
+                let along = along(frame as u32);
+                let expected = if *name == triangle { 180.0 - along } else { 50.0 + along };
+                assert!(
+                    *name < 2 && (object.centre.x - expected).abs() < 3.0,
+                    "turns back: {turns_back}, frame {frame}: {name} at {}, not {expected}",
+                    object.centre
+                );
+            }
+        }
+        assert!((3..15).contains(&touching), "{touching}");
+    }
+}
+
+#[test]
+fn objects_that_come_back_elsewhere_are_told_by_their_shape() {
+    // Where each was when they were last seen, the other comes back.
+    let pictures: Vec<GrayImage> = (0..16)
+        .map(|frame| match frame {
+            0..6 => square_and_triangle(Some((100.0, 50.0)), Some((145.0, 50.0)), 0.0),
+            6..10 => square_and_triangle(None, None, 0.0),
+            _ => square_and_triangle(Some((145.0, 50.0)), Some((100.0, 50.0)), 0.3),
+        })
+        .collect();
+    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+    let seen = traced(pictures, settings);
+    let place = |frame: usize, name: u64| {
+        let objects = seen[frame].objects.as_ref().expect("objects");
+        objects.iter().find(|(other, _)| *other == name).expect("both names").1.centre.x
+    };
+    for (name, other) in [(0, 1), (1, 0)] {
+        let (before, after) = (place(0, other), place(15, name));
+        assert!((after - before).abs() < 3.0, "object {name} at {after}, not {before}");
     }
 }
 
