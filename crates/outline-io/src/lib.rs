@@ -31,6 +31,7 @@ mod csv_writer;
 mod error;
 mod field;
 mod frame;
+mod gif_interval;
 mod identity;
 mod isoline;
 mod morphology;
