@@ -1,8 +1,8 @@
 //! The identifier of one object, whichever method it is.
 use freeform_motion::curve_fit::{Fit, Outline};
 use freeform_motion::identify::{
-    CurveFilterSettings, CurveStep, FilterSettings, FilterStep, MapUpdate, MotionEstimate, MotionFilter, MotionState, Phase,
-    ProcessNoise, WholeCurveFilter,
+    CurveFilterSettings, CurveStep, FilterSettings, FilterStep, MapUpdate, MotionEstimate, MotionFilter, MotionState,
+    Phase, ProcessNoise, WholeCurveFilter,
 };
 use freeform_motion::{Pipeline, PipelineSettings};
 
@@ -227,7 +227,10 @@ fn why_rejected(step: &FilterStep, settings: &FilterSettings) -> String {
             format!("does not go on from the frames before it, squared innovation {:.0}", update.innovation)
         }
         Some(MapUpdate { noise: Some(noise), .. }) => {
-            format!("its points scatter by {} about the outline known, more than those of other frames", significant(noise, 2))
+            format!(
+                "its points scatter by {} about the outline known, more than those of other frames",
+                significant(noise, 2)
+            )
         }
         Some(_) | None => "the object was not found".to_owned(),
     }

@@ -101,10 +101,7 @@ pub(crate) struct Animation {
 
 impl Animation {
     /// Reads the header.
-    pub(crate) fn open(
-        mut source: impl BufRead + Seek + 'static,
-        channel: Channel,
-    ) -> Result<Self, PictureErrorKind> {
+    pub(crate) fn open(mut source: impl BufRead + Seek + 'static, channel: Channel) -> Result<Self, PictureErrorKind> {
         let interval = constant_interval(&mut source)?;
         let mut decoder = GifDecoder::new(source).map_err(damaged)?;
         let (width, height) = decoder.dimensions();

@@ -78,6 +78,17 @@ pub(crate) struct PictureOptions {
 }
 
 impl PictureOptions {
+    /// Where the origin of the coordinates lies, and the unit of velocities in them, for reading.
+    pub(crate) fn origin_and_speed_unit(&self) -> (&'static str, String) {
+        let origin = if self.y_down { "the picture's upper left corner" } else { "the picture's lower left corner" };
+        let unit = match self.pixel_size {
+            1.0 if self.pixel_aspect.is_some_and(|ratio| ratio != 1.0) => "in pixel heights/s".to_owned(),
+            1.0 => "in pixels/s".to_owned(),
+            size => format!("in lengths/s, a pixel {size} high"),
+        };
+        (origin, unit)
+    }
+
     /// The options as a report lists them.
     pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
         let found = match (self.ring, &self.background, self.threshold) {

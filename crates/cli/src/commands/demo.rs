@@ -8,7 +8,7 @@ use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Sim
 
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
-use super::{FittedOutline, History, command_line};
+use super::{FittedOutline, History, LeftOut, command_line};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::failure::{Failure, plain, warn};
 use crate::identifier::pipeline_settings;
@@ -82,7 +82,9 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         settings: listed,
         findings: [&filter, &adaptive].map(Found::findings).into(),
         truth: Some(&truth),
+        no_motion: None,
         read_error: None,
+        left_out: &LeftOut::default(),
     };
     WholeFile::write(&folder.join(REPORT), &write_report(&report))?;
 

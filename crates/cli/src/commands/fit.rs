@@ -68,9 +68,9 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
                 reasons.push(reason);
                 continue;
             }
-            Ok(Item::Missing { reason, is_damage }) => {
-                damaged |= is_damage;
-                reasons.push(reason);
+            Ok(Item::Missing(missing)) => {
+                damaged |= missing.seen_in.is_none();
+                reasons.push(missing.reason);
                 continue;
             }
             Err(error) => {

@@ -4,7 +4,7 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
-use crate::commands::History;
+use crate::commands::{History, LeftOut};
 use crate::plot::{escape, panel_svg};
 use crate::tracking::ObjectResult;
 
@@ -20,8 +20,11 @@ pub(crate) struct Report<'a> {
     /// One for each method.
     pub(crate) findings: Vec<Findings<'a>>,
     pub(crate) truth: Option<&'a AffineMotion>,
+    /// Why no motion was found, where none was.
+    pub(crate) no_motion: Option<&'a str>,
     /// What ended the reading before the end of the input.
     pub(crate) read_error: Option<&'a str>,
+    pub(crate) left_out: &'a LeftOut,
 }
 
 /// What one method found.
@@ -38,6 +41,9 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
     if let Some(first) = report.findings.first() {
         let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&summary(first.results)));
     }
+    if let Some(reason) = report.no_motion {
+        let _ = writeln!(body, "<p class=\"alert\">No motion was identified. {}</p>", escape(reason));
+    }
     if let Some(error) = report.read_error {
         let error = escape(error);
         let _ = writeln!(body, "<p class=\"alert\">The input could not be read to its end: {error}</p>");
@@ -48,8 +54,23 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
             write_object(&mut body, result, history, report.truth);
         }
     }
+    write_left_out(&mut body, report.left_out);
     write_settings(&mut body, &report.settings, &report.command);
     document(&title, &body)
+}
+
+/// Pictures without an outline.
+fn write_left_out(body: &mut String, left_out: &LeftOut) {
+    let LeftOut { count, reasons } = left_out;
+    if *count == 0 {
+        return;
+    }
+    let _ = writeln!(body, "<h2>Pictures without an outline: {count}</h2>\n<ul>");
+    reasons.iter().for_each(|reason| {
+        let _ = writeln!(body, "<li>{}</li>", escape(reason));
+    });
+    let more = count - reasons.len() as u64;
+    let _ = if more > 0 { writeln!(body, "<li>{more} more</li>\n</ul>") } else { writeln!(body, "</ul>") };
 }
 
 /// The settings as a table and the command as it was given.
