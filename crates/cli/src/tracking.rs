@@ -50,7 +50,7 @@ impl Observation {
 /// What comes of reading on.
 pub(crate) enum Event<'a> {
     /// A frame of an object, as far as it could be read, and the picture that it was seen in, if it was.
-    Observed { observation: Observation, frame: Option<&'a OutlineFrame>, seen_in: Option<&'a Rc<SeenIn>> },
+    Observed { observation: &'a Observation, frame: Option<&'a OutlineFrame>, seen_in: Option<&'a Rc<SeenIn>> },
     /// A picture without an outline.
     Missing(&'a Missing),
 }
@@ -150,11 +150,15 @@ impl Tracking {
             match item {
                 Ok(Item::Outline(frame, seen_in)) => {
                     let observation = self.push(&frame)?;
-                    observe(Event::Observed { observation, frame: Some(&frame), seen_in: seen_in.as_ref() })?;
+                    observe(Event::Observed {
+                        observation: &observation,
+                        frame: Some(&frame),
+                        seen_in: seen_in.as_ref(),
+                    })?;
                 }
                 Ok(Item::Rejected { object, frame, reason }) => {
                     let observation = self.reject(object, frame, reason)?;
-                    observe(Event::Observed { observation, frame: None, seen_in: None })?;
+                    observe(Event::Observed { observation: &observation, frame: None, seen_in: None })?;
                 }
                 Ok(Item::Missing(missing)) => {
                     // The reason of a single picture is told in the end.

@@ -20,11 +20,11 @@ pub struct AffineMomentInvariants([f64; 6]);
 
 impl AffineMomentInvariants {
     /// Of the polygon through the points, either way round; `None` where it encloses nothing.
-    pub(crate) fn of(points: impl Iterator<Item = Point2<f64>> + Clone) -> Option<Self> {
-        let area = AreaAndCentre::of(points.clone());
+    pub(crate) fn of(points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> Option<Self> {
+        let area = AreaAndCentre::of(points);
         // Integrals of homogeneous functions over the triangles between the centre and the edges.
         let integrals = |f: &mut dyn FnMut(Vector2<f64>, f64)| {
-            for (p, q) in edges(points.clone()) {
+            for (p, q) in edges(points) {
                 let (p, q) = (p - area.centre, q - area.centre);
                 let cross = p.perp(&q) / area.signed_area;
                 GAUSS.iter().for_each(|(place, weight)| f(p + (q - p) * *place, cross * weight));
@@ -72,7 +72,7 @@ pub(crate) struct AreaAndCentre {
 }
 
 impl AreaAndCentre {
-    pub(crate) fn of(points: impl Iterator<Item = Point2<f64>> + Clone) -> Self {
+    pub(crate) fn of(points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> Self {
         let origin = points.clone().next().unwrap_or_else(Point2::origin);
         let (mut doubled, mut moment) = (0.0, Vector2::zeros());
         for (p, q) in edges(points) {
@@ -86,8 +86,8 @@ impl AreaAndCentre {
     }
 }
 
-fn edges(points: impl Iterator<Item = Point2<f64>> + Clone) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
-    points.clone().zip(points.cycle().skip(1))
+fn edges(points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> {
+    points.clone().zip(points.clone().cycle().skip(1))
 }
 
 #[cfg(test)]
@@ -103,7 +103,7 @@ mod tests {
     }
 
     fn of(points: &[Point2<f64>]) -> [f64; 6] {
-        AffineMomentInvariants::of(points.iter().copied()).expect("an area").values()
+        AffineMomentInvariants::of(&points.iter().copied()).expect("an area").values()
     }
 
     #[test]
@@ -144,7 +144,7 @@ mod tests {
     }
 
     /// Whether a point lies within a closed polygon.
-    fn is_within(p: &Point2<f64>, polygon: impl Iterator<Item = Point2<f64>> + Clone) -> bool {
+    fn is_within(p: &Point2<f64>, polygon: &(impl Iterator<Item = Point2<f64>> + Clone)) -> bool {
         let crossed = edges(polygon)
             .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x));
         crossed.count() % 2 == 1
@@ -158,7 +158,7 @@ mod tests {
         let at = |k: i32, low: f64, length: f64| low + length * (f64::from(k) + 0.5) / f64::from(n);
         let samples: Vec<_> = (0..n)
             .flat_map(|i| (0..n).map(move |j| Point2::new(at(i, 50.0, 3.0), at(j, -20.0, 2.0))))
-            .filter(|p| is_within(p, points.iter().copied()))
+            .filter(|p| is_within(p, &points.iter().copied()))
             .collect();
         let cell = 6.0 / f64::from(n * n);
         let centre = samples.iter().map(|p| p.coords).sum::<Vector2<f64>>() / samples.len() as f64;
@@ -196,6 +196,6 @@ mod tests {
     #[test]
     fn a_polygon_without_area_has_none() {
         let line = [0.0, 1.0, 2.0].map(|x| Point2::new(x, x));
-        assert_eq!(AffineMomentInvariants::of(line.into_iter()), None);
+        assert_eq!(AffineMomentInvariants::of(&line.into_iter()), None);
     }
 }

@@ -16,8 +16,8 @@ const LARGEST_GROWTH: f64 = 2.0;
 /// Ratio of areas up to which a sighting may be of one object alone where several are expected.
 const LARGEST_GROWTH_OF_ONE: f64 = 1.25;
 
-/// Distance of the affine moment invariants from which shapes are different; those of one object change by less than a
-/// tenth of it from frame to frame where it has a thousand pixels.
+/// Distance of the affine moment invariants from which shapes are different. Between pictures of one object they change
+/// less: by up to 0.08 for a robot of 16,000 pixels, by up to 0.21 for a thin bolt of 4,500 with a blurred edge.
 const OTHER_SHAPE: f64 = 0.5;
 
 /// Which objects of a picture are taken.

@@ -161,8 +161,8 @@ impl Window<'_> {
             points.reverse();
         }
         let polygon = points.iter().map(|(point, _)| *point);
-        let AreaAndCentre { signed_area: area, centre } = AreaAndCentre::of(polygon.clone());
-        let invariants = AffineMomentInvariants::of(polygon);
+        let AreaAndCentre { signed_area: area, centre } = AreaAndCentre::of(&polygon);
+        let invariants = AffineMomentInvariants::of(&polygon);
         let outline = match settings.clipping {
             Clipping::Open if touches_border => visible_arcs(points)?,
             _ => Outline::closed(points.into_iter().map(|(point, _)| point).collect())?,

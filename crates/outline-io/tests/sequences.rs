@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use freeform_outline_io::{
     Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
     PictureSequence, PictureSettings, Ring, Selection, SequenceSettings, TraceError, TraceSettings, TracedFrame,
-    trace_mask,
+    TracedOutline, trace_mask,
 };
 use image::codecs::gif::GifEncoder;
 use image::{Delay, DynamicImage, Frame, Luma, Rgb, RgbImage};
@@ -421,6 +421,16 @@ fn data(name: &str) -> Option<PathBuf> {
     path.exists().then_some(path)
 }
 
+/// How much the invariants change from one outline to the next that is as large.
+fn changes_of_shape(found: &[TracedOutline]) -> String {
+    let alike = found.windows(2).filter(|pair| (pair[1].area / pair[0].area).ln().abs() < 0.1);
+    let change = |pair: &[TracedOutline]| Some(pair[0].invariants?.distance(&pair[1].invariants?));
+    let mut changes: Vec<f64> = alike.filter_map(change).collect();
+    changes.sort_by(f64::total_cmp);
+    let share = |part: usize| changes[(changes.len() - 1) * part / 10];
+    format!("change of shape: median {:.3}, 9 of 10 below {:.3}, largest {:.3}", share(5), share(9), share(10))
+}
+
 #[test]
 fn the_robot_is_found_in_raw_frames_by_its_dark_ring() {
     let Some(folder) = data("sequences/microrobot_h/frames") else { return };
@@ -430,10 +440,12 @@ fn the_robot_is_found_in_raw_frames_by_its_dark_ring() {
     let files: Vec<PathBuf> = chosen.map(|frame| folder.join(format!("{frame:04}.jpg"))).collect();
     let sequence = PictureSequence::open(&files, settings).expect("frames");
     let settings = PictureSettings { trace: dark_ring(), ..PictureSettings::default() };
-    let areas: Vec<f64> = PictureOutlines::new(sequence, settings)
+    let found: Vec<TracedOutline> = PictureOutlines::new(sequence, settings)
         .expect("settings")
-        .filter_map(|traced| Some(traced.expect("a frame").objects.ok()?[0].1.area))
+        .filter_map(|traced| Some(traced.expect("a frame").objects.ok()?.remove(0).1))
         .collect();
+    println!("{}", changes_of_shape(&found));
+    let areas: Vec<f64> = found.iter().map(|robot| robot.area).collect();
     let found = areas.iter().filter(|area| (15_000.0..17_000.0).contains(*area)).count();
     println!("{found} of {} frames", files.len());
     assert!(found + 1 >= files.len(), "{areas:?}");
@@ -444,13 +456,19 @@ fn the_bolt_moves_evenly_while_it_is_in_view() {
     let Some(path) = data("sequences/bolt/bolt.gif") else { return };
     assert!(File::open(&path).is_ok());
     let outlines = PictureOutlines::new(open(&[path]), PictureSettings::default()).expect("settings");
-    let seen: Vec<(u64, f64, bool)> = outlines
+    let seen: Vec<(f64, TracedOutline)> = outlines
         .filter_map(|traced| {
             let traced = traced.expect("a frame");
             let (_, bolt) = traced.objects.ok()?.into_iter().next()?;
-            (bolt.area > 1000.0).then_some((traced.frame.frame, bolt.centre.x, bolt.touches_border))
+            (!bolt.touches_border).then_some((traced.frame.time, bolt))
         })
         .collect();
-    println!("{seen:?}");
-    assert!(seen.iter().filter(|(_, _, clipped)| !clipped).count() > 15);
+    assert!(seen.len() > 15);
+    let (times, bolts): (Vec<f64>, Vec<TracedOutline>) = seen.into_iter().unzip();
+    println!("{}", changes_of_shape(&bolts));
+    let between: Vec<[f64; 2]> =
+        (1..times.len()).map(|k| [times[k] - times[k - 1], bolts[k].centre.x - bolts[k - 1].centre.x]).collect();
+    // The file has delays of 6 and 7 hundredths of a second.
+    assert!(between.iter().all(|[seconds, _]| (seconds * 15.0 - 1.0).abs() < 0.002), "{between:?}");
+    assert!(between.iter().all(|[_, shift]| (shift / 23.2 - 1.0).abs() < 0.04), "{between:?}");
 }

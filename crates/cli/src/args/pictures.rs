@@ -80,7 +80,7 @@ pub(crate) struct PictureOptions {
 impl PictureOptions {
     /// Where the origin of the coordinates lies, and the unit of velocities in them, for reading.
     pub(crate) fn origin_and_speed_unit(&self) -> (&'static str, String) {
-        let origin = if self.y_down { "the picture's upper left corner" } else { "the picture's lower left corner" };
+        let origin = if self.y_down { "the upper left corner" } else { "the lower left corner" };
         let unit = match self.pixel_size {
             1.0 if self.pixel_aspect.is_some_and(|ratio| ratio != 1.0) => "in pixel heights/s".to_owned(),
             1.0 => "in pixels/s".to_owned(),

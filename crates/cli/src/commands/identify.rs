@@ -141,13 +141,13 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
             }
         };
         if let (Some(trace), Some(path)) = (&mut trace, &args.trace) {
-            trace.write(&observation).map_err(|error| file_failure(path, &error))?;
+            trace.write(observation).map_err(|error| file_failure(path, &error))?;
         }
         if let Some((_, trajectory)) = &mut trajectory {
-            trajectory.take(&observation);
+            trajectory.take(observation);
         }
         if keeps_history {
-            History::take(&mut histories, &observation, frame, &mut curves);
+            History::take(&mut histories, observation, frame, &mut curves);
         }
         Ok(())
     })?;

@@ -55,7 +55,7 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
             Item::Outline(frame, seen_in) => {
                 // The header waits for the first outline, so that nothing is printed where there is none.
                 if let Some(sink) = sink.take() {
-                    let options = WriterOptions { arc_column: true, object_column };
+                    let options = WriterOptions { arc_column: true, object_column, resolution: None };
                     match OutlineWriter::new(sink, options) {
                         Ok(new) => writer = Some(new),
                         Err(error) => return Ok(Err(error)),

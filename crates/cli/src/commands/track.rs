@@ -25,7 +25,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         let Event::Observed { observation, .. } = event else { return Ok(()) };
         accepted += u64::from(observation.is_accepted());
         first_reason = first_reason.take().or_else(|| observation.rejected_because.clone());
-        let line = track_line(&observation).map_err(Failure::unusable)?;
+        let line = track_line(observation).map_err(Failure::unusable)?;
         writeln!(sink, "{line}").and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
     })?;
     if let Some(overlay) = overlay {
