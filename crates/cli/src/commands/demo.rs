@@ -80,6 +80,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         title: "The flight bird: motion from nothing but its outlines".to_owned(),
         command: command_line(),
         settings: listed,
+        meaning_of_b: format!("velocity at the origin of the coordinates, in space: over f/Z0 = {scale}"),
         findings: [&filter, &adaptive].map(Found::findings).into(),
         truth: Some(&truth),
         no_motion: None,

@@ -160,7 +160,6 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
     if let Some(path) = &args.report {
         let mut listed = settings(&args.options, &name);
-        listed.push(("Velocity b", meaning_of_b(args, &input)));
         if input.has_pictures() {
             listed.extend(args.pictures.listed());
         }
@@ -169,6 +168,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
             title: format!("Motion in {name}"),
             command: command_line(),
             settings: listed,
+            meaning_of_b: meaning_of_b(args, &input),
             findings: vec![Findings { results: &results, histories: &histories }],
             truth: truth.as_ref(),
             no_motion: reason.filter(|_| !is_found),

@@ -47,9 +47,8 @@ pub(crate) fn write_sequence(
         SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale: simulator.scene().camera().scale() };
     writeln!(sink, "# {}", command_line()).and_then(|()| writeln!(sink, "# {truth}")).map_err(write)?;
     let arc_column = simulator.settings().occlusion.fraction > 0.0;
-    // Shapes have unit size; far below the noise there is nothing to tell.
-    let size = simulator.scene().camera().scale();
-    let resolution = (simulator.settings().noise > 1e3 * RESOLUTION * size).then_some(RESOLUTION);
+    // Objects have about unit size in the image; far below the noise there is nothing to tell.
+    let resolution = (simulator.settings().noise > 1e3 * RESOLUTION).then_some(RESOLUTION);
     let options = WriterOptions { arc_column, resolution, ..WriterOptions::default() };
     let mut writer = OutlineWriter::new(sink, options).map_err(SequenceError::Write)?;
     let progress = Progress::of_frames(Some(simulator.frame_count() as u64), false);

@@ -17,6 +17,8 @@ pub(crate) struct Report<'a> {
     /// The command as it was given.
     pub(crate) command: String,
     pub(crate) settings: Vec<(&'static str, String)>,
+    /// Unit and origin of the velocity b.
+    pub(crate) meaning_of_b: String,
     /// One for each method.
     pub(crate) findings: Vec<Findings<'a>>,
     pub(crate) truth: Option<&'a AffineMotion>,
@@ -51,7 +53,7 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
     for Findings { results, histories } in &report.findings {
         for result in *results {
             let history = histories.iter().find(|history| history.object == result.object);
-            write_object(&mut body, result, history, report.truth);
+            write_object(&mut body, result, history, report);
         }
     }
     write_left_out(&mut body, report.left_out);
@@ -99,7 +101,8 @@ fn summary(results: &[ObjectResult]) -> String {
     format!("{} object(s), {frames} frames, {rejected} rejected", results.len())
 }
 
-fn write_object(body: &mut String, result: &ObjectResult, history: Option<&History>, truth: Option<&AffineMotion>) {
+fn write_object(body: &mut String, result: &ObjectResult, history: Option<&History>, report: &Report<'_>) {
+    let truth = report.truth;
     let object = escape(&result.object);
     let _ = writeln!(body, "<h2>Object {object}: {} motion, {} method</h2>", result.motion, result.method.name());
     let rows = parameter_rows(result.motion, result.estimate.as_ref(), truth);
@@ -107,7 +110,7 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
     body.push_str("<div class=\"scroll\"><table>\n");
     write_row(body, "th", COLUMNS.iter().take(count).copied());
     rows.iter().for_each(|row| write_row(body, "td", row.iter().map(String::as_str)));
-    body.push_str("</table></div>\n");
+    let _ = writeln!(body, "</table></div>\n<p class=\"soft\">b: {}</p>", escape(&report.meaning_of_b));
     if !result.warnings.is_empty() {
         body.push_str("<p class=\"alert\">Warnings</p>\n<ul>\n");
         result.warnings.iter().for_each(|warning| {

@@ -241,7 +241,9 @@ fn the_table_says_where_b_is_and_in_which_unit() {
         ("--pixel-size 0.5 --y-down", "upper left corner, in lengths/s, a pixel 0.5 high\n"),
         ("--pixel-aspect 1.14 --scale 2", "corner, in pixel heights/s, over f/Z0 = 2\n"),
     ] {
-        let table = succeed(&format!("identify {frames} {options}"), "");
+        let report = folder.path().join("report.html");
+        let table = succeed(&format!("identify {frames} {options} --report {}", report.display()), "");
+        assert!(std::fs::read_to_string(report).expect("a report").contains(note.trim_end()), "{note}");
         assert!(table.ends_with(note), "{table}");
         assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
     }
