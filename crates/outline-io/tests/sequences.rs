@@ -270,6 +270,21 @@ fn a_background_leaves_only_what_moves() {
     assert_eq!(refused[0].objects, Err(TraceError::BackgroundSize { width: 3, height: 3 }));
 }
 
+#[test]
+fn pictures_of_changing_size_have_a_median_of_their_own_size() {
+    let of_size = |width: u32, centre: f64| {
+        GrayImage::from_fn(width, 60, |x, y| {
+            Luma([if (f64::from(x) - centre).hypot(f64::from(y) - 30.0) < 8.0 { 200 } else { 20 }])
+        })
+    };
+    let pictures = (0..30).map(|frame| of_size(if frame < 12 { 80 } else { 50 }, 10.0 + f64::from(frame)));
+    let settings = PictureSettings { background: Some(Background::RunningMedian(5)), ..PictureSettings::default() };
+    let seen = traced(pictures.collect(), settings);
+    let wrong_size = |frame: &TracedFrame| matches!(frame.objects, Err(TraceError::BackgroundSize { .. }));
+    assert!(seen.iter().filter(|frame| wrong_size(frame)).count() <= 5);
+    assert!(seen[29].objects.is_ok() && seen[0].objects.is_ok());
+}
+
 /// Discs at these places.
 fn discs(places: &[(f64, f64, f64)]) -> GrayImage {
     GrayImage::from_fn(200, 100, |x, y| {

@@ -78,6 +78,11 @@ pub(crate) struct PictureOptions {
 }
 
 impl PictureOptions {
+    /// Whether all objects are taken, so that their names tell them apart.
+    pub(crate) fn follows_all(&self) -> bool {
+        self.objects == ObjectsChoice::All
+    }
+
     /// Where the origin of the coordinates lies, and the unit of velocities in them, for reading.
     pub(crate) fn origin_and_speed_unit(&self) -> (&'static str, String) {
         let origin = if self.y_down { "the upper left corner" } else { "the lower left corner" };

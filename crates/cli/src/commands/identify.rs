@@ -123,7 +123,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         Some(path) => Some((WholeFile::create(path)?, Trajectory::default())),
         None => None,
     };
-    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &input, &args.options)?;
+    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let mut curves = CurveFitter::new(&args.options)?;
     let keeps_history = args.svg.is_some() || args.report.is_some();

@@ -44,7 +44,7 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
     let progress = Progress::of_frames(input.frame_count(), args.quiet);
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
-    let object_column = args.pictures.objects == crate::args::ObjectsChoice::All;
+    let object_column = args.pictures.follows_all();
     for item in input {
         // What came after Ctrl-C may be cut short.
         if interrupt::was_asked_for() {
@@ -66,7 +66,8 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
                 }
                 outcome.outlines += 1;
                 if let (Some(overlay), Some(seen_in)) = (&mut overlay, &seen_in) {
-                    let drawn = Drawn { outline: &frame.outline, accepted: true, fit: None, generator: None };
+                    let name = object_column.then_some(frame.object.as_str());
+                    let drawn = Drawn { outline: &frame.outline, name, accepted: true, fit: None, generator: None };
                     overlay.draw(seen_in, &drawn)?;
                 }
             }

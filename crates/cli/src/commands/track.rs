@@ -12,7 +12,7 @@ use crate::tracking::{Event, Tracking};
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut tracking = Tracking::new(&args.options)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
-    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &input, &args.options)?;
+    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::stdout();

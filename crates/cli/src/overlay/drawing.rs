@@ -6,7 +6,7 @@ use image::Rgb;
 use nalgebra::{Matrix3, Point2};
 
 use super::canvas::Canvas;
-use super::lettering::write_word;
+use super::lettering::write_words;
 use super::target::Target;
 use crate::commands::Parts;
 use crate::failure::Failure;
@@ -31,6 +31,8 @@ const CROSS: f64 = 4.0;
 /// What is drawn of one object in one frame.
 pub(crate) struct Drawn<'a> {
     pub(crate) outline: &'a Outline,
+    /// Its name, where several are followed.
+    pub(crate) name: Option<&'a str>,
     pub(crate) accepted: bool,
     /// The curve fitted to the outline and what it is made of.
     pub(crate) fit: Option<(&'a Fit, Option<&'a Parts>)>,
@@ -56,9 +58,9 @@ impl Overlay {
         Ok(())
     }
 
-    /// Says on a picture that there is no object in it.
+    /// Says on a picture that it gave no outline.
     pub(crate) fn draw_nothing(&mut self, seen_in: &SeenIn) -> Result<(), Failure> {
-        write_word(self.canvas(seen_in)?, [0.0; 2], "no object", REJECTED);
+        write_words(self.canvas(seen_in)?, [0.0; 2], "no outline", REJECTED);
         Ok(())
     }
 
@@ -101,11 +103,10 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
             canvas.line(pixel(last), pixel(first), colour);
         }
     }
-    if !drawn.accepted {
-        let corners = [area.low, area.high].map(|corner| pixel(&corner));
-        let upper_left = [0, 1].map(|axis| corners[0][axis].min(corners[1][axis]));
-        write_word(canvas, upper_left, "rejected", REJECTED);
-    }
+    let words: Vec<&str> = drawn.name.into_iter().chain((!drawn.accepted).then_some("rejected")).collect();
+    let corners = [area.low, area.high].map(|corner| pixel(&corner));
+    let upper_left = [0, 1].map(|axis| corners[0][axis].min(corners[1][axis]));
+    write_words(canvas, upper_left, &words.join(" "), colour);
     if let Some((_, Some(parts))) = drawn.fit {
         let related = parts.related_points.as_slice().iter().map(|related| related.point);
         related.filter(|point| area.widened(1.0).contains(point)).for_each(|p| canvas.cross(pixel(&p), CROSS, RELATED));

@@ -4,7 +4,7 @@ use freeform_motion::curve_fit::{Fit, FitSettings, Fitter};
 use freeform_motion::outline_io::OutlineFrame;
 
 use super::drawing::{Drawn, Overlay};
-use crate::args::TrackOptions;
+use crate::args::{PictureOptions, TrackOptions};
 use crate::commands::FittedOutline;
 use crate::failure::Failure;
 use crate::input::{Input, Missing};
@@ -15,17 +15,24 @@ pub(crate) struct ObservedOverlay {
     overlay: Overlay,
     curves: CurveFitter,
     scale: Option<f64>,
+    /// Whether the objects are named.
+    names: bool,
 }
 
 impl ObservedOverlay {
     /// Drawings for a folder or a GIF, if they are asked for. Refused where there is nothing to draw on.
-    pub(crate) fn open(path: Option<&Path>, input: &Input, options: &TrackOptions) -> Result<Option<Self>, Failure> {
+    pub(crate) fn open(
+        path: Option<&Path>,
+        input: &Input,
+        options: &TrackOptions,
+        pictures: &PictureOptions,
+    ) -> Result<Option<Self>, Failure> {
         let Some(path) = path else { return Ok(None) };
         if !input.has_pictures() {
             return Err(Failure::unusable(format_args!("{}: --overlay draws on pictures, this is CSV", input.name)));
         }
         let (overlay, curves) = (Overlay::open(path)?, CurveFitter::new(options)?);
-        Ok(Some(Self { overlay, curves, scale: options.scale }))
+        Ok(Some(Self { overlay, curves, scale: options.scale, names: pictures.follows_all() }))
     }
 
     /// Draws one object, or a picture without any.
@@ -40,6 +47,7 @@ impl ObservedOverlay {
         let fitted = self.curves.of(observation, frame).map(|fit| FittedOutline::new(frame, fit));
         let drawn = Drawn {
             outline: &frame.outline,
+            name: self.names.then_some(frame.object.as_str()),
             accepted: observation.is_accepted(),
             fit: fitted.as_ref().map(|fitted| (&fitted.fit, fitted.parts.as_ref().ok())),
             generator: observation.estimate.and_then(|estimate| estimate.generator_in_image(self.scale)),
