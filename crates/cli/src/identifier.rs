@@ -152,7 +152,10 @@ fn filter_warnings(
     match (phase, last_known) {
         (Phase::Lost, _) => warnings.push("the object was lost at the end".to_owned()),
         (Phase::Acquiring, Some((time, _))) => {
-            warnings.push(format!("the object was looked for again at the end; this is its motion at {time} s"));
+            warnings.push(format!(
+                "the object was looked for again at the end; this is its motion at {} s",
+                significant(*time, 4)
+            ));
         }
         _ => {}
     }
