@@ -24,6 +24,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
     }
 }
 
+/// Coordinates of outlines with noise are written to this share of the RMS radius.
+const RESOLUTION: f64 = 1e-7;
+
 /// Why a sequence could not be written.
 pub(crate) enum SequenceError {
     Write(WriteError),
@@ -41,7 +44,9 @@ pub(crate) fn write_sequence(
         SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale: simulator.scene().camera().scale() };
     writeln!(sink, "# {}", command_line()).and_then(|()| writeln!(sink, "# {truth}")).map_err(write)?;
     let arc_column = simulator.settings().occlusion.fraction > 0.0;
-    let options = WriterOptions { arc_column, ..WriterOptions::default() };
+    // Objects have about unit size in the image; far below the noise there is nothing to tell.
+    let resolution = (simulator.settings().noise > 1e3 * RESOLUTION).then_some(RESOLUTION);
+    let options = WriterOptions { arc_column, resolution, ..WriterOptions::default() };
     let mut writer = OutlineWriter::new(sink, options).map_err(SequenceError::Write)?;
     let progress = Progress::of_frames(Some(simulator.frame_count() as u64), false);
     for Frame { index, time, outline, .. } in simulator.frames() {
