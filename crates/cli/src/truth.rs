@@ -48,7 +48,7 @@ impl fmt::Display for SimulatedMotion {
             Some(_) => write!(f, "omega={a2}")?,
             None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
         }
-        write!(f, " b1={b1} b2={b2} scale={}", self.scale.value())
+        write!(f, " b1={b1} b2={b2} scale={}", self.scale)
     }
 }
 

@@ -19,6 +19,12 @@ impl Default for CameraScale {
     }
 }
 
+impl std::fmt::Display for CameraScale {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
 impl CameraScale {
     /// From `f / Z0`, focal length over distance: any finite positive number.
     ///

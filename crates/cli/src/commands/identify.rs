@@ -257,7 +257,7 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
 
 /// The settings as a report lists them.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
-    let scale = options.scale.map_or_else(|| "none: b in the image".to_owned(), |scale| scale.value().to_string());
+    let scale = options.scale.map_or_else(|| "none: b in the image".to_owned(), |scale| scale.to_string());
     let mut listed = vec![
         ("Input", input.to_owned()),
         ("Motion model", options.motion.model().to_string()),
