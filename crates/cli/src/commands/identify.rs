@@ -7,6 +7,7 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::{FittedOutline, command_line};
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::batch::Pace;
 use crate::failure::{Failure, plain, warn};
 use crate::identifier::{curve_settings, filter_settings, pipeline_settings, process_noise};
 use crate::input::Input;
@@ -117,7 +118,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let mut curves = CurveFitter::new(&args.options)?;
     let keeps_history = args.svg.is_some() || args.report.is_some();
     let mut histories = Vec::new();
-    let failure = tracking.read(&mut input, args.quiet, |observation, frame, seen_in| {
+    let failure = tracking.read(&mut input, Pace::Ahead, args.quiet, |observation, frame, seen_in| {
         if let (Some(trace), Some(path)) = (&mut trace, &args.trace) {
             trace.write(&observation).map_err(|error| file_failure(path, &error))?;
         }
