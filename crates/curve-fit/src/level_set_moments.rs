@@ -78,7 +78,7 @@ fn accumulate<S: Simd, const DEGREE: usize, const POWERS: usize, const MOMENTS: 
 ) {
     let LevelSetKernel { offset, data, sums: out, .. } = kernel;
     let zero = simd.splat_f64s(0.0);
-    let mut sets = [MomentSums::<S, POWERS, MOMENTS> { lanes: [zero; MOMENTS] }; 3];
+    let mut sets = [MomentSums::<S, POWERS, MOMENTS>::new(simd); LEVELS.len()];
     let mut powers = Powers::new(simd);
     let mut block = [[zero; BLOCK]; 4];
     let mut moved = [[zero; BLOCK]; 2];

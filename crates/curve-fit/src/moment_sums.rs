@@ -87,10 +87,10 @@ impl<S: Simd, const POWERS: usize, const MOMENTS: usize> MomentSums<S, POWERS, M
                 }
             }
         }
-        for row in 0..ROWS {
-            for column in 0..COLUMNS {
+        for (row, sums) in tile.into_iter().enumerate() {
+            for (column, sum) in sums.into_iter().enumerate() {
                 if I + column + J + row < POWERS {
-                    self.add_to(simd, I + column, J + row, tile[row][column]);
+                    self.add_to(simd, I + column, J + row, sum);
                 }
             }
         }

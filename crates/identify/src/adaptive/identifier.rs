@@ -19,6 +19,8 @@ const LARGEST_TURN: f64 = 0.5;
 /// X changes by at most about this fraction of itself in one step of the integration.
 const STEP_CHANGE: f64 = 0.1;
 const MAX_STEPS: usize = 64;
+/// Pairs whose expected errors differ by less than this factor differ by rounding; the first of them is taken, whatever the processor.
+const ALIKE: f64 = 1.0 + 1e-6;
 
 /// The paper's adaptive identifier (section 4), over matched conjugate pairs of lines frame by frame.
 ///
@@ -216,8 +218,9 @@ impl AdaptiveIdentifier {
     }
 
     fn chosen_law(&self, laws: usize) -> usize {
-        let errors = self.qualities[..self.pair_count().min(laws)].iter().map(PairQuality::relative_error);
-        errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index)
+        let mut errors = self.qualities[..self.pair_count().min(laws)].iter().map(PairQuality::relative_error);
+        let least = errors.clone().fold(f64::INFINITY, f64::min);
+        errors.position(|error| error <= ALIKE * least).unwrap_or(0)
     }
 }
 
