@@ -109,6 +109,8 @@ fn ctrl_c_while_a_file_is_written_leaves_the_old_one_and_nothing_beside_it() {
             .stderr(Stdio::null())
             .spawn()
             .expect("the binary runs");
+        // Waiting for the child would close it, and so end the input.
+        let input = child.stdin.take();
         let begins_at_once = arguments[0] != "fit";
         while begins_at_once && entries(folder.path()) < 2 {
             assert!(child.try_wait().expect("our child").is_none(), "{arguments:?} ended before it began to write");
@@ -118,6 +120,7 @@ fn ctrl_c_while_a_file_is_written_leaves_the_old_one_and_nothing_beside_it() {
         std::thread::sleep(Duration::from_millis(200));
         signal(&child, "-INT");
         assert_eq!(child.wait().expect("our child").code(), Some(130), "{arguments:?}");
+        drop(input);
         assert_eq!(fs::read_to_string(&target).expect("the file"), "old");
         assert_eq!(entries(folder.path()), 1, "{arguments:?}");
     }
