@@ -6,9 +6,12 @@ use freeform_motion::{
     Pipeline, PipelineSettings,
     curve_fit::{Degree, FitSettings, Fitter, Method, Moments, Outline, evaluate_monomials, outward_normals},
     decompose::{Correspondence, Decomposition},
-    identify::{CurveFilterSettings, FilterSettings, MotionFilter, WholeCurveFilter},
+    identify::{CurveFilterSettings, FilterSettings, MotionFilter, Phase, WholeCurveFilter},
+    outline_io::{
+        DEFAULT_OBJECT, GrayImage, OutlineFrame, OutlineReader, OutlineWriter, TraceSettings, WriterOptions, trace_mask,
+    },
     riccati::{MotionModel, RigidMotion},
-    sim_camera::{BuiltInShape, Camera, Motion, Scene, SequenceLength, Settings, Simulator},
+    sim_camera::{BuiltInShape, Camera, Mask, Motion, PixelGrid, Scene, SequenceLength, Settings, Simulator},
 };
 use std::{
     hint::black_box,
@@ -132,34 +135,49 @@ fn whole_frame(c: &mut Criterion) {
     group.finish();
 }
 
+/// Frames before the timed ones, so that a filter has settled.
+const SETTLED: usize = 60;
+
+/// The time of single steps of an identifier that goes on along `list` from its state `begun`, with the frames from
+/// [`SETTLED`] on and back again from time to time, so that the motion goes on without a jump.
+fn time_of_steps<F: Clone>(
+    begun: &F,
+    list: &[(f64, Outline)],
+    iterations: u64,
+    mut step: impl FnMut(&mut F, f64, &Outline) -> bool,
+) -> Duration {
+    let mut spent = Duration::ZERO;
+    let (mut filter, mut next) = (begun.clone(), SETTLED);
+    for _ in 0..iterations {
+        if next == list.len() {
+            (filter, next) = (begun.clone(), SETTLED);
+        }
+        let (time, outline) = &list[next];
+        next += 1;
+        let start = Instant::now();
+        let accepted = black_box(step(&mut filter, *time, black_box(outline)));
+        spent += start.elapsed();
+        assert!(accepted, "a frame was rejected");
+    }
+    spent
+}
+
 /// Beside the QR of the 3L matrix of its degree.
 fn whole_curve_frame(c: &mut Criterion) {
     let mut group = c.benchmark_group("whole-curve filter");
-    let list = frames(400, 240);
-    for degree in [Degree::Quartic, Degree::Sextic] {
+    for (points, degree) in
+        [(100, Degree::Quartic), (400, Degree::Quartic), (1600, Degree::Quartic), (400, Degree::Sextic)]
+    {
+        group.throughput(Throughput::Elements(points as u64));
+        let list = frames(points, 240);
         let settings = CurveFilterSettings { degree, ..CurveFilterSettings::default() };
         let mut begun = WholeCurveFilter::new(settings).expect("settings");
-        for (time, outline) in &list[..60] {
-            assert!(begun.step(*time, outline).expect("increasing times").accepted);
-        }
-        group.bench_function(BenchmarkId::from_parameter(format!("degree {degree}, 400 points")), |b| {
-            b.iter_custom(|iterations| {
-                let mut spent = Duration::ZERO;
-                let (mut filter, mut next) = (begun.clone(), 60);
-                for _ in 0..iterations {
-                    // Back to the 60th frame from time to time, so that the motion goes on without a jump.
-                    if next == list.len() {
-                        (filter, next) = (begun.clone(), 60);
-                    }
-                    let (time, outline) = &list[next];
-                    next += 1;
-                    let start = Instant::now();
-                    let step = black_box(filter.step(*time, black_box(outline)));
-                    spent += start.elapsed();
-                    assert!(step.is_ok_and(|step| step.accepted));
-                }
-                spent
-            });
+        let step = |filter: &mut WholeCurveFilter, time, outline: &_| {
+            filter.step(time, outline).is_ok_and(|step| step.accepted)
+        };
+        assert!(list[..SETTLED].iter().all(|(time, outline)| step(&mut begun, *time, outline)));
+        group.bench_function(BenchmarkId::from_parameter(format!("degree {degree}, {points} points")), |b| {
+            b.iter_custom(|iterations| time_of_steps(&begun, &list, iterations, step));
         });
     }
     group.finish();
@@ -174,30 +192,109 @@ fn motion_filter_frame(c: &mut Criterion) {
         let list = frames(points, 240);
         let settings = FilterSettings { model, ..FilterSettings::default() };
         let mut begun = MotionFilter::new(settings).expect("settings");
-        for (time, outline) in &list[..60] {
+        for (time, outline) in &list[..SETTLED] {
             assert!(begun.step(*time, outline).expect("increasing times").accepted);
         }
         group.bench_function(BenchmarkId::from_parameter(format!("{model}, {points} points")), |b| {
-            b.iter_custom(|iterations| {
-                let mut spent = Duration::ZERO;
-                let (mut filter, mut next) = (begun.clone(), 60);
-                for _ in 0..iterations {
-                    if next == list.len() {
-                        (filter, next) = (begun.clone(), 60);
-                    }
-                    let (time, outline) = &list[next];
-                    next += 1;
-                    let start = Instant::now();
-                    let step = black_box(filter.step(*time, black_box(outline)));
-                    spent += start.elapsed();
-                    assert!(step.is_ok());
-                }
-                spent
-            });
+            // Single frames may be rejected, as the noise is not kept from it.
+            let step = |filter: &mut MotionFilter, time, outline: &_| filter.step(time, outline).is_ok();
+            b.iter_custom(|iterations| time_of_steps(&begun, &list, iterations, step));
         });
     }
     group.finish();
 }
 
-criterion_group!(hot_path, baselines, stages, whole_frame, whole_curve_frame, motion_filter_frame);
+/// The second frame, which is searched for over all turns.
+fn acquisition(c: &mut Criterion) {
+    let mut group = c.benchmark_group("acquisition");
+    for (points, model) in
+        [(100, MotionModel::Rigid), (400, MotionModel::Rigid), (1600, MotionModel::Rigid), (400, MotionModel::Affine)]
+    {
+        group.throughput(Throughput::Elements(points as u64));
+        let list = frames(points, 2);
+        let mut begun = MotionFilter::new(FilterSettings { model, ..FilterSettings::default() }).expect("settings");
+        begun.step(list[0].0, &list[0].1).expect("a first frame");
+        group.bench_function(BenchmarkId::new("motion filter", format!("{model}, {points} points")), |b| {
+            b.iter_batched_ref(
+                || begun.clone(),
+                |filter| {
+                    let step = filter.step(list[1].0, black_box(&list[1].1)).expect("increasing times");
+                    assert_eq!((step.phase, step.accepted), (Phase::Tracking, true));
+                },
+                BatchSize::SmallInput,
+            );
+        });
+    }
+    let list = frames(400, 2);
+    let mut begun = WholeCurveFilter::new(CurveFilterSettings::default()).expect("settings");
+    begun.step(list[0].0, &list[0].1).expect("a first frame");
+    group.throughput(Throughput::Elements(400));
+    group.bench_function("whole-curve filter, 400 points", |b| {
+        b.iter_batched_ref(
+            || begun.clone(),
+            |filter| assert!(filter.step(list[1].0, black_box(&list[1].1)).is_ok_and(|step| step.accepted)),
+            BatchSize::SmallInput,
+        );
+    });
+    group.finish();
+}
+
+/// From a grey picture of 640 x 480 pixels, in which the object is about half as high as the picture, to its outline.
+fn picture(c: &mut Criterion) {
+    let mut group = c.benchmark_group("picture to outline");
+    let (_, outline) = frames(400, 1).remove(0);
+    let pixels_per_unit = 120.0 / outline.rms_radius();
+    let grid = PixelGrid::new(640, 480, outline.centroid(), pixels_per_unit).expect("a grid");
+    let mask = Mask::of_outline(&outline, &grid);
+    let picture = GrayImage::from_raw(640, 480, mask.grey).expect("all pixels");
+    group.throughput(Throughput::Elements(640 * 480));
+    group.bench_function("640x480", |b| {
+        b.iter(|| trace_mask(black_box(&picture), &TraceSettings::default()).expect("an object"));
+    });
+    group.finish();
+}
+
+/// Rows of an outline file, beside the same fields read by the csv crate alone.
+fn csv_rows(c: &mut Criterion) {
+    let mut group = c.benchmark_group("CSV");
+    let (points, count) = (400, 50);
+    let mut writer = OutlineWriter::new(Vec::new(), WriterOptions::default()).expect("memory");
+    for (index, (time, outline)) in frames(points, count).into_iter().enumerate() {
+        let frame = OutlineFrame { frame: index as u64, time, object: DEFAULT_OBJECT.to_owned(), outline };
+        writer.write(&frame).expect("memory");
+    }
+    let text = writer.finish().expect("memory");
+    group.throughput(Throughput::Elements((points * count) as u64));
+    group.bench_function("outlines", |b| {
+        b.iter(|| {
+            let reader = OutlineReader::new(black_box(text.as_slice()), "memory").expect("a header");
+            assert_eq!(reader.filter_map(Result::ok).count(), count);
+        });
+    });
+    group.bench_function("csv crate, rows of numbers", |b| {
+        b.iter(|| {
+            let mut reader = csv::Reader::from_reader(black_box(text.as_slice()));
+            let mut record = csv::ByteRecord::new();
+            let mut sum = 0.0;
+            while reader.read_byte_record(&mut record).expect("rows") {
+                let fields = record.iter().filter_map(|field| std::str::from_utf8(field).ok());
+                sum += fields.filter_map(|field| field.parse::<f64>().ok()).sum::<f64>();
+            }
+            sum
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(
+    hot_path,
+    baselines,
+    stages,
+    whole_frame,
+    whole_curve_frame,
+    motion_filter_frame,
+    acquisition,
+    picture,
+    csv_rows
+);
 criterion_main!(hot_path);

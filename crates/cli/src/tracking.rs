@@ -7,13 +7,13 @@ use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use nalgebra::Matrix3;
+use rayon::prelude::*;
 
 use crate::args::{IdentifyMethod, TrackOptions};
-use crate::failure::{Failure, warn};
-use crate::identifier::Identifier;
-use crate::input::{Input, Item, Missing, SeenIn};
-use crate::interrupt;
-use crate::progress::Progress;
+use crate::batch::{BatchReader, Pace, Taken};
+use crate::failure::Failure;
+use crate::identifier::{Identifier, Step};
+use crate::input::{Input, Missing, SeenIn};
 
 /// Reasons kept of the frames of an object that were rejected, and of pictures left out.
 pub(crate) const REASONS_KEPT: usize = 10;
@@ -131,55 +131,92 @@ impl Tracking {
     pub(crate) fn read(
         &mut self,
         input: &mut Input,
+        pace: Pace,
         quiet: bool,
         mut observe: impl FnMut(Event<'_>) -> Result<(), Failure>,
     ) -> Result<Option<Failure>, Failure> {
-        let progress = Progress::of_frames(input.frame_count(), quiet);
-        let single = input.frame_count() == Some(1);
+        let mut reader = BatchReader::new(input, pace, quiet);
         let mut first_missing = None;
-        for item in input {
-            // What came after Ctrl-C may be cut short.
-            if interrupt::was_asked_for() {
-                break;
+        let mut next = reader.batch();
+        while !next.is_empty() {
+            let batch = next;
+            let mut steps = self.assign(&batch)?;
+            match pace {
+                Pace::FrameByFrame => {
+                    steps.iter_mut().for_each(ObjectSteps::run);
+                    next = Vec::new();
+                }
+                // The objects side by side, and what comes next is read meanwhile.
+                Pace::Ahead => {
+                    next = rayon::in_place_scope(|scope| {
+                        scope.spawn(|_| steps.par_iter_mut().for_each(ObjectSteps::run));
+                        reader.batch()
+                    });
+                }
             }
-            match item {
-                Ok(Item::Outline(frame, seen_in)) => {
-                    let observation = self.push(&frame)?;
-                    observe(Event::Observed {
-                        observation: &observation,
-                        frame: Some(&frame),
-                        seen_in: seen_in.as_ref(),
-                    })?;
-                }
-                Ok(Item::Rejected { object, frame, reason }) => {
-                    let observation = self.reject(object, frame, reason)?;
-                    observe(Event::Observed { observation: &observation, frame: None, seen_in: None })?;
-                }
-                Ok(Item::Missing(missing)) => {
-                    // The reason of a single picture is told in the end.
-                    if !quiet && !single {
-                        progress.pause(|| warn(&missing.reason));
+            let mut results: HashMap<usize, _> =
+                steps.into_iter().map(|object| (object.position, object.results.into_iter())).collect();
+            for item in batch {
+                match item {
+                    Taken::Outline(frame, seen_in) => {
+                        let position = self.position(&frame.object)?;
+                        let Some(step) = results.get_mut(&position).and_then(Iterator::next) else { continue };
+                        let observation = self.observation(position, &frame, step);
+                        observe(Event::Observed {
+                            observation: &observation,
+                            frame: Some(&frame),
+                            seen_in: seen_in.as_ref(),
+                        })?;
                     }
-                    observe(Event::Missing(&missing))?;
-                    first_missing.get_or_insert(missing);
+                    Taken::Rejected { object, frame, reason } => {
+                        let observation = self.reject(object, frame, reason)?;
+                        observe(Event::Observed { observation: &observation, frame: None, seen_in: None })?;
+                    }
+                    Taken::Missing(missing) => {
+                        observe(Event::Missing(&missing))?;
+                        first_missing.get_or_insert(missing);
+                    }
                 }
-                Err(failure) => return Ok(Some(failure)),
+                reader.progress.advance();
             }
-            progress.advance();
+            if pace == Pace::FrameByFrame {
+                next = reader.batch();
+            }
         }
         // Nothing but pictures without an object: the first says why.
-        Ok(first_missing.filter(|_| self.objects.is_empty()).map(Missing::into_failure))
+        let nothing = first_missing.filter(|_| self.objects.is_empty()).map(Missing::into_failure);
+        Ok(reader.into_failure().or(nothing))
     }
 
     /// Takes the next frame of an object.
     pub(crate) fn push(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
+        let position = self.position(&frame.object)?;
+        let step = self.objects[position].identifier.push(frame.time, &frame.outline);
+        Ok(self.observation(position, frame, step))
+    }
+
+    /// Which object takes which frames of a batch.
+    fn assign<'a>(&'a mut self, batch: &'a [Taken]) -> Result<Vec<ObjectSteps<'a>>, Failure> {
+        let mut frames: HashMap<usize, Vec<&OutlineFrame>> = HashMap::new();
+        for item in batch {
+            if let Taken::Outline(frame, _) = item {
+                frames.entry(self.position(&frame.object)?).or_default().push(frame);
+            }
+        }
+        let objects = self.objects.iter_mut().enumerate();
+        let steps = objects.filter_map(|(position, object)| {
+            let frames = frames.remove(&position)?;
+            Some(ObjectSteps { position, identifier: &mut object.identifier, frames, results: Vec::new() })
+        });
+        Ok(steps.collect())
+    }
+
+    fn observation(&mut self, position: usize, frame: &OutlineFrame, step: Step) -> Observation {
         let scale = self.options.scale;
-        let object = self.object(&frame.object)?;
-        let step = object.identifier.push(frame.time, &frame.outline);
         let in_place = |reason| format!("frame {} of object {:?}: {reason}", frame.frame, frame.object);
         let rejected_because = step.rejected_because.map(in_place);
-        object.count(rejected_because.as_deref());
-        Ok(Observation {
+        self.objects[position].count(rejected_because.as_deref());
+        Observation {
             object: frame.object.clone(),
             frame: frame.frame,
             time: Some(frame.time),
@@ -190,12 +227,13 @@ impl Tracking {
             residual: step.residual,
             innovation: step.innovation,
             rejected_because,
-        })
+        }
     }
 
     /// Takes note of a frame whose points are no outline.
     fn reject(&mut self, object: String, frame: u64, reason: String) -> Result<Observation, Failure> {
-        self.object(&object)?.count(Some(&reason));
+        let position = self.position(&object)?;
+        self.objects[position].count(Some(&reason));
         Ok(Observation {
             object,
             frame,
@@ -238,18 +276,31 @@ impl Tracking {
         }
     }
 
-    fn object(&mut self, name: &str) -> Result<&mut Object, Failure> {
-        let position = match self.positions.get(name) {
-            Some(position) => *position,
-            None => {
-                let identifier = Identifier::new(&self.options)?;
-                let (name, position) = (name.to_owned(), self.objects.len());
-                self.positions.insert(name.clone(), position);
-                self.objects.push(Object { name, identifier, frames: 0, rejected: 0, reasons: Vec::new() });
-                position
-            }
-        };
-        Ok(&mut self.objects[position])
+    /// Where an object stands among all, new ones at the end.
+    fn position(&mut self, name: &str) -> Result<usize, Failure> {
+        if let Some(position) = self.positions.get(name) {
+            return Ok(*position);
+        }
+        let identifier = Identifier::new(&self.options)?;
+        let (name, position) = (name.to_owned(), self.objects.len());
+        self.positions.insert(name.clone(), position);
+        self.objects.push(Object { name, identifier, frames: 0, rejected: 0, reasons: Vec::new() });
+        Ok(position)
+    }
+}
+
+/// The frames of one object in a batch.
+struct ObjectSteps<'a> {
+    position: usize,
+    identifier: &'a mut Identifier,
+    frames: Vec<&'a OutlineFrame>,
+    results: Vec<Step>,
+}
+
+impl ObjectSteps<'_> {
+    fn run(&mut self) {
+        let Self { identifier, frames, results, .. } = self;
+        results.extend(frames.iter().map(|frame| identifier.push(frame.time, &frame.outline)));
     }
 }
 

@@ -69,7 +69,7 @@ impl<const FORM: usize> ContactProblem<FORM> {
             let samples = CircleSamples::of(&form);
             let lowest = samples.minima(&form).min_by(|a, b| a.value.total_cmp(&b.value))?;
             if lowest.value >= self.floor * (1.0 - TOLERANCE) {
-                return Some((form, samples.range(&form)));
+                return Some((form, samples.range_above(lowest.value)));
             }
             contacts.add(lowest.direction)?;
         }

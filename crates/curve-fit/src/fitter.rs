@@ -17,6 +17,7 @@ use crate::{
     residuals::Residuals,
     ridge::ridge_of_radial_sums,
     settings::{FitSettings, Method},
+    vectors::sum,
 };
 
 /// Fits implicit polynomials to outlines, one after the other, in buffers that are reused: after the first outline no
@@ -204,15 +205,4 @@ fn normalise(xs: &mut [f64], ys: &mut [f64]) -> Normalisation {
     xs.iter_mut().for_each(|x| *x = (*x - centre.x) * inverse);
     ys.iter_mut().for_each(|y| *y = (*y - centre.y) * inverse);
     Normalisation { centre, radius }
-}
-
-/// Sum of `term` over the values, in eight interleaved partial sums that the compiler can keep in vector registers.
-#[inline(always)]
-fn sum(values: &[f64], term: impl Fn(f64) -> f64) -> f64 {
-    let (chunks, rest) = values.as_chunks::<8>();
-    let mut partial = [0.0; 8];
-    for chunk in chunks {
-        partial.iter_mut().zip(chunk).for_each(|(sum, &value)| *sum += term(value));
-    }
-    partial.iter().sum::<f64>() + rest.iter().map(|&value| term(value)).sum::<f64>()
 }

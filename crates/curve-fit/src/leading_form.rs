@@ -83,7 +83,11 @@ impl CircleSamples {
 
     /// Range of the form, which must be that of the samples.
     pub(crate) fn range(&self, form: &[f64]) -> CircleRange {
-        let minimum = self.minima(form).fold(f64::INFINITY, |lowest, minimum| lowest.min(minimum.value));
+        self.range_above(self.minima(form).fold(f64::INFINITY, |lowest, minimum| lowest.min(minimum.value)))
+    }
+
+    /// Range of the form, whose smallest value is known.
+    pub(crate) fn range_above(&self, minimum: f64) -> CircleRange {
         // Exact: the square is a trigonometric polynomial of fewer harmonics than there are directions.
         let squares: f64 = self.values.iter().map(|v| v * v).sum();
         CircleRange { minimum, rms: (squares / DIRECTIONS as f64).sqrt() }

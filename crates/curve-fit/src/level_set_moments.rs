@@ -3,8 +3,11 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
     degree::{MAX_COEFFICIENTS, coefficient_count},
+    moment_sums::{BLOCK, MomentSums, Powers},
     moments::MAX_MOMENTS,
     monomials::monomial_index,
+    ridge::binomial,
+    vectors::load,
 };
 
 /// Sides of the level sets, where f should be -1, 0 and 1.
@@ -12,11 +15,6 @@ pub(crate) const LEVELS: [f64; 3] = [-1.0, 0.0, 1.0];
 
 /// Powers of `x^2 + y^2` up to the degree of an octic.
 const MAX_RADIAL: usize = 9;
-
-const SETS: usize = LEVELS.len();
-
-/// Vectors of points that are accumulated together, so that each sum is loaded and stored once for all of them.
-const GROUP: usize = 2;
 
 /// Points and their unit normals, by coordinate; all slices have the same length.
 #[derive(Debug, Clone, Copy)]
@@ -76,108 +74,48 @@ impl WithSimd for LevelSetKernel<'_> {
 #[inline(always)]
 fn accumulate<S: Simd, const DEGREE: usize, const POWERS: usize, const MOMENTS: usize>(
     simd: S,
-    LevelSetKernel { offset, data, sums: out, .. }: LevelSetKernel<'_>,
+    kernel: LevelSetKernel<'_>,
 ) {
+    let LevelSetKernel { offset, data, sums: out, .. } = kernel;
     let zero = simd.splat_f64s(0.0);
-    let offset = simd.splat_f64s(offset);
-    let mut sums =
-        Sums::<S, MOMENTS> { gram: [zero; MOMENTS], projection: [zero; MAX_COEFFICIENTS], radial: [zero; MAX_RADIAL] };
-    let [xs, ys] = data.points;
-    let [nxs, nys] = data.normals;
-    let group_len = GROUP * S::F64_LANES;
-    let groups = xs.chunks(group_len).zip(ys.chunks(group_len)).zip(nxs.chunks(group_len).zip(nys.chunks(group_len)));
-    let mut x_powers = [[[simd.splat_f64s(1.0); SETS]; GROUP]; POWERS];
-    for ((xs, ys), (nxs, nys)) in groups {
-        let [xs, ys, nxs, nys] = [xs, ys, nxs, nys].map(|chunk| load_group(simd, chunk));
-        let mut y = [[zero; SETS]; GROUP];
-        for g in 0..GROUP {
-            let (dx, dy) = (simd.mul_f64s(offset, nxs[g]), simd.mul_f64s(offset, nys[g]));
-            x_powers[1][g] = [simd.sub_f64s(xs[g], dx), xs[g], simd.add_f64s(xs[g], dx)];
-            y[g] = [simd.sub_f64s(ys[g], dy), ys[g], simd.add_f64s(ys[g], dy)];
-            let squared = simd.mul_add_e_f64s(xs[g], xs[g], simd.mul_f64s(ys[g], ys[g]));
-            let mut power = squared;
-            for sum in &mut sums.radial[1..=DEGREE] {
-                *sum = simd.add_f64s(*sum, power);
-                power = simd.mul_f64s(power, squared);
+    let mut sets = [MomentSums::<S, POWERS, MOMENTS>::new(simd); LEVELS.len()];
+    let mut powers = Powers::new(simd);
+    let mut block = [[zero; BLOCK]; 4];
+    let mut moved = [[zero; BLOCK]; 2];
+    let block_len = BLOCK * S::F64_LANES;
+    let points = data.points[0].chunks(block_len).zip(data.points[1].chunks(block_len));
+    let normals = data.normals[0].chunks(block_len).zip(data.normals[1].chunks(block_len));
+    for ((xs, ys), (nxs, nys)) in points.zip(normals) {
+        let [x, y, nx, ny] = &mut block;
+        let [xs, ys] = [load(simd, xs, x), load(simd, ys, y)];
+        let [nxs, nys] = [load(simd, nxs, nx), load(simd, nys, ny)];
+        let [moved_xs, moved_ys] = moved.each_mut().map(|axis| &mut axis[..xs.len()]);
+        for (level, sums) in LEVELS.into_iter().zip(&mut sets) {
+            let distance = simd.splat_f64s(level * offset);
+            for (moved, (value, normal)) in moved_xs.iter_mut().zip(xs.iter().zip(nxs)) {
+                *moved = simd.mul_add_e_f64s(distance, *normal, *value);
             }
-        }
-        for i in 2..POWERS {
-            x_powers[i] = multiply(simd, &x_powers[i - 1], &x_powers[1]);
-        }
-        let mut y_power = [[simd.splat_f64s(1.0); SETS]; GROUP];
-        // One call per power of y: only with its number of sums known is a row unrolled.
-        macro_rules! rows {
-            ($($j:literal)*) => { $(
-                if $j < POWERS {
-                    sums.add_row::<DEGREE, POWERS, $j>(simd, &x_powers, &y_power);
-                    y_power = multiply(simd, &y_power, &y);
-                }
-            )* };
-        }
-        rows!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
-    }
-    let reduce = |from: &[S::f64s], to: &mut [f64]| {
-        to.iter_mut().zip(from).for_each(|(sum, lanes)| *sum = simd.reduce_sum_f64s(*lanes));
-    };
-    reduce(&sums.gram, &mut out.gram);
-    reduce(&sums.projection[..coefficient_count(DEGREE)], &mut out.projection);
-    reduce(&sums.radial[..=DEGREE], &mut out.radial);
-}
-
-/// Vectors of one group of points on each of the level sets, from the inner to the outer one.
-type Group<S> = [[<S as Simd>::f64s; SETS]; GROUP];
-
-/// The sums, lane by lane.
-struct Sums<S: Simd, const MOMENTS: usize> {
-    gram: [S::f64s; MOMENTS],
-    projection: [S::f64s; MAX_COEFFICIENTS],
-    radial: [S::f64s; MAX_RADIAL],
-}
-
-impl<S: Simd, const MOMENTS: usize> Sums<S, MOMENTS> {
-    /// Adds the monomials with `y^J`.
-    #[inline(always)]
-    fn add_row<const DEGREE: usize, const POWERS: usize, const J: usize>(
-        &mut self,
-        simd: S,
-        x_powers: &[Group<S>; POWERS],
-        y_power: &Group<S>,
-    ) {
-        for (i, x_power) in x_powers.iter().enumerate().take(POWERS - J) {
-            let sum = &mut self.gram[monomial_index(i, J)];
-            for g in 0..GROUP {
-                for l in 0..SETS {
-                    *sum = simd.mul_add_e_f64s(x_power[g][l], y_power[g][l], *sum);
-                }
+            for (moved, (value, normal)) in moved_ys.iter_mut().zip(ys.iter().zip(nys)) {
+                *moved = simd.mul_add_e_f64s(distance, *normal, *value);
             }
-            if i + J <= DEGREE {
-                let difference = &mut self.projection[monomial_index(i, J)];
-                for g in 0..GROUP {
-                    let inner = simd.mul_f64s(x_power[g][0], y_power[g][0]);
-                    *difference = simd.mul_add_e_f64s(x_power[g][2], y_power[g][2], *difference);
-                    *difference = simd.sub_f64s(*difference, inner);
-                }
-            }
+            sums.add(simd, &mut powers, moved_xs, moved_ys);
         }
     }
-}
-
-#[inline(always)]
-fn multiply<S: Simd>(simd: S, a: &Group<S>, b: &Group<S>) -> Group<S> {
-    std::array::from_fn(|g| std::array::from_fn(|l| simd.mul_f64s(a[g][l], b[g][l])))
-}
-
-#[inline(always)]
-fn load_group<S: Simd>(simd: S, chunk: &[f64]) -> [S::f64s; GROUP] {
-    let mut group = [simd.splat_f64s(0.0); GROUP];
-    let (full, rest) = S::as_simd_f64s(chunk);
-    for (slot, value) in group.iter_mut().zip(full) {
-        *slot = *value;
+    let [inner, on, outer] = sets.each_ref().map(|sums| &sums.lanes);
+    for (k, sum) in out.gram.iter_mut().take(MOMENTS).enumerate() {
+        *sum = simd.reduce_sum_f64s(simd.add_f64s(on[k], simd.add_f64s(inner[k], outer[k])));
     }
-    if !rest.is_empty() {
-        group[full.len()] = simd.partial_load_f64s(rest);
+    for (k, sum) in out.projection.iter_mut().take(coefficient_count(DEGREE)).enumerate() {
+        *sum = simd.reduce_sum_f64s(simd.sub_f64s(outer[k], inner[k]));
     }
-    group
+    for (d, sum) in out.radial.iter_mut().enumerate().take(DEGREE + 1) {
+        // (x^2 + y^2)^d by the binomial theorem.
+        let terms = (0..=d).map(|k| (binomial(d, k), on[monomial_index(2 * (d - k), 2 * k)]));
+        let lanes = terms.fold(simd.splat_f64s(0.0), |sum, (factor, moment)| {
+            simd.mul_add_e_f64s(simd.splat_f64s(factor), moment, sum)
+        });
+        *sum = simd.reduce_sum_f64s(lanes);
+    }
 }
 
 #[cfg(test)]

@@ -37,6 +37,7 @@ mod interior_point;
 mod leading_form;
 mod least_squares;
 mod level_set_moments;
+mod moment_sums;
 mod moments;
 mod monomials;
 mod normalisation;
@@ -46,6 +47,8 @@ mod polynomial;
 mod residuals;
 mod ridge;
 mod settings;
+mod vectors;
+mod windows;
 
 pub use bounded_polynomial::BoundedPolynomial;
 pub use degree::{Degree, MAX_COEFFICIENTS, coefficient_count};

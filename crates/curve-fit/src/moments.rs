@@ -1,13 +1,15 @@
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::{degree::coefficient_count, monomials::monomial_index};
+use crate::{
+    degree::coefficient_count,
+    moment_sums::{BLOCK, MomentSums, Powers},
+    monomials::monomial_index,
+    vectors::load,
+};
 
 /// Highest total degree of a moment that any fit needs: twice the degree of an octic.
 const MAX_TOTAL_DEGREE: usize = 16;
 pub(crate) const MAX_MOMENTS: usize = coefficient_count(MAX_TOTAL_DEGREE);
-
-/// Vectors that are accumulated together, so that each sum is loaded and stored once per group.
-const GROUP: usize = 4;
 
 /// The moments `sum x^p y^q`, `p + q <= D`, of a set of points: everything that a least-squares fit of a polynomial of
 /// degree `D / 2` needs to know of them.
@@ -29,7 +31,7 @@ impl Moments {
         assert_eq!(xs.len(), ys.len(), "as many x as y");
         let mut sums = [0.0; MAX_MOMENTS];
         Arch::new().dispatch(MomentKernel { total_degree, xs, ys, sums: &mut sums });
-        // The vectors of an incomplete group are padded with points at the origin, which count in this sum alone.
+        // An incomplete vector is padded with points at the origin, which count in this sum alone.
         sums[0] = xs.len() as f64;
         Self { total_degree, sums }
     }
@@ -102,47 +104,16 @@ fn accumulate<S: Simd, const POWERS: usize, const MOMENTS: usize>(
     ys: &[f64],
     sums: &mut [f64; MAX_MOMENTS],
 ) {
-    let mut accumulated = [simd.splat_f64s(0.0); MOMENTS];
-    let mut x_powers = [[simd.splat_f64s(1.0); GROUP]; POWERS];
-    let group_len = GROUP * S::F64_LANES;
-    for (x_chunk, y_chunk) in xs.chunks(group_len).zip(ys.chunks(group_len)) {
-        let x = load_group(simd, x_chunk);
-        let y = load_group(simd, y_chunk);
-        x_powers[1] = x;
-        for i in 2..POWERS {
-            for g in 0..GROUP {
-                x_powers[i][g] = simd.mul_f64s(x_powers[i - 1][g], x[g]);
-            }
-        }
-        let mut y_power = [simd.splat_f64s(1.0); GROUP];
-        for j in 0..POWERS {
-            for (i, x_power) in x_powers.iter().enumerate().take(POWERS - j) {
-                let sum = &mut accumulated[monomial_index(i, j)];
-                for g in 0..GROUP {
-                    *sum = simd.mul_add_e_f64s(x_power[g], y_power[g], *sum);
-                }
-            }
-            for g in 0..GROUP {
-                y_power[g] = simd.mul_f64s(y_power[g], y[g]);
-            }
-        }
+    let mut accumulated = MomentSums::<S, POWERS, MOMENTS>::new(simd);
+    let mut powers = Powers::new(simd);
+    let [mut x, mut y] = [[simd.splat_f64s(0.0); BLOCK]; 2];
+    let block_len = BLOCK * S::F64_LANES;
+    for (xs, ys) in xs.chunks(block_len).zip(ys.chunks(block_len)) {
+        accumulated.add(simd, &mut powers, load(simd, xs, &mut x), load(simd, ys, &mut y));
     }
-    for (sum, lanes) in sums.iter_mut().zip(&accumulated) {
-        *sum = simd.reduce_sum_f64s(*lanes);
+    for (sum, lanes) in sums.iter_mut().zip(accumulated.lanes) {
+        *sum = simd.reduce_sum_f64s(lanes);
     }
-}
-
-#[inline(always)]
-fn load_group<S: Simd>(simd: S, chunk: &[f64]) -> [S::f64s; GROUP] {
-    let mut group = [simd.splat_f64s(0.0); GROUP];
-    let (full, rest) = S::as_simd_f64s(chunk);
-    for (slot, value) in group.iter_mut().zip(full) {
-        *slot = *value;
-    }
-    if !rest.is_empty() {
-        group[full.len()] = simd.partial_load_f64s(rest);
-    }
-    group
 }
 
 #[cfg(test)]

@@ -4,7 +4,11 @@ use std::ops::Range;
 use nalgebra::Vector2;
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::outline::Outline;
+use crate::{
+    outline::Outline,
+    vectors::{reserve, sum},
+    windows::{BEYOND, Windows},
+};
 
 /// Outward unit normals of all points of an outline, in the order of [`Outline::points`].
 ///
@@ -36,15 +40,17 @@ pub struct NormalRegression {
     pub(crate) has_inside: bool,
     /// Distance of every point to the one before it in its piece; 0 at an open beginning.
     steps: Vec<f64>,
-    /// Arc lengths along one piece, with enough neighbours repeated beyond its ends if it is closed, and infinity after
-    /// the last.
+    /// Arc lengths along one piece, with enough neighbours repeated beyond its ends if it is closed.
     arc_lengths: Vec<f64>,
-    /// Running sums along the same, one more than there are nodes.
-    sums: Vec<RunningSums>,
+    /// Running sums along the same, one more than there are nodes: of the arc lengths...
+    length_sums: Vec<f64>,
+    /// ...and of the points.
+    point_sums: Vec<PointSums>,
+    windows: Windows,
 }
 
-/// Sums over all nodes of the extended piece before one: of s, x, y, s x and s y.
-type RunningSums = [f64; 5];
+/// Sums over all nodes of the extended piece before one: of x, y, s x and s y.
+type PointSums = [f64; 4];
 
 impl NormalRegression {
     /// Fills `nx`, `ny` with the outward unit normals of the points `[xs, ys]`, which are those of `outline` after a smooth map
@@ -60,6 +66,7 @@ impl NormalRegression {
             normals.clear();
             normals.resize(xs.len(), 0.0);
         }
+        self.reserve(xs.len(), half_window);
         Arch::new().dispatch(NormalKernel {
             regression: self,
             outline,
@@ -67,6 +74,16 @@ impl NormalRegression {
             half_window,
             normals: [nx, ny],
         });
+    }
+
+    /// Makes room for outlines of so many points, whose neighbours beyond the ends may be twice as many as if the points
+    /// were evenly spread; more is taken where it is needed.
+    fn reserve(&mut self, points: usize, half_window: f64) {
+        let nodes = points + (4.0 * half_window * points as f64) as usize + 16;
+        reserve(&mut self.arc_lengths, nodes + BEYOND);
+        reserve(&mut self.length_sums, nodes + 1);
+        reserve(&mut self.point_sums, nodes + 1);
+        self.windows.reserve(nodes);
     }
 
     #[inline(always)]
@@ -92,45 +109,39 @@ impl NormalRegression {
             (0, 0)
         };
         let nodes = before + count + after;
-        self.arc_lengths.resize(nodes + 1, 0.0);
-        self.sums.resize(nodes + 1, [0.0; 5]);
-        let mut slots = self.arc_lengths.iter_mut().zip(&mut self.sums);
+        self.arc_lengths.resize(nodes, 0.0);
+        self.length_sums.resize(nodes + 1, 0.0);
+        self.point_sums.resize(nodes + 1, [0.0; 4]);
+        let mut slots = self.arc_lengths.iter_mut().zip(&mut self.length_sums).zip(&mut self.point_sums);
         // The first node stands at 0.
         let mut s = -steps[(count - before) % count];
-        let mut sums = [0.0; 5];
+        let (mut length_sum, mut point_sum) = (0.0, [0.0; 4]);
         for part in [count - before..count, 0..count, 0..after] {
             let points = xs[part.clone()].iter().zip(&ys[part.clone()]).zip(&steps[part]);
-            for (((x, y), step), (arc_length, slot)) in points.zip(&mut slots) {
+            for (((x, y), step), ((arc_length, length_slot), point_slot)) in points.zip(&mut slots) {
                 s += step;
                 *arc_length = s;
-                *slot = sums;
-                for (sum, term) in sums.iter_mut().zip([s, *x, *y, s * x, s * y]) {
-                    *sum += term;
-                }
+                *length_slot = length_sum;
+                *point_slot = point_sum;
+                length_sum += s;
+                point_sum.iter_mut().zip([*x, *y, s * x, s * y]).for_each(|(sum, term)| *sum += term);
             }
         }
-        self.arc_lengths[nodes] = f64::INFINITY;
-        self.sums[nodes] = sums;
+        self.length_sums[nodes] = length_sum;
+        self.point_sums[nodes] = point_sum;
         before
     }
 
-    /// The normals of a piece whose first point is node `before`.
+    /// The directions of the normals of a piece whose first point is node `before`, of any length.
     #[inline(always)]
-    fn regress(&self, before: usize, half_length: f64, outward: f64, [nx, ny]: [&mut [f64]; 2]) {
-        let (arc_lengths, sums) = (self.arc_lengths.as_slice(), self.sums.as_slice());
-        let nodes = arc_lengths.len() - 1;
-        let (mut low, mut high) = (0, before);
-        for (node, (nx, ny)) in (before..nodes).zip(nx.iter_mut().zip(ny)) {
-            let s = arc_lengths[node];
-            low = advance(low, arc_lengths, s - half_length);
-            // A window holds the nodes within it, the first ones beyond and a neighbour on either side.
-            high = advance(high.max(node), arc_lengths, s + half_length);
-            let begin = low.min(node.saturating_sub(1));
-            let end = (high + 2).min(nodes);
-            let (tx, ty) = slope(&sums[begin], &sums[end], f64::from((end - begin) as u32));
-            let norm = outward * distance(tx, ty);
-            let scale = if norm == 0.0 { 0.0 } else { 1.0 / norm };
-            (*nx, *ny) = (scale * ty, -scale * tx);
+    fn regress(&self, before: usize, [nx, ny]: [&mut [f64]; 2]) {
+        let (lengths, points) = (self.length_sums.as_slice(), self.point_sums.as_slice());
+        for ((begin, end), (nx, ny)) in self.windows.iter(before).zip(nx.iter_mut().zip(ny)) {
+            // Covariance of arc length with position, up to a positive factor: the direction of the regression line.
+            let count = f64::from((end - begin) as u32);
+            let s = lengths[end] - lengths[begin];
+            let [x, y, sx, sy] = std::array::from_fn(|k| points[end][k] - points[begin][k]);
+            (*nx, *ny) = (count * sy - s * y, s * x - count * sx);
         }
     }
 }
@@ -155,31 +166,18 @@ impl WithSimd for NormalKernel<'_> {
         let outward = 1.0_f64.copysign(area);
         regression.measure_steps(outline, xs, ys);
         // A hair less than the window, so that rounding does not decide whether evenly spaced points lie on its edge.
-        let half_length = (1.0 - 1e-9) * half_window * regression.steps.iter().sum::<f64>();
+        let half_length = (1.0 - 1e-9) * half_window * sum(&regression.steps, |step| step);
         for (range, closed) in ranges(outline) {
             let before = regression.lay_out(xs, ys, range.clone(), closed, half_length);
-            let piece = [&mut nx[range.clone()], &mut ny[range]];
-            regression.regress(before, half_length, outward, piece);
+            regression.windows.find(&mut regression.arc_lengths, before, half_length);
+            regression.regress(before, [&mut nx[range.clone()], &mut ny[range]]);
+        }
+        for (x, y) in nx.iter_mut().zip(ny) {
+            let norm = outward * distance(*x, *y);
+            let scale = if norm == 0.0 { 0.0 } else { 1.0 / norm };
+            (*x, *y) = (scale * *x, scale * *y);
         }
     }
-}
-
-/// The last node at or before `limit`, from one that is or the first on.
-#[inline(always)]
-fn advance(from: usize, arc_lengths: &[f64], limit: f64) -> usize {
-    let mut node = from;
-    // Evenly spread points pass one or two nodes at a time: no branch to mispredict there.
-    while let Some(ahead) = arc_lengths[node..].first_chunk::<4>() {
-        let passed: u32 = ahead[1..].iter().map(|&s| u32::from(s <= limit)).sum();
-        node += passed as usize;
-        if passed < 3 {
-            return node;
-        }
-    }
-    while arc_lengths[node + 1] <= limit {
-        node += 1;
-    }
-    node
 }
 
 /// How many steps reach at least `length`, and one more; at most `count`.
@@ -191,14 +189,6 @@ fn nodes_to_cover<'a>(length: f64, steps: impl Iterator<Item = &'a f64>, count: 
         covered < length
     });
     (short.count() + 2).min(count)
-}
-
-/// Covariance of arc length with position over the nodes from `a` to before `b`, up to a positive factor: the direction
-/// of the regression line.
-#[inline(always)]
-fn slope(a: &RunningSums, b: &RunningSums, count: f64) -> (f64, f64) {
-    let [s, x, y, sx, sy] = std::array::from_fn(|k| b[k] - a[k]);
-    (count * sx - s * x, count * sy - s * y)
 }
 
 /// Distance of every point but the first to the one before it.
@@ -221,13 +211,18 @@ fn distance(dx: f64, dy: f64) -> f64 {
 fn signed_area(xs: &[f64], ys: &[f64]) -> (f64, f64) {
     let last = xs.len() - 1;
     let closing = xs[last] * ys[0] - xs[0] * ys[last];
-    let (mut area, mut absolute) = (closing, closing.abs());
-    for i in 1..xs.len() {
-        let cross = xs[i - 1] * ys[i] - xs[i] * ys[i - 1];
-        area += cross;
-        absolute += cross.abs();
+    let (mut area, mut absolute) = ([0.0; 8], [0.0; 8]);
+    let from = xs[..last].chunks(8).zip(ys[..last].chunks(8));
+    let to = xs[1..].chunks(8).zip(ys[1..].chunks(8));
+    for ((x0, y0), (x1, y1)) in from.zip(to) {
+        let sums = area.iter_mut().zip(&mut absolute);
+        for ((area, absolute), ((x0, y0), (x1, y1))) in sums.zip(x0.iter().zip(y0).zip(x1.iter().zip(y1))) {
+            let cross = x0 * y1 - x1 * y0;
+            *area += cross;
+            *absolute += cross.abs();
+        }
     }
-    (0.5 * area, 0.5 * absolute)
+    (0.5 * (closing + area.iter().sum::<f64>()), 0.5 * (closing.abs() + absolute.iter().sum::<f64>()))
 }
 
 /// The index ranges of the pieces among all points, and whether each is closed.

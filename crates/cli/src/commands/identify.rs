@@ -7,6 +7,7 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::{FittedOutline, command_line};
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::batch::Pace;
 use crate::failure::{Failure, plain, warn};
 use crate::identifier::{curve_settings, filter_settings, pipeline_settings, process_noise};
 use crate::input::{Input, Missing};
@@ -129,7 +130,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let keeps_history = args.svg.is_some() || args.report.is_some();
     let mut histories = Vec::new();
     let mut left_out = LeftOut::default();
-    let failure = tracking.read(&mut input, args.quiet, |event| {
+    let failure = tracking.read(&mut input, Pace::Ahead, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
             overlay.take(&event)?;
         }

@@ -17,9 +17,11 @@ pub(crate) use reproduce::{Drawing, Section, Table};
 
 use crate::args::{Cli, Command};
 use crate::failure::Failure;
+use crate::interrupt;
 
 /// Runs the command that was asked for.
 pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
+    interrupt::leave_nothing_unfinished();
     match &cli.command {
         Command::Demo(args) => demo::run(args),
         Command::Simulate(args) => simulate::run(args),

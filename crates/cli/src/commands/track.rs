@@ -1,6 +1,7 @@
 use std::io::Write as _;
 
 use crate::args::TrackArgs;
+use crate::batch::Pace;
 use crate::failure::Failure;
 use crate::input::Input;
 use crate::interrupt;
@@ -18,7 +19,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
-    let failure = tracking.read(&mut input, args.quiet, |event| {
+    let failure = tracking.read(&mut input, Pace::FrameByFrame, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
             overlay.take(&event)?;
         }

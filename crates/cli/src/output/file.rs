@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 use crate::failure::{Failure, plain};
+use crate::interrupt::Unfinished;
 
 /// A file that appears whole or not at all: written beside its place and moved there in the end. A place that is no
 /// regular file (a device, a pipe) is written to as it is.
@@ -20,7 +21,7 @@ pub(crate) struct WholeFile {
 #[derive(Debug)]
 enum Place {
     /// Beside the path that it is to go to; removed when it is dropped before.
-    Beside(NamedTempFile, PathBuf),
+    Beside(NamedTempFile, Unfinished, PathBuf),
     /// In place.
     Device(File),
 }
@@ -84,19 +85,19 @@ impl Place {
         // A name without a folder has an empty one.
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         // A name of its own, whatever a run that was killed has left behind.
-        let file = Builder::new()
-            .prefix(&prefix)
-            .suffix(".part")
-            .make_in(folder, |path| OpenOptions::new().write(true).create_new(true).open(path))?;
+        let mut builder = Builder::new();
+        builder.prefix(&prefix).suffix(".part");
+        let create = || builder.make_in(folder, |path| OpenOptions::new().write(true).create_new(true).open(path));
+        let (file, unfinished) = Unfinished::begin(create, NamedTempFile::path)?;
         if let Some(old) = old {
             // Where the file system has no permissions there are none to keep.
             let _ = file.as_file().set_permissions(old.permissions());
         }
-        Ok(Self::Beside(file, target))
+        Ok(Self::Beside(file, unfinished, target))
     }
 
     fn settle(self) -> io::Result<()> {
-        let Self::Beside(file, target) = self else { return Ok(()) };
+        let Self::Beside(file, _unfinished, target) = self else { return Ok(()) };
         // Some file systems tell only now that they are full.
         file.as_file().sync_all()?;
         file.persist(target).map(drop).map_err(|error| error.error)
@@ -106,7 +107,7 @@ impl Place {
 impl Write for Place {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
-            Self::Beside(file, _) => file.as_file_mut().write(bytes),
+            Self::Beside(file, ..) => file.as_file_mut().write(bytes),
             Self::Device(file) => file.write(bytes),
         }
     }

@@ -122,3 +122,34 @@ fn nothing_is_found_of_an_object_that_was_seen_once() {
     assert_eq!(stderr(&output).lines().count(), 1);
     assert!(stderr(&output).contains("at least 2"), "{}", stderr(&output));
 }
+
+#[test]
+fn objects_that_are_followed_side_by_side_are_found_as_each_would_be_alone_in_the_order_they_appear() {
+    let shapes = ["bird", "van", "glider", "bird", "van"];
+    let sequences: Vec<String> = shapes
+        .iter()
+        .enumerate()
+        .map(|(index, shape)| sequence(&format!("--shape {shape} --omega 0.{}", index + 3)))
+        .collect();
+    let alone: Vec<Value> =
+        sequences.iter().map(|csv| json(&succeed("identify - --format json", csv))["objects"][0].clone()).collect();
+    // Row by row of the rows of each frame, named by the object.
+    let mut mixed = String::from("frame,time,x,y,object\n");
+    for frame in 0..15 {
+        for (index, csv) in sequences.iter().enumerate() {
+            for row in csv.lines().filter(|row| row.starts_with(&format!("{frame},"))) {
+                mixed.push_str(&format!("{row},object {index}\n"));
+            }
+        }
+    }
+    let document = json(&succeed("identify - --format json", &mixed));
+    let objects = document["objects"].as_array().expect("a list");
+    assert_eq!(objects.len(), shapes.len());
+    for (index, (object, alone)) in objects.iter().zip(&alone).enumerate() {
+        assert_eq!(object["object"], format!("object {index}"));
+        assert_eq!(object["parameters"], alone["parameters"], "object {index}");
+    }
+    let frames: Vec<Value> = succeed("track", &mixed).lines().map(|line| json(line)["object"].clone()).collect();
+    assert_eq!(frames.len(), 15 * shapes.len());
+    assert!(frames.iter().enumerate().all(|(line, object)| *object == format!("object {}", line % shapes.len())));
+}

@@ -47,3 +47,43 @@ fn a_line_comes_as_soon_as_the_row_after_its_frame_has_been_read() {
     drop(input);
     assert!(child.wait().expect("it ends").success());
 }
+
+/// Resident memory of a process in kilobytes.
+#[cfg(target_os = "linux")]
+fn resident(child: &std::process::Child) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).expect("our child");
+    let line = status.lines().find(|line| line.starts_with("VmRSS:")).expect("a line of its memory");
+    line.split_whitespace().nth(1).expect("a number").parse().expect("a number")
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_does_not_grow_with_the_number_of_frames() {
+    let csv = succeed("simulate --points 40 --seconds 150 --noise 0.005", "");
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
+        .arg("track")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let mut input = child.stdin.take().expect("a pipe");
+    let output = BufReader::new(child.stdout.take().expect("a pipe"));
+    // The input stays open, so that the process stands still after the last frame that is complete.
+    let writer = std::thread::spawn(move || {
+        input.write_all(csv.as_bytes()).expect("the binary reads");
+        input
+    });
+    let mut lines = output.lines();
+    for _ in 0..500 {
+        lines.next().expect("a frame").expect("UTF-8");
+    }
+    let early = resident(&child);
+    for _ in 500..4499 {
+        lines.next().expect("a frame").expect("UTF-8");
+    }
+    let late = resident(&child);
+    drop(writer.join().expect("the writer ends"));
+    assert!(child.wait().expect("it ends").success());
+    // Chunks read ahead come and go; 4000 frames of 40 points would be 2.5 megabytes.
+    assert!(late < early + 1024, "{early} kB after 500 frames, {late} kB after 4499");
+}

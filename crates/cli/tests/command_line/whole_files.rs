@@ -91,6 +91,41 @@ fn a_run_that_is_killed_leaves_the_old_file_and_the_next_one_is_not_in_its_way()
     assert_eq!(fs::metadata(&target).expect("the file").permissions().mode() & 0o777, 0o640);
 }
 
+#[test]
+#[cfg(unix)]
+fn ctrl_c_while_a_file_is_written_leaves_the_old_one_and_nothing_beside_it() {
+    for arguments in [
+        &["simulate", "--seconds", "3000", "--output"][..],
+        &["evaluate", "--runs", "1000", "--output"],
+        &["fit", "-", "--svg"],
+    ] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let target = file(folder.path(), "target", "old");
+        let mut child = command()
+            .args(arguments)
+            .arg(&target)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the binary runs");
+        // Waiting for the child would close it, and so end the input.
+        let input = child.stdin.take();
+        let begins_at_once = arguments[0] != "fit";
+        while begins_at_once && entries(folder.path()) < 2 {
+            assert!(child.try_wait().expect("our child").is_none(), "{arguments:?} ended before it began to write");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        // Time to be ready for a signal at all.
+        std::thread::sleep(Duration::from_millis(200));
+        signal(&child, "-INT");
+        assert_eq!(child.wait().expect("our child").code(), Some(130), "{arguments:?}");
+        drop(input);
+        assert_eq!(fs::read_to_string(&target).expect("the file"), "old");
+        assert_eq!(entries(folder.path()), 1, "{arguments:?}");
+    }
+}
+
 /// Starts a command that reads from a pipe, and hands it more than any buffer on the way holds, so that it is at work.
 #[cfg(unix)]
 fn at_work(arguments: &[&str], csv: &str) -> (Child, std::process::ChildStdin) {

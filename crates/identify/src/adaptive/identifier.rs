@@ -14,6 +14,9 @@ use crate::{error::IdentifyError, estimate::MotionEstimate};
 /// An origin that moves faster than this, in lengths per second, lets the structured law take the linear part of the
 /// motion from the slopes alone. Objects are about of size 1, and the gains of the paper of rate 1 per second.
 const FAST_TRAVEL: f64 = 1.5;
+/// Pairs whose expected errors differ by less than this factor differ by rounding; the first of them is taken, whatever the
+/// processor.
+const ALIKE: f64 = 1.0 + 1e-6;
 
 /// The paper's adaptive identifier (section 4), over matched conjugate pairs of lines frame by frame.
 ///
@@ -240,8 +243,9 @@ impl AdaptiveIdentifier {
     }
 
     fn chosen_law(&self, laws: usize) -> usize {
-        let errors = self.qualities[..self.pair_count().min(laws)].iter().map(PairQuality::relative_error);
-        errors.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index)
+        let mut errors = self.qualities[..self.pair_count().min(laws)].iter().map(PairQuality::relative_error);
+        let least = errors.clone().fold(f64::INFINITY, f64::min);
+        errors.position(|error| error <= ALIKE * least).unwrap_or(0)
     }
 }
 

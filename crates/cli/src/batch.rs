@@ -1,0 +1,93 @@
+//! Frames of an input that are taken together.
+use std::rc::Rc;
+
+use freeform_motion::outline_io::OutlineFrame;
+
+use crate::failure::{Failure, warn};
+use crate::input::{Input, Item, Missing, SeenIn};
+use crate::interrupt;
+use crate::progress::Progress;
+
+/// Points of all outlines read ahead: some megabytes.
+const POINTS_AHEAD: usize = 1 << 18;
+/// Outlines read ahead, however small.
+const OUTLINES_AHEAD: usize = 4096;
+/// Pictures read ahead, which are held with their outlines.
+const PICTURES_AHEAD: usize = 16;
+
+/// How an input is gone through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pace {
+    /// Every frame is dealt with before the next one is read: what it gave is known as soon as it is complete.
+    FrameByFrame,
+    /// Many frames are read while those before are dealt with.
+    Ahead,
+}
+
+/// What was read: of one object in one frame, or of a picture that shows none.
+pub(crate) enum Taken {
+    /// An outline, and the picture that it was seen in, if it was.
+    Outline(OutlineFrame, Option<Rc<SeenIn>>),
+    /// An outline that is none, with the reason.
+    Rejected { object: String, frame: u64, reason: String },
+    /// A picture without an outline.
+    Missing(Missing),
+}
+
+/// Reads an input batch by batch.
+pub(crate) struct BatchReader<'a> {
+    input: &'a mut Input,
+    pace: Pace,
+    quiet: bool,
+    pub(crate) progress: Progress,
+    failure: Option<Failure>,
+}
+
+impl<'a> BatchReader<'a> {
+    pub(crate) fn new(input: &'a mut Input, pace: Pace, quiet: bool) -> Self {
+        let progress = Progress::of_frames(input.frame_count(), quiet);
+        Self { input, pace, quiet, progress, failure: None }
+    }
+
+    /// The next frames; none at the end of the input, at an error that ends it, and after Ctrl-C.
+    pub(crate) fn batch(&mut self) -> Vec<Taken> {
+        let (most, mut points_left) = match self.pace {
+            Pace::FrameByFrame => (1, 1),
+            Pace::Ahead if self.input.has_pictures() => (PICTURES_AHEAD, POINTS_AHEAD),
+            Pace::Ahead => (OUTLINES_AHEAD, POINTS_AHEAD),
+        };
+        let mut batch = Vec::new();
+        while batch.len() < most && points_left > 0 && self.failure.is_none() {
+            let Some(item) = self.input.next() else { break };
+            // What came after Ctrl-C may be cut short.
+            if interrupt::was_asked_for() {
+                break;
+            }
+            match item {
+                Ok(Item::Outline(frame, seen_in)) => {
+                    points_left = points_left.saturating_sub(frame.outline.point_count());
+                    batch.push(Taken::Outline(frame, seen_in));
+                }
+                Ok(Item::Rejected { object, frame, reason }) => batch.push(Taken::Rejected { object, frame, reason }),
+                Ok(Item::Missing(missing)) => {
+                    self.tell(&missing);
+                    batch.push(Taken::Missing(missing));
+                }
+                Err(failure) => self.failure = Some(failure),
+            }
+        }
+        batch
+    }
+
+    fn tell(&self, missing: &Missing) {
+        // The reason of a single picture is told in the end.
+        if !self.quiet && self.input.frame_count() != Some(1) {
+            self.progress.pause(|| warn(&missing.reason));
+        }
+    }
+
+    /// Why the reading ended before its time, if it did.
+    pub(crate) fn into_failure(self) -> Option<Failure> {
+        self.failure
+    }
+}
