@@ -7,15 +7,13 @@ use super::{
     contour::median,
     noise_level::STRETCHES,
     outline_map::OutlineMap,
-    reading::{NO_CELL, Reading},
+    reading::{CELL_ERROR, NO_CELL, Reading},
 };
 
 /// Residuals within this many standard deviations agree with the map.
 const AGREEING: f64 = 3.5;
 /// Residuals below this many spacings agree too: corners lie off the straight cells by as much.
 const BEND: f64 = 0.2;
-/// Without noise the innovation is what straight cells leave, in spacings.
-const CELL_ERROR: f64 = 0.1;
 /// Most linearisations per frame.
 const MOST_ITERATIONS: usize = 6;
 /// A step that moves points by less than this many standard deviations of the noise is the last.
@@ -99,7 +97,7 @@ impl OutlineMap {
         let update = self.update_loaded(&mut scratch, accept);
         self.scratch = scratch;
         if update.accepted && update.new_points >= FEWEST_NEW_POINTS {
-            self.grow(outline);
+            self.grow();
         }
         update
     }
@@ -141,6 +139,10 @@ impl OutlineMap {
         }
         let variance = self.sigma.max(CELL_ERROR * self.spacing).powi(2) * self.noise_level.correlation();
         self.innovation = self.pose_innovation(&marginal, &state, variance);
+        if self.is_compared {
+            self.last_misfit = self.misfit(scratch);
+            self.last_misfit.squares += self.innovation.squared;
+        }
         let mut update = self.judge(scratch, iterations);
         let correlation = correlation(&scratch.readings, update.noise.map(|noise| noise / self.radius));
         update.accepted = accept(&update);
