@@ -65,7 +65,7 @@ impl FirstFrames {
 
 impl OutlineMap {
     /// A map of the same body frame with cells cut from all the frames, which are those that this map has taken, and then taken one by
-    /// one. `None` where one of them does not fit.
+    /// one. `None` where one of them is not.
     pub(crate) fn recut(
         &self,
         frames: &[(f64, Outline)],
@@ -91,6 +91,7 @@ impl OutlineMap {
         map.load(first);
         map.cut(self.along_chains(points))?;
         map.motion = self.motion;
+        map.noise_level = self.noise_level;
         let mut before = *first_time;
         for (time, outline) in &frames[1..] {
             if !take(&mut map, time - before, outline).accepted {

@@ -71,6 +71,21 @@ impl Piece {
 }
 
 impl Scratch {
+    /// Leaves at most about so many of the points.
+    pub(crate) fn thin_out(&mut self, count: usize) {
+        let stride = self.points.len().div_ceil(count).max(1);
+        let mut kept = 0;
+        for piece in &mut self.pieces {
+            let start = kept;
+            for i in piece.range().step_by(stride) {
+                self.points[kept] = self.points[i];
+                kept += 1;
+            }
+            (piece.start, piece.count) = (start, kept - start);
+        }
+        self.points.truncate(kept);
+    }
+
     /// Offsets that go with a solution for pose and motion, and what it leaves of the residuals.
     fn take_solution(&mut self, cells: &[CellInformation], step: &StateVector, state: &StateVector, k: usize) {
         self.values.clear();

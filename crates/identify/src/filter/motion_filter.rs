@@ -177,10 +177,8 @@ impl MotionFilter {
             map.recut(self.first_frames.frames(), |map, seconds, outline| {
                 map.predict(seconds);
                 map.add_process_noise(&self.settings.process_noise, seconds);
-                let fits = fits(map, smallest);
-                let update = map.update(outline, fits);
-                map.noise_level.take(update.spread / map.radius);
-                update
+                // That it shows the object has been seen: the noise of the few points on cells seen before tells less.
+                map.update(outline, |update| update.agreement >= smallest)
             })
         };
         let settled = |map: OutlineMap| {

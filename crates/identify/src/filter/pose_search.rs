@@ -20,6 +20,9 @@ const GOLDEN_ANGLE: f64 = 2.399_963;
 /// Turns nearer than this to the best are no others, rad.
 const NEAR: f64 = 0.3;
 
+/// Points that turns are compared by.
+const ENOUGH_POINTS: usize = 2000;
+
 /// The map in a pose that was tried.
 #[derive(Debug, Clone)]
 pub(crate) struct Candidate {
@@ -77,9 +80,14 @@ impl MotionFilter {
     /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen.
     fn candidates(&mut self, outline: &Outline, seconds: f64, relaxed: bool) -> Vec<Candidate> {
         let mut candidates = self.measured(outline, seconds, relaxed);
-        let Some(best) = best(&candidates) else { return candidates };
+        let fitting = candidates.iter().filter(|c| c.update.accepted && !relaxed);
+        let Some(best) = fitting.min_by(|a, b| a.misfit().squares.total_cmp(&b.misfit().squares)) else {
+            return candidates;
+        };
         let pose = best.map.pose;
-        if let Some(map) = self.map.as_mut().filter(|map| !map.turn_is_unseen())
+        // A map that has been followed knows whether it shows its turn.
+        let is_new = self.phase == Phase::Acquiring;
+        if let Some(map) = self.map.as_mut().filter(|map| is_new && !map.turn_is_unseen())
             && !map.shows_turn(outline, &pose)
         {
             map.hide_turn();
@@ -117,20 +125,12 @@ impl MotionFilter {
     }
 }
 
-/// The one that fits best, of those accepted if there are any.
-fn best(candidates: &[Candidate]) -> Option<&Candidate> {
-    let order = |c: &&Candidate| (!c.update.accepted, c.misfit().squares);
-    candidates.iter().min_by(|a, b| {
-        let ((a, x), (b, y)) = (order(a), order(b));
-        a.cmp(&b).then(x.total_cmp(&y))
-    })
-}
-
 impl OutlineMap {
     /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
     fn shows_turn(&mut self, outline: &Outline, pose: &Matrix3<f64>) -> bool {
         self.load(outline);
         let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.thin_out(ENOUGH_POINTS);
         let best = self.misfit_in(&mut scratch, pose);
         let body_centre = nalgebra::Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)]);
         let centre = map_point(pose, &body_centre);
