@@ -2,9 +2,10 @@
 use nalgebra::Matrix3;
 
 use super::{
+    contour::median,
     map_update::Scratch,
     outline_map::OutlineMap,
-    reading::{CELL_ERROR, NO_CELL},
+    reading::{CELL_ERROR, NO_CELL, Reading},
 };
 
 /// Residuals of more standard deviations are no worse: they may be outliers.
@@ -43,29 +44,50 @@ impl Misfit {
 }
 
 impl OutlineMap {
-    /// Of the points as they have been read, before the information of their frame has been taken.
-    pub(crate) fn misfit(&self, scratch: &Scratch) -> Misfit {
-        let scale = if self.noise_level.relaxed { self.noise_level.tolerated(self.sigma) } else { self.sigma };
-        let unit = 1.0 / scale.max(CELL_ERROR * self.spacing).powi(2);
-        let squares = scratch.readings.iter().map(|r| {
-            if r.cell == NO_CELL || self.information.cells[r.cell].own <= 0.0 {
-                return UNKNOWN;
-            }
-            // From the outline as it was known.
-            let innovation = r.residual + r.slope * scratch.shifts[r.cell];
-            let variance = 1.0 + r.slope * r.slope / self.information.cells[r.cell].own;
-            (innovation * innovation * unit / variance).min(LARGEST * LARGEST)
-        });
-        let squares = squares.sum::<f64>();
-        let points = scratch.readings.len() as f64;
-        Misfit { squares, points, weighted: points * self.noise_level.correlation() }
+    /// Smallest noise that poses are compared by.
+    fn comparable_noise(&self) -> f64 {
+        self.sigma.max(CELL_ERROR * self.spacing)
     }
 
-    /// Of the loaded points in a pose.
-    pub(crate) fn misfit_in(&self, scratch: &mut Scratch, pose: &Matrix3<f64>) -> Misfit {
+    /// Of the points as they have been read, before the information of their frame has been taken.
+    pub(crate) fn misfit(&self, scratch: &Scratch) -> Misfit {
+        let scale = self.comparable_noise();
+        let innovations = scratch.readings.iter().map(|r| self.innovation_of(r, &scratch.shifts));
+        misfit(innovations, scale, self.noise_level.correlation())
+    }
+
+    /// Of the loaded points in several poses. Where the map leaves more than the noise in the best of them, as one of few points does,
+    /// that is what they are compared by.
+    pub(crate) fn misfits_in(&self, scratch: &mut Scratch, poses: &[Matrix3<f64>]) -> Vec<Misfit> {
         scratch.shifts.clear();
         scratch.shifts.resize(self.cells.len(), 0.0);
-        self.read_points(scratch, pose, &[], true);
-        self.misfit(scratch)
+        let mut scale = f64::INFINITY;
+        let mut all: Vec<Vec<Option<f64>>> = Vec::with_capacity(poses.len());
+        for pose in poses {
+            self.read_points(scratch, pose, &[], true);
+            let list: Vec<_> = scratch.readings.iter().map(|r| self.innovation_of(r, &scratch.shifts)).collect();
+            let mut sizes: Vec<f64> = list.iter().flatten().map(|innovation| innovation.abs()).collect();
+            scale = scale.min(median(&mut sizes).map_or(f64::INFINITY, |m| 1.4826 * m));
+            all.push(list);
+        }
+        let scale = if scale.is_finite() { scale.max(self.comparable_noise()) } else { self.comparable_noise() };
+        let correlation = self.noise_level.correlation();
+        all.into_iter().map(|list| misfit(list.into_iter(), scale, correlation)).collect()
     }
+
+    /// Distance of a point from the outline as it was known, as if that were exact; `None` where nothing was known.
+    fn innovation_of(&self, r: &Reading, shifts: &[f64]) -> Option<f64> {
+        if r.cell == NO_CELL || self.information.cells[r.cell].own <= 0.0 {
+            return None;
+        }
+        let variance = 1.0 + r.slope * r.slope / self.information.cells[r.cell].own;
+        Some((r.residual + r.slope * shifts[r.cell]) / variance.sqrt())
+    }
+}
+
+fn misfit(innovations: impl ExactSizeIterator<Item = Option<f64>>, scale: f64, correlation: f64) -> Misfit {
+    let points = innovations.len() as f64;
+    let square = |innovation: f64| (innovation / scale).powi(2).min(LARGEST * LARGEST);
+    let squares = innovations.map(|innovation| innovation.map_or(UNKNOWN, square)).sum();
+    Misfit { squares, points, weighted: points * correlation }
 }

@@ -30,12 +30,7 @@ pub(crate) struct Candidate {
     pub(crate) update: MapUpdate,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(crate) turn: f64,
-}
-
-impl Candidate {
-    pub(crate) fn misfit(&self) -> &Misfit {
-        &self.map.last_misfit
-    }
+    pub(crate) misfit: Misfit,
 }
 
 impl MotionFilter {
@@ -79,21 +74,21 @@ impl MotionFilter {
 
     /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen.
     fn candidates(&mut self, outline: &Outline, seconds: f64, relaxed: bool) -> Vec<Candidate> {
-        let mut candidates = self.measured(outline, seconds, relaxed);
-        let fitting = candidates.iter().filter(|c| c.update.accepted && !relaxed);
-        let Some(best) = fitting.min_by(|a, b| a.misfit().squares.total_cmp(&b.misfit().squares)) else {
+        if let Some(map) = &mut self.map {
+            map.show_turn();
+        }
+        let candidates = self.measured(outline, seconds, relaxed);
+        let fitting = candidates.iter().filter(|c| c.update.accepted);
+        let Some(best) = fitting.min_by(|a, b| a.misfit.squares.total_cmp(&b.misfit.squares)) else {
             return candidates;
         };
         let pose = best.map.pose;
-        // A map that has been followed knows whether it shows its turn.
-        let is_new = self.phase == Phase::Acquiring;
-        if let Some(map) = self.map.as_mut().filter(|map| is_new && !map.turn_is_unseen())
-            && !map.shows_turn(outline, &pose)
-        {
-            map.hide_turn();
-            candidates = self.measured(outline, seconds, relaxed);
+        let Some(map) = self.map.as_mut().filter(|map| !map.turn_is_unseen()) else { return candidates };
+        if map.shows_turn(outline, &pose) {
+            return candidates;
         }
-        candidates
+        map.hide_turn();
+        self.measured(outline, seconds, relaxed)
     }
 
     fn measured(&mut self, outline: &Outline, seconds: f64, relaxed: bool) -> Vec<Candidate> {
@@ -103,13 +98,17 @@ impl MotionFilter {
             Some([landmarks.moved(&pose), Landmarks::of(outline)?])
         });
         let hypotheses = find_pose(map, outline, landmarks);
-        hypotheses.iter().filter_map(|hypothesis| self.try_pose(hypothesis, outline, seconds, relaxed)).collect()
+        let tried = hypotheses.iter().filter_map(|hypothesis| self.try_pose(hypothesis, outline, seconds, relaxed));
+        let mut candidates: Vec<Candidate> = tried.collect();
+        let poses: Vec<_> = candidates.iter().map(|candidate| candidate.map.pose).collect();
+        let misfits = self.map.as_mut().map_or_else(Vec::new, |map| map.compared(outline, &poses));
+        candidates.iter_mut().zip(misfits).for_each(|(candidate, misfit)| candidate.misfit = misfit);
+        candidates
     }
 
     fn try_pose(&self, hypothesis: &Hypothesis, outline: &Outline, seconds: f64, relaxed: bool) -> Option<Candidate> {
         let mut map = self.map.clone()?;
         map.noise_level.relaxed = relaxed;
-        map.is_compared = true;
         if self.phase == Phase::Lost {
             map.relocate(hypothesis.pose);
         } else {
@@ -120,33 +119,35 @@ impl MotionFilter {
         let fits = fits(&map, self.settings.smallest_agreement);
         let update = map.update(outline, fits);
         map.noise_level.relaxed = false;
-        map.is_compared = false;
-        Some(Candidate { map, update, turn: hypothesis.turn })
+        Some(Candidate { map, update, turn: hypothesis.turn, misfit: Misfit::default() })
     }
 }
 
 impl OutlineMap {
-    /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
-    fn shows_turn(&mut self, outline: &Outline, pose: &Matrix3<f64>) -> bool {
+    /// Misfit of an outline in several poses.
+    fn compared(&mut self, outline: &Outline, poses: &[Matrix3<f64>]) -> Vec<Misfit> {
         self.load(outline);
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.thin_out(ENOUGH_POINTS);
-        let best = self.misfit_in(&mut scratch, pose);
+        let misfits = self.misfits_in(&mut scratch, poses);
+        self.scratch = scratch;
+        misfits
+    }
+
+    /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
+    fn shows_turn(&mut self, outline: &Outline, pose: &Matrix3<f64>) -> bool {
         let body_centre = nalgebra::Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)]);
         let centre = map_point(pose, &body_centre);
-        let (mut worse, mut count) = (0, 0);
-        for i in 1..=OTHER_TURNS {
-            let rotation = Rotation2::new(GOLDEN_ANGLE * i as f64);
-            if rotation.angle().abs() < NEAR {
-                continue;
-            }
-            let mut turned = rotation.to_homogeneous();
+        let turned = (1..=OTHER_TURNS).map(|i| Rotation2::new(GOLDEN_ANGLE * i as f64));
+        let turned = turned.filter(|rotation| rotation.angle().abs() >= NEAR).map(|rotation| {
             let shift = centre - rotation * centre;
+            let mut turned = rotation.to_homogeneous();
             (turned[(0, 2)], turned[(1, 2)]) = (shift.x, shift.y);
-            count += 1;
-            worse += usize::from(self.misfit_in(&mut scratch, &(turned * pose)).is_worse_than(&best));
-        }
-        self.scratch = scratch;
-        2 * worse > count
+            turned * pose
+        });
+        let poses: Vec<_> = std::iter::once(*pose).chain(turned).collect();
+        let misfits = self.compared(outline, &poses);
+        let worse = misfits[1..].iter().filter(|other| other.is_worse_than(&misfits[0])).count();
+        2 * worse > misfits.len() - 1
     }
 }

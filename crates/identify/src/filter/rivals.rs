@@ -39,9 +39,9 @@ pub(crate) struct Rivals {
 impl Rivals {
     /// Takes the smallest turn of all that are not significantly worse than the best.
     pub(crate) fn among(mut candidates: Vec<Candidate>) -> (Option<Candidate>, Self) {
-        candidates.sort_by(|a, b| a.misfit().squares.total_cmp(&b.misfit().squares));
-        let Some(best) = candidates.first().map(|c| *c.misfit()) else { return (None, Self::default()) };
-        candidates.retain(|candidate| !candidate.misfit().is_worse_than(&best));
+        candidates.sort_by(|a, b| a.misfit.squares.total_cmp(&b.misfit.squares));
+        let Some(best) = candidates.first().map(|c| c.misfit) else { return (None, Self::default()) };
+        candidates.retain(|candidate| !candidate.misfit.is_worse_than(&best));
         // The best of those with one turn stands for them.
         let mut different: Vec<Candidate> = Vec::new();
         for candidate in candidates {
@@ -54,12 +54,12 @@ impl Rivals {
         let mut taken = others.next();
         let mut rivals = Self {
             taken: taken.as_ref().map_or(0.0, |c| c.turn),
-            misfit: taken.as_ref().map_or_else(Misfit::default, |c| *c.misfit()),
+            misfit: taken.as_ref().map_or_else(Misfit::default, |c| c.misfit),
             ..Self::default()
         };
         for candidate in others {
             rivals.turns.push(candidate.turn);
-            rivals.list.push(Rival { misfit: *candidate.misfit(), map: Some(candidate.map) });
+            rivals.list.push(Rival { misfit: candidate.misfit, map: Some(candidate.map) });
         }
         if let Some(taken) = &mut taken {
             taken.map.is_compared = !rivals.list.is_empty();

@@ -33,13 +33,20 @@ impl Unseen {
 impl OutlineMap {
     /// Takes it that the turn about the object's centre cannot be seen.
     pub(crate) fn hide_turn(&mut self) {
-        self.turn_is_hidden = true;
         let k = self.information.k;
         let turn = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         let size = coordinates(self.model, &turn)[..k].iter().map(|c| c * c).sum::<f64>().sqrt();
         let Some(inverse) = self.body_frame.try_inverse() else { return };
         if !self.turn_is_unseen() {
+            self.turn_is_hidden = true;
             self.unseen_in_body.push(coordinates(self.model, &(self.body_frame * turn / size * inverse)));
+        }
+    }
+
+    /// Takes that back.
+    pub(crate) fn show_turn(&mut self) {
+        if std::mem::take(&mut self.turn_is_hidden) {
+            self.unseen_in_body.pop();
         }
     }
 
@@ -78,7 +85,7 @@ impl OutlineMap {
             }
         }
         self.body_frame = to_body;
-        if self.turn_is_hidden {
+        if std::mem::take(&mut self.turn_is_hidden) {
             self.hide_turn();
         }
     }
