@@ -62,6 +62,7 @@ impl OutlineMap {
 
     /// Directions of the pose that the cells do not show, from their lever arms about their mean.
     pub(crate) fn find_unseen_directions(&mut self, normal_noise: f64) {
+        let was_unseen = self.turn_is_unseen();
         let count = self.cells.len() as f64;
         let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
         let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
@@ -85,7 +86,9 @@ impl OutlineMap {
             }
         }
         self.body_frame = to_body;
-        if std::mem::take(&mut self.turn_is_hidden) {
+        self.turn_is_hidden = false;
+        // What a few more cells show would be taken to have turned by what was never seen.
+        if was_unseen {
             self.hide_turn();
         }
     }
