@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::positive;
+use super::values::run_length;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,8 +32,8 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "FIGURE", value_enum, num_args = 1.., value_delimiter = ',')]
     pub(crate) only: Vec<Part>,
 
-    /// Length of each experiment in seconds
-    #[arg(long, value_name = "S", value_parser = positive, default_value_t = 30.0)]
+    /// Length of each experiment in seconds, at least 1
+    #[arg(long, value_name = "S", value_parser = run_length, default_value_t = 30.0)]
     pub(crate) seconds: f64,
 
     /// Random initial values tried for each experiment and law

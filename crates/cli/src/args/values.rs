@@ -14,6 +14,16 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     if value > 0.0 && value.is_normal() { Ok(value) } else { Err(format!("{text} is not above 0")) }
 }
 
+/// The length of an experiment: a second or more.
+pub(crate) fn run_length(text: &str) -> Result<f64, String> {
+    let value = positive(text)?;
+    if value >= 1.0 {
+        Ok(value)
+    } else {
+        Err(format!("{text} s are too short to identify a motion from, at least 1 is needed"))
+    }
+}
+
 /// A finite number, 0 or above.
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     let value = finite(text)?;

@@ -4,6 +4,9 @@ use super::html::{document, write_settings};
 use crate::commands::{Drawing, Section, Table};
 use crate::plot::escape;
 
+/// Least size of a figure on a narrow page, as a share of that of its file; beyond that it is scrolled.
+const SMALLEST: f64 = 0.75;
+
 /// A page of figures and tables that needs nothing but itself.
 pub(crate) fn write_page(
     title: &str,
@@ -31,12 +34,14 @@ pub(crate) fn write_page(
 
 fn write_drawing(body: &mut String, drawing: &Drawing) {
     let Drawing { name, caption, figure, .. } = drawing;
-    // No larger than as a file.
+    // No larger than as a file, and where there is no room for it not so small that its text cannot be read.
     let [width, _] = figure.size();
+    let least = (SMALLEST * width).round();
     let (caption, element) = (escape(caption), figure.element());
     let _ = writeln!(
         body,
-        "<figure style=\"max-width:{width}px\">\n{element}\n<figcaption>{caption} \
+        "<figure style=\"max-width:{width}px\">\n<div class=\"scroll\"><div style=\"min-width:{least}px\">{element}</div></div>\n\
+         <figcaption>{caption} \
          <span class=\"soft\">{name}.svg, {name}.csv</span></figcaption>\n</figure>"
     );
 }

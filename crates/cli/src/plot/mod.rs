@@ -1,4 +1,5 @@
 //! Figures as SVG: panels with axes, ticks at round numbers and a legend above the data.
+mod legend;
 mod panel;
 mod style;
 mod ticks;

@@ -1,13 +1,11 @@
 use std::fmt::Write as _;
 
-use super::style::{CHARACTER_WIDTH, escape};
+use super::legend::{LEGEND_ROW, draw_legend_row, legend_rows};
+use super::style::{escape, text_width};
 use super::ticks::Ticks;
 
 /// Most points drawn of one line; of longer ones the lowest and highest of each stretch are.
 const POINTS_DRAWN: usize = 3000;
-
-/// Height of a row of the legend, in pixels.
-const LEGEND_ROW: f64 = 20.0;
 
 /// What stands beside the legend, in pixels: labels of the y axis and the right margin.
 const LEGEND_MARGINS: f64 = 80.0;
@@ -19,6 +17,8 @@ pub(crate) enum Look {
     Line,
     /// A dashed line for what is known to be true.
     Truth,
+    /// A thin dashed line in the colour of the text, for what several curves of different colours are held against.
+    Reference,
     /// A filled area.
     Band,
     /// Small dots.
@@ -39,7 +39,7 @@ pub(crate) enum Look {
 pub(crate) const SERIES: usize = 6;
 
 impl Look {
-    const fn class(self) -> &'static str {
+    pub(super) const fn class(self) -> &'static str {
         const SOLID: [&str; SERIES] = ["s s0", "s s1", "s s2", "s s3", "s s4", "s s5"];
         const DASHED: [&str; SERIES] = ["s d s0", "s d s1", "s d s2", "s d s3", "s d s4", "s d s5"];
         match self {
@@ -49,6 +49,7 @@ impl Look {
             Self::Dashed(colour) => DASHED[colour % SERIES],
             Self::Line => "line",
             Self::Truth => "truth",
+            Self::Reference => "reference",
             Self::Band => "band",
             Self::Dots => "dots",
             Self::Crosses => "crosses",
@@ -133,24 +134,46 @@ impl Axis {
 }
 
 impl Panel {
-    /// The panel as SVG elements, with its legend or without.
-    pub(crate) fn render(&self, place: Place, has_legend: bool) -> String {
-        let rows = if has_legend { self.legend_rows(place.width - LEGEND_MARGINS) } else { Vec::new() };
-        let margin_top = if self.title.is_empty() { 10.0 } else { 28.0 } + LEGEND_ROW * rows.len() as f64;
-        let below = if self.is_bare { 6.0 } else { 42.0 };
-        let (bottom, top) = (place.top + place.height - below, place.top + margin_top);
-        let right = place.left + place.width - if self.is_bare { 6.0 } else { 16.0 };
+    /// Space above the data, in pixels: title and legend.
+    fn margin_top(&self, width: f64, has_legend: bool) -> f64 {
+        let rows = if has_legend { self.legend_rows(width - LEGEND_MARGINS).len() } else { 0 };
+        LEGEND_ROW * rows as f64 + if self.title.is_empty() { 10.0 } else { 28.0 }
+    }
+
+    const fn margin_below(&self) -> f64 {
+        if self.is_bare { 6.0 } else { 42.0 }
+    }
+
+    /// The y axis over some pixels, and how many ticks it has room for.
+    fn y_axis(&self, from: f64, to: f64) -> (Axis, usize) {
         let (low, high) = self.range(1, 0.06);
-        let mut y = Axis { low, high, from: bottom, to: top, logarithmic: self.y_logarithmic };
-        let y_count = ((bottom - top)
-            / match (self.view, self.y_logarithmic) {
-                (Some(_), _) => 50.0,
-                (None, true) => 28.0,
-                (None, false) => 32.0,
-            }) as usize;
-        let y_ticks = y.ticks(y_count);
-        let widest = y_ticks.labels.iter().map(String::len).max().unwrap_or(0);
-        let left = place.left + if self.is_bare { 6.0 } else { 34.0 + CHARACTER_WIDTH * widest as f64 };
+        let pixels_per_tick = match (self.view, self.y_logarithmic) {
+            (Some(_), _) => 50.0,
+            (None, true) => 28.0,
+            (None, false) => 32.0,
+        };
+        let count = ((from - to) / pixels_per_tick) as usize;
+        (Axis { low, high, from, to, logarithmic: self.y_logarithmic }, count)
+    }
+
+    /// Space that the labels of the y axis need to its left, in pixels, in a panel of some width and height.
+    pub(crate) fn margin_left(&self, width: f64, height: f64, has_legend: bool) -> f64 {
+        if self.is_bare {
+            return 6.0;
+        }
+        let (y, count) = self.y_axis(height - self.margin_below(), self.margin_top(width, has_legend));
+        let widest = y.ticks(count).labels.iter().map(|label| text_width(label)).fold(0.0, f64::max);
+        34.0 + widest
+    }
+
+    /// The panel as SVG elements, with its legend or without, the data beginning so many pixels from its left edge.
+    pub(crate) fn render(&self, place: Place, margin_left: f64, has_legend: bool) -> String {
+        let rows = if has_legend { self.legend_rows(place.width - LEGEND_MARGINS) } else { Vec::new() };
+        let bottom = place.top + place.height - self.margin_below();
+        let top = place.top + self.margin_top(place.width, has_legend);
+        let left = place.left + margin_left;
+        let right = place.left + place.width - if self.is_bare { 6.0 } else { 16.0 };
+        let (mut y, y_count) = self.y_axis(bottom, top);
         let (low, high) = self.range(0, 0.0);
         let mut x = Axis { low, high, from: left, to: right, logarithmic: false };
         if self.view.is_some() {
@@ -162,7 +185,7 @@ impl Panel {
 
         let mut svg = String::new();
         if !self.is_bare {
-            let y_ticks = if self.view.is_some() { y.ticks(y_count) } else { y_ticks };
+            let y_ticks = y.ticks(y_count);
             let x_ticks = x.ticks(((right - left) / 60.0) as usize);
             self.draw_frame(&mut svg, (&x, &x_ticks), (&y, &y_ticks));
         }
@@ -195,16 +218,6 @@ impl Panel {
         svg
     }
 
-    /// The legend alone, at a place of some width, and its height.
-    pub(crate) fn legend_alone(&self, left: f64, top: f64, width: f64) -> (String, f64) {
-        let rows = self.legend_rows(width);
-        let mut svg = String::new();
-        for (row, curves) in rows.iter().enumerate() {
-            draw_legend_row(&mut svg, curves, left, top + LEGEND_ROW * (row as f64 + 0.5));
-        }
-        (svg, LEGEND_ROW * rows.len() as f64)
-    }
-
     fn draw_labels(&self, svg: &mut String, [x_left, x_top]: [f64; 2], [y_left, y_top]: [f64; 2]) {
         let (x_label, y_label) = (escape(&self.x_label), escape(&self.y_label));
         let _ = writeln!(svg, r#"<text class="label" x="{x_left:.1}" y="{x_top:.1}">{x_label}</text>"#);
@@ -212,26 +225,13 @@ impl Panel {
         let _ = writeln!(svg, r#"<text class="label" transform="{turned}">{y_label}</text>"#);
     }
 
-    fn legend(&self) -> impl Iterator<Item = &Curve> {
+    pub(super) fn legend(&self) -> impl Iterator<Item = &Curve> {
         self.curves.iter().filter(|curve| !curve.name.is_empty() && curve.runs.iter().any(|run| !run.is_empty()))
     }
 
     /// The entries of the legend, as many to a row as fit into a width.
     fn legend_rows(&self, width: f64) -> Vec<Vec<&Curve>> {
-        let mut rows: Vec<Vec<&Curve>> = Vec::new();
-        let mut used = f64::INFINITY;
-        for curve in self.legend() {
-            let needed = legend_width(curve);
-            if used + needed > width {
-                rows.push(Vec::new());
-                used = 0.0;
-            }
-            used += needed;
-            if let Some(row) = rows.last_mut() {
-                row.push(curve);
-            }
-        }
-        rows
+        legend_rows(self.legend(), width)
     }
 
     /// Range of all finite values on an axis, widened by a share of itself.
@@ -277,35 +277,6 @@ impl Panel {
     }
 }
 
-fn legend_width(curve: &Curve) -> f64 {
-    27.0 + CHARACTER_WIDTH * curve.name.chars().count() as f64 + 16.0
-}
-
-fn draw_legend_row(svg: &mut String, curves: &[&Curve], mut left: f64, middle: f64) {
-    for curve in curves {
-        let (class, right) = (curve.look.class(), left + 22.0);
-        let _ = match curve.look {
-            Look::Band => {
-                let top = middle - 4.0;
-                writeln!(svg, r#"<rect class="{class}" x="{left:.1}" y="{top:.1}" width="22" height="8"/>"#)
-            }
-            Look::Dots => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, dots(&[[left + 11.0, middle]])),
-            Look::FineDots => {
-                let row = [3.0, 7.0, 11.0, 15.0, 19.0].map(|x| [left + x, middle]);
-                writeln!(svg, r#"<path class="{class}" d="{}"/>"#, dots(&row))
-            }
-            Look::Crosses => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, crosses(&[[left + 11.0, middle]])),
-            Look::Line | Look::Truth | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
-                writeln!(svg, r#"<path class="{class}" d="M{left:.1} {middle:.1}H{right:.1}"/>"#)
-            }
-        };
-        let (text_left, text_top) = (right + 5.0, middle + 4.0);
-        let name = escape(&curve.name);
-        let _ = writeln!(svg, r#"<text class="tick" x="{text_left:.1}" y="{text_top:.1}">{name}</text>"#);
-        left += legend_width(curve);
-    }
-}
-
 fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
     let mut path = String::new();
     for run in &curve.runs {
@@ -314,7 +285,7 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
         let finite = run.iter().filter(can_be_drawn);
         let pixels: Vec<[f64; 2]> = finite.map(|point| [x.pixel(point[0]), y.pixel(point[1])]).collect();
         path.push_str(&match curve.look {
-            Look::Line | Look::Truth | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
+            Look::Line | Look::Truth | Look::Reference | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
                 connected(&thinned(&pixels), "")
             }
             Look::Band => connected(&pixels, "Z"),
@@ -335,12 +306,12 @@ fn connected(pixels: &[[f64; 2]], end: &str) -> String {
     path + end
 }
 
-fn dots(pixels: &[[f64; 2]]) -> String {
+pub(super) fn dots(pixels: &[[f64; 2]]) -> String {
     // Lines of no length with round ends.
     pixels.iter().map(|[x, y]| format!("M{x:.2} {y:.2}h0")).collect()
 }
 
-fn crosses(pixels: &[[f64; 2]]) -> String {
+pub(super) fn crosses(pixels: &[[f64; 2]]) -> String {
     pixels.iter().map(|[x, y]| format!("M{:.2} {:.2}l8 8m0 -8l-8 8", x - 4.0, y - 4.0)).collect()
 }
 
@@ -379,14 +350,5 @@ mod tests {
         let logarithmic = Panel { y_logarithmic: true, ..panel(&[0.0, -3.0, 0.01, 100.0]) };
         let (low, high) = logarithmic.range(1, 0.06);
         assert!(low > 0.001 && low < 0.01 && high > 100.0, "what is not above 0 takes no part: {low} {high}");
-    }
-
-    #[test]
-    fn a_legend_takes_as_many_rows_as_it_needs() {
-        let panel = panel(&[1.0, 2.0, 3.0, 4.0, 5.0]);
-        let lengths = |width: f64| panel.legend_rows(width).iter().map(Vec::len).collect::<Vec<_>>();
-        assert_eq!(lengths(10_000.0), [5]);
-        assert_eq!(lengths(260.0), [2, 2, 1]);
-        assert_eq!(lengths(1.0), [1; 5]);
     }
 }

@@ -1,7 +1,17 @@
+use super::legend::shared_legend;
 use super::panel::{Panel, Place};
 
-/// Mean width of a character at the size of tick labels, in pixels.
-pub(crate) const CHARACTER_WIDTH: f64 = 6.5;
+/// About the width of a text at the size of tick labels, in pixels. Fonts differ: it is that of wide ones.
+pub(crate) fn text_width(text: &str) -> f64 {
+    let width = |character: char| match character {
+        'i' | 'j' | 'l' | 'I' | ' ' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 3.6,
+        'f' | 'r' | 't' | '(' | ')' | '[' | ']' | '-' | '/' => 4.8,
+        'm' | 'w' | 'M' | 'W' | '%' => 11.0,
+        character if character.is_uppercase() => 8.6,
+        _ => 7.2,
+    };
+    text.chars().map(width).sum()
+}
 
 /// Colours and lines on white paper. All can be told apart by everyone (Okabe and Ito, 2008; the last three
 /// somewhat darker, for thin lines).
@@ -14,6 +24,7 @@ text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#2
 .grid{fill:none;stroke:#ddd;stroke-width:1}\
 .line{fill:none;stroke:#0072b2;stroke-width:1.6;stroke-linejoin:round}\
 .truth{fill:none;stroke:#d55e00;stroke-width:1.6;stroke-dasharray:7 4}\
+.reference{fill:none;stroke:#222;stroke-width:1.1;stroke-dasharray:6 4}\
 .band{fill:#0072b2;fill-opacity:.2;stroke:none}\
 .dots{fill:none;stroke:#777;stroke-width:2.6;stroke-linecap:round}\
 .fine{stroke-width:1.8}\
@@ -27,7 +38,7 @@ text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#2
 pub(crate) struct Figure {
     /// Over all panels; none if empty.
     pub(crate) title: String,
-    /// Whether one legend, that of the first panel, stands for all.
+    /// Whether one legend, over all panels, stands for all.
     pub(crate) shares_legend: bool,
     pub(crate) panels: Vec<Panel>,
     /// Panels in a row, at least 1.
@@ -76,8 +87,8 @@ impl Figure {
             svg = format!(r#"<text class="title" x="{LEFT}" y="20">{}</text>"#, escape(&self.title));
             height = 28.0;
         }
-        if let Some(first) = self.panels.first().filter(|_| self.shares_legend) {
-            let (legend, legend_height) = first.legend_alone(LEFT, height, self.width() - 2.0 * LEFT);
+        if self.shares_legend {
+            let (legend, legend_height) = shared_legend(&self.panels, LEFT, height, self.width() - 2.0 * LEFT);
             svg.push_str(&legend);
             height += legend_height + 6.0;
         }
@@ -92,7 +103,13 @@ impl Figure {
             let (column, row) = ((k % columns) as f64, (k / columns) as f64);
             Place { left: column * width, top: head_height + row * height, width, height }
         };
-        let panels = self.panels.iter().enumerate().map(|(k, panel)| panel.render(place(k), !self.shares_legend));
+        let has_legend = !self.shares_legend;
+        // The data of panels below one another begins at the same place.
+        let margin = |k: usize| {
+            let of_column = self.panels.iter().skip(k % columns).step_by(columns);
+            of_column.map(|panel| panel.margin_left(width, height, has_legend)).fold(0.0, f64::max)
+        };
+        let panels = self.panels.iter().enumerate().map(|(k, panel)| panel.render(place(k), margin(k), has_legend));
         head + &panels.collect::<String>()
     }
 }
@@ -122,4 +139,27 @@ pub(crate) fn escape(text: &str) -> String {
         }
     }
     escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::panel::{Curve, Look};
+    use super::*;
+
+    #[test]
+    fn the_data_of_panels_below_one_another_begin_at_the_same_place() {
+        let panel = |high: f64| {
+            let curves =
+                vec![Curve { name: "a".to_owned(), look: Look::Line, runs: vec![vec![[0.0, 0.0], [1.0, high]]] }];
+            Panel { curves, ..Panel::default() }
+        };
+        let panels = vec![panel(1.0), panel(1.0), panel(10_000.0), panel(1.0)];
+        let figure = Figure { panels, columns: 2, panel_size: [300.0, 200.0], ..Figure::default() };
+        let svg = figure.file();
+        let lefts: Vec<&str> =
+            svg.split(r#"<rect class="axis" x=""#).skip(1).filter_map(|rest| rest.split('"').next()).collect();
+        assert_eq!(lefts.len(), 4);
+        assert_eq!((lefts[0], lefts[1]), (lefts[2], lefts[3]));
+        assert_ne!(panel(1.0).margin_left(300.0, 200.0, true), panel(10_000.0).margin_left(300.0, 200.0, true));
+    }
 }

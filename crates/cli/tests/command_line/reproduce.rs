@@ -20,23 +20,36 @@ fn names_in(folder: &Path, extension: &str) -> BTreeSet<String> {
     wanted.map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned()).collect()
 }
 
+/// Titles, heads and what stands in the first column: all of the tables that a smaller version has too.
+fn labels(tables: &str) -> Vec<String> {
+    let label = |line: &str| match line.strip_prefix("  ") {
+        // In a title, without the number of runs.
+        None => line.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned(),
+        Some(row) => row.split("  ").next().unwrap_or(row).to_owned(),
+    };
+    tables.lines().map(label).collect()
+}
+
 #[test]
 fn a_small_version_of_everything_gives_the_tables_as_they_were() {
     let folder = tempfile::tempdir().expect("a folder");
     let printed = succeed(&format!("reproduce {SMALL} --out {}", folder.path().display()), "");
     let (tables, last_line) = printed.trim_end().rsplit_once('\n').expect("lines");
-    assert!(last_line.starts_with("17 figure(s)") && last_line.ends_with("index.html"), "{last_line}");
+    assert!(last_line.starts_with("18 figure(s)") && last_line.ends_with("index.html"), "{last_line}");
     insta::assert_snapshot!("reproduce", tables);
+    let kept = fs::read_to_string(root().join("docs/paper-tables.txt")).expect("the tables of the documents");
+    let (kept, _) = kept.trim_end().rsplit_once('\n').expect("lines");
+    assert_eq!(labels(kept), labels(tables), "make docs/paper-tables.txt anew as docs/paper.md says");
 
     let figures = names_in(folder.path(), "svg");
     let data = names_in(folder.path(), "csv");
-    assert_eq!(figures.len(), 17);
+    assert_eq!(figures.len(), 18);
     assert!(figures.is_subset(&data), "every figure has its numbers: {figures:?} {data:?}");
     let page = fs::read_to_string(folder.path().join("index.html")).expect("the page");
     for name in figures.iter().chain(&data) {
         assert!(page.contains(&format!("{name}.")), "{name}");
     }
-    assert_eq!(page.matches("<figure").count(), 17);
+    assert_eq!(page.matches("<figure").count(), 18);
     let svg = |name: &String| fs::read_to_string(folder.path().join(format!("{name}.svg"))).expect("a figure");
     for text in figures.iter().map(svg).chain([page]) {
         assert!(!text.contains("NaN") && !text.contains("inf\"") && !text.contains("inf "));
@@ -60,7 +73,9 @@ fn only_what_is_asked_for_is_made_and_a_folder_that_exists_keeps_its_other_files
 #[test]
 fn names_and_numbers_that_mean_nothing_are_wrong_usage() {
     let folder = tempfile::tempdir().expect("a folder");
-    for arguments in ["--only 9", "--only", "--only fig", "--seconds 0", "--seconds x", "--starts 0", "--repeats -1"] {
+    let lengths = ["--seconds 0", "--seconds 0.001", "--seconds 0.99", "--seconds x"];
+    let others = ["--only 9", "--only", "--only fig", "--starts 0", "--repeats -1"];
+    for arguments in lengths.iter().chain(&others) {
         let output = run(&format!("reproduce --out {}/new {arguments}", folder.path().display()), "");
         assert_eq!(output.status.code(), Some(2), "{arguments}: {}", stderr(&output));
         assert_eq!(stderr(&output).lines().count(), 1, "{arguments}: {}", stderr(&output));

@@ -63,10 +63,15 @@ fn signals(x: &Vector4<f64>) -> SVector<f64, 9> {
 
 #[cfg(test)]
 mod tests {
-    use freeform_riccati::RealVariables;
+    use std::f64::consts::FRAC_PI_2;
+
+    use freeform_decompose::{Line, from_rotation_chart};
+    use freeform_riccati::{RealVariables, line_flow};
+    use nalgebra::Complex;
     use proptest::prelude::*;
 
     use super::*;
+    use crate::solve_lyapunov;
 
     proptest! {
         #[test]
@@ -81,7 +86,35 @@ mod tests {
             let law = PrintedLaw::new(-Matrix4::identity(), Matrix4::identity(), &motion);
             prop_assert!((law.parameters(MotionModel::Affine) - SVector::from(p)).norm() < 1e-12);
         }
+
+        /// Over a line at rest, whose true matrices are zero, so that the matrices are their own error.
+        #[test]
+        fn the_lyapunov_function_of_the_36_numbers_never_grows_whatever_the_line_gains_and_steps(
+            x in prop::array::uniform4(-20.0..20.0_f64),
+            error in prop::array::uniform4(-5.0..5.0_f64),
+            p in prop::array::uniform6(-2.0..2.0_f64),
+            decay in prop::array::uniform4(0.1..20.0_f64),
+            step in 1e-3..10.0_f64,
+        ) {
+            let stability = -Matrix4::from_diagonal(&Vector4::from(decay));
+            let lyapunov = solve_lyapunov(&stability, &Matrix4::identity()).expect("stable");
+            let motion = AffineMotion { a1: p[0], a2: p[1], a3: p[2], a4: p[3], b1: p[4], b2: p[5] };
+            let mut law = PrintedLaw::new(stability, lyapunov, &motion);
+            let input = PairInput { state: Vector4::from(x), weight: 1.0 };
+            let mut state = input.state + Vector4::from(error);
+            let function = |law: &PrintedLaw, state: &Vector4<f64>| {
+                let e = state - input.state;
+                e.dot(&(lyapunov * e)) + law.matrices.norm_squared()
+            };
+            for _ in 0..20 {
+                let before = function(&law, &state);
+                law.step(step, &mut state, &input);
+                let after = function(&law, &state);
+                prop_assert!(after <= before * (1.0 + 1e-8) + 1e-12, "{} to {}", before, after);
+            }
+        }
     }
+
     #[test]
     fn the_error_of_the_state_decays_over_a_line_at_rest() {
         let paper = Vector4::new(-0.5, -0.5, -1.0, -1.0);
@@ -92,5 +125,66 @@ mod tests {
         let start = (state - input.state).norm();
         (0..1800).for_each(|_| law.step(1.0 / 30.0, &mut state, &input));
         assert!((state - input.state).norm() < 1e-3 * start, "{start} to {}", (state - input.state).norm());
+    }
+
+    /// The flight bird in the image, f/Z0 = 0.1.
+    const BIRD: AffineMotion = AffineMotion { a1: 0.0, a2: FRAC_PI_2, a3: -FRAC_PI_2, a4: 0.0, b1: -0.3, b2: 0.4 };
+
+    /// Steps of one turn of the bird.
+    const STEPS: usize = 480;
+
+    /// The states of a line pair in the middle of every step of one turn.
+    fn one_turn(w: (f64, f64), k: (f64, f64)) -> Vec<Vector4<f64>> {
+        let line = Line { l: from_rotation_chart(Complex::from_polar(w.0, w.1)), k: Complex::new(k.0, k.1) };
+        let state = |step: usize| {
+            let seconds = 4.0 * (step as f64 + 0.5) / STEPS as f64;
+            let (line, _) = line_flow(&BIRD.generator(), &line, seconds).expect("complex lines stay");
+            Vector4::new(line.l.re, line.l.im, line.k.re, line.k.im)
+        };
+        (0..STEPS).map(state).collect()
+    }
+
+    /// Pairs that tell of rotation as well as those of the paper's objects.
+    fn turning_pairs() -> [Vec<Vector4<f64>>; 3] {
+        [one_turn((0.5, 0.4), (0.1, -0.2)), one_turn((0.4, -2.2), (-0.15, 0.1)), one_turn((0.6, 1.0), (0.3, 0.1))]
+    }
+
+    #[test]
+    fn nine_signals_determine_the_36_numbers_and_excite_some_of_them_hundreds_of_times_less_than_others() {
+        for states in turning_pairs() {
+            let products = states.iter().map(|x| signals(x) * signals(x).transpose());
+            let mean: SMatrix<f64, 9, 9> = products.sum::<SMatrix<f64, 9, 9>>() / STEPS as f64;
+            let eigenvalues = mean.symmetric_eigen().eigenvalues;
+            println!("{:.4} to {:.2}", eigenvalues.min(), eigenvalues.max());
+            assert!(eigenvalues.min() > 1e-3, "excited persistently: {eigenvalues}");
+            assert!(eigenvalues.max() > 300.0 * eigenvalues.min(), "{eigenvalues}");
+        }
+    }
+
+    #[test]
+    fn the_36_numbers_are_a_third_off_after_half_a_minute_and_near_the_truth_after_half_an_hour() {
+        let truth = matrices_of(&BIRD);
+        for states in turning_pairs() {
+            let stability = Matrix4::from_diagonal(&Vector4::new(-0.5, -0.5, -1.0, -1.0));
+            let lyapunov = Matrix4::from_diagonal(&Vector4::new(0.5, 1.0, 1.0, 1.5));
+            let mut law = PrintedLaw::new(stability, lyapunov, &AffineMotion::default());
+            let mut state = states[0];
+            // Seconds in: how far the matrices are off, and the largest error of the state in the turn before.
+            let mut after = |turns: std::ops::Range<usize>| {
+                let mut largest = 0.0_f64;
+                for _ in turns {
+                    largest = 0.0;
+                    for x in &states {
+                        law.step(4.0 / STEPS as f64, &mut state, &PairInput { state: *x, weight: 1.0 });
+                        largest = largest.max((state - x).norm());
+                    }
+                }
+                ((law.matrices - truth).norm() / truth.norm(), largest)
+            };
+            let (start, soon, late) = (after(0..1), after(1..8), after(8..450));
+            println!("after 4 s {start:.4?}, 32 s {soon:.4?}, 1800 s {late:.4?}");
+            assert!(soon.0 > 1.0 / 3.0 && late.0 < 0.1, "{soon:?} {late:?}");
+            assert!(late.1 < 0.1 * start.1, "the error of the state goes to zero: {start:?} {late:?}");
+        }
     }
 }

@@ -4,8 +4,8 @@ use nalgebra::{Matrix4, Vector4};
 /// How the parameters are adapted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AdaptiveLaw {
-    /// Equation 21 as printed: all entries of A, B and C, 36 numbers, of which the motion is read off. Needs far more
-    /// excitation than one line pair gives, and is here for comparison.
+    /// Equation 21 as printed: all entries of A, B and C, 36 numbers, of which the motion is read off. One line pair excites
+    /// some of them so little that they take many minutes, of exact lines; it is here for comparison.
     Printed,
     /// Equation 21 with the structure that equations 14 to 17 give A, B and C: only the motion parameters are adapted,
     /// `theta' = -W' P e`.

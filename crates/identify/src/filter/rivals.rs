@@ -124,7 +124,7 @@ impl Rivals {
             let misfit = rival.last_misfit;
             self.list[index].misfit.add(&misfit);
             let of_rival = self.list[index].misfit;
-            if (found.accepted && !update.accepted) || (found.accepted && self.misfit.is_worse_than(&of_rival)) {
+            if found.accepted && (!update.accepted || self.misfit.is_worse_than(&of_rival)) {
                 if let Some(rival) = &mut self.list[index].map {
                     std::mem::swap(rival, map);
                 }

@@ -44,10 +44,17 @@ impl Table {
         Self { heads: heads.iter().map(|&head| head.to_owned()).collect(), ..Self::default() }
     }
 
-    /// Adds a row of a name and numbers.
+    /// Adds a row of names and numbers.
     pub(crate) fn push(&mut self, names: &[&str], numbers: &[f64]) {
+        let known: Vec<_> = numbers.iter().copied().map(Some).collect();
+        self.push_known(names, &known);
+    }
+
+    /// Adds a row of names and of numbers where they are known; the other cells are empty.
+    pub(crate) fn push_known(&mut self, names: &[&str], numbers: &[Option<f64>]) {
         let names = names.iter().map(|&name| name.to_owned());
-        self.rows.push(names.chain(numbers.iter().map(f64::to_string)).collect());
+        let number = |number: &Option<f64>| number.map(|number| number.to_string()).unwrap_or_default();
+        self.rows.push(names.chain(numbers.iter().map(number)).collect());
     }
 
     fn csv(&self) -> Result<String, Failure> {

@@ -1,4 +1,5 @@
 //! Fig. 1: the ten objects and their quartics.
+use freeform_motion::curve_fit::FitSettings;
 use freeform_motion::riccati::AffineMotion;
 use freeform_motion::sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings};
 use nalgebra::{Point2, Vector2};
@@ -6,7 +7,8 @@ use nalgebra::{Point2, Vector2};
 use super::Run;
 use super::curves::{FAR_OVALS, closed_quartic, curve, curve_near, data_of, image_panel, points_of};
 use super::document::{Drawing, Section, Table};
-use super::experiment::{Sequence, paper_settings};
+use super::method::fit_in_words;
+use super::sequence::{POINTS, Sequence, paper_settings};
 use crate::failure::Failure;
 use crate::level_set::Area;
 use crate::output::significant;
@@ -20,13 +22,16 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
     let mut distances = Table {
         name: "fig1-fits".to_owned(),
         title: "Distance of the points from the quartics of Fig. 1".to_owned(),
-        caption: "Root mean square first-order distance (Taubin 1991) in units of the object's size, with noise 0.005 \
-                  in it. The margin is the smallest value of the leading form on the unit circle over its root mean \
-                  square: the curve is closed and bounded where it is positive. (The 0.02 \
-                  of the constraint is in units of what that root mean square is without it.)"
-            .to_owned(),
+        caption: format!(
+            "Root mean square first-order distance (Taubin 1991) in units of the object's size, with noise {} in it. The \
+             margin is the smallest value of the leading form on the unit circle over its root mean square: the curve is \
+             closed and bounded where it is positive. (That of the constraint is in units of what that root mean square \
+             is without it.)",
+            PaperExperiment::NOISE
+        ),
         ..Table::of_data(&["object", "distance", "margin"])
     };
+    let fit_settings = FitSettings::default();
     for shape in BuiltInShape::FIGURE_1 {
         let camera = Camera::new(PaperExperiment::SCALE).map_err(Failure::unusable)?;
         let settings = Settings { length: SequenceLength::Frames(1), ..paper_settings(1.0, run.seed) };
@@ -53,12 +58,15 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
     }
     let drawing = Drawing {
         name: "fig1".to_owned(),
-        caption: "Fig. 1. Outlines of ten objects (grey: 400 points each, noise 0.005 on objects of size 1) with their \
-                  closed-bounded quartics (blue), in the order of the paper. The drawings are this project's own; the \
-                  paper's are known only by name. Each quartic is fitted by 3L under the constraint that its leading \
-                  form is positive (margin 0.02, level sets at 0.1 RMS radii), so that it is closed and bounded by \
-                  construction. A quartic has 14 free numbers: it follows a car, not its wheels."
-            .to_owned() + &if with_far_ovals.is_empty() {
+        caption: format!(
+            "Fig. 1. Outlines of ten objects (grey: {POINTS} points each, noise {} on objects of size 1) with their \
+             closed-bounded quartics (blue), in the order of the paper. The drawings are this project's own; the paper's are \
+             known only by name. Each quartic is fitted by {}: its leading form is held positive, so that it is closed and \
+             bounded by construction. A quartic has {} free numbers: it follows a car, not its wheels.",
+            PaperExperiment::NOISE,
+            fit_in_words(&fit_settings),
+            fit_settings.degree.coefficient_count() - 1
+        ) + &if with_far_ovals.is_empty() {
             String::new()
         } else {
             format!("{FAR_OVALS} {}.", with_far_ovals.join(", "))

@@ -1,7 +1,7 @@
 //! What the paper leaves open, answered by measurement: tables of final errors and settling times.
 use freeform_motion::PipelineSettings;
 use freeform_motion::curve_fit::{FitSettings, Method as FitMethod};
-use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, PairChoice, ProcessNoise};
+use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, PairChoice};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{Camera, PaperExperiment, Scene, Settings};
 use nalgebra::{Affine2, Matrix3};
@@ -9,7 +9,10 @@ use rayon::prelude::*;
 
 use super::Run;
 use super::document::{Section, Table};
-use super::experiment::{Method, Outcome, Sequence, Track, paper_settings, percent, random_start};
+use super::method::{Method, random_start, start_range_in_words};
+use super::outcome::{Outcome, percent, rules};
+use super::sequence::{Sequence, paper_settings};
+use super::track::Track;
 use crate::failure::Failure;
 
 const EXPERIMENTS: [PaperExperiment; 3] =
@@ -19,7 +22,7 @@ const EXPERIMENTS: [PaperExperiment; 3] =
 struct Question {
     name: &'static str,
     title: &'static str,
-    caption: &'static str,
+    caption: String,
     conditions: Vec<Condition>,
     methods: Vec<(String, Method)>,
     /// Whether rejected frames have columns.
@@ -67,7 +70,7 @@ fn law(law: AdaptiveLaw, pairs: PairChoice) -> Method {
 fn law_and_filter() -> Vec<(String, Method)> {
     vec![
         ("structured law".to_owned(), law(AdaptiveLaw::Structured, PairChoice::All)),
-        ("motion filter".to_owned(), Method::filter(MotionModel::Rigid, ProcessNoise::default())),
+        ("motion filter".to_owned(), Method::filter(MotionModel::Rigid)),
     ]
 }
 
@@ -80,7 +83,10 @@ fn questions() -> Vec<Question> {
         Question {
             name: "open-noise",
             title: "Noise on image points",
-            caption: "Standard deviation on each coordinate, for an object of size 1. The paper has 0.005.",
+            caption: format!(
+                "Standard deviation on each coordinate, for an object of size 1. The paper has {}.",
+                PaperExperiment::NOISE
+            ),
             conditions: noises.map(|noise| Condition { label: format!("noise {noise}"), noise, ..usual() }).into(),
             methods: law_and_filter(),
             counts_rejected: false,
@@ -88,7 +94,7 @@ fn questions() -> Vec<Question> {
         Question {
             name: "open-frame-rate",
             title: "Frame rate",
-            caption: "Frames per second; every run lasts as long. The paper does not give it.",
+            caption: "Frames per second; every run lasts as long. The paper does not give it.".to_owned(),
             conditions: rates.map(|fps| Condition { label: format!("{fps} frames/s"), fps, ..usual() }).into(),
             methods: law_and_filter(),
             counts_rejected: false,
@@ -96,10 +102,18 @@ fn questions() -> Vec<Question> {
         Question {
             name: "open-scale",
             title: "Camera scale f/Z0, the object staying as it is in space",
-            caption: "The object is 10 across in space, so that its image grows with f/Z0 while the noise does not. The \
-                      paper gives neither.",
+            caption: format!(
+                "The object is {} across in space, so that its image grows with f/Z0 while the noise does not. The paper \
+                 gives neither.",
+                1.0 / PaperExperiment::SCALE
+            ),
             conditions: scales
-                .map(|scale| Condition { label: format!("f/Z0 {scale}"), scale, size: 10.0 * scale, ..usual() })
+                .map(|scale| Condition {
+                    label: format!("f/Z0 {scale}"),
+                    scale,
+                    size: scale / PaperExperiment::SCALE,
+                    ..usual()
+                })
                 .into(),
             methods: law_and_filter(),
             counts_rejected: false,
@@ -108,7 +122,8 @@ fn questions() -> Vec<Question> {
             name: "open-speed",
             title: "Camera scale f/Z0, the object staying as it is in the image",
             caption: "The image of the object is 1 across whatever the scale, so that only its velocity in the image, \
-                      b f/Z0, changes.",
+                      b f/Z0, changes."
+                .to_owned(),
             conditions: scales.map(|scale| Condition { label: format!("f/Z0 {scale}"), scale, ..usual() }).into(),
             methods: law_and_filter(),
             counts_rejected: false,
@@ -117,7 +132,8 @@ fn questions() -> Vec<Question> {
             name: "open-pair",
             title: "The line pair",
             caption: "The paper picks one complex conjugate pair and does not say which. Pairs are counted as in the \
-                      first frame; the best is that with the best signal against its noise; all are weighted by theirs.",
+                      first frame; the best is that with the best signal against its noise; all are weighted by theirs."
+                .to_owned(),
             conditions: vec![usual()],
             methods: pairs(),
             counts_rejected: false,
@@ -126,7 +142,8 @@ fn questions() -> Vec<Question> {
             name: "open-gains",
             title: "Am and Q",
             caption: "The paper's matrices times a factor, for the structured law over all pairs. With \
-                      Am' P + P Am = -Q the gain P is Q over twice the size of Am.",
+                      Am' P + P Am = -Q the gain P is Q over twice the size of Am."
+                .to_owned(),
             conditions: vec![usual()],
             methods: gains(),
             counts_rejected: false,
@@ -134,9 +151,12 @@ fn questions() -> Vec<Question> {
         Question {
             name: "open-fit",
             title: "The curve fit",
-            caption: "3L, GS3L with ridge kappa, and fits that are bounded by construction, for the structured law over all \
-                      pairs; level sets at 0.15 RMS radii. Frames whose curve is not bounded are rejected; \
-                      errors are - where no frame is left or the motion is reported as unobservable.",
+            caption: format!(
+                "3L, GS3L with ridge kappa, and fits that are bounded by construction, for the structured law over all \
+                 pairs; level sets at {} RMS radii. Frames whose curve is not bounded are rejected; there is no \
+                 estimate where no frame is left or the motion is reported as unobservable.",
+                PipelineSettings::default().fit.offset
+            ),
             conditions: vec![usual()],
             methods: fits(),
             counts_rejected: true,
@@ -217,10 +237,10 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
         heading: "What the paper leaves open".to_owned(),
         text: format!(
             "Where nothing else is said: the structured law over all pairs, from zero, with the settings below. Each row \
-             is the median over {} noise sequences. For each experiment: root mean square error of omega and of b over \
-             the last tenth of the run, relative and in percent, and the time in seconds from which on omega stays \
-             within 5 % and b within 10 % (- where it never does).",
-            run.repeats
+             is the median over {} noise sequences, and each number is the median by itself: for each experiment the errors of omega \
+             and of b in percent and the settling time in seconds. {}",
+            run.repeats,
+            rules("omega")
         ),
         drawings: Vec::new(),
         tables,
@@ -243,7 +263,7 @@ impl Question {
         let mut table = Table {
             name: self.name.to_owned(),
             title: self.title.to_owned(),
-            caption: self.caption.to_owned(),
+            caption: self.caption.clone(),
             heads: heads("setting", self.counts_rejected),
             ..Table::default()
         };
@@ -299,11 +319,11 @@ fn initial_values(run: &Run) -> Result<Table, Failure> {
     let mut table = Table {
         name: "open-initial-values".to_owned(),
         title: format!("Initial values: median and worst of {}", run.starts),
-        caption:
-            "Drawn at random as the paper does (evenly, omega within 3 rad/s, b1 and b2 within 5 in space), all on \
-                  the same outlines. Each number is the median or the worst by itself. The 36 numbers start from the \
-                  matrices of the motion drawn."
-                .to_owned(),
+        caption: format!(
+            "Drawn at random as the paper does ({}), all on the same outlines. Each number is the median or the worst by \
+             itself. The 36 numbers start from the matrices of the motion drawn.",
+            start_range_in_words()
+        ),
         heads: heads("law", false),
         ..Table::default()
     };

@@ -2,13 +2,14 @@
 use std::fmt::Write as _;
 
 use freeform_motion::PipelineSettings;
-use freeform_motion::curve_fit::Fitter;
+use freeform_motion::curve_fit::{FitSettings, Fitter};
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 use nalgebra::Point2;
 
 use super::curves::{FAR_OVALS, closed_quartic, curve, curve_near, data_of, image_panel, points_of, xy};
 use super::document::{Drawing, Section};
-use super::experiment::paper_settings;
+use super::method::fit_in_words;
+use super::sequence::{POINTS, paper_settings};
 use super::{PaperFigure, Run};
 use crate::failure::Failure;
 use crate::level_set::Area;
@@ -26,10 +27,8 @@ pub(crate) fn section(run: &Run, figures: &[PaperFigure]) -> Result<Section, Fai
     Ok(Section { heading: heading.to_owned(), drawings, ..Section::default() })
 }
 
-fn drawing(
-    run: &Run,
-    PaperFigure { poses, experiment, parameters, reading, .. }: &PaperFigure,
-) -> Result<Drawing, Failure> {
+fn drawing(run: &Run, figure: &PaperFigure) -> Result<Drawing, Failure> {
+    let PaperFigure { poses, experiment, .. } = figure;
     let scene = experiment.scene(PaperExperiment::SCALE).map_err(Failure::unusable)?;
     let turn = std::f64::consts::TAU / experiment.motion.omega.abs();
     let settings = Settings {
@@ -39,7 +38,7 @@ fn drawing(
     };
     let centre = |k: usize| scene.true_pose(turn * k as f64 / PATH_POINTS as f64) * Point2::origin();
     let path: Vec<_> = (0..=PATH_POINTS).map(|k| xy(&centre(k))).collect();
-    let start: Vec<_> = scene.true_outline(0.0, 400);
+    let start: Vec<_> = scene.true_outline(0.0, POINTS);
     let start_run = start.iter().chain(start.first()).map(xy).collect::<Vec<_>>();
     let frames: Vec<_> = Simulator::new(scene, settings).map_err(Failure::unusable)?.frames().collect();
     let all = frames.iter().flat_map(|frame| frame.outline.points());
@@ -58,30 +57,32 @@ fn drawing(
             curve("outline at the start", Look::Faint, vec![start_run.clone()]),
             curve("path of the centre", Look::Dashed(1), vec![path.clone()]),
             curve("points", Look::FineDots, vec![points_of(&frame.outline)]),
-            curve("rounder quartic", Look::Series(2), curve_near(&rounder, &frame.outline).runs),
-            curve("closed-bounded quartic", Look::Line, drawn.runs),
+            curve("rounder quartic, for its lines", Look::Series(2), curve_near(&rounder, &frame.outline).runs),
+            curve("close quartic, for its shape", Look::Line, drawn.runs),
         ];
         panels.push(image_panel(format!("t = {:.2} s", frame.time), &view, curves));
     }
     run.advance();
     let motion = experiment.motion;
-    let number = poses.trim_start_matches("fig").split('-').next().unwrap_or(poses);
-    let fed = parameters.trim_start_matches("fig").split('-').next().unwrap_or(parameters);
     let mut caption = format!(
-        "Fig. {number}, {}. Six moments of one turn ({turn:.2} s) of the rigid motion omega = {:.4} rad/s, b = ({}, {}) \
+        "Fig. {}, {}. {MOMENTS} moments of one turn ({turn:.2} s) of the rigid motion omega = {:.4} rad/s, b = ({}, {}) \
          in space, seen at f/Z0 = {} (positive omega turns clockwise). Grey points: the outline with noise {}; thin grey: the true outline \
-         at the start; dashed: the path of the object's centre. Blue: the closed-bounded quartic that follows the \
-         outline best (margin 0.02). Green: the rounder quartic (margin 0.5, ridge 0.03) whose lines Fig. {fed} is \
-         identified from; it is worse as a drawing and its lines are calmer. Object, size in the image (1) and f/Z0 are \
-         this project's choice: the paper gives none of them.",
+         at the start; dashed: the path of the object's centre. Both curves are closed and bounded quartics. Blue, close: \
+         the one that follows the outline best ({}). Green, rounder: the one whose lines Fig. {} is identified from \
+         ({}); it is worse as a drawing, and its lines are calmer. Object, size in the image (1) and f/Z0 are \
+         this project's choice: the paper gives none of them.{}",
+        figure.poses_number(),
         experiment.title,
         motion.omega,
         motion.b1,
         motion.b2,
         PaperExperiment::SCALE,
         PaperExperiment::NOISE,
+        fit_in_words(&FitSettings::default()),
+        figure.number(),
+        fit_in_words(&PipelineSettings::default().fit),
+        figure.reading,
     );
-    caption.push_str(reading);
     if with_far_ovals > 0 {
         let _ = write!(caption, "{FAR_OVALS} {with_far_ovals} of the moments.");
     }
