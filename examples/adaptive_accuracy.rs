@@ -86,7 +86,8 @@ impl Measurement {
 
     /// Prints one row; returns 0 within the limits, 1 within three times them, 2 beyond, `None` without an estimate.
     fn run(&self, shape: &Shape, number: usize, motion: RigidMotion) -> Result<Option<usize>, Box<dyn Error>> {
-        let scene = Scene::new(shape.clone(), motion, Camera::new(PaperExperiment::SCALE)?);
+        let camera = Camera::new(PaperExperiment::SCALE)?;
+        let scene = Scene::new(shape.clone(), motion, camera);
         let mut pipeline = Pipeline::new(self.pipeline.clone())?;
         let mut active = 0;
         for frame in &Simulator::new(scene, self.simulation.clone())? {
@@ -96,10 +97,14 @@ impl Measurement {
                 Err(_) => {}
             }
         }
-        let Some(estimate) = pipeline.estimate().map(|estimate| estimate.in_space(PaperExperiment::SCALE)) else {
+        let Some(estimate) = pipeline.estimate().map(|estimate| estimate.in_space(camera.scale())) else {
             println!("{} none", shape.name());
             return Ok(None);
         };
+        if estimate.parameters().any(|p| p.value.is_none()) {
+            println!("{:<16} {number:>7} not observable", shape.name());
+            return Ok(None);
+        }
         let v = estimate.values();
         let omega_error = 100.0 * (v[0] - motion.omega).abs() / motion.omega.abs();
         let b_error = 100.0 * (v[1] - motion.b1).hypot(v[2] - motion.b2) / motion.b1.hypot(motion.b2);

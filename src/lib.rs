@@ -15,12 +15,13 @@
 //!
 //! // The paper's flight bird, seen for 20 s at 30 frames/s by a camera with f/Z0 = 0.1.
 //! let scene = PaperExperiment::FLIGHT_BIRD.scene(0.1)?;
+//! let camera = scene.camera();
 //! let settings = Settings { length: SequenceLength::Seconds(20.0), ..Settings::default() };
 //! let mut pipeline = Pipeline::new(PipelineSettings::default())?;
 //! for frame in Simulator::new(scene, settings)?.frames() {
 //!     pipeline.push(frame.time, &frame.outline)?;
 //! }
-//! let motion = pipeline.estimate().expect("more than one frame").in_space(0.1);
+//! let motion = pipeline.estimate().expect("more than one frame").in_space(camera.scale());
 //! let omega = motion.parameters().next().and_then(|p| p.value).expect("observable");
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

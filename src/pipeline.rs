@@ -4,7 +4,7 @@ use freeform_decompose::{
 };
 use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError, MotionEstimate};
 use freeform_riccati::MotionModel;
-use nalgebra::Affine2;
+use nalgebra::{Affine2, Point2, Translation2};
 
 use crate::{settling::Settling, warning::Warning};
 
@@ -16,9 +16,9 @@ const AMBIGUOUS_COST_RATIO: f64 = 4.0;
 const MANY_AMBIGUOUS: f64 = 0.03;
 /// Share of intervals over which the lines could not be followed that is worth a warning.
 const MANY_NOT_FOLLOWED: f64 = 0.05;
-/// RMS radii that the object may go from where it began: further out the lines say little of it, as `k` and its noise grow
-/// with the distance.
-const FAR: f64 = 5.0;
+/// RMS radii that the object may go from the origin of the identifier before the origin is moved to it: further out the
+/// lines say little of it, as `k` and its noise grow with the distance.
+const FAR: f64 = 1.5;
 
 /// RMS radius of the first outline in the coordinates of the identifier. The gains of the paper belong to objects of
 /// about size 1; a larger radius makes the law settle faster and follow the noise more.
@@ -93,6 +93,8 @@ pub struct Pipeline {
     identifier: AdaptiveIdentifier,
     /// From the coordinates of the identifier to those of the image; `None` before the first good frame.
     image_from_identifier: Option<Affine2<f64>>,
+    /// From the coordinates that the identifier had at the start to its present ones.
+    identifier_from_start: Translation2<f64>,
     last: Option<MatchedFrame>,
     frames: usize,
     frames_rejected: usize,
@@ -107,8 +109,6 @@ struct Counts {
     without_separate_lines: usize,
     matched: usize,
     ambiguous: usize,
-    /// Largest distance of the object from where it was first, in RMS radii of the first outline.
-    furthest: f64,
 }
 
 /// The lines of a frame and in which order its pairs continue those of the first frame.
@@ -128,6 +128,7 @@ impl Pipeline {
             fitter: Fitter::new(settings.fit)?,
             identifier: AdaptiveIdentifier::new(settings.identify.clone())?,
             image_from_identifier: None,
+            identifier_from_start: Translation2::identity(),
             settings,
             last: None,
             frames: 0,
@@ -170,9 +171,11 @@ impl Pipeline {
         self.identifier.step(time, &lines[..count])?;
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
-        let centre = image_from_identifier.inverse() * normalisation.centre;
-        self.counts.take(centre.coords.norm() / RMS_RADIUS, correspondence.as_ref());
-        self.settling.take(time, self.identifier.estimate());
+        self.counts.take(correspondence.as_ref());
+        let start_from_identifier = nalgebra::convert(self.identifier_from_start.inverse());
+        let at_start = self.identifier.estimate().map(|estimate| estimate.in_coordinates(&start_from_identifier));
+        self.settling.take(time, at_start);
+        self.follow(&normalisation.centre, image_from_identifier);
         Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
     }
 
@@ -188,6 +191,19 @@ impl Pipeline {
                 AdaptiveIdentifier::new(AdaptiveSettings { initial_values, ..self.settings.identify.clone() })?;
         }
         Ok(map)
+    }
+
+    /// Moves the origin of the identifier to an object that went far from it.
+    fn follow(&mut self, centre: &Point2<f64>, image_from_identifier: Affine2<f64>) {
+        let origin = (image_from_identifier.inverse() * centre).coords;
+        let moved = nalgebra::convert::<_, Affine2<f64>>(Translation2::from(origin));
+        let Some(last) = self.last.as_mut().filter(|_| origin.norm() > FAR * RMS_RADIUS) else { return };
+        // Lines that cannot be told in the new coordinates stay in the old.
+        let Ok(decomposition) = last.decomposition.moved(&moved.inverse()) else { return };
+        last.decomposition = decomposition;
+        self.identifier.shift_origin(origin);
+        self.identifier_from_start = Translation2::from(-origin) * self.identifier_from_start;
+        self.image_from_identifier = Some(image_from_identifier * moved);
     }
 
     /// Finds which pair continues which, in the coordinates of the identifier.
@@ -258,7 +274,7 @@ impl Pipeline {
         if skipped as f64 > MANY_NOT_FOLLOWED * intervals as f64 {
             warnings.push(Warning::LinesNotFollowed { skipped, intervals });
         }
-        let Counts { ambiguous, matched, furthest, .. } = self.counts;
+        let Counts { ambiguous, matched, .. } = self.counts;
         if ambiguous as f64 > MANY_AMBIGUOUS * matched as f64 {
             warnings.push(Warning::AmbiguousCorrespondence { ambiguous, matched });
         }
@@ -268,9 +284,6 @@ impl Pipeline {
         {
             warnings.push(Warning::MayNotHaveSettled { seconds });
         }
-        if furthest > FAR {
-            warnings.push(Warning::FarFromStart { radii: furthest });
-        }
         if self.settings.identify.model == MotionModel::Affine && self.identifier.intervals_followed() > 0 {
             warnings.push(Warning::AffineBias);
         }
@@ -279,8 +292,7 @@ impl Pipeline {
 }
 
 impl Counts {
-    fn take(&mut self, distance: f64, correspondence: Option<&Correspondence>) {
-        self.furthest = self.furthest.max(distance);
+    fn take(&mut self, correspondence: Option<&Correspondence>) {
         let Some(matching) = correspondence else { return };
         self.matched += 1;
         // The order of the values settles the rest, whatever the turn.

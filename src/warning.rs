@@ -13,8 +13,6 @@ pub(crate) enum Warning {
     MayNotHaveSettled { seconds: f64 },
     /// The outline turned too far from frame to frame.
     LinesNotFollowed { skipped: usize, intervals: usize },
-    /// The object went far from where it began.
-    FarFromStart { radii: f64 },
     /// The parameters of an affine motion are biased.
     AffineBias,
 }
@@ -38,11 +36,6 @@ impl fmt::Display for Warning {
                 f,
                 "lines not followed over {skipped} of {intervals} intervals between frames: \
                  the outline turns by more than about half a radian"
-            ),
-            Self::FarFromStart { radii } => write!(
-                f,
-                "the object went {radii:.0} times its RMS radius from where it began, \
-                 where its lines tell little of the motion: use the motion filter"
             ),
             Self::AffineBias => f.write_str(
                 "the six parameters are biased, as the fit of an outline does not follow affine motion exactly: \

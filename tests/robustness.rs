@@ -6,8 +6,10 @@ use freeform_motion::{
     Pipeline, PipelineSettings,
     identify::IdentifyError,
     outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineReader, OutlineWriter, WriterOptions},
+    riccati::{AffineMotion, RigidMotion},
     sim_camera::{BuiltInShape, Camera, Occlusion, PaperExperiment, Scene, Settings, Simulator},
 };
+use nalgebra::{Matrix3, Point2};
 
 const BIRD: PaperExperiment = PaperExperiment::FLIGHT_BIRD;
 
@@ -102,4 +104,29 @@ fn outlines_from_a_file_give_the_same_motion_as_the_frames_themselves() {
         from_file.push(frame.time, &frame.outline).expect("a good frame");
     }
     assert_eq!(from_file.estimate(), directly.estimate());
+}
+
+#[test]
+fn an_object_may_travel_many_times_its_size() {
+    // Straight on, slowly to fast; around points up to eight diameters away.
+    let straight = [3.0, 5.0, 10.0, 15.0].map(|speed| RigidMotion { omega: 0.0, b1: 0.6 * speed, b2: 0.8 * speed });
+    let around = [(0.3, 5.0, 0.0), (1.0, -7.0, 7.0), (1.5, -15.0, 10.0), (0.3, 25.0, 0.0), (1.0, -50.0, 50.0)]
+        .map(|(omega, b1, b2)| RigidMotion { omega, b1, b2 });
+    let motions = straight.into_iter().chain(around);
+    for motion in motions {
+        for shape in [BuiltInShape::Bird, BuiltInShape::Glider, BuiltInShape::Phone, BuiltInShape::Van] {
+            let camera = Camera::new(PaperExperiment::SCALE).expect("a scale");
+            let scene = Scene::new(shape, motion, camera);
+            let end = scene.true_pose(30.0) * Point2::origin();
+            let pipeline = identified(scene, &seconds(30.0), PipelineSettings::default());
+            let found = pipeline.estimate().expect("an estimate").generator();
+            let truth = camera.scale().generator_in_image(&AffineMotion::from(motion).generator());
+            // The velocity where the object is: b, that at the origin, follows from it over the way to there.
+            let velocity = |generator: &Matrix3<f64>| (generator * end.to_homogeneous()).xy();
+            let off = (velocity(&found) - velocity(&truth)).norm() / velocity(&truth).norm();
+            let omega = (found[(0, 1)] - motion.omega).abs();
+            println!("{shape} {motion:?}: omega off by {omega}, velocity by {off}");
+            assert!(omega < 0.03 && off < 0.05, "{shape} {motion:?}: omega off by {omega}, velocity by {off}");
+        }
+    }
 }

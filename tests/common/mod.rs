@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "every test binary uses a part")]
 use freeform_motion::{
     Pipeline, PipelineSettings,
-    riccati::RigidMotion,
+    riccati::{CameraScale, RigidMotion},
     sim_camera::{Scene, SequenceLength, Settings, Simulator},
 };
 
@@ -27,7 +27,7 @@ pub(crate) fn identified(scene: Scene, settings: &Settings, pipeline: PipelineSe
 
 /// Relative errors of omega and of b in space.
 pub(crate) fn rigid_errors(pipeline: &Pipeline, truth: &RigidMotion, scale: f64) -> (f64, f64) {
-    let estimate = pipeline.estimate().expect("an estimate").in_space(scale);
+    let estimate = pipeline.estimate().expect("an estimate").in_space(CameraScale::new(scale).expect("a scale"));
     let v = estimate.values();
     let omega = (v[0] - truth.omega).abs() / truth.omega.abs();
     (omega, (v[1] - truth.b1).hypot(v[2] - truth.b2) / truth.b1.hypot(truth.b2))

@@ -1,16 +1,20 @@
 //! The identifier of one object, whichever method it is.
 use freeform_motion::curve_fit::{Fit, Outline};
 use freeform_motion::identify::{
-    CurveFilterSettings, CurveStep, FilterSettings, FilterStep, MotionEstimate, MotionFilter, MotionState, Phase,
-    ProcessNoise, WholeCurveFilter,
+    CurveFilterSettings, CurveStep, FilterSettings, FilterStep, MapUpdate, MotionEstimate, MotionFilter, MotionState,
+    Phase, ProcessNoise, WholeCurveFilter,
 };
 use freeform_motion::{Pipeline, PipelineSettings};
 
 use crate::args::{IdentifyMethod, TrackOptions};
 use crate::failure::Failure;
+use crate::output::significant;
 
 /// Share of rejected frames that is worth a warning.
 const MANY_REJECTED: f64 = 0.05;
+
+/// Squared innovation per parameter beyond which the motion filter takes no frame that should go on as predicted.
+const LARGEST_INNOVATION: f64 = 25.0;
 
 /// What is known of one object.
 #[derive(Debug)]
@@ -153,7 +157,10 @@ fn filter_warnings(
     match (phase, last_known) {
         (Phase::Lost, _) => warnings.push("the object was lost at the end".to_owned()),
         (Phase::Acquiring, Some((time, _))) => {
-            warnings.push(format!("the object was looked for again at the end; this is its motion at {time} s"));
+            warnings.push(format!(
+                "the object was looked for again at the end; this is its motion at {} s",
+                significant(*time, 4)
+            ));
         }
         _ => {}
     }
@@ -224,10 +231,16 @@ fn why_rejected(step: &FilterStep, settings: &FilterSettings) -> String {
         Some(update) if update.agreement < settings.smallest_agreement => {
             format!("does not fit the object, {:.0} % of the points lie on its outline", 100.0 * update.agreement)
         }
-        Some(update) => {
+        Some(update) if update.innovation > settings.model.parameter_count() as f64 * LARGEST_INNOVATION => {
             format!("does not go on from the frames before it, squared innovation {:.0}", update.innovation)
         }
-        None => "the object was not found".to_owned(),
+        Some(MapUpdate { noise: Some(noise), .. }) => {
+            format!(
+                "its points scatter by {} about the outline known, more than those of other frames",
+                significant(noise, 2)
+            )
+        }
+        Some(_) | None => "the object was not found".to_owned(),
     }
 }
 

@@ -33,7 +33,25 @@ pub(crate) enum Item {
     /// An outline that is none, with the reason.
     Rejected { object: String, frame: u64, reason: String },
     /// A picture without an object, or one that cannot be read.
-    Missing { reason: String, is_damage: bool },
+    Missing(Missing),
+}
+
+/// A picture without an outline.
+#[derive(Debug)]
+pub(crate) struct Missing {
+    pub(crate) reason: String,
+    /// The picture, if it could be read.
+    pub(crate) seen_in: Option<Rc<SeenIn>>,
+}
+
+impl Missing {
+    /// Why nothing was found, where this is all there is.
+    pub(crate) fn into_failure(self) -> Failure {
+        match self.seen_in {
+            Some(_) => Failure::no_result(self.reason),
+            None => Failure::unusable(self.reason),
+        }
+    }
 }
 
 /// A sequence of outlines, open for reading.

@@ -1,7 +1,7 @@
 //! The zero level set of a fitted polynomial as polylines, for drawing.
 use std::collections::HashMap;
 
-use freeform_motion::curve_fit::Fit;
+use freeform_motion::curve_fit::{Fit, Outline};
 use nalgebra::Point2;
 
 /// Cells along the longer side of the area that is looked at.
@@ -112,6 +112,29 @@ pub(crate) fn curve_of(fit: &Fit, area: &Area) -> Vec<Vec<Point2<f64>>> {
         crossing_between((from, at(column, row)), (to, at(far_column, far_row)), value)
     };
     chains(&links, &order).iter().map(|chain| chain.iter().map(crossing).collect()).collect()
+}
+
+/// Which parts of a curve are stray: no point of the outline has its nearest part of the curve there.
+pub(crate) fn stray(parts: &[Vec<Point2<f64>>], outline: &Outline) -> Vec<bool> {
+    let mut stray = vec![true; parts.len()];
+    for p in outline.points() {
+        let distance = |part: &[Point2<f64>]| part.iter().map(|q| (q - p).norm_squared()).fold(f64::INFINITY, f64::min);
+        let distances = parts.iter().map(|part| distance(part)).enumerate();
+        if let Some((nearest, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            stray[nearest] = false;
+        }
+    }
+    stray
+}
+
+/// Middles of the stray parts of the curve of an outline that lie within two of its sizes on all sides.
+pub(crate) fn stray_parts(fit: &Fit, outline: &Outline) -> Vec<Point2<f64>> {
+    let Some(area) = Area::around(outline.points()) else { return Vec::new() };
+    let parts = curve_of(fit, &area.widened(2.0));
+    let middle =
+        |part: &Vec<Point2<f64>>| Area::around(part.iter()).map(|area| nalgebra::center(&area.low, &area.high));
+    let found = parts.iter().zip(stray(&parts, outline)).filter(|(_, stray)| *stray);
+    found.filter_map(|(part, _)| middle(part)).collect()
 }
 
 /// Which edges of a cell are joined: edges 0 to 3 are the lower, right, upper and left one, corners go round likewise.

@@ -11,7 +11,7 @@ use freeform_motion::outline_io::{
 
 use crate::args::PictureOptions;
 use crate::failure::Failure;
-use crate::input::{Item, SeenIn};
+use crate::input::{Item, Missing, SeenIn};
 
 /// Pictures that the running median is taken of.
 const MEDIAN_SIZE: usize = 25;
@@ -60,14 +60,16 @@ impl PictureInput {
         let traced = self.outlines.next()?;
         self.frames += 1;
         match traced {
-            Err(error) => self.waiting.push_back(Item::Missing { reason: error.to_string(), is_damage: true }),
+            Err(error) => {
+                self.waiting.push_back(Item::Missing(Missing { reason: error.to_string(), seen_in: None }));
+            }
             Ok(traced) => {
                 let PictureFrame { frame, time, file, picture } = traced.frame;
                 let seen_in = Rc::new(SeenIn { frame, grid: self.trace.pixel_grid(picture.height()), picture });
                 match traced.objects {
                     Err(error) => {
                         let reason = format!("{file}: frame {frame}: {error}");
-                        self.waiting.push_back(Item::Missing { reason, is_damage: false });
+                        self.waiting.push_back(Item::Missing(Missing { reason, seen_in: Some(seen_in) }));
                     }
                     Ok(objects) => {
                         self.frames_traced += 1;

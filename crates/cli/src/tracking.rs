@@ -5,18 +5,18 @@ use std::rc::Rc;
 use freeform_motion::curve_fit::Fit;
 use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate};
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::riccati::MotionModel;
+use freeform_motion::riccati::{CameraScale, MotionModel};
 use nalgebra::Matrix3;
 
 use crate::args::{IdentifyMethod, TrackOptions};
 use crate::failure::{Failure, warn};
 use crate::identifier::Identifier;
-use crate::input::{Input, Item, SeenIn};
+use crate::input::{Input, Item, Missing, SeenIn};
 use crate::interrupt;
 use crate::progress::Progress;
 
-/// Reasons of rejected frames kept for each object.
-const REASONS_KEPT: usize = 10;
+/// Reasons kept of the frames of an object that were rejected, and of pictures left out.
+pub(crate) const REASONS_KEPT: usize = 10;
 
 /// What a frame of an object gave.
 #[derive(Debug)]
@@ -47,13 +47,21 @@ impl Observation {
     }
 }
 
+/// What comes of reading on.
+pub(crate) enum Event<'a> {
+    /// A frame of an object, as far as it could be read, and the picture that it was seen in, if it was.
+    Observed { observation: &'a Observation, frame: Option<&'a OutlineFrame>, seen_in: Option<&'a Rc<SeenIn>> },
+    /// A picture without an outline.
+    Missing(&'a Missing),
+}
+
 /// An identified motion as it is reported: finite, and in space where a camera scale was given.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Estimate(MotionEstimate);
 
 impl Estimate {
     /// `None` where a number is not finite: the identifier has diverged.
-    pub(crate) fn of(estimate: MotionEstimate, scale: Option<f64>) -> Option<Self> {
+    pub(crate) fn of(estimate: MotionEstimate, scale: Option<CameraScale>) -> Option<Self> {
         let estimate = scale.map_or(estimate, |scale| estimate.in_space(scale));
         let is_finite = |p: ParameterEstimate| {
             p.value.is_none_or(f64::is_finite) && p.standard_deviation.is_none_or(f64::is_finite)
@@ -67,13 +75,8 @@ impl Estimate {
     }
 
     /// The generator in image lengths, for an estimate that was reported in space.
-    pub(crate) fn generator_in_image(&self, scale: Option<f64>) -> Option<Matrix3<f64>> {
-        let mut generator = self.generator()?;
-        if let Some(scale) = scale {
-            generator[(0, 2)] *= scale;
-            generator[(1, 2)] *= scale;
-        }
-        Some(generator)
+    pub(crate) fn generator_in_image(&self, scale: Option<CameraScale>) -> Option<Matrix3<f64>> {
+        Some(scale.unwrap_or_default().generator_in_image(&self.generator()?))
     }
 
     /// The generator of the motion; `None` where a parameter is not observable.
@@ -123,13 +126,13 @@ impl Tracking {
         Ok(Self { options: options.clone(), objects: Vec::new(), positions: HashMap::new() })
     }
 
-    /// Takes all frames of an input and hands on what each gave, with the frame itself where it could be read. Returns
+    /// Takes all frames of an input and hands on what each gave. Returns
     /// the error that ended the reading, if any; what came before it has been taken.
     pub(crate) fn read(
         &mut self,
         input: &mut Input,
         quiet: bool,
-        mut observe: impl FnMut(Observation, Option<&OutlineFrame>, Option<&Rc<SeenIn>>) -> Result<(), Failure>,
+        mut observe: impl FnMut(Event<'_>) -> Result<(), Failure>,
     ) -> Result<Option<Failure>, Failure> {
         let progress = Progress::of_frames(input.frame_count(), quiet);
         let single = input.frame_count() == Some(1);
@@ -140,27 +143,32 @@ impl Tracking {
                 break;
             }
             match item {
-                Ok(Item::Outline(frame, seen_in)) => observe(self.push(&frame)?, Some(&frame), seen_in.as_ref())?,
-                Ok(Item::Rejected { object, frame, reason }) => {
-                    observe(self.reject(object, frame, reason)?, None, None)?;
+                Ok(Item::Outline(frame, seen_in)) => {
+                    let observation = self.push(&frame)?;
+                    observe(Event::Observed {
+                        observation: &observation,
+                        frame: Some(&frame),
+                        seen_in: seen_in.as_ref(),
+                    })?;
                 }
-                Ok(Item::Missing { reason, is_damage }) => {
+                Ok(Item::Rejected { object, frame, reason }) => {
+                    let observation = self.reject(object, frame, reason)?;
+                    observe(Event::Observed { observation: &observation, frame: None, seen_in: None })?;
+                }
+                Ok(Item::Missing(missing)) => {
                     // The reason of a single picture is told in the end.
                     if !quiet && !single {
-                        progress.pause(|| warn(&reason));
+                        progress.pause(|| warn(&missing.reason));
                     }
-                    first_missing.get_or_insert((reason, is_damage));
+                    observe(Event::Missing(&missing))?;
+                    first_missing.get_or_insert(missing);
                 }
                 Err(failure) => return Ok(Some(failure)),
             }
             progress.advance();
         }
         // Nothing but pictures without an object: the first says why.
-        Ok(match first_missing {
-            Some((reason, true)) if self.objects.is_empty() => Some(Failure::unusable(reason)),
-            Some((reason, false)) if self.objects.is_empty() => Some(Failure::no_result(reason)),
-            _ => None,
-        })
+        Ok(first_missing.filter(|_| self.objects.is_empty()).map(Missing::into_failure))
     }
 
     /// Takes the next frame of an object.

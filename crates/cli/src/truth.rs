@@ -1,6 +1,6 @@
 use std::fmt;
 
-use freeform_motion::riccati::{AffineMotion, MotionModel};
+use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
@@ -12,14 +12,13 @@ pub(crate) struct SimulatedMotion {
     /// In space: image velocities over the scale.
     pub(crate) motion: AffineMotion,
     /// Camera scale f/Z0.
-    pub(crate) scale: f64,
+    pub(crate) scale: CameraScale,
 }
 
 impl SimulatedMotion {
     /// The motion in the image, b divided by the scale of the one who asks, if any.
-    pub(crate) fn seen_at(&self, scale: Option<f64>) -> AffineMotion {
-        let factor = self.scale / scale.unwrap_or(1.0);
-        AffineMotion { b1: factor * self.motion.b1, b2: factor * self.motion.b2, ..self.motion }
+    pub(crate) fn seen_at(&self, scale: Option<CameraScale>) -> AffineMotion {
+        self.motion.in_image(self.scale).in_space(scale.unwrap_or_default())
     }
 
     /// Reads a comment line without its `#`; `None` where it is another comment or not complete.
@@ -35,7 +34,7 @@ impl SimulatedMotion {
             Some(omega) => AffineMotion { a1: 0.0, a2: omega, a3: -omega, a4: 0.0, b1, b2 },
             None => AffineMotion { a1: value("a1")?, a2: value("a2")?, a3: value("a3")?, a4: value("a4")?, b1, b2 },
         };
-        let scale = value("scale").filter(|scale| *scale > 0.0)?;
+        let scale = CameraScale::new(value("scale")?).ok()?;
         Some(Self { motion, scale })
     }
 }
@@ -73,11 +72,12 @@ mod tests {
     fn a_motion_written_as_a_comment_reads_back_to_the_last_bit() {
         let rigid = AffineMotion { a1: 0.0, a2: 0.1 + 0.2, a3: -(0.1 + 0.2), a4: 0.0, b1: -3.0, b2: 1e-17 };
         let affine = AffineMotion { a1: 0.3, ..rigid };
+        let scale = CameraScale::new(0.1).expect("a scale");
         for motion in [rigid, affine] {
-            let written = SimulatedMotion { motion, scale: 0.1 };
+            let written = SimulatedMotion { motion, scale };
             assert_eq!(SimulatedMotion::parse(&written.to_string()), Some(written));
         }
-        assert!(SimulatedMotion { motion: rigid, scale: 0.1 }.to_string().starts_with("truth omega="));
+        assert!(SimulatedMotion { motion: rigid, scale }.to_string().starts_with("truth omega="));
     }
 
     #[test]
@@ -90,8 +90,9 @@ mod tests {
     #[test]
     fn the_scale_of_the_one_who_asks_divides_the_velocity_only() {
         let motion = AffineMotion { a2: 2.0, a3: -2.0, b1: -3.0, b2: 4.0, ..AffineMotion::default() };
-        let truth = SimulatedMotion { motion, scale: 0.5 };
+        let half = CameraScale::new(0.5).expect("a scale");
+        let truth = SimulatedMotion { motion, scale: half };
         assert_eq!(truth.seen_at(None), AffineMotion { b1: -1.5, b2: 2.0, ..motion });
-        assert_eq!(truth.seen_at(Some(0.5)), motion);
+        assert_eq!(truth.seen_at(Some(half)), motion);
     }
 }

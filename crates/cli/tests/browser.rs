@@ -28,6 +28,17 @@ fn report(folder: &Path) -> String {
     std::fs::read_to_string(folder.join("report.html")).expect("a report")
 }
 
+/// The report of pictures that show nothing.
+fn report_of_nothing(folder: &Path) -> String {
+    let picture = image::GrayImage::new(64, 64);
+    let frames: Vec<String> = (0..12).map(|frame| format!("a-picture-with-nothing-in-it-{frame}.png")).collect();
+    frames.iter().for_each(|name| picture.save(folder.join(name)).expect("a picture"));
+    let mut command = assert_cmd::Command::cargo_bin("freeform").expect("the binary is built");
+    let command = command.current_dir(folder).arg("identify").args(&frames);
+    command.args(["--report", "nothing.html", "--quiet"]).assert().code(1);
+    std::fs::read_to_string(folder.join("nothing.html")).expect("a report")
+}
+
 fn load(browser: &str, profile: &Path, page: &Path, width: u32, scheme: &str, arguments: &[&str]) -> Output {
     Command::new(browser)
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--enable-logging=stderr"])
@@ -47,20 +58,31 @@ fn the_report_loads_without_errors_and_fits_the_page() {
         return;
     };
     let folder = tempfile::tempdir().expect("a folder");
-    let html = report(folder.path());
-    assert!(!html.contains("http://") && !html.contains("https://"), "the report needs nothing but itself");
+    let whole = report(folder.path());
     for needed in ["Rejected frames", "Residual of the points", "Innovation", "freeform identify outlines.csv"] {
-        assert!(html.contains(needed), "{needed}");
+        assert!(whole.contains(needed), "{needed}");
     }
+    let nothing = report_of_nothing(folder.path());
+    for needed in ["No motion was identified", "Pictures without an outline: 12", "2 more"] {
+        assert!(nothing.contains(needed), "{needed}");
+    }
+    for html in [whole, nothing] {
+        assert_readable(browser, folder.path(), &html);
+    }
+}
+
+/// Loads a page on wide and narrow, light and dark screens.
+fn assert_readable(browser: &str, folder: &Path, html: &str) {
+    assert!(!html.contains("http://") && !html.contains("https://"), "the report needs nothing but itself");
     let measure = "<script>const e = document.documentElement; \
                    document.title = e.scrollWidth + ' ' + e.clientWidth + ' ' + getComputedStyle(document.body).backgroundColor;\
                    </script></body>";
-    let page = folder.path().join("measured.html");
+    let page = folder.join("measured.html");
     std::fs::write(&page, html.replace("</body>", measure)).expect("a page");
     let mut grounds = Vec::new();
     // 0 prefers dark, 1 light.
     for (width, scheme) in [(1280, "1"), (400, "1"), (400, "0")] {
-        let output = load(browser, &folder.path().join("profile"), &page, width, scheme, &["--dump-dom"]);
+        let output = load(browser, &folder.join("profile"), &page, width, scheme, &["--dump-dom"]);
         let (dom, log) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
         assert!(!log.contains("CONSOLE"), "{log}");
         let title = dom.split("<title>").nth(1).and_then(|rest| rest.split("</title>").next()).expect("a title");

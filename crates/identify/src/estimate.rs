@@ -1,4 +1,4 @@
-use freeform_riccati::MotionModel;
+use freeform_riccati::{CameraScale, MotionModel};
 use nalgebra::{Affine2, Matrix3};
 
 /// Largest number of parameters of a motion model, that of a projective motion.
@@ -99,18 +99,16 @@ impl MotionEstimate {
         self
     }
 
-    /// The same motion in space, seen by a scaled orthographic camera: b divided by f/Z0, and its standard deviations
-    /// with it (equations 23 and 24).
+    /// The same motion in space, seen by a scaled orthographic camera: b divided by f/Z0, c multiplied by it, and their
+    /// standard deviations with them (equations 23 and 24).
     #[must_use]
-    pub fn in_space(mut self, focal_length_over_distance: f64) -> Self {
-        for (i, name) in self.model.parameter_names().iter().enumerate() {
-            if name.starts_with('b') {
-                self.values[i] /= focal_length_over_distance;
-                if let Some(list) = &mut self.standard_deviations {
-                    list[i] /= focal_length_over_distance;
-                }
-            }
-        }
+    pub fn in_space(mut self, camera: CameraScale) -> Self {
+        // Every parameter is multiplied by a number of its own, so that standard deviations change as values do.
+        let (model, count) = (self.model, self.model.parameter_count());
+        let in_space =
+            |values: &[f64]| model.parameters_of(&camera.generator_in_space(&model.generator(&values[..count])));
+        self.values = in_space(&self.values);
+        self.standard_deviations = self.standard_deviations.map(|list| in_space(&list));
         self
     }
 }

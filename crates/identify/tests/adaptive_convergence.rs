@@ -1,9 +1,11 @@
 //! The three laws over line pairs that move exactly.
 mod adaptive_support;
 
-use adaptive_support::{AFFINE, RIGID, even_times, parameters_after, run, starting_lines};
+use adaptive_support::{AFFINE, RIGID, SIMILARITY, even_times, parameters_after, run, starting_lines};
+use freeform_decompose::Line;
 use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice};
-use freeform_riccati::MotionModel;
+use freeform_riccati::{MotionModel, line_flow};
+use nalgebra::{Affine2, Translation2, Vector2};
 use proptest::prelude::*;
 use rand::SeedableRng as _;
 
@@ -25,6 +27,14 @@ fn the_structured_law_converges_to_a_rigid_motion_over_any_choice_of_pairs() {
 }
 
 #[test]
+fn the_structured_law_converges_to_a_growing_turning_motion() {
+    let settings = AdaptiveSettings { model: MotionModel::Similarity, ..AdaptiveSettings::default() };
+    let found = parameters_after(&settings, &SIMILARITY, &even_times(60.0, 30.0));
+    println!("{}", distance(&found, &SIMILARITY));
+    assert!(distance(&found, &SIMILARITY) < 0.02, "{found:?}");
+}
+
+#[test]
 fn the_structured_law_converges_to_an_affine_motion() {
     let settings = AdaptiveSettings { model: MotionModel::Affine, ..AdaptiveSettings::default() };
     let found = parameters_after(&settings, &AFFINE, &even_times(120.0, 30.0));
@@ -43,7 +53,12 @@ fn filtered_least_squares_settles_to_two_percent_within_half_a_second() {
 
 #[test]
 fn the_true_motion_is_a_fixed_point_of_every_law() {
-    for (model, truth) in [(MotionModel::Rigid, &RIGID[..]), (MotionModel::Affine, &AFFINE[..])] {
+    let models = [
+        (MotionModel::Rigid, &RIGID[..]),
+        (MotionModel::Similarity, &SIMILARITY[..]),
+        (MotionModel::Affine, &AFFINE[..]),
+    ];
+    for (model, truth) in models {
         for law in LAWS {
             let settings =
                 AdaptiveSettings { model, law, initial_values: truth.to_vec(), ..AdaptiveSettings::default() };
@@ -82,6 +97,47 @@ fn a_fifth_of_the_frames_may_be_missing_and_times_may_be_uneven() {
         println!("{law:?}: {}", distance(&found, &RIGID));
         assert!(distance(&found, &RIGID) < 0.02, "{law:?}: {found:?}");
     }
+}
+
+#[test]
+fn a_law_keeps_its_estimate_where_its_origin_moves() {
+    let origin = Vector2::new(0.7, -1.3);
+    let old_from_new = nalgebra::convert::<_, Affine2<f64>>(Translation2::from(origin));
+    for (model, truth) in [(MotionModel::Rigid, &RIGID[..]), (MotionModel::Affine, &AFFINE[..])] {
+        // The numbers of the printed law need not belong to any motion: they have a test of their own.
+        for law in [AdaptiveLaw::Structured, AdaptiveLaw::FilteredLeastSquares] {
+            let settings = AdaptiveSettings { model, law, ..AdaptiveSettings::default() };
+            let mut identifier = AdaptiveIdentifier::new(settings).expect("settings");
+            run(&mut identifier, &starting_lines(), truth, &even_times(3.0, 30.0), 0.0);
+            let before = identifier.estimate().expect("an estimate");
+            identifier.shift_origin(origin);
+            let after = identifier.estimate().expect("an estimate").in_coordinates(&old_from_new);
+            assert!(distance(after.values(), before.values()) < 1e-9, "{law:?} {model}: {before:?} and {after:?}");
+        }
+    }
+}
+
+#[test]
+fn the_structured_law_finds_no_rotation_in_an_object_that_only_travels_when_its_origin_follows() {
+    let motion = [0.0, 0.4, 0.3];
+    let generator = MotionModel::Rigid.generator(&motion);
+    let mut identifier = AdaptiveIdentifier::new(AdaptiveSettings::default()).expect("settings");
+    let mut origin = Vector2::zeros();
+    for time in even_times(60.0, 30.0) {
+        // Where the object is by now.
+        let place = Vector2::new(motion[1], motion[2]) * time;
+        if (place - origin).norm() > 1.0 {
+            identifier.shift_origin(place - origin);
+            origin = place;
+        }
+        let lines = starting_lines().map(|line| {
+            let Line { l, k } = line_flow(&generator, &line, time).expect("complex lines stay").0;
+            Line { l, k: k + l * origin.y + origin.x }
+        });
+        identifier.step(time, &lines).expect("a good frame");
+    }
+    let found = identifier.estimate().expect("an estimate");
+    assert!(distance(found.values(), &motion) < 0.01, "{found:?}");
 }
 
 #[test]

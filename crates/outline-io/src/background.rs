@@ -57,14 +57,19 @@ impl RunningMedian {
     }
 
     pub(crate) fn add(&mut self, picture: &GrayImage) {
+        if self.latest.front().is_some_and(|first| first.dimensions() != picture.dimensions()) {
+            // The median of pictures of different sizes is none.
+            self.latest.clear();
+            self.median = None;
+        }
         self.added += 1;
         let oldest = if self.latest.len() == self.size { self.latest.pop_front() } else { None };
         match oldest {
-            Some(mut oldest) if oldest.dimensions() == picture.dimensions() => {
+            Some(mut oldest) => {
                 oldest.copy_from_slice(picture);
                 self.latest.push_back(oldest);
             }
-            _ => self.latest.push_back(picture.clone()),
+            None => self.latest.push_back(picture.clone()),
         }
     }
 

@@ -4,7 +4,7 @@ use crate::field::Field;
 const LEVELS: usize = 1 << 14;
 
 /// A stretch of low ground closed in by higher ground: what a rising flood fills before it reaches the edge of the grid or
-/// a larger stretch.
+/// a larger stretch. At the edge of the grid, what it fills before it reaches a larger stretch there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Basin {
     /// Index of one of its samples.
@@ -13,13 +13,14 @@ pub(crate) struct Basin {
     pub(crate) level: f32,
     /// Samples below that level, and the one where it overflows.
     pub(crate) area: u32,
+    /// Whether the edge of the grid is part of what closes it in.
+    pub(crate) at_edge: bool,
 }
 
 /// All basins of at least this area, by a flood that rises over the sorted samples (Vincent and Soille, Watersheds in
 /// digital spaces, 1991; here with the union of sets, so that every basin knows the level at which it overflows). Samples
 /// are 4-connected, so that what closes a basin in is 8-connected. Values are told apart by 1/16384 of the largest.
 pub(crate) fn basins(field: &Field, smallest_area: u32) -> Vec<Basin> {
-    let (width, height) = (field.width, field.height);
     let largest = field.values.iter().copied().fold(0.0, f32::max);
     if largest <= 0.0 {
         return Vec::new();
@@ -30,20 +31,16 @@ pub(crate) fn basins(field: &Field, smallest_area: u32) -> Vec<Basin> {
     let mut found = Vec::new();
     for &sample in &order {
         let sample = sample as usize;
-        let (x, y) = (sample % width, sample / width);
-        sets.start(sample, x == 0 || y == 0 || x + 1 == width || y + 1 == height);
-        let neighbours = [
-            (x > 0).then(|| sample - 1),
-            (x + 1 < width).then_some(sample + 1),
-            (y > 0).then(|| sample - width),
-            (y + 1 < height).then_some(sample + width),
-        ];
-        for neighbour in neighbours.into_iter().flatten() {
+        sets.start(sample, field.is_at_edge(sample));
+        for neighbour in field.neighbours(sample) {
             if !sets.started(neighbour) {
                 continue;
             }
-            if let Some((seed, area)) = sets.join(sample, neighbour).filter(|(_, area)| *area >= smallest_area) {
-                found.push(Basin { seed, level: field.values[sample], area });
+            if let Some((seed, extent)) = sets.join(sample, neighbour)
+                && extent.area() >= smallest_area
+            {
+                let (area, at_edge) = (extent.area(), extent.is_at_edge());
+                found.push(Basin { seed, level: field.values[sample], area, at_edge });
             }
         }
     }
@@ -65,17 +62,37 @@ fn sorted(field: &Field, scale: f32) -> Vec<u32> {
     order
 }
 
+/// Number of samples of a set, and above all whether it reaches the edge of the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Extent(u32);
+
+impl Extent {
+    const AT_EDGE: u32 = 1 << 31;
+
+    fn of_one(at_edge: bool) -> Self {
+        Self(if at_edge { Self::AT_EDGE | 1 } else { 1 })
+    }
+
+    fn is_at_edge(self) -> bool {
+        self.0 & Self::AT_EDGE != 0
+    }
+
+    fn area(self) -> u32 {
+        self.0 & !Self::AT_EDGE
+    }
+}
+
 /// Sets of samples under water.
 struct Sets {
     /// Towards the root of the set; a sample above water is `u32::MAX`.
     parents: Vec<u32>,
-    /// Size of the set of a root, 0 for the set that reaches the edge of the grid.
-    areas: Vec<u32>,
+    /// Of the set of a root.
+    extents: Vec<Extent>,
 }
 
 impl Sets {
     fn new(count: usize) -> Self {
-        Self { parents: vec![u32::MAX; count], areas: vec![0; count] }
+        Self { parents: vec![u32::MAX; count], extents: vec![Extent(0); count] }
     }
 
     fn started(&self, index: usize) -> bool {
@@ -84,7 +101,7 @@ impl Sets {
 
     fn start(&mut self, index: usize, at_edge: bool) {
         self.parents[index] = index as u32;
-        self.areas[index] = u32::from(!at_edge);
+        self.extents[index] = Extent::of_one(at_edge);
     }
 
     fn root(&mut self, mut index: usize) -> usize {
@@ -96,20 +113,17 @@ impl Sets {
         index
     }
 
-    /// Joins the sets of two samples; root and area of the one that loses its own name, if it is a basin.
-    fn join(&mut self, a: usize, b: usize) -> Option<(usize, u32)> {
+    /// Joins the sets of two samples; root and extent of the one that loses its own name.
+    fn join(&mut self, a: usize, b: usize) -> Option<(usize, Extent)> {
         let (a, b) = (self.root(a), self.root(b));
         if a == b {
             return None;
         }
-        let rank = |area: u32| if area == 0 { u32::MAX } else { area };
-        let (winner, loser) = if rank(self.areas[a]) >= rank(self.areas[b]) { (a, b) } else { (b, a) };
-        let area = self.areas[loser];
+        let (winner, loser) = if self.extents[a] >= self.extents[b] { (a, b) } else { (b, a) };
+        let extent = self.extents[loser];
         self.parents[loser] = winner as u32;
-        if self.areas[winner] != 0 {
-            self.areas[winner] += area;
-        }
-        (area > 0).then_some((loser, area))
+        self.extents[winner].0 += extent.area();
+        Some((loser, extent))
     }
 }
 
@@ -131,6 +145,20 @@ mod tests {
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].level, found[0].area), (6.0, 4));
         assert_eq!(basins(&field, 5), []);
+    }
+
+    #[test]
+    fn the_edge_of_the_grid_closes_in_what_it_cuts_off() {
+        let rows: [[f32; 7]; 4] = [
+            [0.0, 9.0, 1.0, 2.0, 1.0, 9.0, 0.0],
+            [0.0, 9.0, 1.0, 1.0, 1.0, 7.0, 0.0],
+            [0.0, 9.0, 9.0, 8.0, 9.0, 9.0, 0.0],
+            [0.0; 7],
+        ];
+        let field = Field { width: 7, height: 4, values: rows.concat() };
+        let found: Vec<Basin> = basins(&field, 2).into_iter().filter(|basin| basin.level > 0.0).collect();
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].level, found[0].area, found[0].at_edge), (7.0, 7, true));
     }
 
     #[test]

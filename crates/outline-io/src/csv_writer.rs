@@ -8,13 +8,19 @@ use crate::csv_field::NUMBER_LIMIT;
 use crate::error::WriteError;
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
 
+/// Decimals of times in seconds where numbers are rounded.
+const TIME_DECIMALS: usize = 9;
+
 /// Which optional columns a file has; the header comes first, so they are fixed before the first outline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WriterOptions {
     /// Write the `object` column: needed for any object other than [`DEFAULT_OBJECT`].
     pub object_column: bool,
     /// Write the `arc` column: needed for open outlines, empty for closed ones.
     pub arc_column: bool,
+    /// Round coordinates to this share of the RMS radius of the first outline or better, and times to a nanosecond;
+    /// `None` for all digits.
+    pub resolution: Option<f64>,
 }
 
 impl WriterOptions {
@@ -24,16 +30,19 @@ impl WriterOptions {
         frames.into_iter().fold(Self::default(), |options, frame| Self {
             object_column: options.object_column || frame.object != DEFAULT_OBJECT,
             arc_column: options.arc_column || matches!(frame.outline, Outline::Open(_)),
+            ..options
         })
     }
 }
 
-/// Writes outlines one by one as CSV that [`OutlineReader`](crate::OutlineReader) reads back to the last bit, except
-/// for the last point of a closed outline where it repeats the first. Needs no buffered sink.
+/// Writes outlines one by one as CSV that [`OutlineReader`](crate::OutlineReader) reads back to the last bit, unless
+/// rounding is asked for and except for the last point of a closed outline where it repeats the first. Needs no buffered sink.
 #[derive(Debug)]
 pub struct OutlineWriter<W: Write> {
     writer: csv::Writer<W>,
     options: WriterOptions,
+    /// Decimals of coordinates where they are rounded, known from the first outline.
+    decimals: Option<usize>,
     /// Holds one number as text.
     text: Vec<u8>,
 }
@@ -49,7 +58,7 @@ impl<W: Write> OutlineWriter<W> {
         let object = options.object_column.then_some(Column::Object);
         let arc = options.arc_column.then_some(Column::Arc);
         writer.write_record(required.chain(object).chain(arc).map(|column| column.name())).map_err(io_error)?;
-        Ok(Self { writer, options, text: Vec::new() })
+        Ok(Self { writer, options, decimals: None, text: Vec::new() })
     }
 
     /// Writes one outline.
@@ -61,12 +70,16 @@ impl<W: Write> OutlineWriter<W> {
     pub fn write(&mut self, frame: &OutlineFrame) -> Result<(), WriteError> {
         self.check(frame)?;
         let open = matches!(frame.outline, Outline::Open(_));
+        if let (Some(share), None) = (self.options.resolution, self.decimals) {
+            self.decimals = decimals_of(share * frame.outline.rms_radius());
+        }
+        let time_decimals = self.decimals.map(|_| TIME_DECIMALS);
         for (arc, piece) in frame.outline.pieces().enumerate() {
             for point in piece.points {
                 self.field(format_args!("{}", frame.frame))?;
-                self.number(frame.time)?;
-                self.number(point.x)?;
-                self.number(point.y)?;
+                self.number(frame.time, time_decimals)?;
+                self.number(point.x, self.decimals)?;
+                self.number(point.y, self.decimals)?;
                 if self.options.object_column {
                     self.writer.write_field(&frame.object).map_err(io_error)?;
                 }
@@ -97,8 +110,16 @@ impl<W: Write> OutlineWriter<W> {
         self.writer.into_inner().map_err(|error| WriteError::Io(error.into_error()))
     }
 
-    /// The shortest text that reads back as the same number, without long runs of zeros.
-    fn number(&mut self, value: f64) -> Result<(), WriteError> {
+    /// The shortest text that reads back as the same number, without long runs of zeros; or one with no more than so many
+    /// decimals.
+    fn number(&mut self, value: f64, decimals: Option<usize>) -> Result<(), WriteError> {
+        if let Some(decimals) = decimals {
+            let scale = 10_f64.powi(decimals as i32);
+            let rounded = (value * scale).round() / scale;
+            // Beyond 2^53 steps there is nothing to round.
+            let value = if (value * scale).abs() < 9e15 { rounded } else { value };
+            return self.number(value, None);
+        }
         if value == 0.0 || (1e-5..1e16).contains(&value.abs()) {
             self.field(format_args!("{value}"))
         } else {
@@ -128,6 +149,12 @@ impl<W: Write> OutlineWriter<W> {
         }
         Ok(())
     }
+}
+
+/// Decimals that tell steps of this size apart; `None` where no number of them serves.
+fn decimals_of(step: f64) -> Option<usize> {
+    let decimals = -step.log10().floor();
+    (0.0..=15.0).contains(&decimals).then_some(decimals as usize)
 }
 
 /// Keeps the kind, by which a closed pipe is told from a full disc.

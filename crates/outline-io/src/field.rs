@@ -14,6 +14,25 @@ impl Field {
         inside.then(|| f64::from(self.values[y * self.width + x]))
     }
 
+    /// Indices of the samples above, below and beside a sample, as far as the grid goes.
+    pub(crate) fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
+        let (width, height) = (self.width, self.height);
+        let (x, y) = (index % width, index / width);
+        let around = [
+            (x > 0).then(|| index - 1),
+            (x + 1 < width).then_some(index + 1),
+            (y > 0).then(|| index - width),
+            (y + 1 < height).then_some(index + width),
+        ];
+        around.into_iter().flatten()
+    }
+
+    /// Whether a sample lies on the edge of the grid.
+    pub(crate) fn is_at_edge(&self, index: usize) -> bool {
+        let (x, y) = (index % self.width, index / self.width);
+        x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
+    }
+
     /// Blurs with a Gaussian of this standard deviation in samples. Beyond the grid its edge goes on, so that a contour
     /// that meets the edge is not bent there.
     pub(crate) fn blur(&mut self, sigma: f64) {

@@ -19,6 +19,7 @@
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`read_shape`] reads one closed outline from either.
+mod affine_moment_invariants;
 mod background;
 mod basins;
 mod channel;
@@ -30,6 +31,7 @@ mod csv_writer;
 mod error;
 mod field;
 mod frame;
+mod gif_interval;
 mod identity;
 mod isoline;
 mod morphology;
@@ -49,6 +51,7 @@ mod trace;
 mod trace_settings;
 mod y4m;
 
+pub use affine_moment_invariants::AffineMomentInvariants;
 pub use background::{Background, Difference};
 pub use channel::Channel;
 pub use csv_columns::Column;

@@ -6,6 +6,7 @@ use image::codecs::gif::GifDecoder;
 use image::{AnimationDecoder, DynamicImage, Frames, GrayImage, ImageDecoder, ImageError, ImageReader, Limits};
 
 use crate::channel::Channel;
+use crate::gif_interval::constant_interval;
 use crate::picture_error::{PictureError, PictureErrorKind};
 
 /// Largest number of pixels accepted, 8192 x 8192: tracing then needs less than 1.5 GiB in the worst case.
@@ -94,20 +95,24 @@ pub(crate) struct Animation {
     channel: Channel,
     /// Time of the next frame in seconds.
     time: f64,
+    /// Seconds from frame to frame where the delays are those of a constant rate, and frames read.
+    constant: Option<(f64, u64)>,
 }
 
 impl Animation {
     /// Reads the header.
-    pub(crate) fn open(source: impl BufRead + Seek + 'static, channel: Channel) -> Result<Self, PictureErrorKind> {
+    pub(crate) fn open(mut source: impl BufRead + Seek + 'static, channel: Channel) -> Result<Self, PictureErrorKind> {
+        let interval = constant_interval(&mut source)?;
         let mut decoder = GifDecoder::new(source).map_err(damaged)?;
         let (width, height) = decoder.dimensions();
         check_size(width, height)?;
         decoder.set_limits(limits()).map_err(damaged)?;
-        Ok(Self { frames: Source::Gif(decoder.into_frames()), channel, time: 0.0 })
+        let frames = Source::Gif(decoder.into_frames());
+        Ok(Self { frames, channel, time: 0.0, constant: interval.map(|interval| (interval, 0)) })
     }
 
     pub(crate) fn of_one(picture: GrayImage) -> Self {
-        Self { frames: Source::One(picture), channel: Channel::Luminance, time: 0.0 }
+        Self { frames: Source::One(picture), channel: Channel::Luminance, time: 0.0, constant: None }
     }
 }
 
@@ -130,7 +135,13 @@ impl Iterator for Animation {
                 let (numerator, denominator) = frame.delay().numer_denom_ms();
                 let delay = f64::from(numerator) / f64::from(denominator) / 1000.0;
                 let time = self.time;
-                self.time += if delay > 0.0 { delay } else { DEFAULT_DELAY };
+                self.time = match &mut self.constant {
+                    Some((interval, count)) => {
+                        *count += 1;
+                        *interval * *count as f64
+                    }
+                    None => time + if delay > 0.0 { delay } else { DEFAULT_DELAY },
+                };
                 Some(Ok((self.channel.of(DynamicImage::ImageRgba8(frame.into_buffer())), time)))
             }
             Err(error) => {

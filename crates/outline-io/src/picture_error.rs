@@ -177,6 +177,18 @@ pub enum TraceError {
         /// Distance from the place expected, in diameters of the object.
         distance: f64,
     },
+    /// What is where the object of the frames before it should be differs too much in size.
+    #[error("where the object of the frames before should be is one of {ratio:.2} times its area")]
+    OtherSize {
+        /// Its area over that of the object.
+        ratio: f64,
+    },
+    /// Objects that were apart before are one in the picture.
+    #[error("{objects} objects touch and are one in the picture")]
+    Touching {
+        /// How many.
+        objects: usize,
+    },
     /// The object is so thin that smoothing takes it below the threshold.
     #[error("smoothing by {sigma} pixels leaves nothing of the object")]
     SmoothedAway {

@@ -38,7 +38,8 @@ pub struct PictureFrame {
 /// How a sequence of pictures is read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SequenceSettings {
-    /// Frames per second; `None` for what the file says (y4m, GIF), else 30.
+    /// Frames per second; `None` for what the file says (y4m, GIF), else 30. Delays of a GIF that are those of a constant
+    /// rate rounded to hundredths of a second are taken for that rate.
     pub frames_per_second: Option<f64>,
     /// What is looked at of a colour picture.
     pub channel: Channel,

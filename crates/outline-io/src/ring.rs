@@ -23,6 +23,10 @@ const STANDS_OUT: f32 = 2.0;
 /// Rings of at least this share of the score of the clearest one are objects too.
 const CLEAR_SHARE: f64 = 0.5;
 
+/// Of an object at the edge of the picture, the edge makes no more than this share of the contour: the ground that an
+/// object cuts off has more.
+const EDGE_SHARE: f64 = 0.6;
+
 /// An object that is told from the ground by a line around it only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring {
@@ -55,7 +59,8 @@ impl Ring {
     /// weakest point of the ring and the root of the area that it closes in.
     ///
     /// The strength of a ring is how far it stands out from the ground within its width (a top-hat transform), so that
-    /// neither the lightness of the picture nor that of a part of it matters, and no threshold is needed.
+    /// neither the lightness of the picture nor that of a part of it matters, and no threshold is needed. A ring that the
+    /// edge of the picture cuts is closed by the edge, if there is more ground than object.
     pub(crate) fn objects(
         &self,
         picture: &GrayImage,
@@ -70,18 +75,26 @@ impl Ring {
         candidates.retain(|basin| basin.level > STANDS_OUT * median);
         let score = |basin: &Basin| f64::from(basin.level) * f64::from(basin.area).sqrt();
         candidates.sort_by(|a, b| score(b).total_cmp(&score(a)));
-        let least = candidates.first().map(|best| CLEAR_SHARE * score(best)).ok_or(TraceError::NoRing)?;
         let mut taken = vec![false; strength.values.len()];
         let mut objects = Vec::new();
-        for basin in candidates.iter().take_while(|basin| score(basin) >= least) {
-            if objects.len() == limit {
+        let mut clearest = None;
+        for basin in &candidates {
+            let is_clear = clearest.is_none_or(|clearest| score(basin) >= CLEAR_SHARE * clearest);
+            if objects.len() == limit || !is_clear {
                 break;
             }
-            if !taken[basin.seed] {
-                objects.push(around(basin, &strength, reach, &mut taken));
+            if taken[basin.seed] {
+                continue;
             }
+            let within = flooded(basin, &strength, &mut taken);
+            if basin.at_edge && edge_share(&within, &strength, &taken) > EDGE_SHARE {
+                within.iter().for_each(|&index| taken[index] = false);
+                continue;
+            }
+            clearest = clearest.or(Some(score(basin)));
+            objects.push(around(basin, &within, &strength, reach));
         }
-        Ok(objects)
+        if objects.is_empty() { Err(TraceError::NoRing) } else { Ok(objects) }
     }
 
     fn strength(&self, picture: &GrayImage, reach: usize) -> Field {
@@ -96,9 +109,8 @@ impl Ring {
 }
 
 /// The object that a ring closes in. Its edge is where the strength falls to half of the largest nearby.
-fn around(basin: &Basin, strength: &Field, reach: usize, taken: &mut [bool]) -> RingObject {
+fn around(basin: &Basin, within: &[usize], strength: &Field, reach: usize) -> RingObject {
     let (columns, rows) = (strength.width, strength.height);
-    let within = flooded(basin, strength, taken);
     let column = |index: &usize| index % columns;
     let row = |index: &usize| index / columns;
     let margin = 3 * reach + 2;
@@ -137,17 +149,9 @@ fn around(basin: &Basin, strength: &Field, reach: usize, taken: &mut [bool]) -> 
 /// Adds to a region what is uphill from it, up to the crest of the ring: a basin ends where its weakest point overflows,
 /// which is far below the crest elsewhere.
 fn climb(region: &mut Field, strength: &Field, near: &Field) {
-    let (width, height) = (region.width, region.height);
     let mut open: Vec<usize> = (0..region.values.len()).filter(|&index| region.values[index] > 0.0).collect();
     while let Some(index) = open.pop() {
-        let (x, y) = (index % width, index / width);
-        let neighbours = [
-            (x > 0).then(|| index - 1),
-            (x + 1 < width).then_some(index + 1),
-            (y > 0).then(|| index - width),
-            (y + 1 < height).then_some(index + width),
-        ];
-        for next in neighbours.into_iter().flatten() {
+        for next in strength.neighbours(index) {
             let is_uphill = strength.values[next] > strength.values[index];
             if is_uphill && near.values[next] > 0.0 && region.values[next] == 0.0 {
                 region.values[next] = 1.0;
@@ -159,20 +163,12 @@ fn climb(region: &mut Field, strength: &Field, near: &Field) {
 
 /// Indices of the samples of a basin, which are marked as taken.
 fn flooded(basin: &Basin, strength: &Field, taken: &mut [bool]) -> Vec<usize> {
-    let (width, height) = (strength.width, strength.height);
     let mut within = vec![basin.seed];
     taken[basin.seed] = true;
     let mut next = 0;
     while let Some(&index) = within.get(next) {
         next += 1;
-        let (x, y) = (index % width, index / width);
-        let neighbours = [
-            (x > 0).then(|| index - 1),
-            (x + 1 < width).then_some(index + 1),
-            (y > 0).then(|| index - width),
-            (y + 1 < height).then_some(index + width),
-        ];
-        for neighbour in neighbours.into_iter().flatten() {
+        for neighbour in strength.neighbours(index) {
             if strength.values[neighbour] < basin.level && !taken[neighbour] {
                 taken[neighbour] = true;
                 within.push(neighbour);
@@ -180,6 +176,19 @@ fn flooded(basin: &Basin, strength: &Field, taken: &mut [bool]) -> Vec<usize> {
         }
     }
     within
+}
+
+/// Share of the edge of the grid in the contour of a region whose samples are marked.
+fn edge_share(within: &[usize], field: &Field, marked: &[bool]) -> f64 {
+    let (mut edge, mut own) = (0.0_f64, 0.0);
+    for &index in within {
+        if field.is_at_edge(index) {
+            edge += 1.0;
+        } else if field.neighbours(index).any(|neighbour| !marked[neighbour]) {
+            own += 1.0;
+        }
+    }
+    edge / (edge + own).max(1.0)
 }
 
 /// Median of values that are not negative.

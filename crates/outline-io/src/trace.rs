@@ -2,6 +2,7 @@ use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use image::GrayImage;
 use nalgebra::Point2;
 
+use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
 use crate::field::{Field, blur_reach};
 use crate::isoline::{Crossing, area, isolines};
 use crate::object_mask::{ObjectMask, Objects};
@@ -27,6 +28,8 @@ pub struct TracedOutline {
     pub centre: Point2<f64>,
     /// The area seen, in the squared unit of the outline.
     pub area: f64,
+    /// What an affine map leaves of the area seen; `None` where it is too thin to tell.
+    pub invariants: Option<AffineMomentInvariants>,
 }
 
 /// Traces the outer outline of the largest object in a picture, to a fraction of a pixel.
@@ -131,12 +134,13 @@ struct Seen {
     touches_border: bool,
     centre: Point2<f64>,
     area: f64,
+    invariants: Option<AffineMomentInvariants>,
 }
 
 impl Seen {
     fn traced(self, pixel_count: u64, object_count: usize, threshold: f64) -> TracedOutline {
-        let Self { outline, touches_border, centre, area } = self;
-        TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area }
+        let Self { outline, touches_border, centre, area, invariants } = self;
+        TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area, invariants }
     }
 }
 
@@ -156,27 +160,15 @@ impl Window<'_> {
         if !settings.y_up {
             points.reverse();
         }
-        let (area, centre) = area_and_centre(&points);
+        let polygon = points.iter().map(|(point, _)| *point);
+        let AreaAndCentre { signed_area: area, centre } = AreaAndCentre::of(&polygon);
+        let invariants = AffineMomentInvariants::of(&polygon);
         let outline = match settings.clipping {
             Clipping::Open if touches_border => visible_arcs(points)?,
             _ => Outline::closed(points.into_iter().map(|(point, _)| point).collect())?,
         };
-        Ok(Some(Seen { outline, touches_border, centre, area }))
+        Ok(Some(Seen { outline, touches_border, centre, area, invariants }))
     }
-}
-
-/// Area and centre of area of a closed polygon.
-fn area_and_centre(points: &[(Point2<f64>, bool)]) -> (f64, Point2<f64>) {
-    let origin = points.first().map_or(Point2::origin(), |(point, _)| *point);
-    let (mut doubled, mut moment) = (0.0, nalgebra::Vector2::zeros());
-    for ((p, _), (q, _)) in points.iter().zip(points.iter().cycle().skip(1)) {
-        let (p, q) = (p - origin, q - origin);
-        let cross = p.perp(&q);
-        doubled += cross;
-        moment += cross * (p + q);
-    }
-    let centre = if doubled == 0.0 { origin } else { origin + moment / (3.0 * doubled) };
-    (0.5 * doubled, centre)
 }
 
 /// The grey values around the object, with other objects and its own holes painted over.

@@ -113,7 +113,7 @@ fn rearranged(csv: &[u8], order: &[usize], line_end: &str, noise: &[bool], close
 proptest! {
     #[test]
     fn what_is_written_is_read_back(frames in sequence()) {
-        let all = WriterOptions { object_column: true, arc_column: true };
+        let all = WriterOptions { object_column: true, arc_column: true, resolution: None };
         assert_same(&read(written(&frames, all).as_slice()), &frames);
         let needed = WriterOptions::needed_for(&frames);
         assert_same(&read(written(&frames, needed).as_slice()), &frames);
@@ -202,7 +202,7 @@ fn what_could_not_be_read_back_is_not_written() {
     assert!(matches!(named, Err(WriteError::NoObjectColumn { .. })));
     assert!(matches!(plain.write(&frame("0", 0.0, &open)), Err(WriteError::NoArcColumn { frame: 3, .. })));
     assert!(matches!(plain.write(&frame("0", f64::NAN, &outline)), Err(WriteError::Time { .. })));
-    let options = WriterOptions { object_column: true, arc_column: true };
+    let options = WriterOptions { object_column: true, arc_column: true, resolution: None };
     let mut full = OutlineWriter::new(Vec::new(), options).expect("memory never fails");
     for name in [" a", "a ", "a\nb", "\u{7f}"] {
         assert!(matches!(full.write(&frame(name, 0.0, &outline)), Err(WriteError::ObjectName { .. })), "{name:?}");
@@ -225,4 +225,25 @@ fn a_closed_pipe_keeps_its_kind() {
     let mut writer = OutlineWriter::new(Closed, WriterOptions::default()).expect("the header is buffered");
     let error = writer.flush().expect_err("the pipe is closed");
     assert!(matches!(error, WriteError::Io(cause) if cause.kind() == io::ErrorKind::BrokenPipe));
+}
+
+#[test]
+fn rounded_numbers_are_short_and_right_to_the_resolution_asked_for() {
+    let angle = |k: i32| std::f64::consts::TAU * f64::from(k) / 97.0;
+    for (size, decimals) in [(1.0, 7), (250.0, 5), (2e-3, 10)] {
+        let points = (0..97).map(|k| Point2::new(size * (3.0 + angle(k).cos()), -size * angle(k).sin())).collect();
+        let outline = Outline::closed(points).expect("a circle");
+        let frame = OutlineFrame { frame: 7, time: 7.0 / 30.0, object: "0".to_owned(), outline };
+        let options = WriterOptions { resolution: Some(1e-7), ..WriterOptions::default() };
+        let text = written(std::slice::from_ref(&frame), options);
+        let again = read(text.as_slice());
+        assert!((again[0].time - frame.time).abs() < 1e-9);
+        for (p, q) in again[0].outline.points().zip(frame.outline.points()) {
+            assert!((p - q).amax() <= 0.6e-7 * size, "{p} and {q}");
+        }
+        for line in String::from_utf8(text).expect("UTF-8").lines().skip(1) {
+            let longest = line.split(',').skip(2).filter_map(|number| Some(number.split_once('.')?.1.len())).max();
+            assert!(longest <= Some(decimals), "{line}");
+        }
+    }
 }

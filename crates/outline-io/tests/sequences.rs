@@ -4,9 +4,9 @@ use std::io::{BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
 use freeform_outline_io::{
-    Background, Channel, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
+    Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
     PictureSequence, PictureSettings, Ring, Selection, SequenceSettings, TraceError, TraceSettings, TracedFrame,
-    trace_mask,
+    TracedOutline, trace_mask,
 };
 use image::codecs::gif::GifEncoder;
 use image::{Delay, DynamicImage, Frame, Luma, Rgb, RgbImage};
@@ -226,6 +226,27 @@ fn an_object_told_by_a_ring_is_traced_along_the_outer_edge_of_the_ring() {
 }
 
 #[test]
+fn a_ring_that_the_border_cuts_becomes_open_arcs() {
+    let whole = ringed(0.0, 50.0);
+    let settings = TraceSettings { clipping: Clipping::Open, ..dark_ring() };
+    // The disc of radius 32 about (80, 60), cut by one border, by two, and by two with the corner between them.
+    for (left, top, width, height, arcs) in [(70, 0, 90, 120, 1), (53, 0, 107, 87, 2), (65, 45, 95, 75, 1)] {
+        let picture = image::imageops::crop_imm(&whole, left, top, width, height).to_image();
+        let found = trace_mask(&picture, &settings).expect("a ring");
+        assert!(found.touches_border);
+        assert_eq!(found.outline.pieces().filter(|piece| !piece.closed).count(), arcs, "from {left}, {top}");
+        let centre = (80.0 - f64::from(left), f64::from(height) - 60.0 + f64::from(top));
+        let distances: Vec<f64> = found.outline.points().map(|p| (p.x - centre.0).hypot(p.y - centre.1)).collect();
+        let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+        let worst = distances.iter().map(|distance| (distance - mean).abs()).fold(0.0, f64::max);
+        println!("from {left}, {top}: mean radius {mean:.2}, worst deviation {worst:.2}, {} points", distances.len());
+        assert!((mean - 32.1).abs() < 0.8 && worst < 2.5, "from {left}, {top}: {mean}, {worst}");
+    }
+    let gone = image::imageops::crop_imm(&whole, 120, 0, 40, 120).to_image();
+    assert_eq!(trace_mask(&gone, &settings), Err(TraceError::NoRing));
+}
+
+#[test]
 fn a_background_leaves_only_what_moves() {
     // Ground with structure brighter than the object.
     let ground = GrayImage::from_fn(80, 60, |x, y| Luma([if (x / 8 + y / 8) % 2 == 0 { 60 } else { 210 }]));
@@ -247,6 +268,21 @@ fn a_background_leaves_only_what_moves() {
     let settings = PictureSettings { background: Some(other_size), ..PictureSettings::default() };
     let refused = traced(vec![disc(20.0, 10.0)], settings);
     assert_eq!(refused[0].objects, Err(TraceError::BackgroundSize { width: 3, height: 3 }));
+}
+
+#[test]
+fn pictures_of_changing_size_have_a_median_of_their_own_size() {
+    let of_size = |width: u32, centre: f64| {
+        GrayImage::from_fn(width, 60, |x, y| {
+            Luma([if (f64::from(x) - centre).hypot(f64::from(y) - 30.0) < 8.0 { 200 } else { 20 }])
+        })
+    };
+    let pictures = (0..30).map(|frame| of_size(if frame < 12 { 80 } else { 50 }, 10.0 + f64::from(frame)));
+    let settings = PictureSettings { background: Some(Background::RunningMedian(5)), ..PictureSettings::default() };
+    let seen = traced(pictures.collect(), settings);
+    let wrong_size = |frame: &TracedFrame| matches!(frame.objects, Err(TraceError::BackgroundSize { .. }));
+    assert!(seen.iter().filter(|frame| wrong_size(frame)).count() <= 5);
+    assert!(seen[29].objects.is_ok() && seen[0].objects.is_ok());
 }
 
 /// Discs at these places.
@@ -276,6 +312,82 @@ fn objects_keep_their_names_while_they_pass_each_other_vanish_and_come_back() {
             let expected = if *name == 0 { 20.0 + along } else { 180.0 - along };
             assert!(*name < 2 && (object.centre.x - expected).abs() < 1.5, "frame {frame}: {name} {}", object.centre);
         }
+    }
+}
+
+/// A square and a triangle of like area at these places, each turned by an angle.
+fn square_and_triangle(square: Option<(f64, f64)>, triangle: Option<(f64, f64)>, turn: f64) -> GrayImage {
+    let (sin, cos) = turn.sin_cos();
+    GrayImage::from_fn(240, 100, |x, y| {
+        let body = |(cx, cy): (f64, f64)| {
+            let (x, y) = (f64::from(x) - cx, f64::from(y) - cy);
+            (cos * x + sin * y, cos * y - sin * x)
+        };
+        let in_square = square.map(body).is_some_and(|(x, y)| x.abs() < 12.0 && y.abs() < 12.0);
+        let in_triangle =
+            triangle.map(body).is_some_and(|(x, y)| y > -12.0 && y < 24.0 && x.abs() < (24.0 - y) * 16.0 / 36.0);
+        Luma([if in_square || in_triangle { 220 } else { 10 }])
+    })
+}
+
+#[test]
+fn objects_of_like_size_keep_their_names_whether_they_pass_through_each_other_or_turn_back() {
+    for turns_back in [false, true] {
+        let along =
+            |frame: u32| if turns_back && frame > 20 { 3.0 * f64::from(40 - frame) } else { 3.0 * f64::from(frame) };
+        let pictures: Vec<GrayImage> = (0..40)
+            .map(|frame| {
+                let (square, triangle) = ((50.0 + along(frame), 46.0), (180.0 - along(frame), 50.0));
+                square_and_triangle(Some(square), Some(triangle), 0.05 * f64::from(frame))
+            })
+            .collect();
+        let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+        let seen = traced(pictures, settings);
+        let first = seen[0].objects.as_ref().expect("both");
+        let triangle = first.iter().find(|(_, object)| object.centre.x > 120.0).expect("the triangle").0;
+        let mut touching = 0;
+        for (frame, traced) in seen.iter().enumerate() {
+            let objects = match &traced.objects {
+                Ok(objects) => objects,
+                Err(error) => {
+                    assert_eq!(error, &TraceError::Touching { objects: 2 }, "frame {frame}");
+                    touching += 1;
+                    continue;
+                }
+            };
+            for (name, object) in objects {
+                let along = along(frame as u32);
+                let expected = if *name == triangle { 180.0 - along } else { 50.0 + along };
+                assert!(
+                    *name < 2 && (object.centre.x - expected).abs() < 3.0,
+                    "turns back: {turns_back}, frame {frame}: {name} at {}, not {expected}",
+                    object.centre
+                );
+            }
+        }
+        assert!((3..15).contains(&touching), "{touching}");
+    }
+}
+
+#[test]
+fn objects_that_come_back_elsewhere_are_told_by_their_shape() {
+    // Where each was when they were last seen, the other comes back.
+    let pictures: Vec<GrayImage> = (0..16)
+        .map(|frame| match frame {
+            0..6 => square_and_triangle(Some((100.0, 50.0)), Some((145.0, 50.0)), 0.0),
+            6..10 => square_and_triangle(None, None, 0.0),
+            _ => square_and_triangle(Some((145.0, 50.0)), Some((100.0, 50.0)), 0.3),
+        })
+        .collect();
+    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+    let seen = traced(pictures, settings);
+    let place = |frame: usize, name: u64| {
+        let objects = seen[frame].objects.as_ref().expect("objects");
+        objects.iter().find(|(other, _)| *other == name).expect("both names").1.centre.x
+    };
+    for (name, other) in [(0, 1), (1, 0)] {
+        let (before, after) = (place(0, other), place(15, name));
+        assert!((after - before).abs() < 3.0, "object {name} at {after}, not {before}");
     }
 }
 
@@ -324,6 +436,16 @@ fn data(name: &str) -> Option<PathBuf> {
     path.exists().then_some(path)
 }
 
+/// How much the invariants change from one outline to the next that is as large.
+fn changes_of_shape(found: &[TracedOutline]) -> String {
+    let alike = found.windows(2).filter(|pair| (pair[1].area / pair[0].area).ln().abs() < 0.1);
+    let change = |pair: &[TracedOutline]| Some(pair[0].invariants?.distance(&pair[1].invariants?));
+    let mut changes: Vec<f64> = alike.filter_map(change).collect();
+    changes.sort_by(f64::total_cmp);
+    let share = |part: usize| changes[(changes.len() - 1) * part / 10];
+    format!("change of shape: median {:.3}, 9 of 10 below {:.3}, largest {:.3}", share(5), share(9), share(10))
+}
+
 #[test]
 fn the_robot_is_found_in_raw_frames_by_its_dark_ring() {
     let Some(folder) = data("sequences/microrobot_h/frames") else { return };
@@ -333,10 +455,12 @@ fn the_robot_is_found_in_raw_frames_by_its_dark_ring() {
     let files: Vec<PathBuf> = chosen.map(|frame| folder.join(format!("{frame:04}.jpg"))).collect();
     let sequence = PictureSequence::open(&files, settings).expect("frames");
     let settings = PictureSettings { trace: dark_ring(), ..PictureSettings::default() };
-    let areas: Vec<f64> = PictureOutlines::new(sequence, settings)
+    let found: Vec<TracedOutline> = PictureOutlines::new(sequence, settings)
         .expect("settings")
-        .filter_map(|traced| Some(traced.expect("a frame").objects.ok()?[0].1.area))
+        .filter_map(|traced| Some(traced.expect("a frame").objects.ok()?.remove(0).1))
         .collect();
+    println!("{}", changes_of_shape(&found));
+    let areas: Vec<f64> = found.iter().map(|robot| robot.area).collect();
     let found = areas.iter().filter(|area| (15_000.0..17_000.0).contains(*area)).count();
     println!("{found} of {} frames", files.len());
     assert!(found + 1 >= files.len(), "{areas:?}");
@@ -347,13 +471,19 @@ fn the_bolt_moves_evenly_while_it_is_in_view() {
     let Some(path) = data("sequences/bolt/bolt.gif") else { return };
     assert!(File::open(&path).is_ok());
     let outlines = PictureOutlines::new(open(&[path]), PictureSettings::default()).expect("settings");
-    let seen: Vec<(u64, f64, bool)> = outlines
+    let seen: Vec<(f64, TracedOutline)> = outlines
         .filter_map(|traced| {
             let traced = traced.expect("a frame");
             let (_, bolt) = traced.objects.ok()?.into_iter().next()?;
-            (bolt.area > 1000.0).then_some((traced.frame.frame, bolt.centre.x, bolt.touches_border))
+            (!bolt.touches_border).then_some((traced.frame.time, bolt))
         })
         .collect();
-    println!("{seen:?}");
-    assert!(seen.iter().filter(|(_, _, clipped)| !clipped).count() > 15);
+    assert!(seen.len() > 15);
+    let (times, bolts): (Vec<f64>, Vec<TracedOutline>) = seen.into_iter().unzip();
+    println!("{}", changes_of_shape(&bolts));
+    let between: Vec<[f64; 2]> =
+        (1..times.len()).map(|k| [times[k] - times[k - 1], bolts[k].centre.x - bolts[k - 1].centre.x]).collect();
+    // The file has delays of 6 and 7 hundredths of a second.
+    assert!(between.iter().all(|[seconds, _]| (seconds * 15.0 - 1.0).abs() < 0.002), "{between:?}");
+    assert!(between.iter().all(|[_, shift]| (shift / 23.2 - 1.0).abs() < 0.04), "{between:?}");
 }

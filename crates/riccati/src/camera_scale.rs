@@ -1,3 +1,5 @@
+use nalgebra::Matrix3;
+
 use crate::{
     error::DynamicsError,
     motion::{AffineMotion, ProjectiveMotion, RigidMotion, SimilarityMotion},
@@ -10,12 +12,25 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraScale(f64);
 
+impl Default for CameraScale {
+    /// 1: space and image coordinates are the same.
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+impl std::fmt::Display for CameraScale {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
 impl CameraScale {
     /// From `f / Z0`, focal length over distance: any finite positive number.
     ///
     /// # Errors
     /// A value that is not a normal positive number.
-    pub fn new(focal_length_over_distance: f64) -> Result<Self, DynamicsError> {
+    pub const fn new(focal_length_over_distance: f64) -> Result<Self, DynamicsError> {
         let scale = focal_length_over_distance;
         if scale.is_normal() && scale > 0.0 { Ok(Self(scale)) } else { Err(DynamicsError::CameraScale { scale }) }
     }
@@ -24,6 +39,25 @@ impl CameraScale {
     #[must_use]
     pub const fn value(self) -> f64 {
         self.0
+    }
+
+    /// The generator seen in the image of an object that moves by `space` (equation 24): `S space S^-1` with `S = diag(s,
+    /// s, 1)`. Maps of the plane change in the same way.
+    #[must_use]
+    pub fn generator_in_image(self, space: &Matrix3<f64>) -> Matrix3<f64> {
+        let mut image = *space;
+        image.fixed_view_mut::<2, 1>(0, 2).scale_mut(self.0);
+        image.fixed_view_mut::<1, 2>(2, 0).unscale_mut(self.0);
+        image
+    }
+
+    /// The generator in space of an object whose image moves by `image`: the inverse of `generator_in_image`.
+    #[must_use]
+    pub fn generator_in_space(self, image: &Matrix3<f64>) -> Matrix3<f64> {
+        let mut space = *image;
+        space.fixed_view_mut::<2, 1>(0, 2).unscale_mut(self.0);
+        space.fixed_view_mut::<1, 2>(2, 0).scale_mut(self.0);
+        space
     }
 }
 

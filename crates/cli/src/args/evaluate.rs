@@ -1,10 +1,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use freeform_motion::riccati::AffineMotion;
 
 use super::identify::MotionChoice;
-use super::values::{affine, at_least_one, finite, fraction, frame_count, not_negative, pair, positive};
+use super::simulated::{DisturbanceArgs, TrueMotionArgs};
+use super::values::{at_least_one, fraction, frame_count, positive};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -43,23 +43,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "NAME|FILE", num_args = 1..)]
     pub(crate) shape: Vec<String>,
 
-    /// Angular velocity in rad/s, positive clockwise (y up)
-    #[arg(long, value_name = "W", value_parser = finite, allow_hyphen_values = true,
-          default_value_t = std::f64::consts::FRAC_PI_2)]
-    pub(crate) omega: f64,
-
-    /// Velocity at the origin, in space lengths per second
-    #[arg(long, value_name = "B1,B2", value_parser = pair, allow_hyphen_values = true, default_value = "-3,4")]
-    pub(crate) b: [f64; 2],
-
-    /// An affine motion in place of --omega and --b
-    #[arg(long, value_name = "A1,A2,A3,A4,B1,B2", value_parser = affine, allow_hyphen_values = true,
-          conflicts_with_all = ["omega", "b"])]
-    pub(crate) affine: Option<AffineMotion>,
-
-    /// Camera scale f/Z0: image lengths per space length
-    #[arg(long, value_name = "F_OVER_Z0", value_parser = positive, default_value_t = 0.1)]
-    pub(crate) scale: f64,
+    #[command(flatten)]
+    pub(crate) motion_in_space: TrueMotionArgs,
 
     /// Family of motions that is identified; it must hold the true one [default: rigid, affine with --affine]
     #[arg(long, value_enum)]
@@ -85,17 +70,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_enum, default_value_t = SamplingChoice::Independent)]
     pub(crate) sampling: SamplingChoice,
 
-    /// Standard deviation of the noise on each coordinate, in image lengths
-    #[arg(long, value_name = "SIGMA", value_parser = not_negative, default_value_t = 0.005)]
-    pub(crate) noise: f64,
-
-    /// Share of the outline that is missing, at a random place in every frame
-    #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
-    pub(crate) occlusion: f64,
-
-    /// Share of the points that are wrong
-    #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
-    pub(crate) outliers: f64,
+    #[command(flatten)]
+    pub(crate) disturbance: DisturbanceArgs,
 
     /// Share of the frames that show another object
     #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]

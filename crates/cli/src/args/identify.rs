@@ -2,10 +2,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use freeform_motion::curve_fit::Degree;
-use freeform_motion::riccati::{AffineMotion, MotionModel};
+use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 
 use super::pictures::{PICTURE_INPUTS, PictureOptions};
-use super::values::{degree, motion, positive};
+use super::values::{camera_scale, degree, motion};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -138,8 +138,8 @@ pub(crate) struct TrackOptions {
     pub(crate) degree: Option<Degree>,
 
     /// Camera scale f/Z0: b is divided by it, so that it is the velocity in space
-    #[arg(long, value_name = "F_OVER_Z0", value_parser = positive)]
-    pub(crate) scale: Option<f64>,
+    #[arg(long, value_name = "F_OVER_Z0", value_parser = camera_scale)]
+    pub(crate) scale: Option<CameraScale>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

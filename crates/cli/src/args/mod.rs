@@ -6,6 +6,7 @@ mod outline;
 mod pictures;
 mod reproduce;
 mod simulate;
+mod simulated;
 mod values;
 
 use std::path::PathBuf;
@@ -16,9 +17,10 @@ pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat, EvaluatedMethod, Samplin
 pub(crate) use fit::{FitArgs, FitFormat};
 pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
 pub(crate) use outline::OutlineArgs;
-pub(crate) use pictures::{ChannelChoice, ObjectsChoice, PictureOptions};
+pub(crate) use pictures::{ChannelChoice, PictureOptions};
 pub(crate) use reproduce::{Part, ReproduceArgs};
 pub(crate) use simulate::SimulateArgs;
+pub(crate) use simulated::DisturbanceArgs;
 
 use crate::failure::Failure;
 

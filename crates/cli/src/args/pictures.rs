@@ -78,6 +78,22 @@ pub(crate) struct PictureOptions {
 }
 
 impl PictureOptions {
+    /// Whether all objects are taken, so that their names tell them apart.
+    pub(crate) fn follows_all(&self) -> bool {
+        self.objects == ObjectsChoice::All
+    }
+
+    /// Where the origin of the coordinates lies, and the unit of velocities in them, for reading.
+    pub(crate) fn origin_and_speed_unit(&self) -> (&'static str, String) {
+        let origin = if self.y_down { "the upper left corner" } else { "the lower left corner" };
+        let unit = match self.pixel_size {
+            1.0 if self.pixel_aspect.is_some_and(|ratio| ratio != 1.0) => "in pixel heights/s".to_owned(),
+            1.0 => "in pixels/s".to_owned(),
+            size => format!("in lengths/s, a pixel {size} high"),
+        };
+        (origin, unit)
+    }
+
     /// The options as a report lists them.
     pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
         let found = match (self.ring, &self.background, self.threshold) {

@@ -1,9 +1,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use freeform_motion::riccati::AffineMotion;
 
-use super::values::{affine, finite, fraction, not_negative, pair, positive};
+use super::simulated::{DisturbanceArgs, TrueMotionArgs};
+use super::values::positive;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -30,23 +30,8 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "NAME|FILE", default_value = "bird")]
     pub(crate) shape: String,
 
-    /// Angular velocity in rad/s, positive clockwise (y up)
-    #[arg(long, value_name = "W", value_parser = finite, allow_hyphen_values = true,
-          default_value_t = std::f64::consts::FRAC_PI_2)]
-    pub(crate) omega: f64,
-
-    /// Velocity at the origin, in space lengths per second
-    #[arg(long, value_name = "B1,B2", value_parser = pair, allow_hyphen_values = true, default_value = "-3,4")]
-    pub(crate) b: [f64; 2],
-
-    /// An affine motion in place of --omega and --b
-    #[arg(long, value_name = "A1,A2,A3,A4,B1,B2", value_parser = affine, allow_hyphen_values = true,
-          conflicts_with_all = ["omega", "b"])]
-    pub(crate) affine: Option<AffineMotion>,
-
-    /// Camera scale f/Z0: image lengths per space length
-    #[arg(long, value_name = "F_OVER_Z0", value_parser = positive, default_value_t = 0.1)]
-    pub(crate) scale: f64,
+    #[command(flatten)]
+    pub(crate) motion_in_space: TrueMotionArgs,
 
     /// Frames per second
     #[arg(long, value_parser = positive, default_value_t = 30.0)]
@@ -60,17 +45,8 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "COUNT", default_value_t = 400)]
     pub(crate) points: usize,
 
-    /// Standard deviation of the noise on each coordinate, in image lengths
-    #[arg(long, value_name = "SIGMA", value_parser = not_negative, default_value_t = 0.005)]
-    pub(crate) noise: f64,
-
-    /// Share of the outline that is missing, at a random place in every frame
-    #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
-    pub(crate) occlusion: f64,
-
-    /// Share of the points that are wrong
-    #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
-    pub(crate) outliers: f64,
+    #[command(flatten)]
+    pub(crate) disturbance: DisturbanceArgs,
 
     /// Everything random follows from it
     #[arg(long, default_value_t = 0)]

@@ -1,6 +1,6 @@
 //! Values of options that are more than one word or number.
 use freeform_motion::curve_fit::Degree;
-use freeform_motion::riccati::{AffineMotion, RigidMotion, SimilarityMotion};
+use freeform_motion::riccati::{AffineMotion, CameraScale, RigidMotion, SimilarityMotion};
 
 /// A finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
@@ -12,6 +12,11 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     let value = finite(text)?;
     if value > 0.0 && value.is_normal() { Ok(value) } else { Err(format!("{text} is not above 0")) }
+}
+
+/// The scale f/Z0 of a camera.
+pub(crate) fn camera_scale(text: &str) -> Result<CameraScale, String> {
+    CameraScale::new(positive(text)?).map_err(|error| error.to_string())
 }
 
 /// The length of an experiment: a second or more.

@@ -8,7 +8,7 @@ use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Sim
 
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
-use super::{FittedOutline, History, command_line};
+use super::{FittedOutline, History, LeftOut, command_line};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::failure::{Failure, plain, warn};
 use crate::identifier::pipeline_settings;
@@ -35,8 +35,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let folder = &args.out;
     fs::create_dir_all(folder)
         .map_err(|error| Failure::unusable(format_args!("{}: {}", folder.display(), plain(&error))))?;
-    let scale = PaperExperiment::SCALE;
-    let scene = PaperExperiment::FLIGHT_BIRD.scene(scale).map_err(Failure::unusable)?;
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).map_err(Failure::unusable)?;
+    let scale = scene.camera().scale();
     let length = SequenceLength::Seconds(SECONDS);
     let camera = Settings { fps: 30.0, length, noise: PaperExperiment::NOISE, ..Settings::default() };
     let simulator = Simulator::new(scene, camera).map_err(Failure::unusable)?;
@@ -80,9 +80,12 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         title: "The flight bird: motion from nothing but its outlines".to_owned(),
         command: command_line(),
         settings: listed,
+        meaning_of_b: format!("velocity at the origin of the coordinates, in space: over f/Z0 = {scale}"),
         findings: [&filter, &adaptive].map(Found::findings).into(),
         truth: Some(&truth),
+        no_motion: None,
         read_error: None,
+        left_out: &LeftOut::default(),
     };
     WholeFile::write(&folder.join(REPORT), &write_report(&report))?;
 

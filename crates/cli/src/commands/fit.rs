@@ -3,10 +3,12 @@ use std::io;
 use freeform_motion::curve_fit::{Fit, Fitter, Outline};
 use freeform_motion::decompose::{AffineInvariants, Decomposition, DecompositionError, RelatedPoints};
 use freeform_motion::outline_io::OutlineFrame;
+use nalgebra::Point2;
 
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
 use crate::input::{Input, Item};
+use crate::level_set::stray_parts;
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
 
@@ -19,6 +21,8 @@ pub(crate) struct FittedOutline {
     pub(crate) fit: Fit,
     /// In image coordinates.
     pub(crate) parts: Result<Parts, DecompositionError>,
+    /// Middles of the parts of the curve that lie beside the outline, where they have been looked for.
+    pub(crate) stray_parts: Vec<Point2<f64>>,
 }
 
 /// What a decomposition gives.
@@ -42,7 +46,7 @@ impl FittedOutline {
             let related_points = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
             Ok(Parts { decomposition, related_points, invariants: AffineInvariants::of(&working) })
         });
-        Self { object: frame.object.clone(), frame: frame.frame, time: frame.time, fit, parts }
+        Self { object: frame.object.clone(), frame: frame.frame, time: frame.time, fit, parts, stray_parts: Vec::new() }
     }
 }
 
@@ -68,9 +72,9 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
                 reasons.push(reason);
                 continue;
             }
-            Ok(Item::Missing { reason, is_damage }) => {
-                damaged |= is_damage;
-                reasons.push(reason);
+            Ok(Item::Missing(missing)) => {
+                damaged |= missing.seen_in.is_none();
+                reasons.push(missing.reason);
                 continue;
             }
             Err(error) => {
@@ -87,7 +91,8 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
                 reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
             }
             Ok(fit) => {
-                let fitted = FittedOutline::new(&frame, fit);
+                let stray_parts = stray_parts(&fit, &frame.outline);
+                let fitted = FittedOutline { stray_parts, ..FittedOutline::new(&frame, fit) };
                 collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;
             }
             Err(error) => {
@@ -106,6 +111,9 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         return Err(failure.unwrap_or_else(|| Failure::no_result(nothing)));
     }
     reasons.iter().for_each(|reason| warn(reason));
+    if let Collected { with_stray_parts: with @ 1.., count, .. } = collected {
+        warn(&format!("{with} of {count} curve(s) have a part beside the outline, where the polynomial is zero too"));
+    }
     if args.format == FitFormat::Json {
         write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;
     }
@@ -120,6 +128,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
 #[derive(Default)]
 struct Collected {
     count: usize,
+    with_stray_parts: usize,
     /// All fits, where they are printed together in the end.
     fits: Vec<FittedOutline>,
     /// Those of the first frame, where they are drawn.
@@ -132,6 +141,7 @@ impl Collected {
             write_fit_table(sink, &fitted, self.count > 0)?;
         }
         self.count += 1;
+        self.with_stray_parts += usize::from(!fitted.stray_parts.is_empty());
         let is_of_first_frame = self.drawn.first().is_none_or(|(first, _)| first.frame == fitted.frame);
         if args.svg.is_some() && is_of_first_frame {
             self.drawn.push((fitted.clone(), outline));

@@ -9,14 +9,14 @@ use super::{FittedOutline, command_line};
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
 use crate::failure::{Failure, plain, warn};
 use crate::identifier::{curve_settings, filter_settings, pipeline_settings, process_noise};
-use crate::input::Input;
+use crate::input::{Input, Missing};
 use crate::interrupt;
 use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
     write_identify_table, write_parameters, write_report, write_trajectory,
 };
-use crate::overlay::{CurveFitter, ObservedOverlay, needs_pictures};
-use crate::tracking::{Estimate, ObjectResult, Observation, Tracking};
+use crate::overlay::{CurveFitter, ObservedOverlay};
+use crate::tracking::{Estimate, Event, ObjectResult, Observation, REASONS_KEPT, Tracking};
 use crate::trajectory::Trajectory;
 
 /// What was found of one object over time, kept for figures.
@@ -77,6 +77,23 @@ impl History {
     }
 }
 
+/// Pictures without an outline.
+#[derive(Debug, Default)]
+pub(crate) struct LeftOut {
+    pub(crate) count: u64,
+    /// Why, of the first of them.
+    pub(crate) reasons: Vec<String>,
+}
+
+impl LeftOut {
+    fn take(&mut self, missing: &Missing) {
+        self.count += 1;
+        if self.reasons.len() < REASONS_KEPT {
+            self.reasons.push(missing.reason.clone());
+        }
+    }
+}
+
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs: Vec<_> =
@@ -106,29 +123,31 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         Some(path) => Some((WholeFile::create(path)?, Trajectory::default())),
         None => None,
     };
-    let mut overlay = match &args.overlay {
-        Some(path) => {
-            needs_pictures(&input)?;
-            Some(ObservedOverlay::open(path, &args.options)?)
-        }
-        None => None,
-    };
+    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let mut curves = CurveFitter::new(&args.options)?;
     let keeps_history = args.svg.is_some() || args.report.is_some();
     let mut histories = Vec::new();
-    let failure = tracking.read(&mut input, args.quiet, |observation, frame, seen_in| {
+    let mut left_out = LeftOut::default();
+    let failure = tracking.read(&mut input, args.quiet, |event| {
+        if let Some(overlay) = &mut overlay {
+            overlay.take(&event)?;
+        }
+        let (observation, frame) = match event {
+            Event::Observed { observation, frame, .. } => (observation, frame),
+            Event::Missing(missing) => {
+                left_out.take(missing);
+                return Ok(());
+            }
+        };
         if let (Some(trace), Some(path)) = (&mut trace, &args.trace) {
-            trace.write(&observation).map_err(|error| file_failure(path, &error))?;
+            trace.write(observation).map_err(|error| file_failure(path, &error))?;
         }
         if let Some((_, trajectory)) = &mut trajectory {
-            trajectory.take(&observation);
-        }
-        if let Some(overlay) = &mut overlay {
-            overlay.take(&observation, frame, seen_in)?;
+            trajectory.take(observation);
         }
         if keeps_history {
-            History::take(&mut histories, &observation, frame, &mut curves);
+            History::take(&mut histories, observation, frame, &mut curves);
         }
         Ok(())
     })?;
@@ -137,14 +156,36 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         overlay.finish()?;
     }
     let results = tracking.results();
-    if results.iter().all(|result| result.estimate.is_none()) {
-        return Err(failure.unwrap_or_else(|| nothing_found(&name, &results)));
+    let is_found = results.iter().any(|result| result.estimate.is_some());
+    let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
+    if let Some(path) = &args.report {
+        let mut listed = settings(&args.options, &name);
+        if input.has_pictures() {
+            listed.extend(args.pictures.listed());
+        }
+        let reason = failure.as_ref().map(Failure::text);
+        let report = Report {
+            title: format!("Motion in {name}"),
+            command: command_line(),
+            settings: listed,
+            meaning_of_b: meaning_of_b(args, &input),
+            findings: vec![Findings { results: &results, histories: &histories }],
+            truth: truth.as_ref(),
+            no_motion: reason.filter(|_| !is_found),
+            read_error: reason.filter(|_| is_found),
+            left_out: &left_out,
+        };
+        WholeFile::write(path, &write_report(&report))?;
+    }
+    if !is_found {
+        return failure.map_or(Ok(()), Err);
     }
     for result in results.iter().filter(|_| !args.quiet) {
         result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
     }
     let format = if args.json { IdentifyFormat::Json } else { args.format };
-    let printed = print(format, &results, truth.as_ref());
+    let note = input.has_pictures().then(|| meaning_of_b(args, &input));
+    let printed = print(format, &results, truth.as_ref(), note.as_deref());
     if let (Some(trace), Some(path)) = (trace, &args.trace) {
         trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
     }
@@ -159,30 +200,33 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if let Some(path) = &args.svg {
         WholeFile::write(path, &parameter_figure(&histories, args.options.motion.model(), truth.as_ref()))?;
     }
-    if let Some(path) = &args.report {
-        let failure_text = failure.as_ref().map(Failure::text);
-        let mut listed = settings(&args.options, &name);
-        if input.has_pictures() {
-            listed.extend(args.pictures.listed());
-        }
-        let report = Report {
-            title: format!("Motion in {name}"),
-            command: command_line(),
-            settings: listed,
-            findings: vec![Findings { results: &results, histories: &histories }],
-            truth: truth.as_ref(),
-            read_error: failure_text,
-        };
-        WholeFile::write(path, &write_report(&report))?;
-    }
     printed?;
     failure.map_or(Ok(()), Err)
 }
 
-fn print(format: IdentifyFormat, results: &[ObjectResult], truth: Option<&AffineMotion>) -> Result<(), Failure> {
+/// Unit and origin of b, for reading.
+fn meaning_of_b(args: &IdentifyArgs, input: &Input) -> String {
+    let (origin, unit) = if input.has_pictures() {
+        args.pictures.origin_and_speed_unit()
+    } else {
+        ("the origin of the coordinates", "in their lengths/s".to_owned())
+    };
+    let scale = args.options.scale.map_or_else(String::new, |scale| format!(", over f/Z0 = {scale}"));
+    format!("velocity at {origin}, {unit}{scale}")
+}
+
+fn print(
+    format: IdentifyFormat,
+    results: &[ObjectResult],
+    truth: Option<&AffineMotion>,
+    meaning_of_b: Option<&str>,
+) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let written = match format {
-        IdentifyFormat::Table => write_identify_table(&mut sink, results, truth),
+        IdentifyFormat::Table => {
+            let table = write_identify_table(&mut sink, results, truth);
+            table.and_then(|()| meaning_of_b.map_or(Ok(()), |text| writeln!(sink, "b: {text}")))
+        }
         IdentifyFormat::Json => write_identify_json(&mut sink, results),
         IdentifyFormat::Csv => write_parameters(&mut sink, results),
     };
@@ -213,8 +257,7 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
 
 /// The settings as a report lists them.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
-    let scale =
-        options.scale.map_or_else(|| "none: b in image lengths per second".to_owned(), |scale| scale.to_string());
+    let scale = options.scale.map_or_else(|| "none: b in the image".to_owned(), |scale| scale.to_string());
     let mut listed = vec![
         ("Input", input.to_owned()),
         ("Motion model", options.motion.model().to_string()),

@@ -12,7 +12,7 @@ mod track;
 
 pub(crate) use evaluate::{Acquisition, Evaluation, Found, MethodResult, Report, Setting, Statistics};
 pub(crate) use fit::{FittedOutline, Parts};
-pub(crate) use identify::History;
+pub(crate) use identify::{History, LeftOut};
 pub(crate) use reproduce::{Drawing, Section, Table};
 
 use crate::args::{Cli, Command};

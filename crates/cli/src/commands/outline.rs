@@ -2,10 +2,10 @@ use freeform_motion::outline_io::{OutlineWriter, WriteError, WriterOptions};
 
 use crate::args::OutlineArgs;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Item};
+use crate::input::{Input, Item, Missing};
 use crate::interrupt;
 use crate::output::{Sink, refuse_overwriting};
-use crate::overlay::{Drawn, Overlay, needs_pictures};
+use crate::overlay::{Drawn, Overlay};
 use crate::progress::Progress;
 
 /// Traces the outlines of pictures and writes them.
@@ -24,9 +24,8 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
         Err(error) => return Err(Failure::unusable(error)),
     };
     match outcome {
-        Outcome { outlines: 0, first_reason: Some((reason, true)) } => Err(Failure::unusable(reason)),
-        Outcome { outlines: 0, first_reason: Some((reason, false)) } => Err(Failure::no_result(reason)),
-        Outcome { outlines: 0, first_reason: None } => Err(Failure::no_result(format_args!("{name}: no pictures"))),
+        Outcome { outlines: 0, first_missing: Some(missing) } => Err(missing.into_failure()),
+        Outcome { outlines: 0, first_missing: None } => Err(Failure::no_result(format_args!("{name}: no pictures"))),
         _ => sink.finish(),
     }
 }
@@ -34,22 +33,18 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
 /// What became of the pictures.
 struct Outcome {
     outlines: u64,
-    /// Why the first picture without an outline has none, and whether it is damaged.
-    first_reason: Option<(String, bool)>,
+    first_missing: Option<Missing>,
 }
 
 type Written = Result<Outcome, WriteError>;
 
 fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Written, Failure> {
     let mut overlay = args.overlay.as_deref().map(Overlay::open).transpose()?;
-    if overlay.is_some() {
-        needs_pictures(&input)?;
-    }
-    let mut outcome = Outcome { outlines: 0, first_reason: None };
+    let mut outcome = Outcome { outlines: 0, first_missing: None };
     let progress = Progress::of_frames(input.frame_count(), args.quiet);
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
-    let object_column = args.pictures.objects == crate::args::ObjectsChoice::All;
+    let object_column = args.pictures.follows_all();
     for item in input {
         // What came after Ctrl-C may be cut short.
         if interrupt::was_asked_for() {
@@ -60,7 +55,7 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
             Item::Outline(frame, seen_in) => {
                 // The header waits for the first outline, so that nothing is printed where there is none.
                 if let Some(sink) = sink.take() {
-                    let options = WriterOptions { arc_column: true, object_column };
+                    let options = WriterOptions { arc_column: true, object_column, resolution: None };
                     match OutlineWriter::new(sink, options) {
                         Ok(new) => writer = Some(new),
                         Err(error) => return Ok(Err(error)),
@@ -71,12 +66,23 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
                 }
                 outcome.outlines += 1;
                 if let (Some(overlay), Some(seen_in)) = (&mut overlay, &seen_in) {
-                    let drawn = Drawn { outline: &frame.outline, accepted: true, fit: None, generator: None };
+                    let name = object_column.then_some(frame.object.as_str());
+                    let drawn = Drawn { outline: &frame.outline, name, accepted: true, fit: None, generator: None };
                     overlay.draw(seen_in, &drawn)?;
                 }
             }
-            Item::Rejected { reason, .. } => outcome.leave_out(args, &progress, single, reason, false),
-            Item::Missing { reason, is_damage } => outcome.leave_out(args, &progress, single, reason, is_damage),
+            // Pictures give no such item.
+            Item::Rejected { .. } => {}
+            Item::Missing(missing) => {
+                // The reason of a single picture is told in the end.
+                if !args.quiet && !single {
+                    progress.pause(|| warn(&missing.reason));
+                }
+                if let (Some(overlay), Some(seen_in)) = (&mut overlay, &missing.seen_in) {
+                    overlay.draw_nothing(seen_in)?;
+                }
+                outcome.first_missing.get_or_insert(missing);
+            }
         }
     }
     if let Some(overlay) = overlay {
@@ -86,14 +92,4 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
         Some(mut writer) => writer.flush().map(|()| outcome),
         None => Ok(outcome),
     })
-}
-
-impl Outcome {
-    /// Takes note of a picture without an outline. That of a single one is told in the end.
-    fn leave_out(&mut self, args: &OutlineArgs, progress: &Progress, single: bool, reason: String, is_damage: bool) {
-        if !args.quiet && !single {
-            progress.pause(|| warn(&reason));
-        }
-        self.first_reason.get_or_insert((reason, is_damage));
-    }
 }

@@ -2,13 +2,10 @@ use std::io::Write;
 use std::path::Path;
 
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineWriter, WriteError, WriterOptions, read_shape};
-use freeform_motion::riccati::{AffineMotion, RigidMotion};
-use freeform_motion::sim_camera::{
-    BuiltInShape, Camera, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator,
-};
+use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator};
 
 use super::command_line;
-use crate::args::SimulateArgs;
+use crate::args::{DisturbanceArgs, SimulateArgs};
 use crate::failure::Failure;
 use crate::output::Sink;
 use crate::progress::Progress;
@@ -27,6 +24,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
     }
 }
 
+/// Coordinates of outlines with noise are written to this share of the RMS radius.
+const RESOLUTION: f64 = 1e-7;
+
 /// Why a sequence could not be written.
 pub(crate) enum SequenceError {
     Write(WriteError),
@@ -44,7 +44,9 @@ pub(crate) fn write_sequence(
         SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale: simulator.scene().camera().scale() };
     writeln!(sink, "# {}", command_line()).and_then(|()| writeln!(sink, "# {truth}")).map_err(write)?;
     let arc_column = simulator.settings().occlusion.fraction > 0.0;
-    let options = WriterOptions { arc_column, ..WriterOptions::default() };
+    // Objects have about unit size in the image; far below the noise there is nothing to tell.
+    let resolution = (simulator.settings().noise > 1e3 * RESOLUTION).then_some(RESOLUTION);
+    let options = WriterOptions { arc_column, resolution, ..WriterOptions::default() };
     let mut writer = OutlineWriter::new(sink, options).map_err(SequenceError::Write)?;
     let progress = Progress::of_frames(Some(simulator.frame_count() as u64), false);
     for Frame { index, time, outline, .. } in simulator.frames() {
@@ -57,17 +59,16 @@ pub(crate) fn write_sequence(
 }
 
 fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
-    let rigid = RigidMotion { omega: args.omega, b1: args.b[0], b2: args.b[1] };
-    let motion = args.affine.unwrap_or_else(|| AffineMotion::from(rigid));
-    let camera = Camera::new(args.scale).map_err(Failure::unusable)?;
-    let scene = Scene::new(shape(&args.shape)?, motion, camera);
+    let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
+    let scene = Scene::new(shape(&args.shape)?, args.motion_in_space.motion(), camera);
+    let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
     let settings = Settings {
         fps: args.fps,
         length: SequenceLength::Seconds(args.seconds),
         points: args.points,
-        noise: args.noise,
-        occlusion: Occlusion { fraction: args.occlusion, ..Occlusion::default() },
-        outliers: args.outliers,
+        noise,
+        occlusion: Occlusion { fraction: occlusion, ..Occlusion::default() },
+        outliers,
         seed: args.seed,
         ..Settings::default()
     };

@@ -4,7 +4,7 @@ use nalgebra::Point2;
 
 use super::number::short;
 use crate::commands::{FittedOutline, History};
-use crate::level_set::{Area, curve_of};
+use crate::level_set::{Area, curve_of, stray};
 use crate::plot::{Curve, Look, Panel, stacked_svg};
 use crate::truth::parameters_in;
 
@@ -25,7 +25,7 @@ pub(crate) fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
 /// Outlines with their fitted curves and related points, in one pair of axes.
 pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Panel {
     let xy = |p: &Point2<f64>| [p.x, p.y];
-    let (mut points, mut curves, mut related) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut curves, mut beside, mut related) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut outside = 0;
     let whole = Area::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
     let view = whole.map(|area| area.widened(SURROUNDINGS).square());
@@ -34,7 +34,10 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
         let Some(area) = view else { continue };
         // Beyond what is seen, so that a curve that leaves it goes on to the frame.
         let traced = curve_of(&fitted.fit, &area.widened(SURROUNDINGS));
-        curves.extend(traced.iter().map(|run| run.iter().map(xy).collect()));
+        for (run, stray) in traced.iter().zip(stray(&traced, outline)) {
+            let runs = if stray { &mut beside } else { &mut curves };
+            runs.push(run.iter().map(xy).collect());
+        }
         let all = fitted.parts.iter().flat_map(|parts| parts.related_points.as_slice());
         let (inside, far): (Vec<_>, Vec<_>) = all.map(|d| d.point).partition(|point| area.contains(point));
         related.push(inside.iter().map(xy).collect());
@@ -44,11 +47,14 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
         0 => "related points".to_owned(),
         count => format!("related points ({count} outside)"),
     };
-    let curves = vec![
+    let mut curves = vec![
         Curve { name: "outline".to_owned(), look: Look::Dots, runs: points },
         Curve { name: "fitted curve".to_owned(), look: Look::Line, runs: curves },
         Curve { name: related_name, look: Look::Crosses, runs: related },
     ];
+    if !beside.is_empty() {
+        curves.push(Curve { name: "stray part".to_owned(), look: Look::Dashed(0), runs: beside });
+    }
     Panel {
         title,
         x_label: "x (image length)".to_owned(),

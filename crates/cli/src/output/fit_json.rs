@@ -32,6 +32,7 @@ fn outline_json(fitted: &FittedOutline) -> Value {
         "constraint_active": diagnostics.constraint_active,
         "condition": diagnostics.condition,
         "residual": {"algebraic": diagnostics.algebraic_residual, "geometric": diagnostics.geometric_residual},
+        "stray_parts": fitted.stray_parts.iter().map(|p| json!({"x": p.x, "y": p.y})).collect::<Vec<_>>(),
         "levels": parts.map_or_else(|_| Vec::new(), levels_json),
         "related_points": parts.map_or_else(|_| Vec::new(), related_points_json),
         "invariants": parts.ok().and_then(|parts| parts.invariants.as_ref()).map(AffineInvariants::values),

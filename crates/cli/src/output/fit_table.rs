@@ -1,7 +1,7 @@
 use std::io::{self, Write};
 
 use freeform_motion::curve_fit::exponents;
-use nalgebra::Complex;
+use nalgebra::{Complex, Point2};
 
 use super::number::{short, significant};
 use crate::commands::{FittedOutline, Parts};
@@ -26,6 +26,11 @@ pub(crate) fn write_fit_table(sink: &mut impl Write, fitted: &FittedOutline, bla
     writeln!(sink, "  bounded         {bounded} (margin {margin}{constraint})")?;
     writeln!(sink, "  residual        {} (root mean square distance)", significant(diagnostics.geometric_residual, 3))?;
     writeln!(sink, "  condition       {}", significant(diagnostics.condition, 2))?;
+    if !fitted.stray_parts.is_empty() {
+        let place = |p: &Point2<f64>| format!("({}, {})", significant(p.x, 3), significant(p.y, 3));
+        let places: Vec<String> = fitted.stray_parts.iter().map(place).collect();
+        writeln!(sink, "  beside outline  {} part(s) of the curve, about {}", places.len(), places.join(", "))?;
+    }
     writeln!(sink, "  coefficients a_ij of x^i y^j")?;
     let names = exponents(degree.value()).map(|(i, j)| format!("a_{i}{j}"));
     let coefficients = polynomial.coefficients().iter();

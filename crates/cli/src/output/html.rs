@@ -4,7 +4,7 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
-use crate::commands::History;
+use crate::commands::{History, LeftOut};
 use crate::plot::{escape, panel_svg};
 use crate::tracking::ObjectResult;
 
@@ -17,11 +17,16 @@ pub(crate) struct Report<'a> {
     /// The command as it was given.
     pub(crate) command: String,
     pub(crate) settings: Vec<(&'static str, String)>,
+    /// Unit and origin of the velocity b.
+    pub(crate) meaning_of_b: String,
     /// One for each method.
     pub(crate) findings: Vec<Findings<'a>>,
     pub(crate) truth: Option<&'a AffineMotion>,
+    /// Why no motion was found, where none was.
+    pub(crate) no_motion: Option<&'a str>,
     /// What ended the reading before the end of the input.
     pub(crate) read_error: Option<&'a str>,
+    pub(crate) left_out: &'a LeftOut,
 }
 
 /// What one method found.
@@ -38,6 +43,9 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
     if let Some(first) = report.findings.first() {
         let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&summary(first.results)));
     }
+    if let Some(reason) = report.no_motion {
+        let _ = writeln!(body, "<p class=\"alert\">No motion was identified. {}</p>", escape(reason));
+    }
     if let Some(error) = report.read_error {
         let error = escape(error);
         let _ = writeln!(body, "<p class=\"alert\">The input could not be read to its end: {error}</p>");
@@ -45,11 +53,26 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
     for Findings { results, histories } in &report.findings {
         for result in *results {
             let history = histories.iter().find(|history| history.object == result.object);
-            write_object(&mut body, result, history, report.truth);
+            write_object(&mut body, result, history, report);
         }
     }
+    write_left_out(&mut body, report.left_out);
     write_settings(&mut body, &report.settings, &report.command);
     document(&title, &body)
+}
+
+/// Pictures without an outline.
+fn write_left_out(body: &mut String, left_out: &LeftOut) {
+    let LeftOut { count, reasons } = left_out;
+    if *count == 0 {
+        return;
+    }
+    let _ = writeln!(body, "<h2>Pictures without an outline: {count}</h2>\n<ul>");
+    reasons.iter().for_each(|reason| {
+        let _ = writeln!(body, "<li>{}</li>", escape(reason));
+    });
+    let more = count - reasons.len() as u64;
+    let _ = if more > 0 { writeln!(body, "<li>{more} more</li>\n</ul>") } else { writeln!(body, "</ul>") };
 }
 
 /// The settings as a table and the command as it was given.
@@ -78,7 +101,8 @@ fn summary(results: &[ObjectResult]) -> String {
     format!("{} object(s), {frames} frames, {rejected} rejected", results.len())
 }
 
-fn write_object(body: &mut String, result: &ObjectResult, history: Option<&History>, truth: Option<&AffineMotion>) {
+fn write_object(body: &mut String, result: &ObjectResult, history: Option<&History>, report: &Report<'_>) {
+    let truth = report.truth;
     let object = escape(&result.object);
     let _ = writeln!(body, "<h2>Object {object}: {} motion, {} method</h2>", result.motion, result.method.name());
     let rows = parameter_rows(result.motion, result.estimate.as_ref(), truth);
@@ -86,7 +110,7 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
     body.push_str("<div class=\"scroll\"><table>\n");
     write_row(body, "th", COLUMNS.iter().take(count).copied());
     rows.iter().for_each(|row| write_row(body, "td", row.iter().map(String::as_str)));
-    body.push_str("</table></div>\n");
+    let _ = writeln!(body, "</table></div>\n<p class=\"soft\">b: {}</p>", escape(&report.meaning_of_b));
     if !result.warnings.is_empty() {
         body.push_str("<p class=\"alert\">Warnings</p>\n<ul>\n");
         result.warnings.iter().for_each(|warning| {

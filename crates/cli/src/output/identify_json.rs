@@ -112,7 +112,7 @@ fn generator_rows(estimate: &Estimate) -> Option<[[f64; 3]; 3]> {
 #[cfg(test)]
 mod tests {
     use freeform_motion::identify::MotionEstimate;
-    use freeform_motion::riccati::MotionModel;
+    use freeform_motion::riccati::{CameraScale, MotionModel};
     use serde_json::{Value, json};
 
     use super::*;
@@ -128,7 +128,7 @@ mod tests {
             frames: 12,
             frames_rejected: 1,
             first_rejection: None,
-            estimate: Estimate::of(estimate.with_unobservable(0), Some(0.1)),
+            estimate: Estimate::of(estimate.with_unobservable(0), Some(CameraScale::new(0.1).expect("a scale"))),
             warnings: vec!["a warning".to_owned()],
         };
         let mut text = Vec::new();

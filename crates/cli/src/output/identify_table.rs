@@ -3,7 +3,7 @@ use std::io::{self, Write};
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 
 use super::aligned::write_aligned;
-use super::number::significant;
+use super::number::{significant, with_deviation};
 use crate::tracking::{Estimate, ObjectResult};
 use crate::truth::parameters_in;
 
@@ -25,13 +25,14 @@ pub(crate) fn parameter_rows(
             let parameter = found.get(index);
             let value = parameter.and_then(|p| p.value);
             let deviation = parameter.and_then(|p| p.standard_deviation);
-            let value_text = match (parameter, value) {
-                (_, Some(value)) => significant(value, 6),
-                (Some(_), None) => "unobservable".to_owned(),
-                (None, None) => "-".to_owned(),
+            let none = || "-".to_owned();
+            let [value_text, deviation_text] = match (value, deviation) {
+                (Some(value), Some(deviation)) => with_deviation(value, deviation),
+                (Some(value), None) => [significant(value, 6), none()],
+                (None, _) if parameter.is_some() => ["unobservable".to_owned(), none()],
+                (None, _) => [none(), none()],
             };
-            let deviation = deviation.map_or_else(|| "-".to_owned(), |std| significant(std, 2));
-            let mut row = vec![(*name).to_owned(), value_text, deviation, (*unit).to_owned()];
+            let mut row = vec![(*name).to_owned(), value_text, deviation_text, (*unit).to_owned()];
             if let Some(truth) = &truth {
                 row.push(significant(truth[index], 6));
                 row.push(value.map_or_else(|| "-".to_owned(), |value| error_text(value, truth[index])));

@@ -2,7 +2,7 @@ use std::collections::HashMap;
 use std::io::{self, Write};
 
 use freeform_motion::identify::{MotionState, PoseParameter};
-use freeform_motion::riccati::MotionModel;
+use freeform_motion::riccati::{CameraScale, MotionModel};
 
 use crate::trajectory::Trajectory;
 
@@ -12,7 +12,7 @@ pub(crate) fn write_trajectory(
     sink: &mut impl Write,
     trajectory: &Trajectory,
     model: MotionModel,
-    scale: Option<f64>,
+    scale: Option<CameraScale>,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
     let names = || pose_names(model).iter().chain(model.parameter_names());
@@ -46,10 +46,11 @@ fn pose_names(model: MotionModel) -> &'static [&'static str] {
 }
 
 /// Every number and its standard deviation; `last_angle` is that of the row before.
-fn numbers(state: &MotionState, scale: Option<f64>, last_angle: &mut f64) -> Vec<String> {
+fn numbers(state: &MotionState, scale: Option<CameraScale>, last_angle: &mut f64) -> Vec<String> {
     let mut fields = Vec::new();
     for PoseParameter { name, mut value, mut standard_deviation } in state.pose_parameters() {
-        match (name, scale) {
+        // As a generator changes between image and space, so does a map.
+        match (name, scale.map(CameraScale::value)) {
             ("angle", _) => {
                 value += std::f64::consts::TAU * ((*last_angle - value) / std::f64::consts::TAU).round();
                 *last_angle = value;

@@ -20,6 +20,20 @@ impl Canvas {
         self.picture
     }
 
+    /// Columns and rows.
+    pub(crate) fn size(&self) -> (u32, u32) {
+        self.picture.dimensions()
+    }
+
+    /// Fills a square of pixels from its upper left one, as far as the picture goes.
+    pub(crate) fn fill(&mut self, [column, row]: [u32; 2], size: u32, colour: Rgb<u8>) {
+        for (dx, dy) in (0..size).flat_map(|dy| (0..size).map(move |dx| (dx, dy))) {
+            if let Some(pixel) = self.picture.get_pixel_mut_checked(column + dx, row + dy) {
+                *pixel = colour;
+            }
+        }
+    }
+
     /// Mixes a colour into the pixels around a position, in proportion to what they cover of it.
     fn blend(&mut self, [column, row]: [f64; 2], colour: Rgb<u8>) {
         let (x, y) = (column - 0.5, row - 0.5);

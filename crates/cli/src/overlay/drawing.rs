@@ -1,5 +1,4 @@
 use std::path::Path;
-use std::rc::Rc;
 
 use freeform_motion::curve_fit::{Fit, Outline};
 use freeform_motion::outline_io::PixelGrid;
@@ -7,6 +6,7 @@ use image::Rgb;
 use nalgebra::{Matrix3, Point2};
 
 use super::canvas::Canvas;
+use super::lettering::write_words;
 use super::target::Target;
 use crate::commands::Parts;
 use crate::failure::Failure;
@@ -14,7 +14,7 @@ use crate::input::SeenIn;
 use crate::level_set::{Area, curve_of};
 
 const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
-const REJECTED: Rgb<u8> = Rgb([230, 60, 60]);
+const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);
 const CURVE: Rgb<u8> = Rgb([86, 180, 233]);
 const RELATED: Rgb<u8> = Rgb([240, 120, 220]);
 const MOTION: Rgb<u8> = Rgb([0, 220, 150]);
@@ -31,6 +31,8 @@ const CROSS: f64 = 4.0;
 /// What is drawn of one object in one frame.
 pub(crate) struct Drawn<'a> {
     pub(crate) outline: &'a Outline,
+    /// Its name, where several are followed.
+    pub(crate) name: Option<&'a str>,
     pub(crate) accepted: bool,
     /// The curve fitted to the outline and what it is made of.
     pub(crate) fit: Option<(&'a Fit, Option<&'a Parts>)>,
@@ -51,15 +53,23 @@ impl Overlay {
     }
 
     /// Draws an object on the picture that it was seen in.
-    pub(crate) fn draw(&mut self, seen_in: &Rc<SeenIn>, drawn: &Drawn<'_>) -> Result<(), Failure> {
-        if self.present.as_ref().is_none_or(|(frame, _)| *frame != seen_in.frame) {
-            self.write_present()?;
-            self.present = Some((seen_in.frame, Canvas::of(&seen_in.picture)));
-        }
-        if let Some((_, canvas)) = &mut self.present {
-            draw(canvas, &seen_in.grid, drawn);
-        }
+    pub(crate) fn draw(&mut self, seen_in: &SeenIn, drawn: &Drawn<'_>) -> Result<(), Failure> {
+        draw(self.canvas(seen_in)?, &seen_in.grid, drawn);
         Ok(())
+    }
+
+    /// Says on a picture that it gave no outline.
+    pub(crate) fn draw_nothing(&mut self, seen_in: &SeenIn) -> Result<(), Failure> {
+        write_words(self.canvas(seen_in)?, [0.0; 2], "no outline", REJECTED);
+        Ok(())
+    }
+
+    /// The picture to draw on; the one before it is written when a new one begins.
+    fn canvas(&mut self, seen_in: &SeenIn) -> Result<&mut Canvas, Failure> {
+        if self.present.as_ref().is_some_and(|(frame, _)| *frame != seen_in.frame) {
+            self.write_present()?;
+        }
+        Ok(&mut self.present.get_or_insert_with(|| (seen_in.frame, Canvas::of(&seen_in.picture))).1)
     }
 
     /// Writes what has not been written.
@@ -93,6 +103,10 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
             canvas.line(pixel(last), pixel(first), colour);
         }
     }
+    let words: Vec<&str> = drawn.name.into_iter().chain((!drawn.accepted).then_some("rejected")).collect();
+    let corners = [area.low, area.high].map(|corner| pixel(&corner));
+    let upper_left = [0, 1].map(|axis| corners[0][axis].min(corners[1][axis]));
+    write_words(canvas, upper_left, &words.join(" "), colour);
     if let Some((_, Some(parts))) = drawn.fit {
         let related = parts.related_points.as_slice().iter().map(|related| related.point);
         related.filter(|point| area.widened(1.0).contains(point)).for_each(|p| canvas.cross(pixel(&p), CROSS, RELATED));

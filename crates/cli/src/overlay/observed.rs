@@ -1,40 +1,54 @@
 use std::path::Path;
-use std::rc::Rc;
 
 use freeform_motion::curve_fit::{Fit, FitSettings, Fitter};
 use freeform_motion::outline_io::OutlineFrame;
+use freeform_motion::riccati::CameraScale;
 
 use super::drawing::{Drawn, Overlay};
-use crate::args::TrackOptions;
+use crate::args::{PictureOptions, TrackOptions};
 use crate::commands::FittedOutline;
 use crate::failure::Failure;
-use crate::input::SeenIn;
-use crate::tracking::Observation;
+use crate::input::{Input, Missing};
+use crate::tracking::{Event, Observation};
 
 /// Draws what was identified of objects on the pictures that they were seen in.
 pub(crate) struct ObservedOverlay {
     overlay: Overlay,
     curves: CurveFitter,
-    scale: Option<f64>,
+    scale: Option<CameraScale>,
+    /// Whether the objects are named.
+    names: bool,
 }
 
 impl ObservedOverlay {
-    /// Drawings for a folder or a GIF.
-    pub(crate) fn open(path: &Path, options: &TrackOptions) -> Result<Self, Failure> {
-        Ok(Self { overlay: Overlay::open(path)?, curves: CurveFitter::new(options)?, scale: options.scale })
+    /// Drawings for a folder or a GIF, if they are asked for. Refused where there is nothing to draw on.
+    pub(crate) fn open(
+        path: Option<&Path>,
+        input: &Input,
+        options: &TrackOptions,
+        pictures: &PictureOptions,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(path) = path else { return Ok(None) };
+        if !input.has_pictures() {
+            return Err(Failure::unusable(format_args!("{}: --overlay draws on pictures, this is CSV", input.name)));
+        }
+        let (overlay, curves) = (Overlay::open(path)?, CurveFitter::new(options)?);
+        Ok(Some(Self { overlay, curves, scale: options.scale, names: pictures.follows_all() }))
     }
 
-    /// Draws one object.
-    pub(crate) fn take(
-        &mut self,
-        observation: &Observation,
-        frame: Option<&OutlineFrame>,
-        seen_in: Option<&Rc<SeenIn>>,
-    ) -> Result<(), Failure> {
-        let (Some(frame), Some(seen_in)) = (frame, seen_in) else { return Ok(()) };
+    /// Draws one object, or a picture without any.
+    pub(crate) fn take(&mut self, event: &Event<'_>) -> Result<(), Failure> {
+        let (observation, frame, seen_in) = match event {
+            Event::Observed { observation, frame: Some(frame), seen_in: Some(seen_in) } => {
+                (observation, frame, seen_in)
+            }
+            Event::Missing(Missing { seen_in: Some(seen_in), .. }) => return self.overlay.draw_nothing(seen_in),
+            _ => return Ok(()),
+        };
         let fitted = self.curves.of(observation, frame).map(|fit| FittedOutline::new(frame, fit));
         let drawn = Drawn {
             outline: &frame.outline,
+            name: self.names.then_some(frame.object.as_str()),
             accepted: observation.is_accepted(),
             fit: fitted.as_ref().map(|fitted| (&fitted.fit, fitted.parts.as_ref().ok())),
             generator: observation.estimate.and_then(|estimate| estimate.generator_in_image(self.scale)),

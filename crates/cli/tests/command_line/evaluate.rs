@@ -1,9 +1,6 @@
-use std::io::Read as _;
-use std::process::{Command, Stdio};
-
 use serde_json::Value;
 
-use crate::support::{file, freeform, json, run, stderr, stdout, succeed};
+use crate::support::{closing_its_pipe, file, freeform, json, run, stderr, stdout, succeed};
 
 /// An evaluation that takes no time.
 const SMALL: &str = "evaluate --points 120 --frames 8 --runs 4";
@@ -206,16 +203,8 @@ fn the_result_goes_into_a_file_and_a_closed_pipe_is_no_error() {
     assert_eq!(succeed(&arguments, ""), "");
     assert!(std::fs::read_to_string(&path).expect("the file").contains("| 8 frames |"));
 
-    let mut child = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
-        .args(SMALL.split_whitespace())
-        .args(["--method", "moments"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the binary runs");
-    let mut start = [0; 10];
-    child.stdout.take().expect("a pipe").read_exact(&mut start).expect("some output");
-    let output = child.wait_with_output().expect("it ends");
+    let arguments: Vec<_> = SMALL.split_whitespace().chain(["--method", "moments"]).collect();
+    let output = closing_its_pipe(&arguments);
     assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
 }
 

@@ -1,8 +1,6 @@
 use std::fs;
-use std::io::Read as _;
-use std::process::{Command, Stdio};
 
-use crate::support::{file, freeform, run, sequence, stderr, stdout, succeed};
+use crate::support::{closing_its_pipe, file, freeform, run, sequence, stderr, stdout, succeed};
 
 #[test]
 fn the_trace_has_one_row_per_frame_with_the_columns_of_the_contract() {
@@ -116,15 +114,7 @@ fn a_closed_pipe_is_no_error() {
     let folder = tempfile::tempdir().expect("a folder");
     let input = file(folder.path(), "outlines.csv", sequence("--seconds 5"));
     for arguments in [vec!["simulate"], vec!["track", &input], vec!["fit", &input], vec!["completions", "bash"]] {
-        let mut child = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
-            .args(&arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the binary runs");
-        let mut start = [0; 10];
-        child.stdout.take().expect("a pipe").read_exact(&mut start).expect("some output");
-        let output = child.wait_with_output().expect("it ends");
+        let output = closing_its_pipe(&arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}");
         assert_eq!(stderr(&output), "", "{arguments:?}");
     }

@@ -7,6 +7,7 @@ mod fit;
 mod help;
 mod identify;
 mod outline;
+mod real_pictures;
 mod reproduce;
 mod simulate;
 mod support;

@@ -171,3 +171,80 @@ fn bad_pictures_are_named_in_one_line_and_the_good_ones_still_count() {
         assert!(stdout(&output).contains(frame));
     }
 }
+
+#[test]
+fn pictures_without_motion_give_a_report_and_drawings_that_say_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path();
+    let mut black = std::io::Cursor::new(Vec::new());
+    GrayImage::new(64, 64).write_to(&mut black, image::ImageFormat::Png).expect("a picture");
+    let frames = path.join("frames");
+    std::fs::create_dir(&frames).expect("a folder");
+    for frame in 0..3 {
+        file(&frames, &format!("{frame}.png"), black.get_ref());
+    }
+    let base = path.to_str().expect("UTF-8");
+    let identify = format!("identify {base}/frames --report {base}/report.html --overlay {base}/drawn");
+    let output = run(&identify, "");
+    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(1), ""));
+    let report = std::fs::read_to_string(path.join("report.html")).expect("a report");
+    assert!(report.contains("No motion was identified") && report.contains("every pixel has the grey value 0"));
+    assert!(report.contains("Pictures without an outline: 3"), "{report}");
+    assert_eq!(drawn(&path.join("drawn")), ["000000.png", "000001.png", "000002.png"]);
+
+    // One frame is not enough either, and the report shows it.
+    file(&frames, "1.png", disc(30.0));
+    let output = run(&identify, "");
+    assert_eq!(output.status.code(), Some(1));
+    let report = std::fs::read_to_string(path.join("report.html")).expect("a report");
+    assert!(report.contains("1 frame(s), at least 2 are needed") && report.contains("Pictures without an outline: 2"));
+}
+
+#[test]
+fn drawings_keep_the_numbers_of_the_pictures_and_mark_what_was_not_used() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    std::fs::create_dir(&frames).expect("a folder");
+    for frame in 0..10_u32 {
+        let picture = match frame {
+            4 => GrayImage::new(64, 64),
+            // Something else altogether.
+            7 => GrayImage::from_fn(64, 64, |x, y| Luma([if x > 2 && y > 30 && y < 34 && x < 60 { 255 } else { 0 }])),
+            _ => image::load_from_memory(&disc(24.0 + frame as f32)).expect("a picture").into_luma8(),
+        };
+        picture.save(frames.join(format!("{frame}.png"))).expect("a picture");
+    }
+    let base = folder.path().to_str().expect("UTF-8");
+    let lines = succeed(&format!("track {base}/frames --quiet --overlay {base}/drawn"), "");
+    assert_eq!(lines.lines().count(), 9);
+    assert_eq!(drawn(&folder.path().join("drawn")).len(), 10);
+    let reddest = |frame: u32| {
+        let picture = image::open(folder.path().join(format!("drawn/{frame:06}.png"))).expect("a picture").into_rgb8();
+        picture.pixels().filter(|pixel| pixel.0 == [255, 80, 80]).count()
+    };
+    assert!(reddest(4) > 50 && reddest(7) > 50 && reddest(2) == 0, "{} {} {}", reddest(4), reddest(7), reddest(2));
+    succeed(&format!("identify {base}/frames --quiet --overlay {base}/drawn.gif"), "");
+    let gif = std::fs::File::open(folder.path().join("drawn.gif")).expect("an animation");
+    let decoder = image::codecs::gif::GifDecoder::new(std::io::BufReader::new(gif)).expect("a GIF");
+    assert_eq!(image::AnimationDecoder::into_frames(decoder).count(), 10);
+}
+
+#[test]
+fn the_table_says_where_b_is_and_in_which_unit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for frame in 0..4_u32 {
+        file(folder.path(), &format!("{frame}.png"), disc(26.0 + frame as f32));
+    }
+    let frames = folder.path().to_str().expect("UTF-8");
+    for (options, note) in [
+        ("", "b: velocity at the lower left corner, in pixels/s\n"),
+        ("--pixel-size 0.5 --y-down", "upper left corner, in lengths/s, a pixel 0.5 high\n"),
+        ("--pixel-aspect 1.14 --scale 2", "corner, in pixel heights/s, over f/Z0 = 2\n"),
+    ] {
+        let report = folder.path().join("report.html");
+        let table = succeed(&format!("identify {frames} {options} --report {}", report.display()), "");
+        assert!(std::fs::read_to_string(report).expect("a report").contains(note.trim_end()), "{note}");
+        assert!(table.ends_with(note), "{table}");
+        assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+    }
+}

@@ -1,5 +1,6 @@
+use std::io::Read as _;
 use std::path::Path;
-use std::process::Output;
+use std::process::{Output, Stdio};
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -14,6 +15,19 @@ pub(crate) fn freeform(arguments: &str) -> Command {
 /// What the binary does with arguments and an input.
 pub(crate) fn run(arguments: &str, input: &str) -> Output {
     freeform(arguments).write_stdin(input).output().expect("the binary runs")
+}
+
+/// What the binary does when its standard output is closed after ten bytes.
+pub(crate) fn closing_its_pipe(arguments: &[&str]) -> Output {
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("freeform"))
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let mut start = [0; 10];
+    child.stdout.take().expect("a pipe").read_exact(&mut start).expect("some output");
+    child.wait_with_output().expect("it ends")
 }
 
 pub(crate) fn stdout(output: &Output) -> String {

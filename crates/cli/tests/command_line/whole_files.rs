@@ -144,3 +144,37 @@ fn ctrl_c_ends_track_after_a_whole_line() {
     let frames: Vec<_> = line.lines().chain(rest.lines()).map(|line| json(line)["frame"].clone()).collect();
     assert!(frames.iter().enumerate().all(|(index, frame)| *frame == index), "{frames:?}");
 }
+
+#[test]
+#[cfg(unix)]
+fn ctrl_c_ends_track_of_a_video_with_whole_lines_and_a_whole_drawing() {
+    let mut video = b"YUV4MPEG2 W80 H60 F10:1 Cmono\n".to_vec();
+    for frame in 0..8_usize {
+        video.extend(b"FRAME\n");
+        let inside = |x: usize, y: usize| (20 + frame..45 + frame).contains(&x) && (20..35 + x / 8).contains(&y);
+        video.extend((0..60 * 80).map(|index| if inside(index % 80, index / 80) { 220 } else { 20 }));
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let drawn = folder.path().join("drawn.gif");
+    let mut child = command()
+        .args(["track", "-", "--overlay", drawn.to_str().expect("UTF-8")])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let mut input = child.stdin.take().expect("a pipe");
+    input.write_all(&video).expect("the binary reads");
+    let mut lines = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut line = String::new();
+    lines.read_line(&mut line).expect("a line");
+    signal(&child, "-INT");
+    let mut rest = String::new();
+    lines.read_to_string(&mut rest).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    drop(input);
+    let count = line.lines().chain(rest.lines()).map(json).count();
+    let gif = BufReader::new(File::open(&drawn).expect("the drawing"));
+    let decoder = image::codecs::gif::GifDecoder::new(gif).expect("a GIF");
+    assert_eq!(image::AnimationDecoder::into_frames(decoder).collect_frames().expect("whole").len(), count);
+    assert_eq!(entries(folder.path()), 1);
+}

@@ -1,24 +1,19 @@
 use freeform_decompose::{Line, MAX_PAIRS};
-use freeform_riccati::{AffineMotion, MotionModel, RealVariables};
-use nalgebra::{Const, DimMin, Matrix4, SVector, Vector4};
+use freeform_riccati::MotionModel;
+use nalgebra::{Const, DimMin, Vector2};
 
 use super::{
-    least_squares_law::{FilteredPair, LeastSquaresLaw},
-    line_path::LinePath,
     lyapunov::solve_lyapunov,
+    origin_shift::OriginShift,
     pair_quality::PairQuality,
-    printed_law::PrintedLaw,
-    regressor::Regressor,
-    settings::{AdaptiveLaw, AdaptiveSettings, PairChoice},
-    structured_law::{PairInput, StructuredLaw},
+    running_law::{Frame, Last, RunningLaw},
+    settings::{AdaptiveSettings, PairChoice},
 };
 use crate::{error::IdentifyError, estimate::MotionEstimate};
 
-/// A line that turns further than this between two frames (radians) is not interpolated; the law starts anew from it.
-const LARGEST_TURN: f64 = 0.5;
-/// X changes by at most about this fraction of itself in one step of the integration.
-const STEP_CHANGE: f64 = 0.1;
-const MAX_STEPS: usize = 64;
+/// An origin that moves faster than this, in lengths per second, lets the structured law take the linear part of the
+/// motion from the slopes alone. Objects are about of size 1, and the gains of the paper of rate 1 per second.
+const FAST_TRAVEL: f64 = 1.5;
 
 /// The paper's adaptive identifier (section 4), over matched conjugate pairs of lines frame by frame.
 ///
@@ -31,17 +26,11 @@ pub struct AdaptiveIdentifier {
     laws_before: Laws,
     qualities: [PairQuality; MAX_PAIRS],
     last: Option<Last>,
+    /// Time of the last frame before the origin moved, or of the first frame.
+    origin_since: f64,
     frames: usize,
     /// Intervals between frames over which the law ran, one pair at least being followed.
     followed: usize,
-}
-
-/// The frame before.
-#[derive(Debug, Clone, Copy)]
-struct Last {
-    time: f64,
-    lines: [Line; MAX_PAIRS],
-    count: usize,
 }
 
 /// The laws that run side by side: one per candidate pair while the best is still to be told, one otherwise.
@@ -73,6 +62,14 @@ impl Laws {
             (laws, other) => *laws = other.clone(),
         }
     }
+
+    fn shift_origin(&mut self, shift: &OriginShift, by_slopes: bool) {
+        match self {
+            Self::Three(laws) => laws.iter_mut().for_each(|law| law.shift_origin(shift, by_slopes)),
+            Self::Four(laws) => laws.iter_mut().for_each(|law| law.shift_origin(shift, by_slopes)),
+            Self::Six(laws) => laws.iter_mut().for_each(|law| law.shift_origin(shift, by_slopes)),
+        }
+    }
 }
 
 impl AdaptiveIdentifier {
@@ -97,7 +94,16 @@ impl AdaptiveIdentifier {
             MotionModel::Projective => return Err(IdentifyError::UnsupportedModel { model: settings.model }),
         };
         let laws_before = laws.clone();
-        Ok(Self { settings, laws, laws_before, qualities: Default::default(), last: None, frames: 0, followed: 0 })
+        Ok(Self {
+            settings,
+            laws,
+            laws_before,
+            qualities: Default::default(),
+            last: None,
+            origin_since: 0.0,
+            frames: 0,
+            followed: 0,
+        })
     }
 
     /// The settings.
@@ -146,9 +152,27 @@ impl AdaptiveIdentifier {
             return Err(IdentifyError::Diverged { seconds: time - previous });
         };
         self.followed += usize::from(followed);
+        if self.last.is_none() {
+            self.origin_since = time;
+        }
         self.last = Some(Last { time, lines: padded, count });
         self.frames += 1;
         Ok(())
+    }
+
+    /// Goes on in coordinates whose origin lies at `origin` of the present ones: the lines of later frames are taken to
+    /// be in them, and the estimate is.
+    ///
+    /// Far from the origin k is as noisy as it is large, and the laws, which take all entries of X alike, follow its noise.
+    pub fn shift_origin(&mut self, origin: Vector2<f64>) {
+        let now = self.last.map_or(self.origin_since, |last| last.time);
+        let by_slopes = origin.norm() > FAST_TRAVEL * (now - self.origin_since);
+        self.origin_since = now;
+        let shift = OriginShift::to(origin);
+        self.laws.shift_origin(&shift, by_slopes);
+        if let Some(last) = &mut self.last {
+            last.lines.iter_mut().for_each(|line| *line = shift.line(line));
+        }
     }
 
     /// Number of frames taken.
@@ -240,162 +264,4 @@ fn weights(qualities: &[PairQuality]) -> [f64; MAX_PAIRS] {
         *weight = if ratio.is_finite() { ratio * ratio } else { 1.0 };
     }
     weights
-}
-
-/// One frame as the laws see it.
-struct Frame {
-    time: f64,
-    lines: [Line; MAX_PAIRS],
-    count: usize,
-    last: Option<Last>,
-    weights: [f64; MAX_PAIRS],
-}
-
-/// One law over one pair or all of them.
-#[derive(Debug, Clone)]
-struct RunningLaw<const N: usize> {
-    law: Law<N>,
-    model: MotionModel,
-    /// The only pair, or all.
-    pair: Option<usize>,
-    states: [Vector4<f64>; MAX_PAIRS],
-    filters: [FilteredPair<N>; MAX_PAIRS],
-}
-
-#[derive(Debug, Clone)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "made once and kept in place; a box would only be followed at every step"
-)]
-enum Law<const N: usize> {
-    Structured(StructuredLaw<N>),
-    Printed(PrintedLaw),
-    LeastSquares(LeastSquaresLaw<N>),
-}
-
-impl<const N: usize> RunningLaw<N>
-where
-    Const<N>: DimMin<Const<N>, Output = Const<N>>,
-{
-    fn candidates(settings: &AdaptiveSettings, lyapunov: Matrix4<f64>) -> Vec<Self> {
-        let pairs: &[Option<usize>] = match settings.pairs {
-            PairChoice::Best => &[Some(0), Some(1), Some(2), Some(3)],
-            PairChoice::Given(index) => &[Some(index)],
-            PairChoice::All => &[None],
-        };
-        let regressor = Regressor::new(settings.model);
-        let mut initial = SVector::<f64, N>::zeros();
-        initial.iter_mut().zip(&settings.initial_values).for_each(|(slot, value)| *slot = *value);
-        let law = match settings.law {
-            AdaptiveLaw::Structured => {
-                Law::Structured(StructuredLaw::new(regressor, settings.stability, lyapunov, initial))
-            }
-            AdaptiveLaw::Printed => {
-                let generator = settings.model.generator(initial.as_slice());
-                Law::Printed(PrintedLaw::new(settings.stability, lyapunov, &affine_motion(&generator)))
-            }
-            AdaptiveLaw::FilteredLeastSquares => Law::LeastSquares(LeastSquaresLaw::new(regressor, initial)),
-        };
-        let running = |&pair: &Option<usize>| Self {
-            law: law.clone(),
-            model: settings.model,
-            pair,
-            states: [Vector4::zeros(); MAX_PAIRS],
-            filters: [FilteredPair::starting_at(&Vector4::zeros()); MAX_PAIRS],
-        };
-        pairs.iter().map(running).collect()
-    }
-
-    fn parameters(&self) -> SVector<f64, 6> {
-        let mut parameters = SVector::<f64, 6>::zeros();
-        let mut fill = |values: &[f64]| parameters.as_mut_slice()[..values.len()].copy_from_slice(values);
-        match &self.law {
-            Law::Structured(law) => fill(law.parameters().as_slice()),
-            Law::LeastSquares(law) => fill(law.parameters().as_slice()),
-            Law::Printed(law) => parameters = law.parameters(self.model),
-        }
-        parameters
-    }
-
-    /// Takes a frame; returns whether the lines could be followed from the one before.
-    fn take(&mut self, frame: &Frame) -> bool {
-        let pairs = self.pair.map_or(0..frame.count, |pair| pair..pair + 1);
-        if pairs.end > frame.count {
-            return false;
-        }
-        let lines = &frame.lines[pairs.clone()];
-        let paths = frame.last.and_then(|last| paths(&last.lines[pairs.clone()], lines));
-        let Some(paths) = paths else {
-            // The first frame, or one after a gap: the estimator starts on the lines, without an error.
-            for (slot, line) in lines.iter().enumerate() {
-                let state = RealVariables::from(*line).state();
-                self.states[slot] = state;
-                self.filters[slot] = FilteredPair::starting_at(&state);
-            }
-            return false;
-        };
-        let seconds = frame.time - frame.last.map_or(frame.time, |last| last.time);
-        // A pair that is used alone has nothing to be weighed against.
-        let weights = if self.pair.is_some() { [1.0; MAX_PAIRS] } else { frame.weights };
-        self.advance(seconds, &paths[..lines.len()], &weights);
-        if let Law::LeastSquares(law) = &mut self.law {
-            law.forget(seconds);
-            for (slot, line) in lines.iter().enumerate() {
-                law.take(seconds, &self.filters[slot], &RealVariables::from(*line).state(), weights[slot]);
-            }
-        }
-        true
-    }
-
-    fn is_finite(&self) -> bool {
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        finite(self.parameters().as_slice()) && self.states.iter().all(|state| finite(state.as_slice()))
-    }
-
-    /// Runs the law from one frame to the next, in steps small enough for X to change little in each.
-    fn advance(&mut self, seconds: f64, paths: &[LinePath], weights: &[f64]) {
-        let change = |path: &LinePath| {
-            let (start, middle, end) = (path.state(0.0), path.state(0.5), path.state(1.0));
-            let largest = start.norm().max(middle.norm()).max(end.norm());
-            ((middle - start).norm() + (end - middle).norm()) / (1.0 + largest)
-        };
-        let largest = paths.iter().map(change).fold(0.0, f64::max);
-        let steps = ((largest / STEP_CHANGE).ceil() as usize).clamp(1, MAX_STEPS);
-        let step = seconds / steps as f64;
-        for i in 0..steps {
-            let middle = (i as f64 + 0.5) / steps as f64;
-            let mut inputs = [PairInput { state: Vector4::zeros(), weight: 1.0 }; MAX_PAIRS];
-            for ((input, path), &weight) in inputs.iter_mut().zip(paths).zip(weights) {
-                *input = PairInput { state: path.state(middle), weight };
-            }
-            let inputs = &inputs[..paths.len()];
-            match &mut self.law {
-                Law::Structured(law) => law.step(step, &mut self.states[..paths.len()], inputs),
-                Law::Printed(law) => {
-                    for (state, input) in self.states.iter_mut().zip(inputs) {
-                        law.step(step, state, input);
-                    }
-                }
-                Law::LeastSquares(law) => {
-                    for (filter, input) in self.filters.iter_mut().zip(inputs) {
-                        filter.advance(step, &input.state, &law.regressor().at(&input.state));
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// The ways of the lines from one frame to the next; `None` where one turns too far to be interpolated.
-fn paths(earlier: &[Line], later: &[Line]) -> Option<[LinePath; MAX_PAIRS]> {
-    let mut paths = [LinePath::between(&earlier[0], &later[0]); MAX_PAIRS];
-    for (path, (from, to)) in paths.iter_mut().zip(earlier.iter().zip(later)) {
-        *path = LinePath::between(from, to);
-    }
-    paths[..later.len()].iter().all(|path| path.turn() < LARGEST_TURN).then_some(paths)
-}
-
-fn affine_motion(generator: &nalgebra::Matrix3<f64>) -> AffineMotion {
-    let g = generator;
-    AffineMotion { a1: g[(0, 0)], a2: g[(0, 1)], a3: g[(1, 0)], a4: g[(1, 1)], b1: g[(0, 2)], b2: g[(1, 2)] }
 }

@@ -1,6 +1,6 @@
 use nalgebra::{SMatrix, SVector, Vector4};
 
-use super::regressor::Regressor;
+use super::{origin_shift::OriginShift, regressor::Regressor};
 
 /// Rate of the filters that stand in for differentiation, per second.
 const FILTER_RATE: f64 = 4.0;
@@ -31,6 +31,15 @@ impl<const N: usize> FilteredPair<N> {
         Self { state: Vector4::zeros(), regressor: SMatrix::zeros(), transient: *state }
     }
 
+    /// Goes on in other coordinates; `old_from_new` takes the parameters back.
+    ///
+    /// A constant that is added to X is part of what the filter remembers of its start, as if it had been there all along.
+    pub(crate) fn shift_origin(&mut self, shift: &OriginShift, old_from_new: &SMatrix<f64, N, N>) {
+        self.state = shift.of_rates() * self.state;
+        self.transient = shift.state(&self.transient);
+        self.regressor = shift.of_rates() * self.regressor * old_from_new;
+    }
+
     /// Passes constant signals through the filters for `seconds`.
     pub(crate) fn advance(&mut self, seconds: f64, state: &Vector4<f64>, regressor: &SMatrix<f64, 4, N>) {
         let decay = (-FILTER_RATE * seconds).exp();
@@ -50,6 +59,15 @@ impl<const N: usize> LeastSquaresLaw<N> {
 
     pub(crate) fn regressor(&self) -> &Regressor<N> {
         &self.regressor
+    }
+
+    /// Goes on in other coordinates; the filters move by themselves.
+    pub(crate) fn shift_origin(&mut self, shift: &OriginShift) {
+        let model = self.regressor.model();
+        let old_from_new: SMatrix<f64, N, N> = shift.inverse().of_parameters(model);
+        self.information = old_from_new.tr_mul(&self.information) * old_from_new;
+        self.projection = old_from_new.tr_mul(&self.projection);
+        self.initial = shift.of_parameters(model) * self.initial;
     }
 
     /// Forgets old data for `seconds`.

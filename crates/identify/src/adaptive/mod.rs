@@ -3,9 +3,11 @@ mod identifier;
 mod least_squares_law;
 mod line_path;
 mod lyapunov;
+mod origin_shift;
 mod pair_quality;
 mod printed_law;
 mod regressor;
+mod running_law;
 mod settings;
 mod structured_law;
 

@@ -1,7 +1,7 @@
 use freeform_riccati::{AffineMotion, MotionModel};
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
-use super::{regressor::quadratic_terms, structured_law::PairInput};
+use super::{origin_shift::OriginShift, regressor::quadratic_terms, structured_law::PairInput};
 
 /// The estimator (21) as printed. Its 36 numbers `[A | C | B]` (4 by 9) multiply the 9 signals `(X, f(X), -1)`:
 /// `Xh' = Am (Xh - X) + [A | C | B] signals`, `[A | C | B]' = -P (Xh - X) signals'`.
@@ -30,6 +30,11 @@ impl PrintedLaw {
         let change = -seconds * input.weight * self.lyapunov * error * signals.transpose();
         *state += seconds * (self.stability * error + drive) + half * (change * signals);
         self.matrices += change;
+    }
+
+    /// Goes on in other coordinates. The states of the estimator, which the caller holds, move as X does.
+    pub(crate) fn shift_origin(&mut self, shift: &OriginShift) {
+        self.matrices = shift.of_rates() * self.matrices * shift.inverse().of_signals();
     }
 
     /// The parameters of a model that the matrices hold, entries that should be equal averaged.
@@ -85,6 +90,20 @@ mod tests {
             prop_assert!((matrices_of(&motion) * signals(&state) - rate).norm() < 1e-12);
             let law = PrintedLaw::new(-Matrix4::identity(), Matrix4::identity(), &motion);
             prop_assert!((law.parameters(MotionModel::Affine) - SVector::from(p)).norm() < 1e-12);
+        }
+
+        #[test]
+        fn any_matrices_give_the_same_rate_of_the_lines_where_the_origin_moves(
+            x in prop::array::uniform4(-3.0..3.0_f64),
+            entries in prop::collection::vec(-2.0..2.0_f64, 36),
+            origin in prop::array::uniform2(-5.0..5.0_f64),
+        ) {
+            let (state, shift) = (Vector4::from(x), OriginShift::to(origin.into()));
+            let matrices = SMatrix::<f64, 4, 9>::from_column_slice(&entries);
+            let mut law = PrintedLaw { matrices, ..PrintedLaw::new(-Matrix4::identity(), Matrix4::identity(), &AffineMotion::default()) };
+            law.shift_origin(&shift);
+            let moved = law.matrices * signals(&shift.state(&state));
+            prop_assert!((moved - shift.of_rates() * matrices * signals(&state)).norm() < 1e-9);
         }
 
         /// Over a line at rest, whose true matrices are zero, so that the matrices are their own error.

@@ -7,6 +7,7 @@ use nalgebra::{SMatrix, Vector4};
 pub struct Regressor<const N: usize> {
     /// How a1, a2, a3, a4, b1, b2 depend on the parameters.
     affine_from_parameters: SMatrix<f64, 6, N>,
+    model: MotionModel,
 }
 
 impl<const N: usize> Regressor<N> {
@@ -19,7 +20,18 @@ impl<const N: usize> Regressor<N> {
         assert!(model.parameter_count() == N && model != MotionModel::Projective, "{model} motion in {N} parameters");
         let entries = [(0, 0), (0, 1), (1, 0), (1, 1), (0, 2), (1, 2)];
         let basis = model.basis();
-        Self { affine_from_parameters: SMatrix::from_fn(|row, column| basis[column][entries[row]]) }
+        Self { affine_from_parameters: SMatrix::from_fn(|row, column| basis[column][entries[row]]), model }
+    }
+
+    /// The model whose parameters these are.
+    #[must_use]
+    pub const fn model(&self) -> MotionModel {
+        self.model
+    }
+
+    /// For each parameter, whether it belongs to the linear part of the motion, on which alone l' depends.
+    pub(crate) fn acts_on_slopes(&self) -> impl Iterator<Item = bool> + '_ {
+        self.affine_from_parameters.column_iter().map(|column| column.fixed_rows::<4>(0).amax() > 0.0)
     }
 
     /// W at X: 4 by N.
@@ -70,6 +82,10 @@ mod tests {
             let rigid = AffineMotion { a1: 0.0, a2: p[0], a3: -p[0], a4: 0.0, b1: p[1], b2: p[2] };
             let product = Regressor::<3>::new(MotionModel::Rigid).at(&x) * SMatrix::<f64, 3, 1>::new(p[0], p[1], p[2]);
             prop_assert!((product - RealVariables::from(x).rate(&rigid)).norm() < 1e-12);
+            let similar = AffineMotion { a1: p[0], a2: p[1], a3: -p[1], a4: p[0], b1: p[2], b2: p[3] };
+            let parameters = SMatrix::<f64, 4, 1>::new(p[0], p[1], p[2], p[3]);
+            let product = Regressor::<4>::new(MotionModel::Similarity).at(&x) * parameters;
+            prop_assert!((product - RealVariables::from(x).rate(&similar)).norm() < 1e-12);
         }
     }
 }

@@ -1,6 +1,6 @@
 use nalgebra::{Const, DimMin, Matrix4, SMatrix, SVector, Vector4};
 
-use super::regressor::Regressor;
+use super::{origin_shift::OriginShift, regressor::Regressor};
 
 /// The estimator (21) with the structure of its matrices known: over each line pair `Xh' = Am (Xh - X) + W(X) theta`, and
 /// over all of them together `theta' = -sum W' P (Xh - X)`.
@@ -13,6 +13,8 @@ pub(crate) struct StructuredLaw<const N: usize> {
     stability: Matrix4<f64>,
     lyapunov: Matrix4<f64>,
     parameters: SVector<f64, N>,
+    /// Whether the linear part of the motion follows the slopes l alone.
+    by_slopes: bool,
 }
 
 /// The state Xh of the estimator over one line pair.
@@ -37,11 +39,33 @@ where
         lyapunov: Matrix4<f64>,
         parameters: SVector<f64, N>,
     ) -> Self {
-        Self { regressor, stability, lyapunov, parameters }
+        Self { regressor, stability, lyapunov, parameters, by_slopes: false }
     }
 
     pub(crate) fn parameters(&self) -> &SVector<f64, N> {
         &self.parameters
+    }
+
+    /// Goes on in other coordinates. The states of the estimator, which the caller holds, move as X does.
+    ///
+    /// With every shift the error of b takes in that of the linear part. Were it to act back on it, through k, a fast object
+    /// could make the law unstable; the linear part then follows the slopes l alone, as `by_slopes` says.
+    pub(crate) fn shift_origin(&mut self, shift: &OriginShift, by_slopes: bool) {
+        self.by_slopes = by_slopes;
+        self.parameters = shift.of_parameters(self.regressor.model()) * self.parameters;
+    }
+
+    /// How the errors pull on the parameters: W', or what is left of it for an object that travels.
+    fn pull(&self, w: &SMatrix<f64, 4, N>) -> SMatrix<f64, N, 4> {
+        let mut pull = w.transpose();
+        if self.by_slopes {
+            for (mut row, acts_on_slopes) in pull.row_iter_mut().zip(self.regressor.acts_on_slopes()) {
+                if acts_on_slopes {
+                    row.fixed_columns_mut::<2>(2).fill(0.0);
+                }
+            }
+        }
+        pull
     }
 
     /// One step of `seconds`, over the estimator states and inputs of all pairs.
@@ -56,7 +80,7 @@ where
         let mut right = self.parameters;
         for (state, input) in states.iter().zip(inputs) {
             let w = self.regressor.at(&input.state);
-            let gain = w.transpose() * self.lyapunov * (damping * (half * input.weight));
+            let gain = self.pull(&w) * self.lyapunov * (damping * (half * input.weight));
             matrix += gain * w * half;
             right -= gain * (state - input.state);
         }

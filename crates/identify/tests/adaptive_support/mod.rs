@@ -8,6 +8,9 @@ use nalgebra::Complex;
 /// The paper's flight bird in the image, f/Z0 = 0.1.
 pub(crate) const RIGID: [f64; 3] = [std::f64::consts::FRAC_PI_2, -0.3, 0.4];
 
+/// Growth at 1 % a second while it turns.
+pub(crate) const SIMILARITY: [f64; 4] = [0.01, 1.2, -0.3, 0.4];
+
 /// A bounded affine motion.
 pub(crate) const AFFINE: [f64; 6] = [0.05, 1.2, -1.7, -0.05, -0.3, 0.4];
 

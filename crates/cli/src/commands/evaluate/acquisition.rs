@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use super::estimator::Estimator;
 use super::monte_carlo::Effort;
 use super::setting::Setting;
-use crate::args::{EvaluateArgs, EvaluatedMethod, MotionChoice};
+use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluatedMethod, MotionChoice};
 use crate::failure::Failure;
 
 /// Largest turn between the two frames, rad.
@@ -65,13 +65,14 @@ impl Found {
 
 impl AcquisitionSetting {
     pub(super) fn from_args(args: &EvaluateArgs) -> Self {
+        let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
         Self {
             name: "acquisition".to_owned(),
             model: args.motion.unwrap_or(MotionChoice::Rigid).model(),
             points: args.points,
-            noise: args.noise,
-            occlusion: args.occlusion,
-            outliers: args.outliers,
+            noise,
+            occlusion,
+            outliers,
             sampling: args.sampling.sampling(),
         }
     }

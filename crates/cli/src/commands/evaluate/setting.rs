@@ -1,9 +1,9 @@
 use freeform_motion::identify::{BoundaryPoint, CramerRaoBound};
-use freeform_motion::riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_motion::riccati::{AffineMotion, MotionModel};
 use freeform_motion::sim_camera::{Camera, Occlusion, Sampling, Scene, SequenceLength, Settings, Shape, Simulator};
 use nalgebra::Vector2;
 
-use crate::args::{EvaluateArgs, MotionChoice, SamplingChoice};
+use crate::args::{DisturbanceArgs, EvaluateArgs, MotionChoice, SamplingChoice};
 use crate::failure::Failure;
 use crate::truth::parameters_in;
 
@@ -45,10 +45,9 @@ impl SamplingChoice {
 impl Setting {
     /// One setting for each length of sequence that was asked for.
     pub(super) fn all_from_args(args: &EvaluateArgs) -> Result<Vec<Self>, Failure> {
-        let rigid = RigidMotion { omega: args.omega, b1: args.b[0], b2: args.b[1] };
-        let camera = Camera::new(args.scale).map_err(Failure::unusable)?;
-        let motion = camera.image_motion(&args.affine.unwrap_or_else(|| AffineMotion::from(rigid)));
-        let default = if args.affine.is_some() { MotionChoice::Affine } else { MotionChoice::Rigid };
+        let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
+        let motion = camera.image_motion(&args.motion_in_space.motion());
+        let default = if args.motion_in_space.is_affine() { MotionChoice::Affine } else { MotionChoice::Rigid };
         let model = args.motion.unwrap_or(default).model();
         if parameters_in(model, &motion).is_none() {
             return Err(Failure::unusable(format_args!("--motion {model} does not hold the motion of --affine")));
@@ -65,6 +64,7 @@ impl Setting {
         if let Some(short) = lengths.iter().find(|frames| **frames < 2) {
             return Err(Failure::unusable(format_args!("a sequence of {short} frame(s) shows no motion")));
         }
+        let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
         let setting = |frames| Self {
             name: format!("{frames} frames"),
             model,
@@ -72,9 +72,9 @@ impl Setting {
             frames,
             fps: args.fps,
             points: args.points,
-            noise: args.noise,
-            occlusion: args.occlusion,
-            outliers: args.outliers,
+            noise,
+            occlusion,
+            outliers,
             wrong_frames: args.wrong_frames,
             sampling: args.sampling.sampling(),
         };

@@ -149,6 +149,7 @@ pub(crate) fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use freeform_motion::curve_fit::Outline;
+    use freeform_motion::riccati::CameraScale;
 
     use super::super::track::Moment;
     use super::*;
@@ -160,7 +161,11 @@ mod tests {
         let moments = errors.iter().enumerate().map(|(k, error)| Moment { time: k as f64, motion: error.map(off) });
         let outline = Outline::closed([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| [x, y].into()).into());
         let frame = |k: usize| (k as f64, outline.clone().expect("a triangle"));
-        let sequence = Sequence { frames: (0..errors.len()).map(frame).collect(), truth: truth.into(), scale: 0.1 };
+        let sequence = Sequence {
+            frames: (0..errors.len()).map(frame).collect(),
+            truth: truth.into(),
+            scale: CameraScale::default(),
+        };
         (Track { moments: moments.collect(), ..Track::default() }, sequence)
     }
 

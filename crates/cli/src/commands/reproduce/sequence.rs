@@ -1,5 +1,6 @@
 //! Simulated outlines of one object, and how it really moves.
 use freeform_motion::curve_fit::Outline;
+use freeform_motion::riccati::CameraScale;
 use freeform_motion::sim_camera::{Motion, PaperExperiment, Scene, SequenceLength, Settings, Simulator};
 
 use crate::failure::Failure;
@@ -16,7 +17,7 @@ pub(crate) struct Sequence {
     /// In space.
     pub(crate) truth: Motion,
     /// Camera scale f/Z0.
-    pub(crate) scale: f64,
+    pub(crate) scale: CameraScale,
 }
 
 impl Sequence {

@@ -2,7 +2,7 @@
 use freeform_motion::Pipeline;
 use freeform_motion::curve_fit::Outline;
 use freeform_motion::identify::{MotionEstimate, MotionFilter, WholeCurveFilter};
-use freeform_motion::riccati::AffineMotion;
+use freeform_motion::riccati::{AffineMotion, CameraScale};
 use freeform_motion::sim_camera::Motion;
 
 use super::method::Method;
@@ -38,7 +38,7 @@ impl Track {
                 let mut settings = settings.as_ref().clone();
                 let names = settings.identify.model.parameter_names();
                 for (value, name) in settings.identify.initial_values.iter_mut().zip(names) {
-                    *value *= if name.starts_with('b') { sequence.scale } else { 1.0 };
+                    *value *= if name.starts_with('b') { sequence.scale.value() } else { 1.0 };
                 }
                 let mut pipeline = Pipeline::new(settings).map_err(Failure::unusable)?;
                 track.follow(sequence, |time, outline| (pipeline.push(time, outline).is_ok(), pipeline.estimate()));
@@ -69,7 +69,7 @@ impl Track {
         }
     }
 
-    fn take(&mut self, time: f64, estimate: Option<MotionEstimate>, scale: f64) {
+    fn take(&mut self, time: f64, estimate: Option<MotionEstimate>, scale: CameraScale) {
         let complete = estimate.filter(|estimate| estimate.parameters().all(|p| p.value.is_some()));
         let motion = complete.map(|estimate| {
             let a = estimate.in_space(scale).generator();

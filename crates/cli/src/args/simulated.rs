@@ -1,0 +1,61 @@
+//! What is simulated, wherever it is.
+use clap::Args;
+use freeform_motion::riccati::{AffineMotion, RigidMotion};
+use freeform_motion::sim_camera::{Camera, SimulationError};
+
+use super::values::{affine, finite, fraction, not_negative, pair, positive};
+
+/// The true motion in space and the camera.
+#[derive(Debug, Args)]
+pub(crate) struct TrueMotionArgs {
+    /// Angular velocity in rad/s, positive clockwise (y up)
+    #[arg(long, value_name = "W", value_parser = finite, allow_hyphen_values = true,
+          default_value_t = std::f64::consts::FRAC_PI_2)]
+    omega: f64,
+
+    /// Velocity at the origin, in space lengths per second
+    #[arg(long, value_name = "B1,B2", value_parser = pair, allow_hyphen_values = true, default_value = "-3,4")]
+    b: [f64; 2],
+
+    /// An affine motion in place of --omega and --b
+    #[arg(long, value_name = "A1,A2,A3,A4,B1,B2", value_parser = affine, allow_hyphen_values = true,
+          conflicts_with_all = ["omega", "b"])]
+    affine: Option<AffineMotion>,
+
+    /// Camera scale f/Z0: image lengths per space length
+    #[arg(long, value_name = "F_OVER_Z0", value_parser = positive, default_value_t = 0.1)]
+    scale: f64,
+}
+
+impl TrueMotionArgs {
+    /// The motion in space.
+    pub(crate) fn motion(&self) -> AffineMotion {
+        let rigid = RigidMotion { omega: self.omega, b1: self.b[0], b2: self.b[1] };
+        self.affine.unwrap_or_else(|| rigid.into())
+    }
+
+    /// Whether it was given as an affine motion.
+    pub(crate) const fn is_affine(&self) -> bool {
+        self.affine.is_some()
+    }
+
+    pub(crate) fn camera(&self) -> Result<Camera, SimulationError> {
+        Camera::new(self.scale)
+    }
+}
+
+/// What disturbs the points of an outline.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct DisturbanceArgs {
+    /// Standard deviation of the noise on each coordinate, in image lengths
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative, default_value_t = 0.005)]
+    pub(crate) noise: f64,
+
+    /// Share of the outline that is missing, at a random place in every frame
+    #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
+    pub(crate) occlusion: f64,
+
+    /// Share of the points that are wrong
+    #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
+    pub(crate) outliers: f64,
+}
