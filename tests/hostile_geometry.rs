@@ -210,7 +210,6 @@ fn omega(estimate: Option<MotionEstimate>) -> Option<(f64, f64)> {
 }
 
 #[test]
-#[ignore = "not yet true: see docs/reliability.md"]
 fn the_turn_of_a_nearly_round_object_is_right_or_said_to_be_unknown() {
     let mut wrong = Vec::new();
     for exponent in [-13, -4, -2, -1, 0] {
@@ -228,7 +227,6 @@ fn the_turn_of_a_nearly_round_object_is_right_or_said_to_be_unknown() {
 }
 
 #[test]
-#[ignore = "not yet true: see docs/reliability.md"]
 fn the_turn_of_a_stick_without_width_is_right_or_said_to_be_unknown() {
     for seed in (0..5).chain([2_957_470_470_127_210_407]) {
         let frames = sequence(self_touching(STICK), 200, 0.003, seed);
@@ -271,7 +269,6 @@ fn repeated_points_give_the_pipeline_the_motion_of_the_outline_without() {
 }
 
 #[test]
-#[ignore = "not yet true: see docs/reliability.md"]
 fn repeated_points_give_the_filter_the_motion_of_the_outline_without() {
     let here = bird(4);
     let (filter, there) = (by_filter(&here), by_filter(&with_every_point_three_times(&here)));

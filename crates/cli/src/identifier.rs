@@ -125,7 +125,12 @@ impl Identifier {
             Self::Filter(object) => {
                 let filter = &object.filter;
                 let frames = (filter.frames_accepted(), filter.frames_rejected());
-                filter_warnings(object.last_known.as_ref(), filter.phase(), filter.restarts(), frames)
+                let mut warnings =
+                    filter_warnings(object.last_known.as_ref(), filter.phase(), filter.restarts(), frames);
+                if filter.is_ambiguous() {
+                    warnings.push("ambiguous: another turn explains the outlines as well".to_owned());
+                }
+                warnings
             }
             Self::Curve(object) => {
                 let filter = &object.filter;

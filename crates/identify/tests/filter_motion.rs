@@ -379,6 +379,57 @@ fn turns_that_a_symmetric_outline_cannot_tell_apart_are_listed() {
     assert!(ellipse.iter().any(|turn| (turn.abs() - (std::f64::consts::PI - 0.3)).abs() < 0.1), "{ellipse:?}");
 }
 
+/// A filter that has seen a shape at the times given.
+fn seen_at(shape: BuiltInShape, omega: f64, b1: f64, times: &[f64]) -> MotionFilter {
+    let motion = RigidMotion { omega, b1, b2: 0.0 };
+    // A simulator has frames at even times only.
+    let fps = 10.0;
+    let count = (times[times.len() - 1] * fps).round() as usize + 1;
+    let frames = frames_of(shape, motion, Settings { fps, ..settings(count, 1) });
+    let mut filter = filter(MotionModel::Rigid);
+    for time in times {
+        let frame = &frames[(time * fps).round() as usize];
+        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").accepted, "at {time} s");
+    }
+    filter
+}
+
+#[test]
+fn a_third_frame_at_another_distance_decides_between_the_turns_of_a_symmetric_outline() {
+    let two = seen_at(BuiltInShape::Ellipse, -0.3, 0.1, &[0.0, 1.0]);
+    let three = seen_at(BuiltInShape::Ellipse, -0.3, 0.1, &[0.0, 1.0, 2.5]);
+    assert_eq!((two.rival_turns().len(), three.rival_turns().len()), (1, 0));
+    let omega = three.estimate().expect("an estimate").values()[0];
+    assert!((omega + 0.3).abs() < 0.05, "{omega}");
+}
+
+#[test]
+fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_decides() {
+    let omega = |filter: &MotionFilter| filter.estimate().expect("an estimate").parameters().next().expect("omega");
+    let turn = 50.0_f64.to_radians();
+    let two = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0]);
+    assert!(two.is_ambiguous() && omega(&two).value.is_none(), "{:?} {:?}", omega(&two), two.rival_turns());
+    // It moves along an arc, which no other turn would.
+    let three = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0, 2.0]);
+    let stated = omega(&three).value.expect("decided");
+    assert!(!three.is_ambiguous() && (stated - turn).abs() < 0.02, "{stated}");
+    // Nothing tells how often a square that stays in its place has turned, unless it is little.
+    let in_place = seen_at(BuiltInShape::Square, turn, 0.0, &[0.0, 1.0, 2.0]);
+    assert!(in_place.is_ambiguous() && omega(&in_place).value.is_none(), "{:?}", in_place.rival_turns());
+    let little = seen_at(BuiltInShape::Square, 0.4 * turn, 0.0, &[0.0, 1.0, 2.0]);
+    assert!(!little.is_ambiguous() && (omega(&little).value.expect("stated") - 0.4 * turn).abs() < 0.02);
+}
+
+#[test]
+fn an_outline_that_few_points_show_is_cut_anew_from_the_first_frames() {
+    let frames = frames_of(BuiltInShape::Van, RIGID, Settings { points: 60, ..settings(20, 3) });
+    let coarse = filtered(MotionModel::Rigid, &frames[..3]);
+    let fine = filtered(MotionModel::Rigid, &frames);
+    let cells = |filter: &MotionFilter| filter.map().expect("a map").cell_count();
+    assert!(cells(&coarse) <= 60 && cells(&fine) > 120, "{} {}", cells(&coarse), cells(&fine));
+    assert_eq!(fine.frames_rejected(), 0);
+}
+
 #[test]
 fn real_masks_with_correlated_errors_are_followed_and_broken_ones_rejected() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/sequences/microrobot_h");

@@ -172,12 +172,18 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
     let (mut steps, mut converged) = (0, false);
     let mut solution = None;
     let mut known: Option<OutlineCells> = None;
+    // The outline as the filter knows it, if it has begun with the same frame.
+    let begun = filter.map().filter(|map| map.origin == origin && map.radius == radius);
     for _ in 0..ROUNDS {
         let placed = place(model, &recorded, &motion);
         let mut all: Vec<BodyPoint> = placed.iter().flat_map(|f| f.body.iter().copied()).collect();
-        if let Some(known) = &known {
-            // Outliers turn the normals of their neighbours in the frame; the pieces have those of many frames.
-            all.iter_mut().for_each(|point| point.normal = known.normal_at(point).unwrap_or(point.normal));
+        // Outliers turn the normals of their neighbours in the frame; the outline has those of many frames.
+        for point in &mut all {
+            let normal = match &known {
+                Some(known) => known.normal_at(point),
+                None => begun.and_then(|map| map.normal_near(&point.place)),
+            };
+            point.normal = normal.unwrap_or(point.normal);
         }
         let length = (NOISE_PER_CELL * sigma).max(finest).min(LONGEST_CELL);
         let mut cells = OutlineCells::covering(&all, length, REACH * sigma);

@@ -19,12 +19,12 @@ const TRIMMED: f64 = 0.75;
 /// Steps of the search for each start, and of the refinement of the best.
 const SEARCH_STEPS: usize = 8;
 const REFINEMENT_STEPS: usize = 15;
-/// Hypotheses that are refined, and that are handed back at most.
-const REFINED: usize = 6;
-pub(crate) const KEPT: usize = 3;
+/// Hypotheses that are refined, and that are handed back at most, with as many of smaller turns.
+const REFINED: usize = 5;
+const KEPT: usize = 2;
 /// Poses whose turns differ by less than this are the same, rad.
 const SAME_TURN: f64 = 0.15;
-/// A score up to this many times the best is a tie, which the smaller turn wins.
+/// A score up to this many times the best is a tie.
 const TIE: f64 = 1.25;
 
 /// A pose that fits a frame.
@@ -63,7 +63,7 @@ impl Landmarks {
     }
 }
 
-/// Poses that bring the map onto the outline, best first, at most three (six with a model of more parameters). `landmarks` are the related points of the map in its present
+/// Poses that bring the map onto the outline, at most four (eight with a model of more parameters). `landmarks` are the related points of the map in its present
 /// pose, and those of the outline.
 pub(crate) fn find_pose(map: &mut OutlineMap, outline: &Outline, landmarks: Option<[Landmarks; 2]>) -> Vec<Hypothesis> {
     map.load(outline);
@@ -79,11 +79,15 @@ fn search(map: &OutlineMap, points: &[Point2<f64>], landmarks: Option<[Landmarks
     let count = map.cells.len() as f64;
     let body_centre = map.cells.iter().map(|c| map_point(&map.pose, &c.centre).coords / count).sum::<Vector2<f64>>();
     let centre = points.iter().map(|p| p.coords / points.len() as f64).sum::<Vector2<f64>>();
-    let mut starts = vec![Matrix3::identity()];
-    starts.extend(
-        (0..TURNS).map(|i| turn_between(std::f64::consts::TAU * i as f64 / TURNS as f64, &body_centre, &centre)),
-    );
-    if let Some([before, after]) = landmarks {
+    // Of turns that make no difference the least is taken.
+    let turns = if map.turn_is_unseen() { 1 } else { TURNS };
+    let mut starts: Vec<_> = (0..turns)
+        .map(|i| turn_between(std::f64::consts::TAU * i as f64 / TURNS as f64, &body_centre, &centre))
+        .collect();
+    if turns > 1 {
+        starts.push(Matrix3::identity());
+    }
+    if let Some([before, after]) = landmarks.filter(|_| turns > 1) {
         let ([a, b], [c, d]) = (before.normalised(map), after.normalised(map));
         for (c, d) in [(c, d), (d, c)] {
             let (from, to) = (b - a, d - c);
@@ -92,20 +96,20 @@ fn search(map: &OutlineMap, points: &[Point2<f64>], landmarks: Option<[Landmarks
             starts.push(turn_between(turn, &middle(a, b), &middle(c, d)));
         }
     }
-    let mut found: Vec<Hypothesis> =
+    let found: Vec<Hypothesis> =
         starts.iter().map(|start| refined(map, &few, MotionModel::Rigid, &(start * map.pose), SEARCH_STEPS)).collect();
-    found.sort_by(|a, b| a.score.total_cmp(&b.score));
-    let mut best: Vec<Hypothesis> = Vec::new();
-    for hypothesis in found {
-        if best.len() < REFINED && !best.iter().any(|other| same(other, &hypothesis)) {
-            best.push(hypothesis);
+    let mut best = Vec::new();
+    for hypothesis in found.into_iter().filter(|h| h.score.is_finite()) {
+        match best.iter_mut().find(|other| same(other, &hypothesis)) {
+            Some(other) if other.score > hypothesis.score => *other = hypothesis,
+            Some(_) => {}
+            None => best.push(hypothesis),
         }
     }
-    let rigid = best.iter().map(|h| refined(map, points, MotionModel::Rigid, &h.pose, REFINEMENT_STEPS));
-    best = rigid.collect();
+    keep(&mut best, REFINED);
+    best = best.iter().map(|h| refined(map, points, MotionModel::Rigid, &h.pose, REFINEMENT_STEPS)).collect();
     best.retain(|h| h.score.is_finite());
-    rank(&mut best);
-    best.truncate(KEPT);
+    keep(&mut best, KEPT);
     if map.model != MotionModel::Rigid {
         // More parameters start from fewer. They may also lead astray where arcs are missing, so that the rigid poses stay.
         let more = best.clone().into_iter().map(|hypothesis| {
@@ -114,18 +118,19 @@ fn search(map: &OutlineMap, points: &[Point2<f64>], landmarks: Option<[Landmarks
         });
         best.extend(more);
         best.retain(|h| h.score.is_finite());
-        rank(&mut best);
     }
     best
 }
 
-/// Best first; among equals the smallest turn.
-fn rank(list: &mut [Hypothesis]) {
+/// Keeps the best, so many, and as many of the smallest turns that are hardly worse: a symmetric outline has any number of equals.
+fn keep(list: &mut Vec<Hypothesis>, count: usize) {
     list.sort_by(|a, b| a.score.total_cmp(&b.score));
-    if let Some(limit) = list.first().map(|h| TIE * h.score) {
-        let ties = list.iter().filter(|h| h.score <= limit).count();
-        list[..ties].sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
-    }
+    let Some(limit) = list.first().map(|h| TIE * h.score) else { return };
+    let rest = list.split_off(count.min(list.len()));
+    let mut ties: Vec<_> = rest.into_iter().filter(|h| h.score <= limit).collect();
+    ties.sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
+    ties.truncate(count);
+    list.append(&mut ties);
 }
 
 fn same(a: &Hypothesis, b: &Hypothesis) -> bool {
@@ -156,6 +161,7 @@ fn refined(
     let mut rows: Vec<(f64, [f64; MAX_PARAMETERS])> = Vec::with_capacity(points.len());
     for step in 0..=steps {
         let Some(inverse) = pose.try_inverse() else { break };
+        let unseen = map.unseen_in_image(&pose);
         distances.clear();
         rows.clear();
         for p in points {
@@ -168,7 +174,11 @@ fn refined(
             let slope = 1.0 / pulled.norm();
             let residual = cell.normal.dot(&from) * slope;
             let normal = pulled * slope;
-            rows.push((residual, normal_velocities(model, &(p - residual * normal), &normal)));
+            let mut row = normal_velocities(model, &(p - residual * normal), &normal);
+            if model == map.model {
+                unseen.iter().for_each(|unseen| unseen.take_off(&mut row));
+            }
+            rows.push((residual, row));
         }
         if step == steps {
             break;

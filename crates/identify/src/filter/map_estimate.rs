@@ -23,7 +23,9 @@ impl OutlineMap {
         let inverse = scaled_inverse(&self.marginal)?;
         let change = nalgebra::DMatrix::from_fn(k, k, |i, j| change[i][j]);
         let motion = nalgebra::DMatrix::from_fn(k, k, |i, j| inverse[(k + i, k + j)] * self.effective_variance());
-        Some(&change * motion * change.transpose())
+        let covariance = &change * motion * change.transpose();
+        // The products round apart where the image origin is far away.
+        Some(0.5 * (&covariance + covariance.transpose()))
     }
 
     /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time seen so

@@ -1,11 +1,10 @@
 //! The map grown by what a frame shows for the first time.
-use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
 use super::{
     arrow_information::{CellInformation, StateVector},
     cell_scatter::Scatter,
-    contour::SmoothPiece,
+    contour::{Contour, Place, SmoothPiece},
     map_update::Scratch,
     outline_map::{Cell, OutlineMap},
     reading::NO_CELL,
@@ -16,11 +15,24 @@ const UNCOVERED: f64 = 1.1;
 /// Shortest run of new places that is taken.
 const SHORTEST_RUN: usize = 2;
 
+impl Cell {
+    /// One that nothing has been measured of.
+    fn at(place: &Place, neighbours: [usize; 2]) -> Self {
+        let Place { centre, normal } = *place;
+        Self { centre, normal, offset: 0.0, scatter: Scatter::NEW, innovation: 0.0, neighbours }
+    }
+}
+
 impl OutlineMap {
     /// Adds cells for the parts of the loaded outline that the map does not have yet, and measures them.
-    pub(crate) fn grow(&mut self, outline: &Outline) {
+    pub(crate) fn grow(&mut self) {
+        let contours = self.contours().collect();
+        self.grow_along(contours);
+    }
+
+    /// The same for the parts of contours in the body frame, which the loaded points are of.
+    pub(crate) fn grow_along(&mut self, contours: Vec<Contour>) {
         let first_new = self.cells.len();
-        let contours: Vec<_> = self.contours(outline).collect();
         let scale = self.pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let sigma = self.sigma / scale;
         for mut contour in contours {
@@ -60,14 +72,7 @@ impl OutlineMap {
                 } else {
                     [base + i.saturating_sub(1), base + (i + 1).min(count - 1)]
                 };
-                self.cells.push(Cell {
-                    centre: place.centre,
-                    normal: place.normal,
-                    offset: 0.0,
-                    scatter: Scatter::NEW,
-                    innovation: 0.0,
-                    neighbours,
-                });
+                self.cells.push(Cell::at(place, neighbours));
             }
             return;
         }
@@ -79,16 +84,9 @@ impl OutlineMap {
                 continue;
             }
             let base = self.cells.len();
-            for (i, place) in run.iter().map(|i| piece.places[*i]).enumerate() {
+            for (i, place) in run.iter().map(|i| &piece.places[*i]).enumerate() {
                 let neighbours = [base + i.saturating_sub(1), base + (i + 1).min(run.len() - 1)];
-                self.cells.push(Cell {
-                    centre: place.centre,
-                    normal: place.normal,
-                    offset: 0.0,
-                    scatter: Scatter::NEW,
-                    innovation: 0.0,
-                    neighbours,
-                });
+                self.cells.push(Cell::at(place, neighbours));
             }
             let (head, tail) = (run[0], run[run.len() - 1]);
             let wraps = |i: usize, on: bool| {

@@ -7,15 +7,13 @@ use super::{
     contour::median,
     noise_level::STRETCHES,
     outline_map::OutlineMap,
-    reading::{NO_CELL, Reading},
+    reading::{CELL_ERROR, NO_CELL, Reading},
 };
 
 /// Residuals within this many standard deviations agree with the map.
 const AGREEING: f64 = 3.5;
 /// Residuals below this many spacings agree too: corners lie off the straight cells by as much.
 const BEND: f64 = 0.2;
-/// Without noise the innovation is what straight cells leave, in spacings.
-const CELL_ERROR: f64 = 0.1;
 /// Most linearisations per frame.
 const MOST_ITERATIONS: usize = 6;
 /// A step that moves points by less than this many standard deviations of the noise is the last.
@@ -73,6 +71,21 @@ impl Piece {
 }
 
 impl Scratch {
+    /// Leaves at most about so many of the points.
+    pub(crate) fn thin_out(&mut self, count: usize) {
+        let stride = self.points.len().div_ceil(count).max(1);
+        let mut kept = 0;
+        for piece in &mut self.pieces {
+            let start = kept;
+            for i in piece.range().step_by(stride) {
+                self.points[kept] = self.points[i];
+                kept += 1;
+            }
+            (piece.start, piece.count) = (start, kept - start);
+        }
+        self.points.truncate(kept);
+    }
+
     /// Offsets that go with a solution for pose and motion, and what it leaves of the residuals.
     fn take_solution(&mut self, cells: &[CellInformation], step: &StateVector, state: &StateVector, k: usize) {
         self.values.clear();
@@ -99,7 +112,7 @@ impl OutlineMap {
         let update = self.update_loaded(&mut scratch, accept);
         self.scratch = scratch;
         if update.accepted && update.new_points >= FEWEST_NEW_POINTS {
-            self.grow(outline);
+            self.grow();
         }
         update
     }
@@ -141,6 +154,10 @@ impl OutlineMap {
         }
         let variance = self.sigma.max(CELL_ERROR * self.spacing).powi(2) * self.noise_level.correlation();
         self.innovation = self.pose_innovation(&marginal, &state, variance);
+        if self.is_compared {
+            self.last_misfit = self.misfit(scratch);
+            self.last_misfit.squares += self.innovation.squared;
+        }
         let mut update = self.judge(scratch, iterations);
         let correlation = correlation(&scratch.readings, update.noise.map(|noise| noise / self.radius));
         update.accepted = accept(&update);

@@ -5,6 +5,8 @@ use super::innovation::PoseInnovation;
 const MEMORY: f64 = 15.0;
 /// Standard deviations of the likelihood's slope from which a change counts as seen. Constant motion must stay at the bound.
 const SIGNIFICANT: f64 = 7.0;
+/// The same for a motion that has been seen to change before.
+const SIGNIFICANT_AGAIN: f64 = 3.0;
 /// Squared innovation per parameter beyond which two frames in a row show a sudden change.
 pub(crate) const SUDDEN: f64 = 25.0;
 /// Squared innovation per parameter that counts at most in the running estimate: squares have long tails, and by this limit
@@ -19,6 +21,7 @@ pub(crate) struct MotionChange {
     pub(crate) variance: f64,
     gradient: f64,
     fisher: f64,
+    has_changed: bool,
 }
 
 impl MotionChange {
@@ -33,14 +36,15 @@ impl MotionChange {
         if self.variance > 0.0 {
             self.variance += gradient / (MEMORY * innovation.fisher);
             if self.variance <= 0.0 {
-                *self = Self::default();
+                *self = Self { has_changed: true, ..Self::default() };
             }
             return;
         }
         let kept = 1.0 - 1.0 / MEMORY;
         self.gradient = kept * self.gradient + gradient;
         self.fisher = kept * self.fisher + innovation.fisher;
-        if self.gradient > SIGNIFICANT * self.fisher.sqrt() {
+        let significant = if self.has_changed { SIGNIFICANT_AGAIN } else { SIGNIFICANT };
+        if self.gradient > significant * self.fisher.sqrt() {
             self.variance = self.gradient / self.fisher;
             (self.gradient, self.fisher) = (0.0, 0.0);
         }

@@ -1,26 +1,22 @@
 use freeform_curve_fit::Outline;
-use nalgebra::{Affine2, Projective2};
+use nalgebra::Projective2;
 
 use super::{
-    acquisition::{Hypothesis, KEPT, Landmarks, find_pose, motion_between},
+    acquisition::Landmarks,
     error::FilterError,
+    map_recut::FirstFrames,
     map_update::MapUpdate,
     motion_change::{MotionChange, SUDDEN},
     outline_map::{FEWEST_POINTS, OutlineMap},
+    rivals::Rivals,
     settings::{FilterSettings, ProcessNoise},
 };
 use crate::estimate::MotionEstimate;
 
-/// Squared innovation of one frame beyond which the motion has not gone on as it was.
-const LARGEST_INNOVATION: f64 = 80.0;
 /// Noise below this many lengths of a cell is never too much.
 const BEND: f64 = 0.1;
-/// Share of the points that one pose must explain beyond another to be preferred to a likelier one.
-const CLEARLY_BETTER: f64 = 0.03;
-/// Spread about the map, as a multiple of the best, with which another turn explains a frame as well.
-const AS_GOOD: f64 = 1.15;
-/// Turns that differ by less are the same, rad.
-const DIFFERENT_TURN: f64 = 0.15;
+/// Times that a map is cut from the same frames at most.
+const MOST_CUTS: usize = 4;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
 const FALSE_START: usize = 3;
 /// Frames rejected in a row after which the object is given up and a new one taken.
@@ -83,11 +79,11 @@ pub struct FilterStep {
 /// ```
 #[derive(Debug, Clone)]
 pub struct MotionFilter {
-    settings: FilterSettings,
-    phase: Phase,
-    map: Option<OutlineMap>,
+    pub(super) settings: FilterSettings,
+    pub(super) phase: Phase,
+    pub(super) map: Option<OutlineMap>,
     /// Of the first outline, in its image coordinates.
-    landmarks: Option<Landmarks>,
+    pub(super) landmarks: Option<Landmarks>,
     last_time: f64,
     /// Time that the map stands at.
     pub(super) map_time: f64,
@@ -96,7 +92,8 @@ pub struct MotionFilter {
     rejected_in_a_row: usize,
     restarts: usize,
     change: MotionChange,
-    rivals: Rivals,
+    pub(super) rivals: Rivals,
+    first_frames: FirstFrames,
 }
 
 impl MotionFilter {
@@ -119,6 +116,7 @@ impl MotionFilter {
             restarts: 0,
             change: MotionChange::default(),
             rivals: Rivals::default(),
+            first_frames: FirstFrames::default(),
         })
     }
 
@@ -143,6 +141,7 @@ impl MotionFilter {
         if accepted {
             self.accepted += 1;
             self.rejected_in_a_row = 0;
+            self.keep(time, outline);
         } else {
             self.rejected += 1;
             self.rejected_in_a_row += 1;
@@ -155,11 +154,52 @@ impl MotionFilter {
     fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
         self.map = Some(OutlineMap::new(self.settings.model, outline)?);
         self.landmarks = Landmarks::of(outline);
+        self.first_frames = FirstFrames::begin(time, outline);
+        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
+        self.rivals = Rivals::default();
         (self.last_time, self.map_time) = (time, time);
         self.accepted += 1;
         self.rejected_in_a_row = 0;
         self.phase = Phase::Acquiring;
         Ok(())
+    }
+
+    /// Keeps one of the first frames, and cuts the map anew once there are enough of them.
+    fn keep(&mut self, time: f64, outline: &Outline) {
+        if self.phase != Phase::Tracking {
+            self.first_frames.end();
+        }
+        if !self.first_frames.take(time, outline) {
+            return;
+        }
+        let smallest = self.settings.smallest_agreement;
+        let recut = |map: &OutlineMap| {
+            map.recut(self.first_frames.frames(), |map, seconds, outline| {
+                map.predict(seconds);
+                map.add_process_noise(&self.settings.process_noise, seconds);
+                // That it shows the object has been seen: the noise of the few points on cells seen before tells less.
+                map.update(outline, |update| update.agreement >= smallest)
+            })
+        };
+        let settled = |map: OutlineMap| {
+            // Better aligned frames make a better map, which aligns them better.
+            (0..MOST_CUTS).try_fold((map, false), |(map, settled), _| {
+                if settled {
+                    return Some((map, settled));
+                }
+                let new = recut(&map)?;
+                let settled = (new.pose - map.pose).norm() < new.sigma;
+                Some((new, settled))
+            })
+        };
+        let settled = |map: &OutlineMap| settled(map.clone()).map(|(map, _)| map);
+        if let Some(map) = self.map.as_ref().and_then(settled) {
+            self.rivals.recut(settled);
+            self.first_frames.end_unless_few(map.cell_count());
+            self.map = Some(map);
+            // What was taken for a change may have been what coarse cells left.
+            self.change = MotionChange::default();
+        }
     }
 
     /// After a rejected frame: look elsewhere, or begin again.
@@ -202,91 +242,10 @@ impl MotionFilter {
             self.change.take(&innovation, parameters);
         }
         map.noise_level.take(update.spread / map.radius);
-        Some(update)
+        Some(self.rivals.decide(&self.settings, map, update, seconds, outline))
     }
 
-    /// Goes on as predicted if that fits, searches for the object otherwise.
-    fn acquire(&mut self, time: f64, outline: &Outline) -> Option<MapUpdate> {
-        let seconds = time - self.map_time;
-        let smallest = self.settings.smallest_agreement;
-        let fits = fits(self.map.as_ref()?, smallest);
-        if self.phase == Phase::Lost {
-            let mut going_on = self.map.clone()?;
-            going_on.predict(seconds);
-            let update = going_on.update(outline, |u| fits(u) && u.innovation <= LARGEST_INNOVATION);
-            if update.accepted {
-                self.replace(going_on, time, Phase::Tracking);
-                return Some(update);
-            }
-        }
-        let map = self.map.as_mut()?;
-        let landmarks = self.landmarks.and_then(|landmarks| {
-            let pose: Affine2<f64> = nalgebra::try_convert(map.pose())?;
-            Some([landmarks.moved(&pose), Landmarks::of(outline)?])
-        });
-        let hypotheses = find_pose(map, outline, landmarks);
-        // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
-        // where nothing fits without.
-        let mut best = self.try_poses(&hypotheses, outline, seconds, false);
-        if best.as_ref().is_none_or(|(update, ..)| !update.accepted) {
-            best = self.try_poses(&hypotheses, outline, seconds, true).or(best);
-        }
-        let (update, candidate, phase, rivals) = best?;
-        let known = update.accepted || self.phase == Phase::Lost;
-        if update.accepted {
-            self.rivals = rivals;
-            self.replace(candidate, time, phase);
-        }
-        if let Some(map) = self.map.as_mut().filter(|_| known) {
-            map.noise_level.take(update.spread / map.radius);
-        }
-        Some(update)
-    }
-
-    /// Measures the frame in the poses given; best the first that fits clearly better than those before it.
-    fn try_poses(
-        &self,
-        hypotheses: &[Hypothesis],
-        outline: &Outline,
-        seconds: f64,
-        relaxed: bool,
-    ) -> Option<(MapUpdate, OutlineMap, Phase, Rivals)> {
-        let mut best: Option<(MapUpdate, OutlineMap, Phase, f64)> = None;
-        let mut candidates = Vec::with_capacity(2 * KEPT);
-        for hypothesis in hypotheses {
-            let mut candidate = self.map.clone()?;
-            candidate.noise_level.relaxed = relaxed;
-            let fits = fits(&candidate, self.settings.smallest_agreement);
-            let phase = if self.phase == Phase::Lost {
-                // Where it is now says nothing of how it moves now.
-                candidate.relocate(hypothesis.pose);
-                Phase::Acquiring
-            } else {
-                let change = hypothesis.pose * candidate.pose.try_inverse()?;
-                let Some(motion) = motion_between(self.settings.model, &change, seconds) else { continue };
-                candidate.motion = motion;
-                candidate.predict(seconds);
-                Phase::Tracking
-            };
-            let update = candidate.update(outline, fits);
-            candidates.push((hypothesis.turn, update));
-            // The hypotheses come in order: a later one has to be clearly better.
-            let better = best.as_ref().is_none_or(|(other, ..)| {
-                (update.accepted && !other.accepted)
-                    || (update.accepted == other.accepted
-                        && ((relaxed && AS_GOOD * update.spread < other.spread)
-                            || update.agreement > other.agreement + CLEARLY_BETTER))
-            });
-            if better {
-                best = Some((update, candidate, phase, hypothesis.turn));
-            }
-        }
-        let (update, mut candidate, phase, turn) = best?;
-        candidate.noise_level.relaxed = false;
-        Some((update, candidate, phase, Rivals::of(turn, &update, &candidates)))
-    }
-
-    fn replace(&mut self, map: OutlineMap, time: f64, phase: Phase) {
+    pub(super) fn replace(&mut self, map: OutlineMap, time: f64, phase: Phase) {
         self.map = Some(map);
         self.map_time = time;
         self.phase = phase;
@@ -310,7 +269,13 @@ impl MotionFilter {
         if self.phase == Phase::Waiting || (self.phase == Phase::Acquiring) {
             return None;
         }
-        self.map.as_ref()?.estimate()
+        let mut estimate = self.map.as_ref()?.estimate()?;
+        for (index, doubtful) in self.rivals.doubts(&estimate).into_iter().enumerate() {
+            if doubtful {
+                estimate = estimate.with_unobservable(index);
+            }
+        }
+        Some(estimate)
     }
 
     /// The map of the image that has moved the outline of the first frame to where it was in the last frame accepted, or is predicted
@@ -339,11 +304,18 @@ impl MotionFilter {
     }
 
     /// Turns in radians, anticlockwise where y points up, by which the object may just as well have come to the frame in which it was
-    /// last searched for and found, besides the one taken: its outline fits equally well there. Of equals the smallest turn is
+    /// last searched for and found, besides the one taken: no frame since then fits significantly worse. Of equals the smallest turn is
     /// taken. Empty for outlines without symmetry.
     #[must_use]
     pub fn rival_turns(&self) -> &[f64] {
-        &self.rivals.turns[..self.rivals.count]
+        self.rivals.turns()
+    }
+
+    /// Whether one of the rival turns is less than twice the one taken, so that nothing speaks for the latter: the parameters in which
+    /// they differ are then marked as unobservable, until a frame decides.
+    #[must_use]
+    pub fn is_ambiguous(&self) -> bool {
+        self.rivals.are_doubtful()
     }
 
     /// Times the filter has given up an object and begun anew.
@@ -353,36 +325,8 @@ impl MotionFilter {
     }
 }
 
-/// Turns that explain a frame as well as the one taken.
-#[derive(Debug, Clone, Copy, Default)]
-struct Rivals {
-    turns: [f64; KEPT],
-    count: usize,
-}
-
-impl Rivals {
-    fn of(taken: f64, best: &MapUpdate, candidates: &[(f64, MapUpdate)]) -> Self {
-        let mut rivals = Self::default();
-        let apart = |a: f64, b: f64| {
-            let turn = (a - b + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-            turn.abs() > DIFFERENT_TURN
-        };
-        for (turn, update) in candidates {
-            let equal = update.accepted
-                && update.agreement + CLEARLY_BETTER >= best.agreement
-                && update.spread <= AS_GOOD * best.spread;
-            let known = rivals.turns[..rivals.count].iter().any(|other| !apart(*other, *turn));
-            if equal && apart(*turn, taken) && !known && rivals.count < KEPT {
-                rivals.turns[rivals.count] = *turn;
-                rivals.count += 1;
-            }
-        }
-        rivals
-    }
-}
-
 /// Whether a frame shows the outline that the map knows.
-fn fits(map: &OutlineMap, smallest_agreement: f64) -> impl Fn(&MapUpdate) -> bool + Copy + use<> {
+pub(super) fn fits(map: &OutlineMap, smallest_agreement: f64) -> impl Fn(&MapUpdate) -> bool + Copy + use<> {
     // Exact points leave what the cells do not follow.
     let largest_noise = map.noise_level.tolerated(map.sigma).max(BEND * map.spacing) * map.radius;
     move |update| update.agreement >= smallest_agreement && update.noise.is_none_or(|noise| noise <= largest_noise)

@@ -9,6 +9,7 @@ use super::{
     error::FilterError,
     innovation::PoseInnovation,
     map_update::{Piece, Scratch},
+    misfit::Misfit,
     nearest_field::NearestField,
     noise_level::NoiseLevel,
     outline_drift::OutlineDrift,
@@ -88,6 +89,8 @@ pub struct OutlineMap {
     pub(crate) half_window: usize,
     /// In the body frame.
     pub(crate) unseen_in_body: Vec<Coordinates>,
+    /// Whether frames have not shown the turn, whatever the normals promise.
+    pub(crate) turn_is_hidden: bool,
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(crate) body_frame: Matrix3<f64>,
     pub(crate) scratch: Scratch,
@@ -95,6 +98,9 @@ pub struct OutlineMap {
     pub(crate) noise_level: NoiseLevel,
     pub(crate) drift: OutlineDrift,
     pub(crate) innovation: PoseInnovation,
+    /// Whether the misfit of every frame is asked for.
+    pub(crate) is_compared: bool,
+    pub(crate) last_misfit: Misfit,
     /// Of the last prediction.
     pub(crate) step_seconds: f64,
     /// Seconds predicted over since the motion was last unknown.
@@ -112,14 +118,16 @@ impl OutlineMap {
         if found < FEWEST_POINTS {
             return Err(too_few);
         }
-        let (origin, radius) = (outline.centroid(), outline.rms_radius());
-        let k = model.parameter_count();
-        let mut information = ArrowInformation::new(k);
-        for i in 0..k {
-            information.dense[i][i] = GAUGE_WEIGHT * found as f64;
-            information.dense[k + i][k + i] = MOTION_PRIOR;
-        }
-        let mut map = Self {
+        let mut map = Self::without_cells(model, outline.centroid(), outline.rms_radius());
+        map.load(outline);
+        let contours: Vec<Contour> = map.contours().collect();
+        map.cut(contours).ok_or(too_few)?;
+        Ok(map)
+    }
+
+    pub(crate) fn without_cells(model: MotionModel, origin: Point2<f64>, radius: f64) -> Self {
+        let information = ArrowInformation::new(model.parameter_count());
+        Self {
             model,
             origin,
             radius,
@@ -135,29 +143,41 @@ impl OutlineMap {
             sigma_floor: SMALLEST_NOISE,
             half_window: 2,
             unseen_in_body: Vec::new(),
+            turn_is_hidden: false,
             body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
             process_noise: ProcessNoise::default(),
             noise_level: NoiseLevel::NEW,
             drift: OutlineDrift::default(),
             innovation: PoseInnovation::default(),
+            is_compared: false,
+            last_misfit: Misfit::default(),
             step_seconds: 0.0,
             span: 0.0,
-        };
-        map.load(outline);
-        map.choose_resolution(outline);
-        if !(map.spacing > 0.0 && map.sigma.is_finite()) {
-            return Err(too_few);
         }
-        map.grow(outline);
-        if map.cells.len() < 3 {
-            return Err(too_few);
+    }
+
+    /// Takes cells along contours in the body frame, and the loaded points, those of the first frame, as their first measurement. `None`
+    /// where the contours do not make an outline.
+    pub(crate) fn cut(&mut self, contours: Vec<Contour>) -> Option<()> {
+        let (k, loaded) = (self.information.k, self.scratch.points.len());
+        for i in 0..k {
+            self.information.dense[i][i] = GAUGE_WEIGHT * loaded as f64;
+            self.information.dense[k + i][k + i] = MOTION_PRIOR;
         }
-        map.marginal = map.information.marginal();
-        let sagitta = map.sagitta();
-        map.sigma_floor = map.sigma_floor.max(0.25 * sagitta).max(CELL_ERROR * map.spacing);
-        map.sigma = map.sigma.max(0.5 * sagitta).max(map.sigma_floor);
-        Ok(map)
+        self.choose_resolution(&contours);
+        if loaded < FEWEST_POINTS || !(self.spacing > 0.0 && self.sigma.is_finite()) {
+            return None;
+        }
+        self.grow_along(contours);
+        if self.cells.len() < 3 {
+            return None;
+        }
+        self.marginal = self.information.marginal();
+        let sagitta = self.sagitta();
+        self.sigma_floor = self.sigma_floor.max(0.25 * sagitta).max(CELL_ERROR * self.spacing);
+        self.sigma = self.sigma.max(0.5 * sagitta).max(self.sigma_floor);
+        Some(())
     }
 
     /// How far a bent outline lies from the straight cells: what is left to be noise where the points have none.
@@ -170,10 +190,11 @@ impl OutlineMap {
         super::contour::median(&mut bends.collect::<Vec<_>>()).unwrap_or(0.0)
     }
 
-    /// Noise, window and spacing from the first frame.
-    fn choose_resolution(&mut self, outline: &Outline) {
+    /// Noise, window and spacing for contours.
+    fn choose_resolution(&mut self, contours: &[Contour]) {
         let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
-        for mut contour in self.contours(outline) {
+        for contour in contours {
+            let mut contour = contour.clone();
             let weight = contour.len() as f64;
             let Some(sigma) = contour.noise() else { continue };
             window = contour.half_window(sigma).max(window);
@@ -185,31 +206,39 @@ impl OutlineMap {
         self.sigma = (variance / f64::max(count, 1.0)).sqrt().max(SMALLEST_NOISE);
         self.half_window = window;
         let finest = (count / POINTS_PER_CELL).clamp(4.0, MOST_CELLS);
-        let plenty = (LEAST_NOISE_PER_CELL * self.sigma).max(PLENTY_PER_CELL * length / count);
+        let plenty =
+            (LEAST_NOISE_PER_CELL * self.sigma).max(PLENTY_PER_CELL * length / self.scratch.points.len() as f64);
         self.spacing = plenty.min(NOISE_PER_CELL * self.sigma).max(length / finest).min(length / 12.0);
     }
 
     /// The pieces of the loaded outline in the body frame.
-    pub(crate) fn contours<'a>(&'a self, outline: &'a Outline) -> impl Iterator<Item = Contour> + 'a {
+    pub(crate) fn contours(&self) -> impl Iterator<Item = Contour> + '_ {
         let inverse = self.pose.try_inverse().unwrap_or_else(Matrix3::identity);
-        let mut start = 0;
-        outline.pieces().map(move |piece| {
-            let range = start..start + piece.points.len();
-            start = range.end;
-            let points = self.scratch.points[range].iter().map(|p| map_point(&inverse, p)).collect();
+        self.scratch.pieces.iter().map(move |piece| {
+            let points = self.scratch.points[piece.range()].iter().map(|p| map_point(&inverse, p)).collect();
             Contour::new(points, piece.closed)
         })
     }
 
-    /// Brings the points of an outline into the map's own image coordinates.
+    /// Brings the points of an outline into the map's own image coordinates. One that repeats the point before it is no second
+    /// measurement.
     pub(crate) fn load(&mut self, outline: &Outline) {
         let (origin, scale) = (self.origin, 1.0 / self.radius);
-        self.scratch.points.clear();
-        self.scratch.pieces.clear();
+        let Scratch { points, pieces, .. } = &mut self.scratch;
+        points.clear();
+        pieces.clear();
         for piece in outline.pieces() {
-            let (start, count) = (self.scratch.points.len(), piece.points.len());
-            self.scratch.pieces.push(Piece { start, count, closed: piece.closed });
-            self.scratch.points.extend(piece.points.iter().map(|p| Point2::from((p - origin) * scale)));
+            let start = points.len();
+            for p in piece.points {
+                let p = Point2::from((p - origin) * scale);
+                if points.len() == start || points.last() != Some(&p) {
+                    points.push(p);
+                }
+            }
+            while piece.closed && points.len() > start + 1 && points.last() == Some(&points[start]) {
+                points.pop();
+            }
+            pieces.push(Piece { start, count: points.len() - start, closed: piece.closed });
         }
     }
 
@@ -238,6 +267,11 @@ impl OutlineMap {
     #[must_use]
     pub fn noise(&self) -> f64 {
         self.sigma * self.radius
+    }
+
+    /// Unit normal of the outline nearest to a point of the body frame, both in normalised coordinates.
+    pub(crate) fn normal_near(&self, q: &Point2<f64>) -> Option<Vector2<f64>> {
+        self.nearest_cell(q).map(|number| self.cells[number].normal)
     }
 
     /// Number of cells.

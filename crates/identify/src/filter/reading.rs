@@ -26,6 +26,9 @@ const WIDEST_WINDOW: f64 = 0.04;
 /// Points further than this many spacings beyond a known end belong to what is not known yet.
 const BEYOND_END: f64 = 0.75;
 
+/// Without noise residuals are what straight cells leave, in spacings.
+pub(crate) const CELL_ERROR: f64 = 0.1;
+
 pub(crate) const NO_CELL: usize = usize::MAX;
 
 /// What becomes of one point.
@@ -86,7 +89,7 @@ impl OutlineMap {
         (0.5 * (needed.min(most) - 1.0)).round().max(0.0) as usize
     }
 
-    fn cell_of(&self, q: &Point2<f64>) -> usize {
+    pub(crate) fn cell_of(&self, q: &Point2<f64>) -> usize {
         self.nearest_cell(q).filter(|number| !self.is_beyond_end(*number, q)).unwrap_or(NO_CELL)
     }
 
@@ -161,10 +164,7 @@ impl OutlineMap {
         }
         let foot = p - reading.residual * reading.normal;
         reading.row = normal_velocities(self.model, &foot, &reading.normal);
-        for Unseen { direction, dual } in unseen {
-            let along: f64 = reading.row.iter().zip(direction).map(|(a, b)| a * b).sum();
-            reading.row.iter_mut().zip(dual).for_each(|(r, d)| *r -= along * d);
-        }
+        unseen.iter().for_each(|unseen| unseen.take_off(&mut reading.row));
     }
 
     /// Number of the cell nearest to a body point.

@@ -4,13 +4,16 @@ use nalgebra::{Matrix3, Point2, SMatrix, Vector2};
 use super::{map_estimate::scaled_inverse, outline_map::OutlineMap};
 use crate::{
     estimate::MAX_PARAMETERS,
-    motion_algebra::{Coordinates, adjoint, normal_velocities},
+    motion_algebra::{Coordinates, adjoint, coordinates, normal_velocities},
 };
 
 /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
 const DEGENERATE: f64 = 0.003;
 /// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
 const SEEN_BY_PATH: f64 = 0.02;
+
+/// Turn, in rad, of a unit step in a direction that counts as turning.
+const HOLDS_TURN: f64 = 0.3;
 
 /// A direction of the pose that the outline does not show, in the image: rows of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy)]
@@ -19,9 +22,47 @@ pub(crate) struct Unseen {
     pub(crate) dual: Coordinates,
 }
 
+impl Unseen {
+    /// Takes the direction off a row of the measurement.
+    pub(crate) fn take_off(&self, row: &mut Coordinates) {
+        let along: f64 = row.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
+        row.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
+    }
+}
+
 impl OutlineMap {
+    /// Takes it that the turn about the object's centre cannot be seen.
+    pub(crate) fn hide_turn(&mut self) {
+        let k = self.information.k;
+        let turn = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        let size = coordinates(self.model, &turn)[..k].iter().map(|c| c * c).sum::<f64>().sqrt();
+        let Some(inverse) = self.body_frame.try_inverse() else { return };
+        if !self.turn_is_unseen() {
+            self.turn_is_hidden = true;
+            self.unseen_in_body.push(coordinates(self.model, &(self.body_frame * turn / size * inverse)));
+        }
+    }
+
+    /// Takes that back.
+    pub(crate) fn show_turn(&mut self) {
+        if std::mem::take(&mut self.turn_is_hidden) {
+            self.unseen_in_body.pop();
+        }
+    }
+
+    /// Whether a direction that cannot be seen holds a turn.
+    pub(crate) fn turn_is_unseen(&self) -> bool {
+        let Some(inverse) = self.body_frame.try_inverse() else { return false };
+        self.unseen_in_body.iter().any(|direction| {
+            let generator = self.model.generator(&direction[..self.information.k]);
+            let centred = inverse * generator * self.body_frame;
+            0.5 * (centred[(0, 1)] - centred[(1, 0)]).abs() > HOLDS_TURN
+        })
+    }
+
     /// Directions of the pose that the cells do not show, from their lever arms about their mean.
     pub(crate) fn find_unseen_directions(&mut self, normal_noise: f64) {
+        let was_unseen = self.turn_is_unseen();
         let count = self.cells.len() as f64;
         let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
         let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
@@ -41,11 +82,15 @@ impl OutlineMap {
             if *value < threshold {
                 let generator = self.model.generator(&vector.as_slice()[..self.information.k]);
                 let Some(inverse) = to_body.try_inverse() else { continue };
-                self.unseen_in_body
-                    .push(crate::motion_algebra::coordinates(self.model, &(to_body * generator * inverse)));
+                self.unseen_in_body.push(coordinates(self.model, &(to_body * generator * inverse)));
             }
         }
         self.body_frame = to_body;
+        self.turn_is_hidden = false;
+        // What a few more cells show would be taken to have turned by what was never seen.
+        if was_unseen {
+            self.hide_turn();
+        }
     }
 
     /// The same in the image, for the pose given.

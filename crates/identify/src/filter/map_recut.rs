@@ -1,0 +1,180 @@
+//! The map cut anew from the first frames together, once they are aligned.
+use freeform_curve_fit::Outline;
+use nalgebra::Point2;
+
+use super::{
+    contour::Contour,
+    map_update::{MapUpdate, Scratch},
+    outline_map::OutlineMap,
+    reading::NO_CELL,
+};
+use crate::motion_algebra::map_point;
+
+/// Frames after which the map is cut anew.
+const OCCASIONS: [usize; 3] = [4, 16, 64];
+/// Points of several frames beyond which more of them would not make cells finer.
+const PLENTY: usize = 3200;
+/// With so many points of one frame for each cell there is nothing to be gained.
+const PLENTY_PER_CELL: f64 = 3.5;
+/// Fewest points that make a contour.
+const FEWEST_POINTS: usize = 8;
+
+/// The frames that a map was begun from, kept until it has been cut from enough of them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FirstFrames {
+    frames: Vec<(f64, Outline)>,
+    points: usize,
+    over: bool,
+}
+
+impl FirstFrames {
+    /// Begins with the first frame of a map.
+    pub(crate) fn begin(time: f64, outline: &Outline) -> Self {
+        Self { frames: vec![(time, outline.clone())], points: outline.point_count(), over: false }
+    }
+
+    /// Forgets what is kept.
+    pub(crate) fn end(&mut self) {
+        *self = Self { over: true, ..Self::default() };
+    }
+
+    /// Keeps a frame that follows the others; whether the map is to be cut from them now.
+    pub(crate) fn take(&mut self, time: f64, outline: &Outline) -> bool {
+        if self.over {
+            return false;
+        }
+        self.frames.push((time, outline.clone()));
+        self.points += outline.point_count();
+        OCCASIONS.contains(&self.frames.len())
+    }
+
+    /// Forgets what is kept unless more frames would make a map of so many cells better.
+    pub(crate) fn end_unless_few(&mut self, cells: usize) {
+        let count = self.frames.len().max(1);
+        let next = OCCASIONS.into_iter().find(|occasion| *occasion > count);
+        let each = self.points / count;
+        if next.is_none_or(|next| next * each > PLENTY) && count > 1 || each as f64 > PLENTY_PER_CELL * cells as f64 {
+            self.end();
+        }
+    }
+
+    pub(crate) fn frames(&self) -> &[(f64, Outline)] {
+        &self.frames
+    }
+}
+
+impl OutlineMap {
+    /// A map of the same body frame with cells cut from all the frames, which are those that this map has taken, and then taken one by
+    /// one. `None` where one of them is not.
+    pub(crate) fn recut(
+        &self,
+        frames: &[(f64, Outline)],
+        take: impl Fn(&mut Self, f64, &Outline) -> MapUpdate,
+    ) -> Option<Self> {
+        let k = self.information.k;
+        let ((first_time, first), last_time) = (frames.first()?, frames.last()?.0);
+        let mut map = Self::without_cells(self.model, self.origin, self.radius);
+        let mut points = Vec::new();
+        for (time, outline) in frames {
+            map.load(outline);
+            let to_image = self.model.flow(&self.motion[..k], time - last_time).into_inner() * self.pose;
+            let inverse = to_image.try_inverse()?;
+            map.scratch.shifts.resize(self.cells.len(), 0.0);
+            self.read_points(&mut map.scratch, &to_image, &[], true);
+            let Scratch { readings, points: seen, smooth, .. } = &map.scratch;
+            for ((reading, p), place) in readings.iter().zip(seen).zip(smooth) {
+                // Where along the outline a point lies its neighbours know better.
+                let place = if reading.weight > 0.0 { place } else { p };
+                points.push((reading.cell, map_point(&inverse, place), map_point(&inverse, p)));
+            }
+        }
+        map.load(first);
+        map.cut(self.along_chains(points))?;
+        map.motion = self.motion;
+        map.noise_level = self.noise_level;
+        let mut before = *first_time;
+        for (time, outline) in &frames[1..] {
+            if !take(&mut map, time - before, outline).accepted {
+                return None;
+            }
+            before = *time;
+        }
+        map.is_compared = self.is_compared;
+        Some(map)
+    }
+
+    /// Contours that points in the body frame make, given with their cells and places, in the order along the cells.
+    fn along_chains(&self, points: Vec<(usize, Point2<f64>, Point2<f64>)>) -> Vec<Contour> {
+        let chains = self.chains();
+        let mut place_of = vec![(0, 0); self.cells.len()];
+        for (number, (chain, _)) in chains.iter().enumerate() {
+            chain.iter().enumerate().for_each(|(index, cell)| place_of[*cell] = (number, index));
+        }
+        let mut runs: Vec<Vec<(f64, Point2<f64>)>> = vec![Vec::new(); chains.len()];
+        for (cell, place, q) in points {
+            if cell == NO_CELL {
+                continue;
+            }
+            let (number, index) = place_of[cell];
+            let (chain, closed) = &chains[number];
+            runs[number].push((index as f64 + self.along(chain, *closed, index, &place), q));
+        }
+        let contours = runs.into_iter().zip(&chains).filter(|(run, _)| run.len() >= FEWEST_POINTS);
+        contours
+            .map(|(mut run, (_, closed))| {
+                run.sort_by(|a, b| a.0.total_cmp(&b.0));
+                Contour::new(run.into_iter().map(|(_, q)| q).collect(), *closed)
+            })
+            .collect()
+    }
+
+    /// How far along the line through the cells of a chain a point lies from the cell nearest to it, in cells.
+    fn along(&self, chain: &[usize], closed: bool, index: usize, q: &Point2<f64>) -> f64 {
+        let count = chain.len();
+        let at = |i: usize| {
+            let cell = &self.cells[chain[i]];
+            cell.centre + cell.offset * cell.normal
+        };
+        let here = at(index);
+        let towards = |other: Option<usize>| {
+            let side = at(other?) - here;
+            let share = (side.dot(&(q - here)) / side.norm_squared()).clamp(0.0, 1.0);
+            share.is_finite().then(|| (share, (here + share * side - q).norm_squared()))
+        };
+        let after = if index + 1 < count { Some(index + 1) } else { closed.then_some(0) };
+        let before = if index > 0 { Some(index - 1) } else { closed.then_some(count - 1) };
+        match (towards(after), towards(before)) {
+            (Some((share, near)), Some((_, far))) if near <= far => share,
+            (_, Some((share, _))) => -share,
+            (Some((share, _)), None) => share,
+            (None, None) => 0.0,
+        }
+    }
+
+    /// The cells in their order along the outline, one list for each connected part, and whether it is closed.
+    fn chains(&self) -> Vec<(Vec<usize>, bool)> {
+        let mut seen = vec![false; self.cells.len()];
+        let mut chains = Vec::new();
+        let is_end = |i: usize| self.cells[i].neighbours.contains(&i);
+        let all = 0..self.cells.len();
+        let heads = all.clone().filter(|i| self.cells[*i].neighbours[0] == *i);
+        for start in heads.chain(all.clone().filter(|i| is_end(*i))).chain(all.clone()) {
+            if seen[start] {
+                continue;
+            }
+            let mut chain = Vec::new();
+            let mut next = Some(start);
+            while let Some(cell) = next {
+                seen[cell] = true;
+                chain.push(cell);
+                // Forwards first, so that the contour runs as the cells do.
+                let [back, forth] = self.cells[cell].neighbours;
+                next = [forth, back].into_iter().find(|n| !seen[*n]);
+            }
+            let last = chain[chain.len() - 1];
+            let closed = chain.len() > 2 && !is_end(start) && self.cells[last].neighbours.contains(&start);
+            chains.push((chain, closed));
+        }
+        chains
+    }
+}
