@@ -16,6 +16,8 @@ const OCCASIONS: [usize; 3] = [4, 16, 64];
 const PLENTY: usize = 3200;
 /// With so many points of one frame for each cell there is nothing to be gained.
 const PLENTY_PER_CELL: f64 = 3.5;
+/// Points nearer than so many spacings are one.
+const COINCIDENT: f64 = 0.05;
 /// Fewest points that make a contour.
 const FEWEST_POINTS: usize = 8;
 
@@ -88,6 +90,9 @@ impl OutlineMap {
                 points.push((reading.cell, map_point(&inverse, place), map_point(&inverse, p)));
             }
         }
+        if self.has_common_points(&points) {
+            return None;
+        }
         map.load(first);
         map.cut(self.along_chains(points))?;
         map.motion = self.motion;
@@ -101,6 +106,15 @@ impl OutlineMap {
         }
         map.is_compared = self.is_compared;
         Some(map)
+    }
+
+    /// Whether most of the points of the frames are the same places of the outline, which cut no finer cells together.
+    fn has_common_points(&self, points: &[(usize, Point2<f64>, Point2<f64>)]) -> bool {
+        let mut order: Vec<_> = points.iter().map(|(cell, _, q)| (*cell, q)).collect();
+        order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.x.total_cmp(&b.1.x)));
+        let limit = COINCIDENT * self.spacing;
+        let common = order.windows(2).filter(|pair| (pair[0].1 - pair[1].1).norm() < limit).count();
+        2 * common > points.len()
     }
 
     /// Contours that points in the body frame make, given with their cells and places, in the order along the cells.
