@@ -252,6 +252,28 @@ fn process_noise_lets_the_filter_follow_a_motion_that_drifts() {
 }
 
 #[test]
+fn a_motion_that_changes_slowly_stays_known_without_being_announced() {
+    let omega = |t: f64| 1.5 + 0.5 * (0.4 * t).sin();
+    let changing = move |t: f64| AffineMotion::from(RigidMotion { omega: omega(t), b1: -0.3, b2: 0.4 });
+    let frames = frames_of(BuiltInShape::Bird, Motion::varying(changing), settings(600, 5));
+    let mut filter = filter(MotionModel::Rigid);
+    let (mut unknown, mut square, mut counted) = (0, 0.0, 0);
+    for frame in &frames {
+        filter.step(frame.time, &frame.outline).expect("increasing times");
+        if frame.time < 5.0 {
+            continue;
+        }
+        let estimate = filter.estimate().expect("an estimate");
+        unknown += estimate.parameters().filter(|p| p.value.is_none()).count();
+        square += (estimate.values()[0] - omega(frame.time)).powi(2);
+        counted += 1;
+    }
+    let error = (square / f64::from(counted)).sqrt();
+    println!("{unknown} unknown, omega off by {error}, {} frames rejected", filter.frames_rejected());
+    assert!(unknown == 0 && error < 0.1, "{unknown} unknown, omega off by {error}");
+}
+
+#[test]
 fn exact_points_give_the_motion_to_the_precision_of_the_cells() {
     for sampling in [Sampling::Regular { jitter: 0.0 }, Sampling::Independent] {
         let exact = Settings { noise: 0.0, sampling, ..settings(20, 0) };

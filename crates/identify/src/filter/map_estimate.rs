@@ -7,6 +7,8 @@ use crate::{
 
 /// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
 const WORTHLESS: f64 = 0.25;
+/// Steps over which a parameter must be known at least, however fast the motion changes.
+const STEPS_KNOWN: f64 = 30.0;
 
 impl OutlineMap {
     /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
@@ -28,8 +30,8 @@ impl OutlineMap {
         Some(0.5 * (&covariance + covariance.transpose()))
     }
 
-    /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time seen so
-    /// far, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable; so is one
+    /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that
+    /// it is known from, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable; so is one
     /// that takes part in a motion which the outline does not show, such as the turning of a circle about its centre.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
@@ -42,15 +44,16 @@ impl OutlineMap {
         let mut estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
         let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
         let reach = self.radius + self.origin.coords.norm();
+        let floor = self.span.min(STEPS_KNOWN * self.step_seconds);
+        let shortest = self.spans[..k].iter().copied().fold(f64::INFINITY, f64::min);
         for (j, name) in self.model.parameter_names().iter().enumerate() {
-            let (limit, drift) = match name.as_bytes()[0] {
-                b'b' => (reach, self.process_noise.velocities),
-                b'c' => (1.0 / reach, self.process_noise.rates),
-                _ => (1.0, self.process_noise.rates),
+            let (limit, span) = match name.as_bytes()[0] {
+                // The velocity at the origin of the image follows from that of the object and all other parameters.
+                b'b' => (reach, shortest),
+                b'c' => (1.0 / reach, self.spans[j]),
+                _ => (1.0, self.spans[j]),
             };
-            // A motion that drifts is known no longer than it takes to drift by its standard deviation.
-            let span = self.span.min((deviations[j] / drift).powi(2));
-            let known = deviations[j] * span <= WORTHLESS * limit;
+            let known = deviations[j] * span.max(floor) <= WORTHLESS * limit;
             if !known || blind[j] {
                 estimate = estimate.with_unobservable(j);
             }

@@ -13,7 +13,6 @@ use super::{
     nearest_field::NearestField,
     noise_level::NoiseLevel,
     outline_drift::OutlineDrift,
-    settings::ProcessNoise,
 };
 use crate::{
     estimate::MAX_PARAMETERS,
@@ -94,7 +93,6 @@ pub struct OutlineMap {
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(crate) body_frame: Matrix3<f64>,
     pub(crate) scratch: Scratch,
-    pub(crate) process_noise: ProcessNoise,
     pub(crate) noise_level: NoiseLevel,
     pub(crate) drift: OutlineDrift,
     pub(crate) innovation: PoseInnovation,
@@ -105,6 +103,9 @@ pub struct OutlineMap {
     pub(crate) step_seconds: f64,
     /// Seconds predicted over since the motion was last unknown.
     pub(crate) span: f64,
+    /// Seconds of the past that each motion parameter is known from, in the body frame: the span, or, where the motion
+    /// changes, what of it is not forgotten.
+    pub(crate) spans: Coordinates,
 }
 
 impl OutlineMap {
@@ -146,7 +147,6 @@ impl OutlineMap {
             turn_is_hidden: false,
             body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
-            process_noise: ProcessNoise::default(),
             noise_level: NoiseLevel::NEW,
             drift: OutlineDrift::default(),
             innovation: PoseInnovation::default(),
@@ -154,6 +154,7 @@ impl OutlineMap {
             last_misfit: Misfit::default(),
             step_seconds: 0.0,
             span: 0.0,
+            spans: [0.0; MAX_PARAMETERS],
         }
     }
 

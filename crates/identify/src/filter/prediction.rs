@@ -32,6 +32,7 @@ impl OutlineMap {
         self.marginal = moved_marginal(&self.marginal, k, &ad_inverse, &product);
         self.let_outline_drift();
         self.span += seconds;
+        self.spans.iter_mut().for_each(|span| *span += seconds);
         self.step_seconds = seconds;
     }
 
@@ -41,7 +42,6 @@ impl OutlineMap {
         if noise.rates == 0.0 && noise.velocities == 0.0 {
             return;
         }
-        self.process_noise = *noise;
         let k = self.information.k;
         let units = self.effective_variance();
         let mut added = StateMatrix::zeros();
@@ -76,6 +76,11 @@ impl OutlineMap {
     fn add_covariance(&mut self, added: &StateMatrix) {
         let k = self.information.k;
         let Some(covariance) = scaled_inverse(&self.marginal) else { return };
+        for (j, span) in self.spans.iter_mut().enumerate().take(k) {
+            let (known, new) = (covariance[(k + j, k + j)], added[(k + j, k + j)]);
+            // What a filter forgets at this rate in each step it remembers for steps over rate.
+            *span *= known / (known + new);
+        }
         // Before (x) given after (x'): x = K x' + rest.
         let Some(after) = scaled_inverse(&(covariance + added)) else { return };
         let gain = covariance * after;
@@ -112,5 +117,6 @@ impl OutlineMap {
         }
         self.marginal = self.information.marginal();
         self.span = 0.0;
+        self.spans = [0.0; MAX_PARAMETERS];
     }
 }
