@@ -167,6 +167,10 @@ impl WithSimd for NormalKernel<'_> {
         regression.measure_steps(outline, xs, ys);
         // A hair less than the window, so that rounding does not decide whether evenly spaced points lie on its edge.
         let half_length = (1.0 - 1e-9) * half_window * sum(&regression.steps, |step| step);
+        // Coordinates beyond all measure have no direction anywhere, and no order along the outline to look for windows in.
+        if !half_length.is_finite() {
+            return;
+        }
         for (range, closed) in ranges(outline) {
             let before = regression.lay_out(xs, ys, range.clone(), closed, half_length);
             regression.windows.find(&mut regression.arc_lengths, before, half_length);
@@ -276,6 +280,16 @@ mod tests {
         let points: Vec<_> = circle(40).into_iter().flat_map(|p| [p; 5]).collect();
         let outline = Outline::closed(points.clone()).expect("a circle");
         assert!(radial_error(&points, &outward_normals(&outline, 0.02)) < 0.1);
+    }
+
+    #[test]
+    fn points_whose_distances_overflow_have_no_normals() {
+        let points = circle(40);
+        let (xs, ys): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (1e300 * p.x, 1e300 * p.y)).unzip();
+        let outline = Outline::closed(points).expect("a circle");
+        let (mut nx, mut ny) = (Vec::new(), Vec::new());
+        NormalRegression::default().run(&outline, [&xs, &ys], 0.02, [&mut nx, &mut ny]);
+        assert!(nx.len() == 40 && nx.iter().chain(&ny).all(|n| *n == 0.0));
     }
 
     #[test]

@@ -28,7 +28,7 @@ impl Windows {
         reserve(&mut self.first_after, nodes + ENDS);
     }
 
-    /// Finds the windows of the nodes from `first` on, at these increasing arc lengths: `distance` is not negative.
+    /// Finds the windows of the nodes from `first` on, at these finite, increasing arc lengths: `distance` is not negative.
     ///
     /// One edge is found by counting, for a few nodes at once and without a branch that the outline decides. The other needs no
     /// search: node j is beyond the window of i exactly if i is beyond that of j.

@@ -30,9 +30,10 @@ impl OutlineMap {
         Some(0.5 * (&covariance + covariance.transpose()))
     }
 
-    /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that
-    /// it is known from, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as unobservable; so is one
-    /// that takes part in a motion which the outline does not show, such as the turning of a circle about its centre.
+    /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that it is
+    /// known from, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as
+    /// unobservable; so is one that takes part in a motion which the outline does not show, such as the turning of a circle
+    /// about its centre.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
         let covariance = self.covariance()?;
