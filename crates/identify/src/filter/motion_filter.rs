@@ -195,11 +195,11 @@ impl MotionFilter {
         let settled = |map: &OutlineMap| settled(map.clone()).map(|(map, _)| map);
         if let Some(map) = self.map.as_ref().and_then(settled) {
             self.rivals.recut(settled);
-            self.first_frames.end_unless_few(map.cell_count());
             self.map = Some(map);
             // What was taken for a change may have been what coarse cells left.
             self.change = MotionChange::default();
         }
+        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
     }
 
     /// After a rejected frame: look elsewhere, or begin again.
