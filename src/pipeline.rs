@@ -18,7 +18,7 @@ const MANY_AMBIGUOUS: f64 = 0.03;
 const MANY_NOT_FOLLOWED: f64 = 0.05;
 /// RMS radii that the object may go from the origin of the identifier before the origin is moved to it: further out the
 /// lines say little of it, as `k` and its noise grow with the distance.
-const FAR: f64 = 1.5;
+const FAR: f64 = 3.0;
 
 /// RMS radius of the first outline in the coordinates of the identifier. The gains of the paper belong to objects of
 /// about size 1; a larger radius makes the law settle faster and follow the noise more.

@@ -126,7 +126,7 @@ fn an_object_may_travel_many_times_its_size() {
             let off = (velocity(&found) - velocity(&truth)).norm() / velocity(&truth).norm();
             let omega = (found[(0, 1)] - motion.omega).abs();
             println!("{shape} {motion:?}: omega off by {omega}, velocity by {off}");
-            assert!(omega < 0.03 && off < 0.05, "{shape} {motion:?}: omega off by {omega}, velocity by {off}");
+            assert!(omega < 0.03 && off < 0.06, "{shape} {motion:?}: omega off by {omega}, velocity by {off}");
         }
     }
 }

@@ -118,6 +118,11 @@ impl Identifier {
         }
     }
 
+    /// Whether the motion was seen to change, which a smoother that takes it for constant does not know.
+    pub(crate) fn motion_changed(&self) -> bool {
+        matches!(self, Self::Filter(object) if object.filter.motion_changed())
+    }
+
     /// What a user should know of the result, one line each.
     pub(crate) fn warnings(&self) -> Vec<String> {
         match self {
@@ -129,6 +134,9 @@ impl Identifier {
                     filter_warnings(object.last_known.as_ref(), filter.phase(), filter.restarts(), frames);
                 if filter.is_ambiguous() {
                     warnings.push("ambiguous: another turn explains the outlines as well".to_owned());
+                }
+                if filter.motion_changed() {
+                    warnings.push("the motion changed on the way: these are its values at the end".to_owned());
                 }
                 warnings
             }

@@ -248,6 +248,11 @@ impl Tracking {
         })
     }
 
+    /// Whether the motion of any object was seen to change.
+    pub(crate) fn motion_changed(&self) -> bool {
+        self.objects.iter().any(|object| object.identifier.motion_changed())
+    }
+
     /// The results so far, in the order in which the objects first appeared.
     pub(crate) fn results(&self) -> Vec<ObjectResult> {
         self.objects.iter().map(|object| self.result(object)).collect()

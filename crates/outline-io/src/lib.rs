@@ -64,7 +64,7 @@ pub use image::GrayImage;
 pub use picture::{decode_picture, read_picture};
 pub use picture_error::{PictureError, PictureErrorKind, TraceError};
 pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
-pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings};
+pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings, has_picture_extension};
 pub use ring::Ring;
 pub use shape::read_shape;
 pub use trace::{TracedOutline, trace_mask, trace_objects};

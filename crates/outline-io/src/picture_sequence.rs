@@ -282,7 +282,9 @@ fn is_pattern(path: &Path) -> bool {
     path.to_str().is_some_and(|text| text.contains(['*', '?', '['])) && !path.exists()
 }
 
-fn has_picture_extension(path: &Path) -> bool {
+/// Whether a file is taken for a picture where its folder is searched, by its extension.
+#[must_use]
+pub fn has_picture_extension(path: &Path) -> bool {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.is_some_and(|extension| EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
 }

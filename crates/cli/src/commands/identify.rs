@@ -13,8 +13,8 @@ use crate::identifier::{curve_settings, filter_settings, pipeline_settings, proc
 use crate::input::{Input, Missing};
 use crate::interrupt;
 use crate::output::{
-    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
-    write_identify_table, write_parameters, write_report, write_trajectory,
+    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_drawing_beside, refuse_overwriting,
+    write_identify_json, write_identify_table, write_parameters, write_report, write_trajectory,
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::tracking::{Estimate, Event, ObjectResult, Observation, REASONS_KEPT, Tracking};
@@ -108,6 +108,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
         warn("--degree: the motion filter fits no polynomial, the degree changes nothing");
     }
+    refuse_drawing_beside(&args.inputs, args.overlay.as_deref())?;
     let mut tracking = Tracking::new(&args.options)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
@@ -191,7 +192,11 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
     }
     if let (Some((mut file, mut trajectory)), Some(path)) = (trajectory, &args.trajectory) {
-        if args.smooth {
+        if args.smooth && tracking.motion_changed() {
+            warn(
+                "--smooth: the motion changed on the way, which the smoother takes for constant; the poses are as filtered",
+            );
+        } else if args.smooth {
             trajectory.smooth(&process_noise(&args.options)).map_err(Failure::unusable)?;
         }
         let written = write_trajectory(&mut file, &trajectory, args.options.motion.model(), args.options.scale);

@@ -3,6 +3,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, IntoInnerError, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 
+use freeform_motion::outline_io::has_picture_extension;
 use tempfile::{Builder, NamedTempFile};
 
 use crate::failure::{Failure, plain};
@@ -181,12 +182,34 @@ impl Write for Sink {
     }
 }
 
-/// Refuses output files that are the input, or one another.
+/// Refuses a folder for drawings that is the input, or holds it.
+pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: Option<&Path>) -> Result<(), Failure> {
+    let Some(place) = folder.and_then(|folder| fs::canonicalize(folder).ok()).filter(|place| place.is_dir()) else {
+        return Ok(());
+    };
+    for input in inputs {
+        let input = fs::canonicalize(input).ok();
+        let is_here = |input: &Path| input == place || input.parent() == Some(&place);
+        if input.is_some_and(|input| is_here(&input)) {
+            let reason = format_args!("{}: the pictures of the input are here, draw elsewhere", place.display());
+            return Err(Failure::unusable(reason));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses output files that are the input or a picture in its folder, or one another.
 pub(crate) fn refuse_overwriting(input: &Path, outputs: &[&Path]) -> Result<(), Failure> {
     let place = |path: &Path| fs::canonicalize(path).ok().filter(|place| place.is_file());
     for (index, output) in outputs.iter().enumerate() {
         if input.as_os_str() != "-" && place(input).is_some_and(|input| place(output) == Some(input)) {
             return Err(Failure::unusable(format_args!("{}: this is the input", output.display())));
+        }
+        let folder = fs::canonicalize(input).ok().filter(|place| place.is_dir());
+        if has_picture_extension(output)
+            && folder.is_some_and(|folder| place(output).is_some_and(|output| output.parent() == Some(&folder)))
+        {
+            return Err(Failure::unusable(format_args!("{}: this is a file of the input", output.display())));
         }
         let is_device = output.exists() && !output.is_file();
         if outputs[..index].contains(output) && !is_device {

@@ -22,7 +22,7 @@ pub(crate) use evaluate_json::write_evaluation_json;
 pub(crate) use evaluate_markdown::write_evaluation_markdown;
 pub(crate) use evaluate_table::write_evaluation_table;
 pub(crate) use figures::{fit_figure, parameter_figure};
-pub(crate) use file::{Sink, WholeFile, refuse_overwriting};
+pub(crate) use file::{Sink, WholeFile, refuse_drawing_beside, refuse_overwriting};
 pub(crate) use fit_json::write_fits_json;
 pub(crate) use fit_table::write_fit_table;
 pub(crate) use html::{Findings, Report, write_report};

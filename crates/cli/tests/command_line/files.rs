@@ -142,3 +142,42 @@ fn the_demo_leaves_a_report_and_its_data() {
         assert!(length > 1000, "{name}");
     }
 }
+
+#[test]
+fn pictures_of_the_input_folder_are_not_overwritten() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = file(folder.path(), "000000.png", "a picture");
+    let place = folder.path().display();
+    for (arguments, reason) in [
+        (format!("identify {place} --overlay {place}"), "draw elsewhere"),
+        (format!("track {picture} --overlay {place}"), "draw elsewhere"),
+        (format!("identify {place} --report {picture}"), "this is a file of the input"),
+        (format!("outline {place} --output {picture}"), "this is a file of the input"),
+    ] {
+        let output = run(&arguments, "");
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        assert!(stderr(&output).contains(reason), "{arguments}: {}", stderr(&output));
+        assert_eq!(fs::read_to_string(&picture).expect("the picture"), "a picture", "{arguments}");
+    }
+}
+
+#[test]
+fn a_motion_that_changed_is_said_to_have_and_is_not_smoothed_as_if_it_were_constant() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let still = sequence("--seconds 5 --omega 0 --b 0,0");
+    let turned = |row: &str| -> String {
+        let numbers: Vec<f64> = row.split(',').map(|number| number.parse().expect("a number")).collect();
+        let [frame, time, x, y] = numbers[..] else { panic!("{row}") };
+        let (sin, cos) = (0.5 * time + 0.5 * (1.5 * time).sin()).sin_cos();
+        format!("{frame},{time},{},{}\n", cos * x - sin * y, sin * x + cos * y)
+    };
+    let rows = still.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+    let changing = format!("frame,time,x,y\n{}", rows.map(turned).collect::<String>());
+    let (plain, smooth) = (folder.path().join("plain.csv"), folder.path().join("smooth.csv"));
+    let output = run(&format!("identify - --trajectory {}", plain.display()), &changing);
+    assert!(stderr(&output).contains("the motion changed on the way"), "{}", stderr(&output));
+    let output = run(&format!("identify - --smooth --trajectory {}", smooth.display()), &changing);
+    assert!(stderr(&output).contains("--smooth: the motion changed"), "{}", stderr(&output));
+    let read = |path| fs::read_to_string(path).expect("a trajectory");
+    assert_eq!(read(plain), read(smooth));
+}

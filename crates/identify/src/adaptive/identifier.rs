@@ -13,7 +13,7 @@ use crate::{error::IdentifyError, estimate::MotionEstimate};
 
 /// An origin that moves faster than this, in lengths per second, lets the structured law take the linear part of the
 /// motion from the slopes alone. Objects are about of size 1, and the gains of the paper of rate 1 per second.
-const FAST_TRAVEL: f64 = 1.5;
+const FAST_TRAVEL: f64 = 0.8;
 /// Pairs whose expected errors differ by less than this factor differ by rounding; the first of them is taken, whatever the
 /// processor.
 const ALIKE: f64 = 1.0 + 1e-6;

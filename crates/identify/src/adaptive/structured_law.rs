@@ -5,8 +5,8 @@ use super::{origin_shift::OriginShift, regressor::Regressor};
 /// The estimator (21) with the structure of its matrices known: over each line pair `Xh' = Am (Xh - X) + W(X) theta`, and
 /// over all of them together `theta' = -sum W' P (Xh - X)`.
 ///
-/// Steps are taken by the implicit midpoint rule, which keeps the Lyapunov function `sum e' P e + |theta error|^2` from
-/// growing whatever the step, so that a line that swings far out cannot make the law unstable.
+/// Steps are taken by the implicit midpoint rule. Over lines at rest during a step it keeps the Lyapunov function `sum e' P e
+/// + |theta error|^2` from growing whatever the step, so that a line that swings far out does not make the law unstable.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StructuredLaw<const N: usize> {
     regressor: Regressor<N>,

@@ -92,6 +92,7 @@ pub struct MotionFilter {
     rejected_in_a_row: usize,
     restarts: usize,
     change: MotionChange,
+    motion_changed: bool,
     pub(super) rivals: Rivals,
     first_frames: FirstFrames,
 }
@@ -115,6 +116,7 @@ impl MotionFilter {
             rejected_in_a_row: 0,
             restarts: 0,
             change: MotionChange::default(),
+            motion_changed: false,
             rivals: Rivals::default(),
             first_frames: FirstFrames::default(),
         })
@@ -226,6 +228,7 @@ impl MotionFilter {
         let adaptive = self.settings.adaptive && self.settings.process_noise == ProcessNoise::default();
         if adaptive && self.change.variance > 0.0 {
             map.add_change(self.change.variance);
+            self.motion_changed = true;
         }
         let parameters = map.information.k;
         let limit = SUDDEN * parameters as f64;
@@ -236,6 +239,7 @@ impl MotionFilter {
         if adaptive && has_changed && innovation.fisher > 0.0 {
             // The outline is there, but for the second time not where it was going: the motion has changed.
             map.add_change((innovation.gradient / innovation.fisher).max(0.0));
+            self.motion_changed = true;
             update = map.update(outline, fits);
         }
         if adaptive && update.accepted {
@@ -316,6 +320,13 @@ impl MotionFilter {
     #[must_use]
     pub fn is_ambiguous(&self) -> bool {
         self.rivals.are_doubtful()
+    }
+
+    /// Whether the innovations have shown the motion to change, so that the estimate is that of the last frame, not of all. Always
+    /// false where `FilterSettings::process_noise` announces changes.
+    #[must_use]
+    pub fn motion_changed(&self) -> bool {
+        self.motion_changed
     }
 
     /// Times the filter has given up an object and begun anew.
