@@ -13,8 +13,8 @@ use crate::identifier::{curve_settings, filter_settings, pipeline_settings, proc
 use crate::input::{Input, Missing};
 use crate::interrupt;
 use crate::output::{
-    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_drawing_beside, refuse_overwriting,
-    write_identify_json, write_identify_table, write_parameters, write_report, write_trajectory,
+    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
+    write_identify_table, write_parameters, write_report, write_trajectory,
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::tracking::{Estimate, Event, ObjectResult, Observation, REASONS_KEPT, Tracking};
@@ -108,7 +108,6 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
         warn("--degree: the motion filter fits no polynomial, the degree changes nothing");
     }
-    refuse_drawing_beside(&args.inputs, args.overlay.as_deref())?;
     let mut tracking = Tracking::new(&args.options)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
@@ -125,7 +124,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         Some(path) => Some((WholeFile::create(path)?, Trajectory::default())),
         None => None,
     };
-    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &input, &args.options, &args.pictures)?;
+    let mut overlay =
+        ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let mut curves = CurveFitter::new(&args.options)?;
     let keeps_history = args.svg.is_some() || args.report.is_some();

@@ -39,7 +39,7 @@ struct Outcome {
 type Written = Result<Outcome, WriteError>;
 
 fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Written, Failure> {
-    let mut overlay = args.overlay.as_deref().map(Overlay::open).transpose()?;
+    let mut overlay = args.overlay.as_deref().map(|path| Overlay::open(path, &args.inputs)).transpose()?;
     let mut outcome = Outcome { outlines: 0, first_missing: None };
     let progress = Progress::of_frames(input.frame_count(), args.quiet);
     let single = input.frame_count() == Some(1);

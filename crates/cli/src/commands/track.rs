@@ -5,16 +5,16 @@ use crate::batch::Pace;
 use crate::failure::Failure;
 use crate::input::Input;
 use crate::interrupt;
-use crate::output::{Sink, refuse_drawing_beside, track_line};
+use crate::output::{Sink, track_line};
 use crate::overlay::ObservedOverlay;
 use crate::tracking::{Event, Tracking};
 
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
-    refuse_drawing_beside(&args.inputs, args.overlay.as_deref())?;
     let mut tracking = Tracking::new(&args.options)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
-    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &input, &args.options, &args.pictures)?;
+    let mut overlay =
+        ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::stdout();

@@ -183,10 +183,8 @@ impl Write for Sink {
 }
 
 /// Refuses a folder for drawings that is the input, or holds it.
-pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: Option<&Path>) -> Result<(), Failure> {
-    let Some(place) = folder.and_then(|folder| fs::canonicalize(folder).ok()).filter(|place| place.is_dir()) else {
-        return Ok(());
-    };
+pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: &Path) -> Result<(), Failure> {
+    let Some(place) = fs::canonicalize(folder).ok().filter(|place| place.is_dir()) else { return Ok(()) };
     for input in inputs {
         let input = fs::canonicalize(input).ok();
         let is_here = |input: &Path| input == place || input.parent() == Some(&place);
@@ -200,16 +198,16 @@ pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: Option<&Path>) -
 
 /// Refuses output files that are the input or a picture in its folder, or one another.
 pub(crate) fn refuse_overwriting(input: &Path, outputs: &[&Path]) -> Result<(), Failure> {
-    let place = |path: &Path| fs::canonicalize(path).ok().filter(|place| place.is_file());
+    let input = Some(input).filter(|input| input.as_os_str() != "-").and_then(|input| fs::canonicalize(input).ok());
     for (index, output) in outputs.iter().enumerate() {
-        if input.as_os_str() != "-" && place(input).is_some_and(|input| place(output) == Some(input)) {
-            return Err(Failure::unusable(format_args!("{}: this is the input", output.display())));
-        }
-        let folder = fs::canonicalize(input).ok().filter(|place| place.is_dir());
-        if has_picture_extension(output)
-            && folder.is_some_and(|folder| place(output).is_some_and(|output| output.parent() == Some(&folder)))
-        {
-            return Err(Failure::unusable(format_args!("{}: this is a file of the input", output.display())));
+        let place = fs::canonicalize(output).ok().filter(|place| place.is_file());
+        if let (Some(input), Some(place)) = (&input, place) {
+            if place == *input {
+                return Err(Failure::unusable(format_args!("{}: this is the input", output.display())));
+            }
+            if has_picture_extension(output) && place.parent() == Some(input) {
+                return Err(Failure::unusable(format_args!("{}: this is a file of the input", output.display())));
+            }
         }
         let is_device = output.exists() && !output.is_file();
         if outputs[..index].contains(output) && !is_device {

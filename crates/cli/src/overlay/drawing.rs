@@ -1,4 +1,4 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use freeform_motion::curve_fit::{Fit, Outline};
 use freeform_motion::outline_io::PixelGrid;
@@ -12,6 +12,7 @@ use crate::commands::Parts;
 use crate::failure::Failure;
 use crate::input::SeenIn;
 use crate::level_set::{Area, curve_of};
+use crate::output::refuse_drawing_beside;
 
 const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
 const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);
@@ -47,8 +48,9 @@ pub(crate) struct Overlay {
 }
 
 impl Overlay {
-    /// Drawings for a folder or a GIF.
-    pub(crate) fn open(path: &Path) -> Result<Self, Failure> {
+    /// Drawings for a folder or a GIF. A folder that pictures of the input stand in is refused.
+    pub(crate) fn open(path: &Path, inputs: &[PathBuf]) -> Result<Self, Failure> {
+        refuse_drawing_beside(inputs, path)?;
         Ok(Self { target: Target::open(path)?, present: None })
     }
 

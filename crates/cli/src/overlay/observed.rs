@@ -1,4 +1,4 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use freeform_motion::curve_fit::{Fit, FitSettings, Fitter};
 use freeform_motion::outline_io::OutlineFrame;
@@ -24,6 +24,7 @@ impl ObservedOverlay {
     /// Drawings for a folder or a GIF, if they are asked for. Refused where there is nothing to draw on.
     pub(crate) fn open(
         path: Option<&Path>,
+        inputs: &[PathBuf],
         input: &Input,
         options: &TrackOptions,
         pictures: &PictureOptions,
@@ -32,7 +33,7 @@ impl ObservedOverlay {
         if !input.has_pictures() {
             return Err(Failure::unusable(format_args!("{}: --overlay draws on pictures, this is CSV", input.name)));
         }
-        let (overlay, curves) = (Overlay::open(path)?, CurveFitter::new(options)?);
+        let (overlay, curves) = (Overlay::open(path, inputs)?, CurveFitter::new(options)?);
         Ok(Some(Self { overlay, curves, scale: options.scale, names: pictures.follows_all() }))
     }
 

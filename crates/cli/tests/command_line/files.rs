@@ -151,6 +151,7 @@ fn pictures_of_the_input_folder_are_not_overwritten() {
     for (arguments, reason) in [
         (format!("identify {place} --overlay {place}"), "draw elsewhere"),
         (format!("track {picture} --overlay {place}"), "draw elsewhere"),
+        (format!("outline {place} --overlay {place}"), "draw elsewhere"),
         (format!("identify {place} --report {picture}"), "this is a file of the input"),
         (format!("outline {place} --output {picture}"), "this is a file of the input"),
     ] {

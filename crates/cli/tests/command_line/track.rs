@@ -1,5 +1,5 @@
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use crate::support::{json, run, sequence, stdout, succeed};
 
@@ -24,19 +24,25 @@ fn a_frame_that_is_no_outline_is_told_in_its_line() {
     assert!(last["reason"].as_str().is_some_and(|reason| reason.contains("frame 20")));
 }
 
-#[test]
-fn a_line_comes_as_soon_as_the_row_after_its_frame_has_been_read() {
-    let csv = sequence("");
-    let split = csv.match_indices("\n1,").next().expect("a second frame").0 + 1;
-    let next_row = csv[split..].find('\n').expect("a row") + split + 1;
+/// A stream at work, and its ends.
+fn track_in_pipes() -> (Child, ChildStdin, BufReader<ChildStdout>) {
     let mut child = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
         .arg("track")
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
         .expect("the binary runs");
-    let mut input = child.stdin.take().expect("a pipe");
-    let mut output = BufReader::new(child.stdout.take().expect("a pipe"));
+    let input = child.stdin.take().expect("a pipe");
+    let output = BufReader::new(child.stdout.take().expect("a pipe"));
+    (child, input, output)
+}
+
+#[test]
+fn a_line_comes_as_soon_as_the_row_after_its_frame_has_been_read() {
+    let csv = sequence("");
+    let split = csv.match_indices("\n1,").next().expect("a second frame").0 + 1;
+    let next_row = csv[split..].find('\n').expect("a row") + split + 1;
+    let (mut child, mut input, mut output) = track_in_pipes();
     // One row beyond: the line end of a row may only be recognised with the next byte.
     let end = csv[next_row..].find('\n').expect("a row") + next_row + 1;
     input.write_all(&csv.as_bytes()[..end]).expect("the binary reads");
@@ -50,7 +56,7 @@ fn a_line_comes_as_soon_as_the_row_after_its_frame_has_been_read() {
 
 /// Resident memory of a process in kilobytes, its code left out, which is read from the disk as it is needed.
 #[cfg(target_os = "linux")]
-fn resident(child: &std::process::Child) -> u64 {
+fn resident(child: &Child) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).expect("our child");
     let line = status.lines().find(|line| line.starts_with("RssAnon:")).expect("a line of its memory");
     line.split_whitespace().nth(1).expect("a number").parse().expect("a number")
@@ -60,14 +66,7 @@ fn resident(child: &std::process::Child) -> u64 {
 #[cfg(target_os = "linux")]
 fn memory_does_not_grow_with_the_number_of_frames() {
     let csv = succeed("simulate --points 40 --seconds 150 --noise 0.005", "");
-    let mut child = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
-        .arg("track")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("the binary runs");
-    let mut input = child.stdin.take().expect("a pipe");
-    let output = BufReader::new(child.stdout.take().expect("a pipe"));
+    let (mut child, mut input, output) = track_in_pipes();
     // The input stays open, so that the process stands still after the last frame that is complete.
     let writer = std::thread::spawn(move || {
         input.write_all(csv.as_bytes()).expect("the binary reads");

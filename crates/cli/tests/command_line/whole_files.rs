@@ -163,20 +163,26 @@ fn ctrl_c_ends_identify_with_what_is_known_so_far_though_the_input_stands_still(
     assert_eq!(entries(folder.path()), 1);
 }
 
+/// What a process writes that is interrupted after its first line, its input still open, and ends well.
+#[cfg(unix)]
+fn output_until_interrupted(mut child: Child) -> String {
+    let mut lines = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut output = String::new();
+    lines.read_line(&mut output).expect("a line");
+    signal(&child, "-INT");
+    lines.read_to_string(&mut output).expect("UTF-8");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    output
+}
+
 #[test]
 #[cfg(unix)]
 fn ctrl_c_ends_track_after_a_whole_line() {
     let csv = sequence("--seconds 12");
-    let (mut child, input) = at_work(&["track"], &csv[..csv.len() / 20]);
-    let mut lines = BufReader::new(child.stdout.take().expect("a pipe"));
-    let mut line = String::new();
-    lines.read_line(&mut line).expect("a line");
-    signal(&child, "-INT");
-    let mut rest = String::new();
-    lines.read_to_string(&mut rest).expect("UTF-8");
-    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    let (child, input) = at_work(&["track"], &csv[..csv.len() / 20]);
+    let output = output_until_interrupted(child);
     drop(input);
-    let frames: Vec<_> = line.lines().chain(rest.lines()).map(|line| json(line)["frame"].clone()).collect();
+    let frames: Vec<_> = output.lines().map(|line| json(line)["frame"].clone()).collect();
     assert!(frames.iter().enumerate().all(|(index, frame)| *frame == index), "{frames:?}");
 }
 
@@ -199,15 +205,9 @@ fn ctrl_c_ends_track_of_a_video_with_whole_lines_and_a_whole_drawing() {
         .expect("the binary runs");
     let mut input = child.stdin.take().expect("a pipe");
     input.write_all(&video).expect("the binary reads");
-    let mut lines = BufReader::new(child.stdout.take().expect("a pipe"));
-    let mut line = String::new();
-    lines.read_line(&mut line).expect("a line");
-    signal(&child, "-INT");
-    let mut rest = String::new();
-    lines.read_to_string(&mut rest).expect("UTF-8");
-    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+    let output = output_until_interrupted(child);
     drop(input);
-    let count = line.lines().chain(rest.lines()).map(json).count();
+    let count = output.lines().map(json).count();
     let gif = BufReader::new(File::open(&drawn).expect("the drawing"));
     let decoder = image::codecs::gif::GifDecoder::new(gif).expect("a GIF");
     assert_eq!(image::AnimationDecoder::into_frames(decoder).collect_frames().expect("whole").len(), count);

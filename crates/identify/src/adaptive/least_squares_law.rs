@@ -61,13 +61,11 @@ impl<const N: usize> LeastSquaresLaw<N> {
         &self.regressor
     }
 
-    /// Goes on in other coordinates; the filters move by themselves.
-    pub(crate) fn shift_origin(&mut self, shift: &OriginShift) {
-        let model = self.regressor.model();
-        let old_from_new: SMatrix<f64, N, N> = shift.inverse().of_parameters(model);
+    /// Goes on in other coordinates; `old_from_new` takes the parameters back. The filters move by themselves.
+    pub(crate) fn shift_origin(&mut self, shift: &OriginShift, old_from_new: &SMatrix<f64, N, N>) {
         self.information = old_from_new.tr_mul(&self.information) * old_from_new;
         self.projection = old_from_new.tr_mul(&self.projection);
-        self.initial = shift.of_parameters(model) * self.initial;
+        self.initial = shift.of_parameters(self.regressor.model()) * self.initial;
     }
 
     /// Forgets old data for `seconds`.

@@ -100,7 +100,8 @@ mod tests {
         ) {
             let (state, shift) = (Vector4::from(x), OriginShift::to(origin.into()));
             let matrices = SMatrix::<f64, 4, 9>::from_column_slice(&entries);
-            let mut law = PrintedLaw { matrices, ..PrintedLaw::new(-Matrix4::identity(), Matrix4::identity(), &AffineMotion::default()) };
+            let at_rest = PrintedLaw::new(-Matrix4::identity(), Matrix4::identity(), &AffineMotion::default());
+            let mut law = PrintedLaw { matrices, ..at_rest };
             law.shift_origin(&shift);
             let moved = law.matrices * signals(&shift.state(&state));
             prop_assert!((moved - shift.of_rates() * matrices * signals(&state)).norm() < 1e-9);

@@ -137,8 +137,8 @@ where
             Law::Structured(law) => law.shift_origin(shift, by_slopes),
             Law::Printed(law) => law.shift_origin(shift),
             Law::LeastSquares(law) => {
-                law.shift_origin(shift);
                 let old_from_new = shift.inverse().of_parameters(self.model);
+                law.shift_origin(shift, &old_from_new);
                 self.filters.iter_mut().for_each(|filter| filter.shift_origin(shift, &old_from_new));
             }
         }

@@ -1,5 +1,5 @@
 //! Information of arrow shape: dense over pose and motion, diagonal over the offsets of the cells, and a coupling.
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
 use crate::{estimate::MAX_PARAMETERS, motion_algebra::CoordinateMatrix};
 
@@ -69,6 +69,21 @@ impl ArrowInformation {
         }
         padded(&sum, 2 * self.k)
     }
+}
+
+/// Factor of a positive definite matrix that was scaled on both sides to unit diagonal, and the scale.
+pub(crate) fn scaled_cholesky(matrix: &StateMatrix) -> Option<(StateVector, Cholesky<f64, Const<STATE>>)> {
+    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
+    let scaled = StateMatrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+    // Directions that nothing is known of may come out a rounding below zero.
+    Some((scale, (scaled + StateMatrix::identity() * 1e-14).cholesky()?))
+}
+
+/// Inverse of a positive definite matrix, scaled to unit diagonal on the way.
+pub(crate) fn scaled_inverse(matrix: &StateMatrix) -> Option<StateMatrix> {
+    let (scale, factor) = scaled_cholesky(matrix)?;
+    let inverse = factor.inverse();
+    Some(StateMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
 /// A marginal information matrix moved on by the same step.

@@ -1,5 +1,5 @@
 //! What the map says of the motion.
-use super::{arrow_information::StateMatrix, outline_map::OutlineMap};
+use super::{arrow_information::scaled_inverse, outline_map::OutlineMap};
 use crate::{
     estimate::{MAX_PARAMETERS, MotionEstimate},
     motion_algebra::adjoint,
@@ -61,13 +61,4 @@ impl OutlineMap {
         }
         Some(estimate)
     }
-}
-
-/// Inverse of a positive definite matrix, scaled to unit diagonal on the way.
-pub(crate) fn scaled_inverse(matrix: &StateMatrix) -> Option<StateMatrix> {
-    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
-    let scaled = StateMatrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
-    // Directions that nothing is known of may come out a rounding below zero.
-    let inverse = (scaled + StateMatrix::identity() * 1e-14).cholesky()?.inverse();
-    Some(StateMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }

@@ -3,11 +3,11 @@ use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
 use super::{
-    arrow_information::{ArrowInformation, CellInformation, STATE, StateMatrix, StateVector},
+    arrow_information::{ArrowInformation, CellInformation, STATE, StateMatrix, StateVector, scaled_cholesky},
     contour::median,
     noise_level::STRETCHES,
     outline_map::OutlineMap,
-    reading::{CELL_ERROR, NO_CELL, Reading},
+    reading::{NO_CELL, Reading},
 };
 
 /// Residuals within this many standard deviations agree with the map.
@@ -152,7 +152,7 @@ impl OutlineMap {
             settled = step < SETTLED * self.sigma;
             std::mem::swap(&mut work.cells, &mut scratch.cells);
         }
-        let variance = self.sigma.max(CELL_ERROR * self.spacing).powi(2) * self.noise_level.correlation();
+        let variance = self.comparable_noise().powi(2) * self.noise_level.correlation();
         self.innovation = self.pose_innovation(&marginal, &state, variance);
         if self.is_compared {
             self.last_misfit = self.misfit(scratch);
@@ -272,10 +272,8 @@ fn reduce(work: &ArrowInformation, right_of_cells: &[f64], mut right: StateVecto
 
 /// Solves `m x = b`, scaled to unit diagonal on the way; entries beyond the state stay zero.
 fn solve(m: &StateMatrix, b: &StateVector, k: usize) -> Option<StateVector> {
-    let scale = m.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
-    let scaled = StateMatrix::from_fn(|i, j| m[(i, j)] * scale[i] * scale[j]);
-    let solution = (scaled + StateMatrix::identity() * 1e-14).cholesky()?.solve(&b.component_mul(&scale));
-    let mut x = solution.component_mul(&scale);
+    let (scale, factor) = scaled_cholesky(m)?;
+    let mut x = factor.solve(&b.component_mul(&scale)).component_mul(&scale);
     (2 * k..STATE).for_each(|i| x[i] = 0.0);
     x.iter().all(|e| e.is_finite()).then_some(x)
 }

@@ -45,7 +45,7 @@ impl Misfit {
 
 impl OutlineMap {
     /// Smallest noise that poses are compared by.
-    fn comparable_noise(&self) -> f64 {
+    pub(crate) fn comparable_noise(&self) -> f64 {
         self.sigma.max(CELL_ERROR * self.spacing)
     }
 

@@ -2,8 +2,7 @@
 use nalgebra::Matrix3;
 
 use super::{
-    arrow_information::{ArrowInformation, CellInformation, StateMatrix, StateVector, moved_marginal},
-    map_estimate::scaled_inverse,
+    arrow_information::{ArrowInformation, CellInformation, StateMatrix, StateVector, moved_marginal, scaled_inverse},
     outline_map::{MOTION_PRIOR, OutlineMap},
     settings::ProcessNoise,
 };

@@ -1,7 +1,7 @@
 //! Directions of the pose that an outline does not show, such as the turning of a circle about its centre.
 use nalgebra::{Matrix3, Point2, SMatrix, Vector2};
 
-use super::{map_estimate::scaled_inverse, outline_map::OutlineMap};
+use super::{arrow_information::scaled_inverse, outline_map::OutlineMap};
 use crate::{
     estimate::MAX_PARAMETERS,
     motion_algebra::{Coordinates, adjoint, coordinates, normal_velocities},
