@@ -22,7 +22,7 @@ impl OutlineMap {
         let k = self.information.k;
         let to_image = self.to_image();
         let change = adjoint(self.model, &to_image, &to_image.try_inverse()?);
-        let inverse = scaled_inverse(&self.marginal)?;
+        let inverse = scaled_inverse(&self.marginal, k)?;
         let change = nalgebra::DMatrix::from_fn(k, k, |i, j| change[i][j]);
         let motion = nalgebra::DMatrix::from_fn(k, k, |i, j| inverse[(k + i, k + j)] * self.effective_variance());
         let covariance = &change * motion * change.transpose();
