@@ -69,6 +69,11 @@ impl ArrowInformation {
         }
         padded(&sum, 2 * self.k)
     }
+
+    /// Information of pose and motion where the offsets are known; unit diagonal beyond the state.
+    pub(crate) fn with_outline_given(&self) -> StateMatrix {
+        padded(&self.dense, 2 * self.k)
+    }
 }
 
 /// Factor of a positive definite matrix that was scaled on both sides to unit diagonal, and the scale.
