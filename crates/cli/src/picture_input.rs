@@ -118,7 +118,7 @@ impl PictureInput {
         }
         if let (None, None, Some((low, high))) = (trace.ring, options.threshold, found.thresholds) {
             let of = if options.background.is_some() { "differences from the background" } else { "grey values" };
-            let [low, high] = [low, high].map(|level| short(level));
+            let [low, high] = [low, high].map(short);
             let range = if low == high { low } else { format!("{low} to {high}") };
             listed.push(("Thresholds by Otsu", format!("{range} ({of})")));
         }

@@ -102,7 +102,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
         ));
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
-        warn("--degree: the motion filter fits no polynomial, the degree changes nothing");
+        warn("--degree: the motion filter fits no polynomial, the degree is only that of the curve drawn");
     }
     Ok(())
 }
@@ -242,6 +242,7 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
             let FilterSettings { smallest_agreement, patience, .. } = filter_settings(options);
             listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
             listed.push(("Searched for anew", format!("after {patience} rejected frames")));
+            listed.push(("Degree of the curve drawn", pipeline_settings(options).fit.degree.to_string()));
         }
         IdentifyMethod::Curve => {
             let CurveFilterSettings { degree, offset, patience, .. } = curve_settings(options);
