@@ -96,11 +96,13 @@ impl PictureInput {
         let Self { options, trace, found, .. } = self;
         let mut listed = options.listed();
         let rate = found.last.filter(|(_, time)| *time > 0.0).map(|(frame, time)| short(frame as f64 / time));
-        listed.push(match (options.fps, rate) {
-            (Some(fps), _) => ("Frames per second", fps.to_string()),
-            (None, Some(rate)) => ("Frames per second", format!("{rate}, by the video or animation, else 30")),
-            (None, None) => ("Frames per second", "by the video or animation, else 30".to_owned()),
-        });
+        let rate = match (options.fps, rate) {
+            (Some(fps), _) => fps.to_string(),
+            (None, Some(rate)) if self.frame_count().is_some() => format!("{rate}, as none is given"),
+            (None, Some(rate)) => format!("{rate}, of the video or animation"),
+            (None, None) => "unknown from one picture".to_owned(),
+        };
+        listed.push(("Frames per second", rate));
         match (trace.ring, found.size) {
             (Some(ring), Some((columns, rows))) => {
                 let by_default = if ring.width.is_none() { ", a sixtieth of the shorter side" } else { "" };
@@ -116,6 +118,7 @@ impl PictureInput {
                 ),
             )),
         }
+        // Given levels and rings have no threshold of Otsu's.
         if let (None, None, Some((low, high))) = (trace.ring, options.threshold, found.thresholds) {
             let of = if options.background.is_some() { "differences from the background" } else { "grey values" };
             let [low, high] = [low, high].map(short);
@@ -190,6 +193,7 @@ fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
         TraceError::NoRing => Some("try another --ring, --ring-width or --channel"),
         TraceError::TooSmall { .. } => Some("try a smaller --min-area, or --dark"),
         TraceError::FillsPicture | TraceError::NoObject { .. } => Some("try --dark or --light, or another --threshold"),
+        TraceError::NoContrast { .. } if options.background.is_some() => Some("try another --background or --channel"),
         TraceError::NoContrast { .. } if options.dark => Some("try --light, --background median, --ring or --channel"),
         TraceError::NoContrast { .. } => Some("try --dark, --background median, --ring or --channel"),
         _ => None,

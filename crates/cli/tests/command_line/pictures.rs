@@ -134,6 +134,24 @@ fn drawings_of_an_earlier_run_are_removed_and_other_pictures_are_not() {
 }
 
 #[test]
+fn drawings_do_not_go_among_the_pictures_of_the_input() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = pears(folder.path(), "frames", 3);
+    for input in [frames.clone(), format!("{frames}/*.png"), format!("{frames}/0.png {frames}/1.png")] {
+        for command in ["outline", "track"] {
+            let output = run(&format!("{command} {input} --overlay {base}/frames"), "");
+            assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{command} {input}");
+            assert!(
+                stderr(&output).contains("the pictures of the input are here, draw elsewhere"),
+                "{}",
+                stderr(&output)
+            );
+        }
+    }
+    assert_eq!(names(&frames).len(), 3);
+}
+
+#[test]
 fn a_report_has_the_settings_that_were_used_and_marks_rejected_frames() {
     let folder = tempfile::tempdir().expect("a folder");
     let (frames, base) = pears(folder.path(), "frames", 12);
@@ -163,7 +181,7 @@ fn a_report_has_the_settings_that_were_used_and_marks_rejected_frames() {
     let html = report("--method curve --degree 4 --pixel-aspect 1.1");
     for (name, value) in [
         ("Degree of the curve", "4"),
-        ("Frames per second", "30, by the video or animation, else 30"),
+        ("Frames per second", "30, as none is given"),
         ("Pixel width over height", "1.1"),
     ] {
         assert!(html.contains(&row(name, value)), "{name}: {html}");
