@@ -4,8 +4,9 @@ use std::rc::Rc;
 use freeform_motion::outline_io::OutlineFrame;
 
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Item, Missing, SeenIn};
+use crate::input::{Input, Item, SeenIn};
 use crate::interrupt;
+use crate::left_out::{Missing, MissingWarnings};
 use crate::progress::Progress;
 
 /// Points of all outlines read ahead: half a megabyte. Enough for the frames of a batch to be many times the work of
@@ -41,13 +42,14 @@ pub(crate) struct BatchReader<'a> {
     pace: Pace,
     quiet: bool,
     pub(crate) progress: Progress,
+    warnings: MissingWarnings,
     failure: Option<Failure>,
 }
 
 impl<'a> BatchReader<'a> {
     pub(crate) fn new(input: &'a mut Input, pace: Pace, quiet: bool) -> Self {
         let progress = Progress::of_frames(input.frame_count(), quiet);
-        Self { input, pace, quiet, progress, failure: None }
+        Self { input, pace, quiet, progress, warnings: MissingWarnings::default(), failure: None }
     }
 
     /// The next frames; none at the end of the input, at an error that ends it, and after Ctrl-C.
@@ -80,15 +82,20 @@ impl<'a> BatchReader<'a> {
         batch
     }
 
-    fn tell(&self, missing: &Missing) {
+    fn tell(&mut self, missing: &Missing) {
         // The reason of a single picture is told in the end.
-        if !self.quiet && self.input.frame_count() != Some(1) {
-            self.progress.pause(|| warn(&missing.reason));
+        if self.quiet || self.input.frame_count() == Some(1) {
+            return;
+        }
+        if let Some(warning) = self.warnings.take(missing) {
+            self.progress.pause(|| warn(&warning));
         }
     }
 
-    /// Why the reading ended before its time, if it did.
-    pub(crate) fn into_failure(self) -> Option<Failure> {
-        self.failure
+    /// Says what has been left for the end of the reading, and why that came before its time, if it did.
+    pub(crate) fn finish(self) -> Option<Failure> {
+        let Self { progress, warnings, failure, .. } = self;
+        warnings.finish().for_each(|warning| progress.pause(|| warn(&warning)));
+        failure
     }
 }

@@ -10,6 +10,7 @@ use freeform_motion::outline_io::{
 
 use crate::args::PictureOptions;
 use crate::failure::{Failure, plain};
+use crate::left_out::Missing;
 use crate::picture_input::PictureInput;
 use crate::stdin::Stdin;
 use crate::truth::SimulatedMotion;
@@ -34,24 +35,6 @@ pub(crate) enum Item {
     Rejected { object: String, frame: u64, reason: String },
     /// A picture without an object, or one that cannot be read.
     Missing(Missing),
-}
-
-/// A picture without an outline.
-#[derive(Debug)]
-pub(crate) struct Missing {
-    pub(crate) reason: String,
-    /// The picture, if it could be read.
-    pub(crate) seen_in: Option<Rc<SeenIn>>,
-}
-
-impl Missing {
-    /// Why nothing was found, where this is all there is.
-    pub(crate) fn into_failure(self) -> Failure {
-        match self.seen_in {
-            Some(_) => Failure::no_result(self.reason),
-            None => Failure::unusable(self.reason),
-        }
-    }
 }
 
 /// A sequence of outlines, open for reading.
@@ -104,6 +87,11 @@ impl Input {
             let pictures = PictureInput::from_stream(source, &name, options)?;
             return Self::of_pictures(pictures, name);
         }
+        // Of an empty input it is better said that it is empty.
+        if let (given @ [_, ..], false) = (&options.given()[..], source.fill_buf().map_err(failed)?.is_empty()) {
+            let options = given.join(", ");
+            return Err(Failure::unusable(format_args!("{options}: for pictures, but {name} is none (read as CSV)")));
+        }
         let head = comment_lines(&mut source).map_err(failed)?;
         let truth = String::from_utf8_lossy(&head)
             .lines()
@@ -116,15 +104,20 @@ impl Input {
 
     /// Number of frames, where it is known before they are read.
     pub(crate) fn frame_count(&self) -> Option<u64> {
-        match &self.source {
-            Source::Csv(_) => None,
-            Source::Pictures(pictures) => pictures.frame_count(),
-        }
+        self.pictures().and_then(PictureInput::frame_count)
     }
 
     /// Whether the outlines come from pictures.
     pub(crate) fn has_pictures(&self) -> bool {
-        matches!(self.source, Source::Pictures(_))
+        self.pictures().is_some()
+    }
+
+    /// The pictures that the outlines come from.
+    pub(crate) fn pictures(&self) -> Option<&PictureInput> {
+        match &self.source {
+            Source::Csv(_) => None,
+            Source::Pictures(pictures) => Some(pictures),
+        }
     }
 }
 

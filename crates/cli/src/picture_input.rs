@@ -5,13 +5,19 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use freeform_motion::outline_io::{
-    Background, Clipping, Contrast, Difference, OutlineFrame, PictureError, PictureFrame, PictureOutlines,
-    PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold, TraceSettings, read_picture,
+    Background, Clipping, Contrast, Difference, OutlineFrame, PictureError, PictureErrorKind, PictureFrame,
+    PictureOutlines, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold, TraceError,
+    TraceSettings, TracedOutline, read_picture,
 };
+use freeform_motion::riccati::CameraScale;
 
-use crate::args::PictureOptions;
+use crate::args::{PictureOptions, through_ffmpeg};
+use crate::commands::quoted;
 use crate::failure::Failure;
-use crate::input::{Item, Missing, SeenIn};
+use crate::input::{Item, SeenIn};
+use crate::left_out::{Missing, MissingKind};
+use crate::meaning_of_b::MeaningOfB;
+use crate::output::short;
 
 /// Pictures that the running median is taken of.
 const MEDIAN_SIZE: usize = 25;
@@ -19,12 +25,35 @@ const MEDIAN_SIZE: usize = 25;
 /// The outlines in pictures, one object after the other.
 pub(crate) struct PictureInput {
     outlines: PictureOutlines<PictureSequence>,
+    options: PictureOptions,
     trace: TraceSettings,
     /// Objects of the present picture that have not been handed on.
     waiting: VecDeque<Item>,
-    /// Pictures read and pictures that gave an outline.
-    pub(crate) frames: u64,
-    pub(crate) frames_traced: u64,
+    /// Pictures read.
+    frames: u64,
+    found: Found,
+}
+
+/// What the settings that were left open came to.
+#[derive(Debug, Default)]
+struct Found {
+    /// Lowest and highest grey value on an outline.
+    thresholds: Option<(f64, f64)>,
+    /// Columns and rows of the pictures.
+    size: Option<(u32, u32)>,
+    /// Of the last picture: its number and time in seconds.
+    last: Option<(u64, f64)>,
+}
+
+impl Found {
+    fn take(&mut self, frame: &PictureFrame, objects: &[(u64, TracedOutline)]) {
+        self.size.get_or_insert(frame.picture.dimensions());
+        self.last = Some((frame.frame, frame.time));
+        for (_, traced) in objects {
+            let (low, high) = self.thresholds.unwrap_or((traced.threshold, traced.threshold));
+            self.thresholds = Some((low.min(traced.threshold), high.max(traced.threshold)));
+        }
+    }
 }
 
 impl PictureInput {
@@ -48,7 +77,8 @@ impl PictureInput {
         let settings = picture_settings(options, sequence.pixel_aspect())?;
         let trace = settings.trace;
         let outlines = PictureOutlines::new(sequence, settings).map_err(Failure::unusable)?;
-        Ok(Self { outlines, trace, waiting: VecDeque::new(), frames: 0, frames_traced: 0 })
+        let options = options.clone();
+        Ok(Self { outlines, options, trace, waiting: VecDeque::new(), frames: 0, found: Found::default() })
     }
 
     /// Number of pictures, where it is known.
@@ -56,29 +86,74 @@ impl PictureInput {
         self.outlines.source().frame_count()
     }
 
+    /// Which velocity b is in these pictures.
+    pub(crate) fn meaning_of_b(&self, scale: Option<CameraScale>) -> MeaningOfB {
+        MeaningOfB::in_pictures(&self.options, self.trace.pixel_aspect, scale)
+    }
+
+    /// How outlines were found, as a report lists it: the options, and what those that were left open came to.
+    pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
+        let Self { options, trace, found, .. } = self;
+        let mut listed = options.listed();
+        let rate = found.last.filter(|(_, time)| *time > 0.0).map(|(frame, time)| short(frame as f64 / time));
+        let rate = match (options.fps, rate) {
+            (Some(fps), _) => fps.to_string(),
+            (None, Some(rate)) if self.frame_count().is_some() => format!("{rate}, as none is given"),
+            (None, Some(rate)) => format!("{rate}, of the video or animation"),
+            (None, None) => "unknown from one picture".to_owned(),
+        };
+        listed.push(("Frames per second", rate));
+        match (trace.ring, found.size) {
+            (Some(ring), Some((columns, rows))) => {
+                let by_default = if ring.width.is_none() { ", a sixtieth of the shorter side" } else { "" };
+                let width = short(ring.widest(columns, rows));
+                listed.push(("Widest line expected", format!("{width} pixels{by_default}")));
+            }
+            (Some(_), None) => {}
+            (None, _) => listed.push((
+                "Smoothing",
+                options.smoothing.map_or_else(
+                    || "1 pixel in masks, 0.5 pixels in others".to_owned(),
+                    |sigma| format!("{sigma} pixels"),
+                ),
+            )),
+        }
+        // Given levels and rings have no threshold of Otsu's.
+        if let (None, None, Some((low, high))) = (trace.ring, options.threshold, found.thresholds) {
+            let of = if options.background.is_some() { "differences from the background" } else { "grey values" };
+            let [low, high] = [low, high].map(short);
+            let range = if low == high { low } else { format!("{low} to {high}") };
+            listed.push(("Thresholds by Otsu", format!("{range} ({of})")));
+        }
+        listed.push(("Pixel width over height", trace.pixel_aspect.to_string()));
+        listed
+    }
+
     fn read_picture(&mut self) -> Option<()> {
         let traced = self.outlines.next()?;
+        let frame = self.frames;
         self.frames += 1;
         match traced {
             Err(error) => {
-                self.waiting.push_back(Item::Missing(Missing { reason: error.to_string(), seen_in: None }));
+                let (reason, kind) = (described(&error), MissingKind::from(&error.kind));
+                self.waiting.push_back(Item::Missing(Missing { frame, reason, hint: None, kind, seen_in: None }));
             }
             Ok(traced) => {
+                self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
                 let PictureFrame { frame, time, file, picture } = traced.frame;
                 let seen_in = Rc::new(SeenIn { frame, grid: self.trace.pixel_grid(picture.height()), picture });
                 match traced.objects {
                     Err(error) => {
                         let reason = format!("{file}: frame {frame}: {error}");
-                        self.waiting.push_back(Item::Missing(Missing { reason, seen_in: Some(seen_in) }));
+                        let (hint, kind) = (hint(&error, &self.options), MissingKind::from(&error));
+                        let seen_in = Some(seen_in);
+                        self.waiting.push_back(Item::Missing(Missing { frame, reason, hint, kind, seen_in }));
                     }
-                    Ok(objects) => {
-                        self.frames_traced += 1;
-                        self.waiting.extend(objects.into_iter().map(|(name, traced)| {
-                            let outline = traced.outline;
-                            let outline = OutlineFrame { frame, time, object: name.to_string(), outline };
-                            Item::Outline(outline, Some(Rc::clone(&seen_in)))
-                        }));
-                    }
+                    Ok(objects) => self.waiting.extend(objects.into_iter().map(|(name, traced)| {
+                        let outline = traced.outline;
+                        let outline = OutlineFrame { frame, time, object: name.to_string(), outline };
+                        Item::Outline(outline, Some(Rc::clone(&seen_in)))
+                    })),
                 }
             }
         }
@@ -98,7 +173,31 @@ impl Iterator for PictureInput {
 }
 
 fn unreadable(error: &PictureError) -> Failure {
-    Failure::unusable(error)
+    Failure::unusable(described(error))
+}
+
+/// An error, and what to do about it where that is known.
+fn described(error: &PictureError) -> String {
+    match error.kind {
+        PictureErrorKind::CompressedVideo { .. } => {
+            let video = if error.file == "<stdin>" { "video.mp4".to_owned() } else { quoted(&error.file) };
+            format!("{error}; pipe it: {}", through_ffmpeg(&video))
+        }
+        _ => error.to_string(),
+    }
+}
+
+/// What may help where no object is found.
+fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
+    match error {
+        TraceError::NoRing => Some("try another --ring, --ring-width or --channel"),
+        TraceError::TooSmall { .. } => Some("try a smaller --min-area, or --dark"),
+        TraceError::FillsPicture | TraceError::NoObject { .. } => Some("try --dark or --light, or another --threshold"),
+        TraceError::NoContrast { .. } if options.background.is_some() => Some("try another --background or --channel"),
+        TraceError::NoContrast { .. } if options.dark => Some("try --light, --background median, --ring or --channel"),
+        TraceError::NoContrast { .. } => Some("try --dark, --background median, --ring or --channel"),
+        _ => None,
+    }
 }
 
 fn sequence_settings(options: &PictureOptions) -> SequenceSettings {

@@ -12,10 +12,12 @@ use rayon::prelude::*;
 use crate::args::{IdentifyMethod, TrackOptions};
 use crate::batch::{BatchReader, Pace, Taken};
 use crate::failure::Failure;
+use crate::frame_ranges::FrameRanges;
 use crate::identifier::{Identifier, Step};
-use crate::input::{Input, Missing, SeenIn};
+use crate::input::{Input, SeenIn};
+use crate::left_out::Missing;
 
-/// Reasons kept of the frames of an object that were rejected, and of pictures left out.
+/// Reasons told of frames of an object that were rejected, and of pictures left out.
 pub(crate) const REASONS_KEPT: usize = 10;
 
 /// What a frame of an object gave.
@@ -116,6 +118,8 @@ struct Object {
     frames: usize,
     rejected: usize,
     reasons: Vec<String>,
+    /// Frames rejected after those whose reasons are kept.
+    rejected_later: FrameRanges,
 }
 
 impl Tracking {
@@ -185,7 +189,7 @@ impl Tracking {
         }
         // Nothing but pictures without an object: the first says why.
         let nothing = first_missing.filter(|_| self.objects.is_empty()).map(Missing::into_failure);
-        Ok(reader.into_failure().or(nothing))
+        Ok(reader.finish().or(nothing))
     }
 
     /// Takes the next frame of an object.
@@ -215,7 +219,7 @@ impl Tracking {
         let scale = self.options.scale;
         let in_place = |reason| format!("frame {} of object {:?}: {reason}", frame.frame, frame.object);
         let rejected_because = step.rejected_because.map(in_place);
-        self.objects[position].count(rejected_because.as_deref());
+        self.objects[position].count(frame.frame, rejected_because.as_deref());
         Observation {
             object: frame.object.clone(),
             frame: frame.frame,
@@ -233,7 +237,7 @@ impl Tracking {
     /// Takes note of a frame whose points are no outline.
     fn reject(&mut self, object: String, frame: u64, reason: String) -> Result<Observation, Failure> {
         let position = self.position(&object)?;
-        self.objects[position].count(Some(&reason));
+        self.objects[position].count(frame, Some(&reason));
         Ok(Observation {
             object,
             frame,
@@ -267,7 +271,8 @@ impl Tracking {
         }
         warnings.extend(object.reasons.iter().map(|reason| format!("rejected: {reason}")));
         if object.rejected > object.reasons.len() {
-            warnings.push(format!("rejected: {} more frame(s)", object.rejected - object.reasons.len()));
+            let (count, frames) = (object.rejected - object.reasons.len(), &object.rejected_later);
+            warnings.push(format!("rejected: {count} more frame(s), {frames}"));
         }
         ObjectResult {
             object: object.name.clone(),
@@ -289,7 +294,8 @@ impl Tracking {
         let identifier = Identifier::new(&self.options)?;
         let (name, position) = (name.to_owned(), self.objects.len());
         self.positions.insert(name.clone(), position);
-        self.objects.push(Object { name, identifier, frames: 0, rejected: 0, reasons: Vec::new() });
+        let (reasons, rejected_later) = (Vec::new(), FrameRanges::default());
+        self.objects.push(Object { name, identifier, frames: 0, rejected: 0, reasons, rejected_later });
         Ok(position)
     }
 }
@@ -311,12 +317,14 @@ impl ObjectSteps<'_> {
 
 impl Object {
     /// Counts a frame, and keeps why it was rejected, if it was.
-    fn count(&mut self, rejected_because: Option<&str>) {
+    fn count(&mut self, frame: u64, rejected_because: Option<&str>) {
         self.frames += 1;
         let Some(reason) = rejected_because else { return };
         self.rejected += 1;
         if self.reasons.len() < REASONS_KEPT {
             self.reasons.push(reason.to_owned());
+        } else {
+            self.rejected_later.add(frame);
         }
     }
 }

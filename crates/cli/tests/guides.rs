@@ -40,8 +40,9 @@ fn write_frames(folder: &Path) {
     }
 }
 
+/// Runs the commands of a guide and gives what they print.
 #[track_caller]
-fn run_guide(guide: &str) {
+fn run_guide(guide: &str) -> String {
     let script = commands(guide);
     assert!(script.contains("freeform "), "{guide} has no commands");
     let folder = tempfile::tempdir().expect("a folder");
@@ -59,16 +60,21 @@ fn run_guide(guide: &str) {
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{guide}: {errors}\n{}", String::from_utf8_lossy(&output.stdout));
     assert!(!errors.contains("panicked"), "{guide}: {errors}");
+    String::from_utf8(output.stdout).expect("UTF-8")
 }
 
 #[test]
 fn get_started_runs() {
-    run_guide("get-started.md");
+    let printed = run_guide("get-started.md");
+    assert!(printed.contains("truth") && printed.contains("freeform.identify/1"), "{printed}");
 }
 
 #[test]
 fn video_to_motion_runs() {
-    run_guide("video-to-motion.md");
+    let printed = run_guide("video-to-motion.md");
+    let aspect = printed.lines().find_map(|line| line.strip_prefix("aspect ")).expect("the aspect");
+    assert!((aspect.parse::<f64>().expect("a number") - 1.0).abs() < 0.02, "{aspect}");
+    assert!(printed.contains("b: velocity at the lower left corner, in lengths/s, a pixel 0.5 high"), "{printed}");
 }
 
 #[test]

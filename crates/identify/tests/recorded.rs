@@ -50,6 +50,34 @@ fn the_state_is_what_the_filter_says_of_pose_and_motion() {
 }
 
 #[test]
+fn errors_that_go_together_along_the_outline_widen_the_deviations_of_state_and_estimate_alike() {
+    let mut frames =
+        record(BuiltInShape::Bird, &constant_motion(MotionModel::Rigid, 20), Corruption::default(), NOISE, 3);
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    for (_, outline) in &mut frames {
+        // One error for each dozen of points, as the edges of pixels or a shadow make it.
+        let mut shift = nalgebra::Vector2::zeros();
+        let moved = outline.points().enumerate().map(|(index, point)| {
+            if index % 12 == 0 {
+                let mut error = || -> f64 { StandardNormal.sample(&mut random) };
+                shift = 2.0 * NOISE * nalgebra::Vector2::new(error(), error());
+            }
+            point + shift
+        });
+        *outline = Outline::closed(moved.collect()).expect("an outline");
+    }
+    let mut filter = MotionFilter::new(FilterSettings::default()).expect("good settings");
+    for (time, outline) in &frames {
+        filter.step(*time, outline).expect("increasing times");
+    }
+    let (state, estimate) = (filter.state().expect("a state").motion(), filter.estimate().expect("an estimate"));
+    for (of_state, of_estimate) in state.parameters().zip(estimate.parameters()) {
+        let [a, b] = [of_state, of_estimate].map(|p| p.standard_deviation.expect("one"));
+        assert!((a - b).abs() < 1e-6 * b, "{}: {a} {b}", of_state.name);
+    }
+}
+
+#[test]
 fn without_process_noise_the_smoothed_motion_is_the_last_one_and_the_poses_lie_on_its_path() {
     for model in MotionModel::ALL {
         let frames = record(BuiltInShape::Glider, &constant_motion(model, 20), Corruption::default(), NOISE, 4);

@@ -1,12 +1,16 @@
 use std::fs::File;
-use std::io::{BufRead, BufReader, Seek};
+use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::Path;
 
 use image::codecs::gif::GifDecoder;
-use image::{AnimationDecoder, DynamicImage, Frames, GrayImage, ImageDecoder, ImageError, ImageReader, Limits};
+use image::{
+    AnimationDecoder, DynamicImage, Frames, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits,
+};
 
 use crate::channel::Channel;
+use crate::compressed_video::compressed_video;
 use crate::gif_interval::constant_interval;
+use crate::jpeg_end::reaches_its_end;
 use crate::picture_error::{PictureError, PictureErrorKind};
 
 /// Largest number of pixels accepted, 8192 x 8192: tracing then needs less than 1.5 GiB in the worst case.
@@ -46,14 +50,27 @@ pub(crate) fn read_channel(path: &Path, channel: Channel) -> Result<GrayImage, P
 }
 
 pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Result<GrayImage, PictureErrorKind> {
-    if source.fill_buf()?.is_empty() {
+    let start = source.fill_buf()?;
+    if start.is_empty() {
         return Err(PictureErrorKind::Empty);
     }
-    let mut reader = ImageReader::new(source).with_guessed_format()?;
+    if let Some(format) = compressed_video(start) {
+        return Err(PictureErrorKind::CompressedVideo { format });
+    }
+    let reader = ImageReader::new(source).with_guessed_format()?;
     let Some(format) = reader.format() else { return Err(PictureErrorKind::NotAPicture) };
     if !format.reading_enabled() {
         return Err(PictureErrorKind::Unsupported { format: format.to_mime_type() });
     }
+    let mut source = reader.into_inner();
+    if format == ImageFormat::Jpeg {
+        let start = source.stream_position()?;
+        if !reaches_its_end(&mut source)? {
+            return Err(PictureErrorKind::CutShort);
+        }
+        source.seek(SeekFrom::Start(start))?;
+    }
+    let mut reader = ImageReader::with_format(source, format);
     reader.limits(limits());
     let decoder = reader.into_decoder().map_err(damaged)?;
     // The header has been read, the pixels have not: nothing large is allocated yet.

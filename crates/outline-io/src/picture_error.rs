@@ -59,6 +59,12 @@ pub enum PictureErrorKind {
         /// Its media type.
         format: &'static str,
     },
+    /// Video that has to be decoded first.
+    #[error("{format} video is not decoded here, only uncompressed video (y4m) is")]
+    CompressedVideo {
+        /// Name of the format.
+        format: &'static str,
+    },
     /// More pixels than are accepted.
     #[error("{width} x {height} pixels, more than {limit} in all")]
     TooLarge {
@@ -109,6 +115,9 @@ pub enum PictureErrorKind {
         /// Bytes of a frame.
         expected: usize,
     },
+    /// The file ends within the picture.
+    #[error("the picture is damaged: the file ends within it")]
+    CutShort,
     /// The file ends early or contradicts itself.
     #[error("the picture is damaged: {0}")]
     Damaged(#[source] ImageError),

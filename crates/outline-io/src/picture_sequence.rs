@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use image::{GrayImage, ImageFormat};
 
 use crate::channel::Channel;
+use crate::compressed_video::compressed_video;
 use crate::natural_order::natural_order;
 use crate::picture::{Animation, decode, read_channel};
 use crate::picture_error::{PictureError, PictureErrorKind};
@@ -124,10 +125,11 @@ impl PictureSequence {
         has_picture_extension(path) || path.is_dir() || is_pattern(path)
     }
 
-    /// Whether the beginning of a stream is that of a picture or video.
+    /// Whether the beginning of a stream is that of a picture or video, also of one that cannot be read here.
     #[must_use]
     pub fn begins_with(start: &[u8]) -> bool {
-        start.starts_with(MAGIC) || image::guess_format(&start[..start.len().min(MAGIC_LENGTH)]).is_ok()
+        let start = &start[..start.len().min(MAGIC_LENGTH)];
+        start.starts_with(MAGIC) || image::guess_format(start).is_ok() || compressed_video(start).is_some()
     }
 
     /// Number of frames, where it is known before they are read.
@@ -166,6 +168,8 @@ impl PictureSequence {
         let start = filled(&mut source)?;
         let pictures = if start.is_empty() {
             return Err(PictureErrorKind::Empty);
+        } else if let Some(format) = compressed_video(start) {
+            return Err(PictureErrorKind::CompressedVideo { format });
         } else if start.starts_with(b"Y") {
             let video = VideoReader::open(source, channel)?;
             self.pixel_aspect = video.pixel_aspect;

@@ -49,10 +49,10 @@ pub(crate) struct RingObject {
 }
 
 impl Ring {
-    fn reach(&self, picture: &GrayImage) -> usize {
-        let shorter = f64::from(picture.width().min(picture.height()));
-        let width = self.width.unwrap_or_else(|| (WIDTH_SHARE * shorter).max(LEAST_WIDTH));
-        width.ceil() as usize
+    /// Widest line expected in a picture of so many columns and rows, in pixels.
+    #[must_use]
+    pub fn widest(&self, columns: u32, rows: u32) -> f64 {
+        self.width.unwrap_or_else(|| (WIDTH_SHARE * f64::from(columns.min(rows))).max(LEAST_WIDTH))
     }
 
     /// The objects with the clearest rings, the clearest first: those with the largest product of the strength of the
@@ -67,7 +67,7 @@ impl Ring {
         smallest_area: u64,
         limit: usize,
     ) -> Result<Vec<RingObject>, TraceError> {
-        let reach = self.reach(picture);
+        let reach = self.widest(picture.width(), picture.height()).ceil() as usize;
         let strength = self.strength(picture, reach);
         let median = median(&strength.values);
         let area = u32::try_from(smallest_area).unwrap_or(u32::MAX).max(1);

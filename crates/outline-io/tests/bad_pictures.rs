@@ -85,6 +85,51 @@ fn a_png_cut_anywhere_is_an_error() {
     }
 }
 
+fn jpeg(picture: &GrayImage) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, ImageFormat::Jpeg).expect("memory never fails");
+    bytes.into_inner()
+}
+
+#[test]
+fn a_jpeg_cut_anywhere_is_an_error_and_what_follows_a_whole_one_is_not() {
+    let whole = jpeg(&disc());
+    let expected = decode(&whole).expect("a picture");
+    for length in (1..whole.len()).step_by(41).chain([whole.len() - 2, whole.len() - 1]) {
+        assert!(decode(&whole[..length]).is_err(), "cut to {length} of {} bytes", whole.len());
+    }
+    let half = decode(&whole[..whole.len() / 2]).expect_err("half a picture");
+    assert_eq!(half.to_string(), "the picture is damaged: the file ends within it");
+    // Filled up, as by a copy that was broken off.
+    let filled: Vec<u8> = whole[..whole.len() / 2].iter().copied().chain(std::iter::repeat_n(0, 5000)).collect();
+    assert!(decode(&filled).is_err());
+    let followed = [&whole[..], b"a preview, or the next picture"].concat();
+    assert_eq!(decode(&followed).expect("a picture"), expected);
+}
+
+#[test]
+fn a_small_picture_within_a_jpeg_does_not_stand_for_its_end() {
+    let (whole, small) = (jpeg(&disc()), jpeg(&GrayImage::new(8, 8)));
+    // As cameras write a preview: a segment behind the start of the file.
+    let length = u16::try_from(small.len() + 2).expect("small").to_be_bytes();
+    let with_preview = [&whole[..2], &[0xff, 0xe2], &length, &small, &whole[2..]].concat();
+    assert_eq!(decode(&with_preview).expect("a picture"), decode(&whole).expect("a picture"));
+    assert!(matches!(decode(&with_preview[..with_preview.len() / 2 + 200]), Err(PictureErrorKind::CutShort)));
+}
+
+#[test]
+fn compressed_video_is_told_from_pictures_by_its_content() {
+    for (start, name) in [
+        (&b"\x00\x00\x00\x20ftypisom\x00\x00\x02\x00"[..], "MP4"),
+        (b"\x00\x00\x00\x14ftypqt  \x00\x00\x02\x00", "QuickTime"),
+        (b"\x1a\x45\xdf\xa3\x01\x00\x00\x00\x00\x00\x00\x1f", "Matroska or WebM"),
+        (b"RIFF\x24\x10\x00\x00AVI LIST", "AVI"),
+    ] {
+        assert!(matches!(decode(start), Err(PictureErrorKind::CompressedVideo { format }) if format == name), "{name}");
+    }
+    assert!(matches!(decode(b"x,y,free,time\n"), Err(PictureErrorKind::NotAPicture)));
+}
+
 #[test]
 fn a_png_with_flipped_bytes_never_panics() {
     let whole = png(disc());

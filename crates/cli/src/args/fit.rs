@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use freeform_motion::curve_fit::{Degree, FitSettings, Method};
 
-use super::pictures::{PICTURE_INPUTS, PictureOptions};
+use super::pictures::{PictureOptions, picture_inputs};
 use super::values::{degree, not_negative, positive};
 use crate::failure::Failure;
 
@@ -20,7 +20,7 @@ Examples:
 /// lie from it, the complex lines x + l y + k of every level, the related points that move with the curve, and its affine
 /// invariants.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{PICTURE_INPUTS}"))]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs()))]
 pub(crate) struct FitArgs {
     /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
     #[arg(required = true, value_name = "INPUT")]

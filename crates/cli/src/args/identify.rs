@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use freeform_motion::curve_fit::Degree;
 use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 
-use super::pictures::{PICTURE_INPUTS, PictureOptions};
+use super::pictures::{PictureOptions, picture_inputs};
 use super::values::{camera_scale, degree, motion};
 
 const EXAMPLES: &str = "\
@@ -22,7 +22,7 @@ the result.";
 
 /// Identify the motion of every object in a sequence of outlines.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{PICTURE_INPUTS}"))]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs()))]
 pub(crate) struct IdentifyArgs {
     /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
     #[arg(required = true, value_name = "INPUT")]
@@ -52,8 +52,9 @@ pub(crate) struct IdentifyArgs {
     /// Write one row per object and frame with its pose and motion, and their standard deviations
     ///
     /// The pose is told since the first frame: rigid, angle (rad, positive where omega is), x and y, where the middle of the
-    /// points of the first outline is now; similarity, scale before them; affine, the matrix m11, m12, m21, m22, x and y. Not with
-    /// the adaptive method.
+    /// points of the first outline is now; similarity, scale before them; affine, the matrix m11, m12, m21, m22, x and y. Empty
+    /// where the motion is not known: in the first frame, in one that the object was found again in, while it is lost, and in a
+    /// frame that is no outline; in frames rejected while it is followed, where it is predicted to be. Not with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 
@@ -70,6 +71,9 @@ pub(crate) struct IdentifyArgs {
     pub(crate) report: Option<PathBuf>,
 
     /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
+    ///
+    /// Drawings of an earlier run are removed from the folder; a folder with pictures of the same names that freeform has not
+    /// drawn is refused.
     #[arg(long, value_name = "DIR|FILE.gif")]
     pub(crate) overlay: Option<PathBuf>,
 
@@ -101,7 +105,7 @@ before it. Ctrl-C ends it after the line being written.";
 ///
 /// A frame is complete when the row after it has been read. Memory does not grow with the number of frames.
 #[derive(Debug, Args)]
-#[command(after_help = TRACK_EXAMPLES, after_long_help = format!("{TRACK_EXAMPLES}\n\n{PICTURE_INPUTS}"))]
+#[command(after_help = TRACK_EXAMPLES, after_long_help = format!("{TRACK_EXAMPLES}\n\n{}", picture_inputs()))]
 pub(crate) struct TrackArgs {
     /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
     #[arg(default_value = "-", value_name = "INPUT")]
@@ -111,6 +115,9 @@ pub(crate) struct TrackArgs {
     pub(crate) options: TrackOptions,
 
     /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
+    ///
+    /// Drawings of an earlier run are removed from the folder; a folder with pictures of the same names that freeform has not
+    /// drawn is refused.
     #[arg(long, value_name = "DIR|FILE.gif")]
     pub(crate) overlay: Option<PathBuf>,
 

@@ -11,13 +11,13 @@ mod values;
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, Parser, Subcommand, error::ErrorKind};
+use clap::{Args, CommandFactory, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
 
 pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat, EvaluatedMethod, SamplingChoice};
 pub(crate) use fit::{FitArgs, FitFormat};
 pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
 pub(crate) use outline::OutlineArgs;
-pub(crate) use pictures::{ChannelChoice, PictureOptions};
+pub(crate) use pictures::{ChannelChoice, PictureOptions, through_ffmpeg};
 pub(crate) use reproduce::{Part, ReproduceArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
@@ -91,7 +91,8 @@ pub(crate) struct CompletionsArgs {
 
 /// Reads the arguments of the process. Help and version are printed here.
 pub(crate) fn parse() -> Result<Cli, Failure> {
-    Cli::try_parse().map_err(|error| match error.kind() {
+    let matches = with_negative_values(Cli::command()).try_get_matches();
+    matches.and_then(|matches| Cli::from_arg_matches(&matches)).map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
             // A closed pipe is no error.
             let _ = error.print();
@@ -102,6 +103,16 @@ pub(crate) fn parse() -> Result<Cli, Failure> {
             Failure::unusable("a command is missing")
         }
         _ => Failure::unusable(one_line(&error.render().to_string())),
+    })
+}
+
+/// Takes negative numbers for values of options, so that one out of range is refused as such and not as an unknown option.
+fn with_negative_values(command: clap::Command) -> clap::Command {
+    command.mut_subcommands(|command| {
+        command.mut_args(|arg| {
+            let takes_value = arg.get_long().is_some() && arg.get_action().takes_values();
+            if takes_value { arg.allow_negative_numbers(true) } else { arg }
+        })
     })
 }
 

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::pictures::{PICTURE_INPUTS, PictureOptions};
+use super::pictures::{PictureOptions, picture_inputs};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -16,7 +16,7 @@ Examples:
 /// Each picture is one frame. The outer outline of its largest object, or of all, is traced to a fraction of a pixel, its
 /// holes filled; what the edge of the picture clips becomes open arcs. y runs upwards from the lower edge.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{PICTURE_INPUTS}"))]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs()))]
 pub(crate) struct OutlineArgs {
     /// The pictures in the order of time: files, folders, quoted patterns; '-' is standard input
     #[arg(required = true, value_name = "INPUT")]
@@ -27,6 +27,9 @@ pub(crate) struct OutlineArgs {
     pub(crate) output: PathBuf,
 
     /// Draw the outlines on every picture: a folder for PNG files, or FILE.gif
+    ///
+    /// Drawings of an earlier run are removed from the folder; a folder with pictures of the same names that freeform has not
+    /// drawn is refused.
     #[arg(long, value_name = "DIR|FILE.gif")]
     pub(crate) overlay: Option<PathBuf>,
 

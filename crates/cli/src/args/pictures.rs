@@ -5,12 +5,23 @@ use freeform_motion::outline_io::{Channel, Contrast, Selection};
 
 use super::values::{not_negative, positive};
 
+/// Smallest object where none is given, in pixels.
+const SMALLEST_OBJECT: u64 = 64;
+
 /// What the help of a command that takes pictures says of them.
-pub(crate) const PICTURE_INPUTS: &str = "\
-Pictures: PNG, JPEG, TIFF, BMP, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted pattern, in natural \
-order (frame-9 before frame-10). Any other video comes through a pipe:
-  ffmpeg -loglevel error -i video.mp4 -f yuv4mpegpipe -pix_fmt yuv420p - | freeform COMMAND -
-A picture that cannot be read, has another size than the first, or shows no object is named in a warning and left out.";
+pub(crate) fn picture_inputs() -> String {
+    format!(
+        "Pictures: PNG, JPEG, TIFF, BMP, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted pattern, in \
+         natural order (frame-9 before frame-10). Any other video comes through a pipe:\n  {}\nA picture that cannot be read, \
+         has another size than the first, or shows no object is named in a warning and left out.",
+        through_ffmpeg("video.mp4")
+    )
+}
+
+/// The command that hands on a video which is not read directly.
+pub(crate) fn through_ffmpeg(video: &str) -> String {
+    format!("ffmpeg -loglevel error -i {video} -f yuv4mpegpipe -pix_fmt yuv420p - | freeform COMMAND -")
+}
 
 /// How outlines are found in pictures.
 #[derive(Debug, Clone, Args)]
@@ -53,7 +64,7 @@ pub(crate) struct PictureOptions {
     pub(crate) smoothing: Option<f64>,
 
     /// Smallest object, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = 64)]
+    #[arg(long, value_name = "PIXELS", default_value_t = SMALLEST_OBJECT)]
     pub(crate) min_area: u64,
 
     /// Which objects are taken
@@ -78,20 +89,31 @@ pub(crate) struct PictureOptions {
 }
 
 impl PictureOptions {
+    /// Names of the options that ask for something else than the defaults.
+    pub(crate) fn given(&self) -> Vec<&'static str> {
+        let options = [
+            ("--fps", self.fps.is_some()),
+            ("--dark", self.dark),
+            ("--light", self.light),
+            ("--threshold", self.threshold.is_some()),
+            ("--channel", self.channel != ChannelChoice::Luminance),
+            ("--background", self.background.is_some()),
+            ("--ring", self.ring.is_some()),
+            ("--ring-width", self.ring_width.is_some()),
+            ("--smoothing", self.smoothing.is_some()),
+            ("--min-area", self.min_area != SMALLEST_OBJECT),
+            ("--objects", self.objects != ObjectsChoice::Largest),
+            ("--pixel-size", self.pixel_size != 1.0),
+            ("--pixel-aspect", self.pixel_aspect.is_some()),
+            ("--y-up", self.y_up),
+            ("--y-down", self.y_down),
+        ];
+        options.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
+    }
+
     /// Whether all objects are taken, so that their names tell them apart.
     pub(crate) fn follows_all(&self) -> bool {
         self.objects == ObjectsChoice::All
-    }
-
-    /// Where the origin of the coordinates lies, and the unit of velocities in them, for reading.
-    pub(crate) fn origin_and_speed_unit(&self) -> (&'static str, String) {
-        let origin = if self.y_down { "the upper left corner" } else { "the lower left corner" };
-        let unit = match self.pixel_size {
-            1.0 if self.pixel_aspect.is_some_and(|ratio| ratio != 1.0) => "in pixel heights/s".to_owned(),
-            1.0 => "in pixels/s".to_owned(),
-            size => format!("in lengths/s, a pixel {size} high"),
-        };
-        (origin, unit)
     }
 
     /// The options as a report lists them.
@@ -106,8 +128,6 @@ impl PictureOptions {
         let name = |value: Option<clap::builder::PossibleValue>| {
             value.map_or_else(String::new, |value| value.get_name().to_owned())
         };
-        let aspect =
-            self.pixel_aspect.map_or_else(|| "that of the video, else 1".to_owned(), |ratio| ratio.to_string());
         vec![
             ("Objects found", found),
             (
@@ -115,7 +135,7 @@ impl PictureOptions {
                 format!("{}, of at least {} pixels", name(self.objects.to_possible_value()), self.min_area),
             ),
             ("Channel", name(self.channel.to_possible_value())),
-            ("Pixel", format!("height {}, width over height {aspect}", self.pixel_size)),
+            ("Pixel height", self.pixel_size.to_string()),
             ("y", if self.y_down { "downwards" } else { "upwards" }.to_owned()),
         ]
     }

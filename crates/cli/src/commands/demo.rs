@@ -8,10 +8,12 @@ use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Sim
 
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
-use super::{FittedOutline, History, LeftOut, command_line};
+use super::{FittedOutline, command_line};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::failure::{Failure, plain, warn};
+use crate::history::History;
 use crate::identifier::pipeline_settings;
+use crate::left_out::LeftOut;
 use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
 };

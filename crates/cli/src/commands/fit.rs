@@ -7,7 +7,9 @@ use nalgebra::Point2;
 
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
+use crate::frame_ranges::FrameRanges;
 use crate::input::{Input, Item};
+use crate::left_out::{Missing, MissingWarnings};
 use crate::level_set::stray_parts;
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
@@ -60,21 +62,24 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let name = input.name.clone();
     let mut sink = Sink::stdout();
     let mut collected = Collected::default();
-    let mut reasons = Vec::new();
+    let (mut reasons, mut first_missing, mut warnings) = (Vec::new(), None::<Missing>, MissingWarnings::default());
     let mut failure = None;
-    let mut damaged = false;
+    let mut frames = FrameRanges::default();
     let progress = Progress::of_frames(input.frame_count(), false);
+    let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
     for item in input {
         progress.advance();
         let frame = match item {
             Ok(Item::Outline(frame, _)) => frame,
-            Ok(Item::Rejected { reason, .. }) => {
-                reasons.push(reason);
+            Ok(Item::Rejected { reason, frame, .. }) => {
+                reasons.extend(Some(reason).filter(|_| is_wanted(frame)));
                 continue;
             }
             Ok(Item::Missing(missing)) => {
-                damaged |= missing.seen_in.is_none();
-                reasons.push(missing.reason);
+                if is_wanted(missing.frame) {
+                    reasons.extend(warnings.take(&missing));
+                    first_missing.get_or_insert(missing);
+                }
                 continue;
             }
             Err(error) => {
@@ -82,7 +87,8 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
                 break;
             }
         };
-        if args.frame.is_some_and(|wanted| wanted != frame.frame) {
+        frames.add(frame.frame);
+        if !is_wanted(frame.frame) {
             continue;
         }
         match fitter.fit(&frame.outline) {
@@ -102,14 +108,17 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     }
     drop(progress);
     if collected.count == 0 {
-        let nothing = match (args.frame, reasons.into_iter().next()) {
-            (_, Some(reason)) if damaged => return Err(Failure::unusable(reason)),
-            (_, Some(reason)) => reason,
-            (Some(frame), None) => format!("{name}: no frame {frame} in the file"),
-            (None, None) => format!("{name}: no outline in the file"),
+        let nothing = match (reasons.into_iter().next(), first_missing, args.frame) {
+            (_, Some(missing), _) => missing.into_failure(),
+            (Some(reason), None, _) => Failure::no_result(reason),
+            (None, None, Some(frame)) if !frames.is_empty() => {
+                Failure::no_result(format_args!("{name}: no frame {frame}, there are frames {frames}"))
+            }
+            (None, None, _) => Failure::no_result(format_args!("{name}: no outline in the file")),
         };
-        return Err(failure.unwrap_or_else(|| Failure::no_result(nothing)));
+        return Err(failure.unwrap_or(nothing));
     }
+    reasons.extend(warnings.finish());
     reasons.iter().for_each(|reason| warn(reason));
     if let Collected { with_stray_parts: with @ 1.., count, .. } = collected {
         warn(&format!("{with} of {count} curve(s) have a part beside the outline, where the polynomial is zero too"));

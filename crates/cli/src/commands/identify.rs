@@ -1,102 +1,98 @@
 use std::io::Write as _;
+use std::path::Path;
 
-use freeform_motion::curve_fit::{FitSettings, Method, Outline};
+use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::identify::{CurveFilterSettings, FilterSettings};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
 
-use super::{FittedOutline, command_line};
+use super::command_line;
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
 use crate::batch::Pace;
 use crate::failure::{Failure, plain, warn};
+use crate::history::History;
 use crate::identifier::{curve_settings, filter_settings, pipeline_settings, process_noise};
-use crate::input::{Input, Missing};
+use crate::input::Input;
 use crate::interrupt;
+use crate::left_out::LeftOut;
+use crate::meaning_of_b::MeaningOfB;
 use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
     write_identify_table, write_parameters, write_report, write_trajectory,
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
-use crate::tracking::{Estimate, Event, ObjectResult, Observation, REASONS_KEPT, Tracking};
+use crate::picture_input::PictureInput;
+use crate::tracking::{Event, ObjectResult, Observation, Tracking};
 use crate::trajectory::Trajectory;
-
-/// What was found of one object over time, kept for figures.
-#[derive(Debug)]
-pub(crate) struct History {
-    pub(crate) object: String,
-    /// Time of the first frame in seconds.
-    pub(crate) start: Option<f64>,
-    /// Time in seconds and what was known then.
-    pub(crate) estimates: Vec<(f64, Estimate)>,
-    /// Time in seconds and root mean square residual, of frames that were used.
-    pub(crate) residuals: Vec<[f64; 2]>,
-    /// Time in seconds and squared innovation, of frames that were used.
-    pub(crate) innovations: Vec<[f64; 2]>,
-    /// Number and time in seconds of every frame that was rejected, as far as its time is known.
-    pub(crate) rejected: Vec<(u64, Option<f64>)>,
-    /// The latest outline that was not rejected, with its curve; `None` where the method fits none.
-    pub(crate) latest: Option<(FittedOutline, Outline)>,
-}
-
-impl History {
-    /// Adds a frame to the history of its object.
-    pub(crate) fn take(
-        histories: &mut Vec<Self>,
-        observation: &Observation,
-        frame: Option<&OutlineFrame>,
-        curves: &mut CurveFitter,
-    ) {
-        let position = histories.iter().position(|history| history.object == observation.object);
-        let position = position.unwrap_or_else(|| {
-            histories.push(Self {
-                object: observation.object.clone(),
-                start: None,
-                estimates: Vec::new(),
-                residuals: Vec::new(),
-                innovations: Vec::new(),
-                rejected: Vec::new(),
-                latest: None,
-            });
-            histories.len() - 1
-        });
-        let history = &mut histories[position];
-        history.start = history.start.or(observation.time);
-        if let (Some(time), Some(estimate)) = (observation.time, observation.estimate) {
-            history.estimates.push((time, estimate));
-        }
-        if !observation.is_accepted() {
-            history.rejected.push((observation.frame, observation.time));
-            return;
-        }
-        if let Some(time) = observation.time {
-            history.residuals.extend(observation.residual.map(|residual| [time, residual]));
-            history.innovations.extend(observation.innovation.map(|innovation| [time, innovation]));
-        }
-        if let Some((frame, fit)) = frame.and_then(|frame| Some((frame, curves.of(observation, frame)?))) {
-            history.latest = Some((FittedOutline::new(frame, fit), frame.outline.clone()));
-        }
-    }
-}
-
-/// Pictures without an outline.
-#[derive(Debug, Default)]
-pub(crate) struct LeftOut {
-    pub(crate) count: u64,
-    /// Why, of the first of them.
-    pub(crate) reasons: Vec<String>,
-}
-
-impl LeftOut {
-    fn take(&mut self, missing: &Missing) {
-        self.count += 1;
-        if self.reasons.len() < REASONS_KEPT {
-            self.reasons.push(missing.reason.clone());
-        }
-    }
-}
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
+    check(args)?;
+    let mut tracking = Tracking::new(&args.options)?;
+    let mut input = Input::open(&args.inputs, &args.pictures)?;
+    let name = input.name.clone();
+    let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
+    let mut files = Files::create(args)?;
+    let mut overlay =
+        ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
+    interrupt::listen();
+    let mut left_out = LeftOut::default();
+    let failure = tracking.read(&mut input, Pace::Ahead, args.quiet, |event| {
+        if let Some(overlay) = &mut overlay {
+            overlay.take(&event)?;
+        }
+        match event {
+            Event::Observed { observation, frame, .. } => files.take(observation, frame),
+            Event::Missing(missing) => {
+                left_out.take(missing);
+                Ok(())
+            }
+        }
+    })?;
+
+    if let Some(overlay) = overlay {
+        overlay.finish()?;
+    }
+    let results = tracking.results();
+    let is_found = results.iter().any(|result| result.estimate.is_some());
+    let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
+    let b = match input.pictures() {
+        Some(pictures) => pictures.meaning_of_b(args.options.scale),
+        None => MeaningOfB::in_coordinates(args.options.scale),
+    };
+    let is_anything_read = !results.is_empty() || left_out.readable > 0;
+    if let Some(path) = args.report.as_ref().filter(|_| is_anything_read) {
+        let mut listed = settings(&args.options, &name);
+        listed.extend(input.pictures().map(PictureInput::listed).unwrap_or_default());
+        let reason = failure.as_ref().map(Failure::text);
+        let report = Report {
+            title: format!("Motion in {name}"),
+            command: command_line(),
+            settings: listed,
+            meaning_of_b: b.to_string(),
+            findings: vec![Findings { results: &results, histories: &files.histories }],
+            truth: truth.as_ref(),
+            no_motion: reason.filter(|_| !is_found),
+            read_error: reason.filter(|_| is_found),
+            left_out: &left_out,
+        };
+        WholeFile::write(path, &write_report(&report))?;
+    }
+    let printed = if is_found {
+        for result in results.iter().filter(|_| !args.quiet) {
+            result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
+        }
+        print(args, &results, truth.as_ref(), &b, (&left_out, input.has_pictures()))
+    } else {
+        Ok(())
+    };
+    files.finish(&tracking, truth.as_ref(), &results)?;
+    printed?;
+    failure.map_or(Ok(()), Err)
+}
+
+/// Refuses options that do not go together.
+fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs: Vec<_> =
         [&args.trace, &args.trajectory, &args.svg, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
     args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &outputs))?;
@@ -106,134 +102,106 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         ));
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
-        warn("--degree: the motion filter fits no polynomial, the degree changes nothing");
+        warn("--degree: the motion filter fits no polynomial, the degree is only that of the curve drawn");
     }
-    let mut tracking = Tracking::new(&args.options)?;
-    let mut input = Input::open(&args.inputs, &args.pictures)?;
-    let name = input.name.clone();
-    let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
-
-    let mut trace = match &args.trace {
-        Some(path) => {
-            let file = WholeFile::create(path)?;
-            Some(TraceWriter::new(file, args.options.motion.model()).map_err(|error| file_failure(path, &error))?)
-        }
-        None => None,
-    };
-    let mut trajectory = match &args.trajectory {
-        Some(path) => Some((WholeFile::create(path)?, Trajectory::default())),
-        None => None,
-    };
-    let mut overlay =
-        ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
-    interrupt::listen();
-    let mut curves = CurveFitter::new(&args.options)?;
-    let keeps_history = args.svg.is_some() || args.report.is_some();
-    let mut histories = Vec::new();
-    let mut left_out = LeftOut::default();
-    let failure = tracking.read(&mut input, Pace::Ahead, args.quiet, |event| {
-        if let Some(overlay) = &mut overlay {
-            overlay.take(&event)?;
-        }
-        let (observation, frame) = match event {
-            Event::Observed { observation, frame, .. } => (observation, frame),
-            Event::Missing(missing) => {
-                left_out.take(missing);
-                return Ok(());
-            }
-        };
-        if let (Some(trace), Some(path)) = (&mut trace, &args.trace) {
-            trace.write(observation).map_err(|error| file_failure(path, &error))?;
-        }
-        if let Some((_, trajectory)) = &mut trajectory {
-            trajectory.take(observation);
-        }
-        if keeps_history {
-            History::take(&mut histories, observation, frame, &mut curves);
-        }
-        Ok(())
-    })?;
-
-    if let Some(overlay) = overlay {
-        overlay.finish()?;
-    }
-    let results = tracking.results();
-    let is_found = results.iter().any(|result| result.estimate.is_some());
-    let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
-    if let Some(path) = &args.report {
-        let mut listed = settings(&args.options, &name);
-        if input.has_pictures() {
-            listed.extend(args.pictures.listed());
-        }
-        let reason = failure.as_ref().map(Failure::text);
-        let report = Report {
-            title: format!("Motion in {name}"),
-            command: command_line(),
-            settings: listed,
-            meaning_of_b: meaning_of_b(args, &input),
-            findings: vec![Findings { results: &results, histories: &histories }],
-            truth: truth.as_ref(),
-            no_motion: reason.filter(|_| !is_found),
-            read_error: reason.filter(|_| is_found),
-            left_out: &left_out,
-        };
-        WholeFile::write(path, &write_report(&report))?;
-    }
-    if !is_found {
-        return failure.map_or(Ok(()), Err);
-    }
-    for result in results.iter().filter(|_| !args.quiet) {
-        result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
-    }
-    let format = if args.json { IdentifyFormat::Json } else { args.format };
-    let note = input.has_pictures().then(|| meaning_of_b(args, &input));
-    let printed = print(format, &results, truth.as_ref(), note.as_deref());
-    if let (Some(trace), Some(path)) = (trace, &args.trace) {
-        trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
-    }
-    if let (Some((mut file, mut trajectory)), Some(path)) = (trajectory, &args.trajectory) {
-        if args.smooth && tracking.motion_changed() {
-            warn(
-                "--smooth: the motion changed on the way, which the smoother takes for constant; the poses are as filtered",
-            );
-        } else if args.smooth {
-            trajectory.smooth(&process_noise(&args.options)).map_err(Failure::unusable)?;
-        }
-        let written = write_trajectory(&mut file, &trajectory, args.options.motion.model(), args.options.scale);
-        written.map_err(|error| file_failure(path, &error))?;
-        file.finish()?;
-    }
-    if let Some(path) = &args.svg {
-        WholeFile::write(path, &parameter_figure(&histories, args.options.motion.model(), truth.as_ref()))?;
-    }
-    printed?;
-    failure.map_or(Ok(()), Err)
+    Ok(())
 }
 
-/// Unit and origin of b, for reading.
-fn meaning_of_b(args: &IdentifyArgs, input: &Input) -> String {
-    let (origin, unit) = if input.has_pictures() {
-        args.pictures.origin_and_speed_unit()
-    } else {
-        ("the origin of the coordinates", "in their lengths/s".to_owned())
-    };
-    let scale = args.options.scale.map_or_else(String::new, |scale| format!(", over f/Z0 = {scale}"));
-    format!("velocity at {origin}, {unit}{scale}")
+/// What is written frame by frame, or kept for figures.
+struct Files<'a> {
+    args: &'a IdentifyArgs,
+    trace: Option<(&'a Path, TraceWriter<WholeFile>)>,
+    trajectory: Option<(&'a Path, WholeFile, Trajectory)>,
+    curves: CurveFitter,
+    histories: Vec<History>,
+}
+
+impl<'a> Files<'a> {
+    fn create(args: &'a IdentifyArgs) -> Result<Self, Failure> {
+        let trace = args.trace.as_deref().map(|path| {
+            let writer = TraceWriter::new(WholeFile::create(path)?, args.options.motion.model());
+            writer.map(|writer| (path, writer)).map_err(|error| file_failure(path, &error))
+        });
+        let trajectory = args.trajectory.as_deref();
+        let trajectory = trajectory.map(|path| Ok((path, WholeFile::create(path)?, Trajectory::default())));
+        let curves = CurveFitter::new(&args.options)?;
+        Ok(Self { args, trace: trace.transpose()?, trajectory: trajectory.transpose()?, curves, histories: Vec::new() })
+    }
+
+    /// Takes what a frame of an object gave.
+    fn take(&mut self, observation: &Observation, frame: Option<&OutlineFrame>) -> Result<(), Failure> {
+        if let Some((path, trace)) = &mut self.trace {
+            trace.write(observation).map_err(|error| file_failure(path, &error))?;
+        }
+        if let Some((_, _, trajectory)) = &mut self.trajectory {
+            trajectory.take(observation);
+        }
+        if self.args.svg.is_some() || self.args.report.is_some() {
+            History::take(&mut self.histories, observation, frame, &mut self.curves);
+        }
+        Ok(())
+    }
+
+    /// Puts the files in their places; those that there is nothing to put into are not written.
+    fn finish(
+        self,
+        tracking: &Tracking,
+        truth: Option<&AffineMotion>,
+        results: &[ObjectResult],
+    ) -> Result<(), Failure> {
+        let Self { args, trace, trajectory, histories, .. } = self;
+        let model = args.options.motion.model();
+        let not_written = |options: &[(&str, bool)], reason: &str| {
+            let names: Vec<&str> = options.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
+            if !names.is_empty() && !args.quiet {
+                warn(&format!("{}: not written, {reason}", names.join(", ")));
+            }
+        };
+        if results.iter().all(|result| result.frames == result.frames_rejected) {
+            let options =
+                [("--trace", trace.is_some()), ("--trajectory", trajectory.is_some()), ("--svg", args.svg.is_some())];
+            not_written(&options, "no outline could be used");
+            return Ok(());
+        }
+        if let Some((path, trace)) = trace {
+            trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
+        }
+        if let Some((path, mut file, mut trajectory)) = trajectory {
+            if args.smooth && tracking.motion_changed() {
+                warn(
+                    "--smooth: the motion changed on the way, which the smoother takes for constant; the poses are as filtered",
+                );
+            } else if args.smooth {
+                trajectory.smooth(&process_noise(&args.options)).map_err(Failure::unusable)?;
+            }
+            let written = write_trajectory(&mut file, &trajectory, model, args.options.scale);
+            written.map_err(|error| file_failure(path, &error))?;
+            file.finish()?;
+        }
+        if results.iter().all(|result| result.estimate.is_none()) {
+            not_written(&[("--svg", args.svg.is_some())], "there is no motion to draw");
+        } else if let Some(path) = &args.svg {
+            WholeFile::write(path, &parameter_figure(&histories, model, truth))?;
+        }
+        Ok(())
+    }
 }
 
 fn print(
-    format: IdentifyFormat,
+    args: &IdentifyArgs,
     results: &[ObjectResult],
     truth: Option<&AffineMotion>,
-    meaning_of_b: Option<&str>,
+    b: &MeaningOfB,
+    (left_out, has_pictures): (&LeftOut, bool),
 ) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
+    let format = if args.json { IdentifyFormat::Json } else { args.format };
     let written = match format {
         IdentifyFormat::Table => {
             let table = write_identify_table(&mut sink, results, truth);
-            table.and_then(|()| meaning_of_b.map_or(Ok(()), |text| writeln!(sink, "b: {text}")))
+            table.and_then(|()| if has_pictures { writeln!(sink, "b: {b}") } else { Ok(()) })
         }
-        IdentifyFormat::Json => write_identify_json(&mut sink, results),
+        IdentifyFormat::Json => write_identify_json(&mut sink, results, b, left_out),
         IdentifyFormat::Csv => write_parameters(&mut sink, results),
     };
     written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
@@ -274,6 +242,7 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
             let FilterSettings { smallest_agreement, patience, .. } = filter_settings(options);
             listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
             listed.push(("Searched for anew", format!("after {patience} rejected frames")));
+            listed.push(("Degree of the curve drawn", pipeline_settings(options).fit.degree.to_string()));
         }
         IdentifyMethod::Curve => {
             let CurveFilterSettings { degree, offset, patience, .. } = curve_settings(options);

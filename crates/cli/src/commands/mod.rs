@@ -12,7 +12,6 @@ mod track;
 
 pub(crate) use evaluate::{Acquisition, Evaluation, Found, MethodResult, Report, Setting, Statistics};
 pub(crate) use fit::{FittedOutline, Parts};
-pub(crate) use identify::{History, LeftOut};
 pub(crate) use reproduce::{Drawing, Section, Table};
 
 use crate::args::{Cli, Command};
@@ -38,14 +37,16 @@ pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
 
 /// The command line as it could be typed again.
 fn command_line() -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
-    let quote = |argument: String| {
-        if !argument.is_empty() && argument.chars().all(plain) {
-            argument
-        } else {
-            format!("'{}'", argument.replace('\'', r"'\''"))
-        }
-    };
-    let arguments = std::env::args_os().skip(1).map(|argument| quote(argument.to_string_lossy().into_owned()));
+    let arguments = std::env::args_os().skip(1).map(|argument| quoted(&argument.to_string_lossy()));
     std::iter::once("freeform".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// An argument as it could be typed.
+pub(crate) fn quoted(argument: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
+    if !argument.is_empty() && argument.chars().all(is_plain) {
+        argument.to_owned()
+    } else {
+        format!("'{}'", argument.replace('\'', r"'\''"))
+    }
 }

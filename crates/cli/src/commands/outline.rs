@@ -2,8 +2,9 @@ use freeform_motion::outline_io::{OutlineWriter, WriteError, WriterOptions};
 
 use crate::args::OutlineArgs;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Item, Missing};
+use crate::input::{Input, Item};
 use crate::interrupt;
+use crate::left_out::{Missing, MissingWarnings};
 use crate::output::{Sink, refuse_overwriting};
 use crate::overlay::{Drawn, Overlay};
 use crate::progress::Progress;
@@ -45,6 +46,7 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
     let object_column = args.pictures.follows_all();
+    let mut warnings = MissingWarnings::default();
     for item in input {
         // What came after Ctrl-C may be cut short.
         if interrupt::was_asked_for() {
@@ -75,8 +77,8 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
             Item::Rejected { .. } => {}
             Item::Missing(missing) => {
                 // The reason of a single picture is told in the end.
-                if !args.quiet && !single {
-                    progress.pause(|| warn(&missing.reason));
+                if let Some(warning) = warnings.take(&missing).filter(|_| !args.quiet && !single) {
+                    progress.pause(|| warn(&warning));
                 }
                 if let (Some(overlay), Some(seen_in)) = (&mut overlay, &missing.seen_in) {
                     overlay.draw_nothing(seen_in)?;
@@ -85,6 +87,7 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
             }
         }
     }
+    warnings.finish().filter(|_| !args.quiet).for_each(|warning| progress.pause(|| warn(&warning)));
     if let Some(overlay) = overlay {
         overlay.finish()?;
     }

@@ -3,7 +3,8 @@ use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
 
 use super::number::short;
-use crate::commands::{FittedOutline, History};
+use crate::commands::FittedOutline;
+use crate::history::History;
 use crate::level_set::{Area, curve_of, stray};
 use crate::plot::{Curve, Look, Panel, stacked_svg};
 use crate::truth::parameters_in;
@@ -103,8 +104,8 @@ pub(crate) fn parameter_panels(
         .collect()
 }
 
-/// How well the frames of one object fit, one panel for each measure that its method gives. Rejected frames are crosses on
-/// the lower edge.
+/// How well the frames of one object fit, one panel for each measure that its method gives. Rejected frames, which have no
+/// value that others could be held against, are marked at their times.
 pub(crate) fn residual_panels(history: &History) -> Vec<Panel> {
     let measures = [
         ("Residual of the points", "rms (image length)", &history.residuals),
@@ -120,7 +121,7 @@ pub(crate) fn residual_panels(history: &History) -> Vec<Panel> {
             y_label: y_label.to_owned(),
             curves: vec![
                 Curve { name: "frames used".to_owned(), look: Look::Dots, runs: vec![values.clone()] },
-                Curve { name: "rejected".to_owned(), look: Look::Crosses, runs: vec![rejected.clone()] },
+                Curve { name: "rejected frames".to_owned(), look: Look::Marks, runs: vec![rejected.clone()] },
             ],
             x_from: history.start,
             ..Panel::default()

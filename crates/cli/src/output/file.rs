@@ -83,8 +83,7 @@ impl Place {
         let mut prefix = OsString::from(".");
         prefix.push(file_name);
         prefix.push(".");
-        // A name without a folder has an empty one.
-        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder_of(&target);
         // A name of its own, whatever a run that was killed has left behind.
         let mut builder = Builder::new();
         builder.prefix(&prefix).suffix(".part");
@@ -185,15 +184,23 @@ impl Write for Sink {
 /// Refuses a folder for drawings that is the input, or holds it.
 pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: &Path) -> Result<(), Failure> {
     let Some(place) = fs::canonicalize(folder).ok().filter(|place| place.is_dir()) else { return Ok(()) };
-    for input in inputs {
+    for input in inputs.iter().filter(|input| input.as_os_str() != "-") {
+        // A pattern is no file, but its folder is one.
+        let named_in = fs::canonicalize(folder_of(input)).ok();
         let input = fs::canonicalize(input).ok();
-        let is_here = |input: &Path| input == place || input.parent() == Some(&place);
-        if input.is_some_and(|input| is_here(&input)) {
+        let lies_in = input.as_deref().and_then(Path::parent);
+        if [named_in.as_deref(), input.as_deref(), lies_in].contains(&Some(&place)) {
             let reason = format_args!("{}: the pictures of the input are here, draw elsewhere", place.display());
             return Err(Failure::unusable(reason));
         }
     }
     Ok(())
+}
+
+/// The folder that a file is named in.
+fn folder_of(file: &Path) -> &Path {
+    // A name without a folder has an empty one.
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Refuses output files that are the input or a picture in its folder, or one another.

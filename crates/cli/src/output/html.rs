@@ -4,9 +4,11 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
-use crate::commands::{History, LeftOut};
+use crate::frame_ranges::FrameRanges;
+use crate::history::History;
+use crate::left_out::LeftOut;
 use crate::plot::{escape, panel_svg};
-use crate::tracking::ObjectResult;
+use crate::tracking::{ObjectResult, REASONS_KEPT};
 
 const STYLE: &str = include_str!("report.css");
 
@@ -63,16 +65,18 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
 
 /// Pictures without an outline.
 fn write_left_out(body: &mut String, left_out: &LeftOut) {
-    let LeftOut { count, reasons } = left_out;
+    let LeftOut { count, pictures, .. } = left_out;
     if *count == 0 {
         return;
     }
     let _ = writeln!(body, "<h2>Pictures without an outline: {count}</h2>\n<ul>");
-    reasons.iter().for_each(|reason| {
+    let (told, others) = pictures.split_at(pictures.len().min(REASONS_KEPT));
+    told.iter().for_each(|(_, reason)| {
         let _ = writeln!(body, "<li>{}</li>", escape(reason));
     });
-    let more = count - reasons.len() as u64;
-    let _ = if more > 0 { writeln!(body, "<li>{more} more</li>\n</ul>") } else { writeln!(body, "</ul>") };
+    let frames: FrameRanges = others.iter().map(|(frame, _)| *frame).collect();
+    let more = count - told.len() as u64;
+    let _ = if more > 0 { writeln!(body, "<li>{more} more: {frames}</li>\n</ul>") } else { writeln!(body, "</ul>") };
 }
 
 /// The settings as a table and the command as it was given.
@@ -133,39 +137,12 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
     }
     body.push_str("</div>\n");
     if !history.rejected.is_empty() {
-        let frames = ranges(history.rejected.iter().map(|(frame, _)| *frame));
+        let frames: FrameRanges = history.rejected.iter().map(|(frame, _)| *frame).collect();
         let _ = writeln!(body, "<p>Rejected frames: {frames}</p>");
     }
-}
-
-/// Numbers in rising order, runs of them as `first-last`.
-fn ranges(numbers: impl Iterator<Item = u64>) -> String {
-    let mut runs: Vec<(u64, u64)> = Vec::new();
-    for number in numbers {
-        match runs.last_mut() {
-            Some((_, last)) if last.checked_add(1) == Some(number) => *last = number,
-            _ => runs.push((number, number)),
-        }
-    }
-    let text = |(first, last): &(u64, u64)| match first == last {
-        true => first.to_string(),
-        false => format!("{first}-{last}"),
-    };
-    runs.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
 fn write_row<'a>(body: &mut String, tag: &str, cells: impl Iterator<Item = &'a str>) {
     let cells: String = cells.map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect();
     let _ = writeln!(body, "<tr>{cells}</tr>");
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn runs_of_frames_are_written_short() {
-        assert_eq!(ranges([3, 5, 6, 7, 9, u64::MAX].into_iter()), format!("3, 5-7, 9, {}", u64::MAX));
-        assert_eq!(ranges([].into_iter()), "");
-    }
 }

@@ -1,13 +1,24 @@
 use std::io::{self, Write};
 
+use freeform_motion::riccati::CameraScale;
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
+use crate::left_out::LeftOut;
+use crate::meaning_of_b::MeaningOfB;
 use crate::tracking::{Estimate, ObjectResult, Observation};
 
 /// The result as one JSON object.
-pub(crate) fn write_identify_json(sink: &mut impl Write, results: &[ObjectResult]) -> io::Result<()> {
+pub(crate) fn write_identify_json(
+    sink: &mut impl Write,
+    results: &[ObjectResult],
+    b: &MeaningOfB,
+    left_out: &LeftOut,
+) -> io::Result<()> {
     let objects: Vec<_> = results.iter().map(ObjectJson).collect();
-    let document = Document { schema: "freeform.identify/1", objects };
+    let pictures = left_out.pictures.iter().map(|(frame, reason)| PictureJson { frame: *frame, reason }).collect();
+    let left_out = LeftOutJson { count: left_out.count, pictures };
+    let b = MeaningJson { point: b.point, unit: &b.unit, scale: b.scale.map(CameraScale::value) };
+    let document = Document { schema: "freeform.identify/1", objects, b, left_out };
     serde_json::to_writer_pretty(&mut *sink, &document)?;
     writeln!(sink)
 }
@@ -32,6 +43,29 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
 struct Document<'a> {
     schema: &'static str,
     objects: Vec<ObjectJson<'a>>,
+    b: MeaningJson<'a>,
+    left_out: LeftOutJson<'a>,
+}
+
+/// Which point b is the velocity of, in which unit, and what f/Z0 it was divided by.
+#[derive(serde::Serialize)]
+struct MeaningJson<'a> {
+    point: &'static str,
+    unit: &'a str,
+    scale: Option<f64>,
+}
+
+/// Pictures that gave no outline; of very many only the first are listed.
+#[derive(serde::Serialize)]
+struct LeftOutJson<'a> {
+    count: u64,
+    pictures: Vec<PictureJson<'a>>,
+}
+
+#[derive(serde::Serialize)]
+struct PictureJson<'a> {
+    frame: u64,
+    reason: &'a str,
 }
 
 #[derive(serde::Serialize)]
@@ -132,7 +166,8 @@ mod tests {
             warnings: vec!["a warning".to_owned()],
         };
         let mut text = Vec::new();
-        write_identify_json(&mut text, &[result]).expect("memory");
+        let b = MeaningOfB { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), scale: None };
+        write_identify_json(&mut text, &[result], &b, &LeftOut::default()).expect("memory");
         let document: Value = serde_json::from_slice(&text).expect("JSON");
         let object = &document["objects"][0];
         let nothing = json!({"value": null, "std": null, "unit": "rad/s", "observable": false});

@@ -1,6 +1,7 @@
 //! What was found, drawn on the pictures.
 mod canvas;
 mod drawing;
+mod folder;
 mod lettering;
 mod observed;
 mod target;

@@ -8,7 +8,8 @@ use super::drawing::{Drawn, Overlay};
 use crate::args::{PictureOptions, TrackOptions};
 use crate::commands::FittedOutline;
 use crate::failure::Failure;
-use crate::input::{Input, Missing};
+use crate::input::Input;
+use crate::left_out::Missing;
 use crate::tracking::{Event, Observation};
 
 /// Draws what was identified of objects on the pictures that they were seen in.

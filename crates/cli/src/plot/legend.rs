@@ -1,6 +1,6 @@
 use std::fmt::Write as _;
 
-use super::panel::{Curve, Look, Panel, crosses, dots};
+use super::panel::{Curve, Look, Panel, crosses, dots, marks};
 use super::style::{escape, text_width};
 
 /// Height of a row of the legend, in pixels.
@@ -60,6 +60,10 @@ pub(super) fn draw_legend_row(svg: &mut String, curves: &[&Curve], mut left: f64
                 writeln!(svg, r#"<path class="{class}" d="{}"/>"#, dots(&row))
             }
             Look::Crosses => writeln!(svg, r#"<path class="{class}" d="{}"/>"#, crosses(&[[left + 11.0, middle]])),
+            Look::Marks => {
+                let line = marks(&[[left + 11.0, middle]], middle + 6.0, middle - 6.0);
+                writeln!(svg, r#"<path class="{class}" d="{line}"/>"#)
+            }
             Look::Line | Look::Truth | Look::Reference | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
                 writeln!(svg, r#"<path class="{class}" d="M{left:.1} {middle:.1}H{right:.1}"/>"#)
             }

@@ -25,6 +25,8 @@ pub(crate) enum Look {
     Dots,
     /// Crosses.
     Crosses,
+    /// Lines over the whole height, for times at which something was the case; the y axis knows nothing of them.
+    Marks,
     /// Smaller dots, for many points in a small panel.
     FineDots,
     /// A thin grey line, for what is only there for comparison.
@@ -53,6 +55,7 @@ impl Look {
             Self::Band => "band",
             Self::Dots => "dots",
             Self::Crosses => "crosses",
+            Self::Marks => SOLID[1],
         }
     }
 }
@@ -243,7 +246,8 @@ impl Panel {
             return (low, high);
         }
         let is_logarithmic = axis == 1 && self.y_logarithmic;
-        let points = self.curves.iter().flat_map(|curve| curve.runs.iter().flatten());
+        let drawn = self.curves.iter().filter(|curve| axis == 0 || curve.look != Look::Marks);
+        let points = drawn.flat_map(|curve| curve.runs.iter().flatten());
         let ends = [self.x_from, self.x_to].into_iter().flatten().filter(|_| axis == 0);
         let values = points.map(|point| point[axis]).chain(ends).filter(|value| value.is_finite());
         let values = values.filter(|value| !is_logarithmic || *value > 0.0);
@@ -291,6 +295,7 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
             Look::Band => connected(&pixels, "Z"),
             Look::Dots | Look::FineDots => dots(&pixels),
             Look::Crosses => crosses(&pixels),
+            Look::Marks => marks(&pixels, y.from, y.to),
         });
     }
     if !path.is_empty() {
@@ -313,6 +318,10 @@ pub(super) fn dots(pixels: &[[f64; 2]]) -> String {
 
 pub(super) fn crosses(pixels: &[[f64; 2]]) -> String {
     pixels.iter().map(|[x, y]| format!("M{:.2} {:.2}l8 8m0 -8l-8 8", x - 4.0, y - 4.0)).collect()
+}
+
+pub(super) fn marks(pixels: &[[f64; 2]], from: f64, to: f64) -> String {
+    pixels.iter().map(|[x, _]| format!("M{x:.2} {from:.2}V{to:.2}")).collect()
 }
 
 /// At most [`POINTS_DRAWN`] points that look the same: the lowest and the highest of every stretch.

@@ -10,11 +10,13 @@ fn keys(value: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_json_has_the_fields_of_the_contract_and_no_others() {
+fn the_json_has_the_fields_of_the_contract_and_says_what_b_is_and_what_was_left_out() {
     let csv = sequence("");
     let document = json(&succeed("identify - --format json --scale 0.1", &csv));
     assert_eq!(document["schema"], "freeform.identify/1");
-    assert_eq!(keys(&document), ["objects", "schema"]);
+    assert_eq!(keys(&document), ["b", "left_out", "objects", "schema"]);
+    assert_eq!(keys(&document["b"]), ["point", "scale", "unit"]);
+    assert_eq!(keys(&document["left_out"]), ["count", "pictures"]);
     let object = &document["objects"][0];
     let fields = ["frames", "frames_rejected", "generator", "method", "motion", "object", "parameters", "warnings"];
     assert_eq!(keys(object), fields);

@@ -7,6 +7,7 @@ mod fit;
 mod help;
 mod identify;
 mod outline;
+mod pictures;
 mod real_pictures;
 mod reproduce;
 mod simulate;

@@ -71,6 +71,20 @@ fn the_turn_of_the_robot_in_raw_frames_is_that_of_its_own_tracker() {
         assert!(seen.len() >= 130, "{} outlines", seen.len());
         succeed(&format!("identify - --motion {motion} --quiet --trajectory {base}/poses.csv"), &csv);
         let trajectory = std::fs::read_to_string(folder.path().join("poses.csv")).expect("poses");
+        if motion == "affine" {
+            // A turn in stretched pixels has -m21/m12 = aspect^2.
+            let products = |value: &dyn Fn(&str) -> f64| (value("m12") * value("m21"), -value("m21") / value("m12"));
+            let poses = used(&trajectory).into_iter().map(|(_, value)| products(&value));
+            let mut aspects: Vec<f64> = poses.filter(|(product, _)| *product < -0.25).map(|(_, r)| r.sqrt()).collect();
+            aspects.sort_by(f64::total_cmp);
+            println!(
+                "aspect {:.3} to {:.3}, median {:.3}",
+                aspects[0],
+                aspects[aspects.len() - 1],
+                aspects[aspects.len() / 2]
+            );
+            assert!(aspects.len() > 50 && aspects[0] > 1.1 && aspects[aspects.len() - 1] < 1.18, "{aspects:?}");
+        }
         let angles: Vec<(usize, f64)> = std::iter::once((0, 0.0))
             .chain(used(&trajectory).iter().map(|(frame, value)| {
                 // A positive angle turns as a positive omega does, clockwise.

@@ -69,6 +69,11 @@ impl ArrowInformation {
         }
         padded(&sum, 2 * self.k)
     }
+
+    /// Information of pose and motion where the offsets are known; unit diagonal beyond the state.
+    pub(crate) fn with_outline_given(&self) -> StateMatrix {
+        padded(&self.dense, 2 * self.k)
+    }
 }
 
 /// Solution of `m x = b` for a positive definite matrix over the `2 k` entries of a state, scaled to unit diagonal on the way.

@@ -1,5 +1,10 @@
 //! What the map says of the motion.
-use super::{arrow_information::scaled_inverse, outline_map::OutlineMap};
+use nalgebra::DMatrix;
+
+use super::{
+    arrow_information::{StateMatrix, scaled_inverse},
+    outline_map::OutlineMap,
+};
 use crate::{
     estimate::{MAX_PARAMETERS, MotionEstimate},
     motion_algebra::adjoint,
@@ -16,16 +21,23 @@ impl OutlineMap {
         self.sigma * self.sigma * self.noise_level.correlation()
     }
 
+    /// Covariance of pose and motion in normalised units, of their marginal information or of that with the outline given; `None`
+    /// where it cannot be computed.
+    pub(crate) fn state_covariance(&self, information: &StateMatrix) -> Option<DMatrix<f64>> {
+        let size = 2 * self.information.k;
+        let inverse = scaled_inverse(information, self.information.k)? * self.effective_variance();
+        Some(DMatrix::from_fn(size, size, |i, j| inverse[(i, j)]))
+    }
+
     /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed.
     #[must_use]
-    pub fn covariance(&self) -> Option<nalgebra::DMatrix<f64>> {
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let k = self.information.k;
         let to_image = self.to_image();
         let change = adjoint(self.model, &to_image, &to_image.try_inverse()?);
-        let inverse = scaled_inverse(&self.marginal, k)?;
-        let change = nalgebra::DMatrix::from_fn(k, k, |i, j| change[i][j]);
-        let motion = nalgebra::DMatrix::from_fn(k, k, |i, j| inverse[(k + i, k + j)] * self.effective_variance());
-        let covariance = &change * motion * change.transpose();
+        let state = self.state_covariance(&self.marginal)?;
+        let change = DMatrix::from_fn(k, k, |i, j| change[i][j]);
+        let covariance = &change * state.view((k, k), (k, k)) * change.transpose();
         // The products round apart where the image origin is far away.
         Some(0.5 * (&covariance + covariance.transpose()))
     }

@@ -12,6 +12,10 @@ use super::{
 
 /// Places further than this many spacings from all cells are new.
 const UNCOVERED: f64 = 1.1;
+/// A map of so many times the places that any frame has shown at once holds what is not of the object, and grows no more: an
+/// object of which less was seen at a time could not have been found again. Without this the map of an object that comes and
+/// goes at the edge of the picture would grow for ever, by poses that its few points leave in doubt.
+const MOST_TIMES_SEEN: usize = 8;
 /// Shortest run of new places that is taken.
 const SHORTEST_RUN: usize = 2;
 
@@ -35,11 +39,13 @@ impl OutlineMap {
         let first_new = self.cells.len();
         let scale = self.pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let sigma = self.sigma / scale;
-        for mut contour in contours {
-            if let Some(piece) = contour.resampled(sigma, self.half_window, self.spacing) {
-                self.add_places(&piece, first_new);
-            }
+        let resampled = |mut contour: Contour| contour.resampled(sigma, self.half_window, self.spacing);
+        let pieces: Vec<_> = contours.into_iter().filter_map(resampled).collect();
+        self.most_seen = self.most_seen.max(pieces.iter().map(|piece| piece.places.len()).sum());
+        if first_new >= MOST_TIMES_SEEN * self.most_seen {
+            return;
         }
+        pieces.iter().for_each(|piece| self.add_places(piece, first_new));
         if self.cells.len() == first_new {
             return;
         }
@@ -143,5 +149,34 @@ impl OutlineMap {
         }
         self.information = work;
         self.marginal = self.information.marginal();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::Outline;
+    use freeform_riccati::MotionModel;
+
+    use super::*;
+
+    #[test]
+    fn a_map_that_wrong_poses_add_to_for_ever_stops_growing() {
+        let egg = |shift: f64| {
+            let point = |i: i32| {
+                let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+                Point2::new(shift + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
+            };
+            Outline::closed((0..300).map(point).collect()).expect("an outline")
+        };
+        let mut map = OutlineMap::new(MotionModel::Rigid, &egg(0.0)).expect("a map");
+        let first = map.cell_count();
+        let mut counts = Vec::new();
+        for frame in 1..30 {
+            map.load(&egg(3.0 * f64::from(frame)));
+            map.grow();
+            counts.push(map.cell_count());
+        }
+        assert!(counts[0] > first && counts[28] <= (MOST_TIMES_SEEN + 1) * first + 10, "{first}: {counts:?}");
+        assert_eq!(counts[27], counts[28]);
     }
 }

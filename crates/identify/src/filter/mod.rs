@@ -21,6 +21,7 @@ mod prediction;
 mod reading;
 mod rivals;
 mod settings;
+mod sides;
 mod state;
 mod unseen_direction;
 

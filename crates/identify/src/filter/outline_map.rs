@@ -79,6 +79,8 @@ pub struct OutlineMap {
     /// Marginal information of pose and motion.
     pub(crate) marginal: StateMatrix,
     pub(crate) cells: Vec<Cell>,
+    /// Most places that a frame has shown at once.
+    pub(crate) most_seen: usize,
     pub(crate) field: NearestField,
     pub(crate) spacing: f64,
     pub(crate) sigma: f64,
@@ -137,6 +139,7 @@ impl OutlineMap {
             marginal: information.marginal(),
             information,
             cells: Vec::new(),
+            most_seen: 0,
             field: NearestField::default(),
             spacing: 0.0,
             sigma: 0.0,

@@ -93,6 +93,7 @@ impl OutlineMap {
             }
         }
         self.find_cells::<AFFINE>(readings, inverse, points, smooth);
+        self.keep_to_sides::<AFFINE>(readings, pieces, smooth, inverse, half_window);
         for (reading, p) in readings.iter_mut().zip(points.iter()) {
             let normal = self.measure::<AFFINE>(reading, p, inverse, shifts);
             self.linearise(reading, p, &normal, unseen);
@@ -209,7 +210,7 @@ impl OutlineMap {
 
     /// The cell nearest to a body point, from one near it.
     #[inline(always)]
-    fn nearest_from(&self, near: usize, q: &Point2<f64>) -> usize {
+    pub(crate) fn nearest_from(&self, near: usize, q: &Point2<f64>) -> usize {
         let mut number = near;
         let mut distance = (self.cells[number].centre - q).norm_squared();
         loop {

@@ -1,0 +1,65 @@
+//! What was found of every object over time.
+use freeform_motion::curve_fit::Outline;
+use freeform_motion::outline_io::OutlineFrame;
+
+use crate::commands::FittedOutline;
+use crate::overlay::CurveFitter;
+use crate::tracking::{Estimate, Observation};
+
+/// What was found of one object over time, kept for figures.
+#[derive(Debug)]
+pub(crate) struct History {
+    pub(crate) object: String,
+    /// Time of the first frame in seconds.
+    pub(crate) start: Option<f64>,
+    /// Time in seconds and what was known then.
+    pub(crate) estimates: Vec<(f64, Estimate)>,
+    /// Time in seconds and root mean square residual, of frames that were used.
+    pub(crate) residuals: Vec<[f64; 2]>,
+    /// Time in seconds and squared innovation, of frames that were used.
+    pub(crate) innovations: Vec<[f64; 2]>,
+    /// Number and time in seconds of every frame that was rejected, as far as its time is known.
+    pub(crate) rejected: Vec<(u64, Option<f64>)>,
+    /// The latest outline that was not rejected, with its curve; `None` where the method fits none.
+    pub(crate) latest: Option<(FittedOutline, Outline)>,
+}
+
+impl History {
+    /// Adds a frame to the history of its object.
+    pub(crate) fn take(
+        histories: &mut Vec<Self>,
+        observation: &Observation,
+        frame: Option<&OutlineFrame>,
+        curves: &mut CurveFitter,
+    ) {
+        let position = histories.iter().position(|history| history.object == observation.object);
+        let position = position.unwrap_or_else(|| {
+            histories.push(Self {
+                object: observation.object.clone(),
+                start: None,
+                estimates: Vec::new(),
+                residuals: Vec::new(),
+                innovations: Vec::new(),
+                rejected: Vec::new(),
+                latest: None,
+            });
+            histories.len() - 1
+        });
+        let history = &mut histories[position];
+        history.start = history.start.or(observation.time);
+        if let (Some(time), Some(estimate)) = (observation.time, observation.estimate) {
+            history.estimates.push((time, estimate));
+        }
+        if !observation.is_accepted() {
+            history.rejected.push((observation.frame, observation.time));
+            return;
+        }
+        if let Some(time) = observation.time {
+            history.residuals.extend(observation.residual.map(|residual| [time, residual]));
+            history.innovations.extend(observation.innovation.map(|innovation| [time, innovation]));
+        }
+        if let Some((frame, fit)) = frame.and_then(|frame| Some((frame, curves.of(observation, frame)?))) {
+            history.latest = Some((FittedOutline::new(frame, fit), frame.outline.clone()));
+        }
+    }
+}

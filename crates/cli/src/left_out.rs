@@ -1,0 +1,143 @@
+//! Pictures that gave no outline.
+use std::mem::{Discriminant, discriminant};
+use std::rc::Rc;
+
+use freeform_motion::outline_io::{PictureErrorKind, TraceError};
+
+use crate::failure::Failure;
+use crate::frame_ranges::FrameRanges;
+use crate::input::SeenIn;
+
+/// Pictures kept with their reasons.
+const PICTURES_KEPT: usize = 1000;
+
+/// A picture without an outline.
+#[derive(Debug)]
+pub(crate) struct Missing {
+    /// Its number in the sequence.
+    pub(crate) frame: u64,
+    pub(crate) reason: String,
+    /// What may help, where it is known.
+    pub(crate) hint: Option<&'static str>,
+    pub(crate) kind: MissingKind,
+    /// The picture, if it could be read.
+    pub(crate) seen_in: Option<Rc<SeenIn>>,
+}
+
+/// What kind of reason it is, whatever the numbers in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MissingKind {
+    Unreadable(Discriminant<PictureErrorKind>),
+    NothingFound(Discriminant<TraceError>),
+}
+
+impl From<&PictureErrorKind> for MissingKind {
+    fn from(kind: &PictureErrorKind) -> Self {
+        Self::Unreadable(discriminant(kind))
+    }
+}
+
+impl From<&TraceError> for MissingKind {
+    fn from(error: &TraceError) -> Self {
+        Self::NothingFound(discriminant(error))
+    }
+}
+
+impl Missing {
+    /// The reason, and what may help.
+    fn advice(&self) -> String {
+        self.hint.map_or_else(|| self.reason.clone(), |hint| format!("{}; {hint}", self.reason))
+    }
+
+    /// Why nothing was found, where this is all there is.
+    pub(crate) fn into_failure(self) -> Failure {
+        match self.seen_in {
+            Some(_) => Failure::no_result(self.advice()),
+            None => Failure::unusable(self.reason),
+        }
+    }
+}
+
+/// The pictures left out so far, with their reasons.
+#[derive(Debug, Default)]
+pub(crate) struct LeftOut {
+    pub(crate) count: u64,
+    /// Number and reason of the first of them.
+    pub(crate) pictures: Vec<(u64, String)>,
+    /// How many of all could be read.
+    pub(crate) readable: u64,
+}
+
+impl LeftOut {
+    pub(crate) fn take(&mut self, missing: &Missing) {
+        self.count += 1;
+        self.readable += u64::from(missing.seen_in.is_some());
+        if self.pictures.len() < PICTURES_KEPT {
+            self.pictures.push((missing.frame, missing.reason.clone()));
+        }
+    }
+}
+
+/// Warnings of pictures left out: the first of a kind at once, the others in the end, together.
+#[derive(Debug, Default)]
+pub(crate) struct MissingWarnings {
+    kinds: Vec<SameKind>,
+}
+
+#[derive(Debug)]
+struct SameKind {
+    kind: MissingKind,
+    /// Reason of the second, which is told as it is where there is no third.
+    second: Option<String>,
+    count: u64,
+    /// All but the first.
+    others: FrameRanges,
+}
+
+impl MissingWarnings {
+    /// Takes a picture; returns what is to be said of it now.
+    pub(crate) fn take(&mut self, missing: &Missing) -> Option<String> {
+        let Some(same) = self.kinds.iter_mut().find(|same| same.kind == missing.kind) else {
+            let (kind, others) = (missing.kind, FrameRanges::default());
+            self.kinds.push(SameKind { kind, second: None, count: 1, others });
+            return Some(missing.advice());
+        };
+        same.count += 1;
+        same.others.add(missing.frame);
+        same.second.get_or_insert_with(|| missing.reason.clone());
+        None
+    }
+
+    /// What is to be said in the end.
+    pub(crate) fn finish(self) -> impl Iterator<Item = String> {
+        self.kinds.into_iter().filter_map(|same| match same.count {
+            0 | 1 => None,
+            2 => same.second,
+            count => Some(format!("{} more pictures left out for the same reason: {}", count - 1, same.others)),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn missing(frame: u64, error: TraceError) -> Missing {
+        let reason = format!("frame {frame}: {error}");
+        Missing { frame, reason, hint: Some("look elsewhere"), kind: MissingKind::from(&error), seen_in: None }
+    }
+
+    #[test]
+    fn the_first_of_a_kind_is_told_at_once_and_the_others_together() {
+        let mut warnings = MissingWarnings::default();
+        let small = |pixels| TraceError::TooSmall { pixels, needed: 64 };
+        let told = [(0, TraceError::NoRing), (1, small(3)), (2, small(4)), (4, TraceError::NoRing), (5, small(5))]
+            .map(|(frame, error)| warnings.take(&missing(frame, error)));
+        let first = "frame 0: no object: no closed ring stands out from the ground; look elsewhere";
+        assert_eq!(told[0].as_deref(), Some(first));
+        assert!(told[1].is_some() && told[2..].iter().all(Option::is_none));
+        let later: Vec<String> = warnings.finish().collect();
+        assert_eq!(later[0], "frame 4: no object: no closed ring stands out from the ground");
+        assert_eq!(later[1], "2 more pictures left out for the same reason: 2, 5");
+    }
+}
