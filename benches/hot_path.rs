@@ -4,7 +4,9 @@ use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, 
 use faer::linalg::solvers::SolveLstsqCore;
 use freeform_motion::{
     Pipeline, PipelineSettings,
-    curve_fit::{Degree, FitSettings, Fitter, Method, Moments, Outline, evaluate_monomials, outward_normals},
+    curve_fit::{
+        Degree, FitSettings, Fitter, Method, Moments, NormalRegression, Outline, evaluate_monomials, outward_normals,
+    },
     decompose::{Correspondence, Decomposition},
     identify::{CurveFilterSettings, FilterSettings, MotionFilter, Phase, WholeCurveFilter},
     outline_io::{
@@ -88,11 +90,26 @@ fn stages(c: &mut Criterion) {
             let free = FitSettings { degree, method: Method::ThreeLevel, ..FitSettings::default() };
             let mut fitter = Fitter::new(free).expect("settings");
             group.bench_function(BenchmarkId::new("3L fit", &name), |b| b.iter(|| fitter.fit(black_box(outline))));
+            if degree == Degree::Quartic {
+                let (mut regression, mut nx, mut ny) = (NormalRegression::default(), Vec::new(), Vec::new());
+                group.bench_function(BenchmarkId::new("normals", format!("{points} points")), |b| {
+                    b.iter(|| regression.run(black_box(outline), [&xs, &ys], 0.02, [&mut nx, &mut ny]));
+                });
+            }
+            if points == 400 {
+                group.bench_function(BenchmarkId::new("solve", &name), |b| b.iter(|| fitter.solve_last()));
+            }
             let tight = FitSettings { method: Method::Bounded { margin: 0.5, ridge_weight: 0.0 }, ..free };
             let mut fitter = Fitter::new(tight).expect("settings");
             group.bench_function(BenchmarkId::new("fit with the boundedness constraint active", &name), |b| {
                 b.iter(|| fitter.fit(black_box(outline)));
             });
+            let fit = fitter.fit(outline).expect("a fit");
+            assert!(fit.diagnostics().constraint_active, "the constraint is to be active");
+            if points == 400 {
+                let name = BenchmarkId::new("solve with the boundedness constraint active", &name);
+                group.bench_function(name, |b| b.iter(|| fitter.solve_last()));
+            }
         }
     }
     let list = frames(400, 2);

@@ -9,8 +9,9 @@ use crate::interrupt;
 use crate::left_out::{Missing, MissingWarnings};
 use crate::progress::Progress;
 
-/// Points of all outlines read ahead: some megabytes.
-const POINTS_AHEAD: usize = 1 << 18;
+/// Points of all outlines read ahead: half a megabyte. Enough for the frames of a batch to be many times the work of
+/// sharing them out; not more, since nothing goes on beside the reading of the first batch and the last one's filters.
+const POINTS_AHEAD: usize = 1 << 15;
 /// Outlines read ahead, however small.
 const OUTLINES_AHEAD: usize = 4096;
 /// Pictures read ahead, which are held with their outlines.

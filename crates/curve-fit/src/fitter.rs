@@ -63,13 +63,20 @@ impl Fitter {
     /// outside, or a bounded fit that does not converge.
     pub fn fit(&mut self, outline: &Outline) -> Result<Fit, FitError> {
         let normalisation = self.load(outline)?;
-        let factorisation = if self.factor_moments() {
-            Factorisation::Gram
-        } else {
-            self.factor_rows()?;
-            Factorisation::Orthogonal
-        };
+        self.sum_moments();
+        let factorisation = self.factor()?;
         self.finish(normalisation, factorisation)
+    }
+
+    /// Factors and solves the problem of the last outline once more, under the constraint where that is active: what a fit
+    /// costs besides normals, sums and residuals. For measurements.
+    ///
+    /// # Errors
+    /// As [`fit`](Self::fit).
+    #[doc(hidden)]
+    pub fn solve_last(&mut self) -> Result<[f64; MAX_COEFFICIENTS], FitError> {
+        self.factor()?;
+        self.solve().map(|solution| solution.coefficients)
     }
 
     /// The same fit from the QR factorisation of the tall matrix: slower, as accurate as can be, and what
@@ -103,17 +110,24 @@ impl Fitter {
         Ok(normalisation)
     }
 
-    /// Forms and factors the normal equations from moments. Returns whether they can be relied on.
-    fn factor_moments(&mut self) -> bool {
-        let degree = self.settings.degree.value();
+    /// The sums over the level sets.
+    fn sum_moments(&mut self) {
         let data = OrientedPoints {
             points: self.points.each_ref().map(Vec::as_slice),
             normals: self.normals.each_ref().map(Vec::as_slice),
         };
-        self.moments.set_to(degree, self.settings.offset, data);
+        self.moments.set_to(self.settings.degree.value(), self.settings.offset, data);
+    }
+
+    /// Forms and factors the normal equations from the sums or, where they cannot be relied on, the tall matrix.
+    fn factor(&mut self) -> Result<Factorisation, FitError> {
         let radial = self.moments.radial;
         let ridge = self.ridge(|d| radial[d]);
-        self.system.factor_gram(degree, &self.moments, &ridge)
+        if self.system.factor_gram(self.settings.degree.value(), &self.moments, &ridge) {
+            return Ok(Factorisation::Gram);
+        }
+        self.factor_rows()?;
+        Ok(Factorisation::Orthogonal)
     }
 
     /// The ridge of the settings, from `sum (x^2 + y^2)^d` over the data.
@@ -153,11 +167,8 @@ impl Fitter {
         self.system.factor_rows(&rows, &right)
     }
 
-    /// Solves the triangular system, under the constraint where it is asked for and needed, and judges the result.
-    fn finish(&mut self, normalisation: Normalisation, factorisation: Factorisation) -> Result<Fit, FitError> {
-        if !self.regression.has_inside {
-            return Err(FitError::NoInside);
-        }
+    /// Solves the triangular system, under the constraint where it is asked for and needed.
+    fn solve(&self) -> Result<Solution, FitError> {
         let degree = self.settings.degree;
         let size = degree.coefficient_count();
         let mut coefficients = [0.0; MAX_COEFFICIENTS];
@@ -175,7 +186,16 @@ impl Fitter {
             let floor = margin * range.rms;
             range = bounded::constrain_leading_form(degree.value(), &self.system, floor, &mut coefficients[..size])?;
         }
-        let working = ImplicitPolynomial::from_array(degree, coefficients);
+        Ok(Solution { coefficients, range, constraint_active })
+    }
+
+    /// Solves the triangular system and judges the result.
+    fn finish(&mut self, normalisation: Normalisation, factorisation: Factorisation) -> Result<Fit, FitError> {
+        if !self.regression.has_inside {
+            return Err(FitError::NoInside);
+        }
+        let Solution { coefficients, range, constraint_active } = self.solve()?;
+        let working = ImplicitPolynomial::from_array(self.settings.degree, coefficients);
         let residuals = Residuals::of(&working, &self.points[0], &self.points[1]);
         let diagnostics = FitDiagnostics {
             boundedness_margin: range.margin(),
@@ -188,6 +208,14 @@ impl Fitter {
         };
         Ok(Fit { normalisation, working, diagnostics })
     }
+}
+
+/// Coefficients in working coordinates.
+struct Solution {
+    coefficients: [f64; MAX_COEFFICIENTS],
+    /// Of their leading form.
+    range: CircleRange,
+    constraint_active: bool,
 }
 
 /// Centres and scales coordinates in place to mean 0 and root mean square radius 1.

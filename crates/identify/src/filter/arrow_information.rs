@@ -76,19 +76,48 @@ impl ArrowInformation {
     }
 }
 
-/// Factor of a positive definite matrix that was scaled on both sides to unit diagonal, and the scale.
-pub(crate) fn scaled_cholesky(matrix: &StateMatrix) -> Option<(StateVector, Cholesky<f64, Const<STATE>>)> {
-    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
-    let scaled = StateMatrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
-    // Directions that nothing is known of may come out a rounding below zero.
-    Some((scale, (scaled + StateMatrix::identity() * 1e-14).cholesky()?))
+/// Solution of `m x = b` for a positive definite matrix over the `2 k` entries of a state, scaled to unit diagonal on the way.
+pub(crate) fn scaled_solution(m: &StateMatrix, b: &StateVector, k: usize) -> Option<StateVector> {
+    match k {
+        3 => scaled_solution_sized::<6>(m, b),
+        4 => scaled_solution_sized::<8>(m, b),
+        6 => scaled_solution_sized::<12>(m, b),
+        _ => scaled_solution_sized::<16>(m, b),
+    }
 }
 
-/// Inverse of a positive definite matrix, scaled to unit diagonal on the way.
-pub(crate) fn scaled_inverse(matrix: &StateMatrix) -> Option<StateMatrix> {
-    let (scale, factor) = scaled_cholesky(matrix)?;
+/// Inverse of a positive definite matrix over the `2 k` entries of a state, scaled to unit diagonal on the way; unit diagonal beyond them.
+pub(crate) fn scaled_inverse(m: &StateMatrix, k: usize) -> Option<StateMatrix> {
+    match k {
+        3 => scaled_inverse_sized::<6>(m),
+        4 => scaled_inverse_sized::<8>(m),
+        6 => scaled_inverse_sized::<12>(m),
+        _ => scaled_inverse_sized::<16>(m),
+    }
+}
+
+fn scaled_solution_sized<const S: usize>(m: &StateMatrix, b: &StateVector) -> Option<StateVector> {
+    let (scale, factor) = scaled_cholesky::<S>(m)?;
+    let x = factor.solve(&b.fixed_rows::<S>(0).component_mul(&scale)).component_mul(&scale);
+    let mut solution = StateVector::zeros();
+    solution.fixed_rows_mut::<S>(0).copy_from(&x);
+    Some(solution)
+}
+
+fn scaled_inverse_sized<const S: usize>(m: &StateMatrix) -> Option<StateMatrix> {
+    let (scale, factor) = scaled_cholesky::<S>(m)?;
     let inverse = factor.inverse();
-    Some(StateMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+    let mut whole = StateMatrix::identity();
+    whole.fixed_view_mut::<S, S>(0, 0).copy_from(&SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]));
+    Some(whole)
+}
+
+/// Factor of a positive definite matrix that was scaled on both sides to unit diagonal, and the scale.
+fn scaled_cholesky<const S: usize>(m: &StateMatrix) -> Option<(SVector<f64, S>, Cholesky<f64, Const<S>>)> {
+    let scale = SVector::<f64, S>::from_fn(|i, _| if m[(i, i)] > 0.0 { 1.0 / m[(i, i)].sqrt() } else { 1.0 });
+    let scaled = SMatrix::<f64, S, S>::from_fn(|i, j| m[(i, j)] * scale[i] * scale[j]);
+    // Directions that nothing is known of may come out a rounding below zero.
+    Some((scale, (scaled + SMatrix::identity() * 1e-14).cholesky()?))
 }
 
 /// A marginal information matrix moved on by the same step.
@@ -121,6 +150,8 @@ fn transform<const K: usize>(v: &mut [f64; STATE], inverse: &CoordinateMatrix, p
 
 /// Subtracts `c c' / o` of every cell.
 fn eliminate<const S: usize>(cells: &[CellInformation], sum: &mut [[f64; STATE]; STATE]) {
+    // Of this size alone, so that it stays close.
+    let mut taken = [[0.0; S]; S];
     for CellInformation { coupling, own } in cells {
         if *own <= 0.0 {
             continue;
@@ -129,9 +160,12 @@ fn eliminate<const S: usize>(cells: &[CellInformation], sum: &mut [[f64; STATE];
         for i in 0..S {
             let factor = coupling[i] * inverse;
             for j in 0..S {
-                sum[i][j] -= factor * coupling[j];
+                taken[i][j] += factor * coupling[j];
             }
         }
+    }
+    for (row, taken) in sum.iter_mut().zip(&taken) {
+        row.iter_mut().zip(taken).for_each(|(entry, taken)| *entry -= taken);
     }
 }
 

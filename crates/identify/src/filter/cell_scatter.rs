@@ -25,8 +25,9 @@ impl Scatter {
     pub(crate) fn take(&mut self, square: f64) {
         self.points = (self.points + 1.0).min(MEMORY);
         let square = square.min(CLIPPED * self.variance);
-        self.mean_square += (square - self.mean_square) / self.points;
-        let uncertainty = (2.0 / self.points).sqrt();
+        let share = 1.0 / self.points;
+        self.mean_square += (square - self.mean_square) * share;
+        let uncertainty = (2.0 * share).sqrt();
         self.variance = (self.mean_square / (1.0 + SIGNIFICANT * uncertainty)).max(1.0);
     }
 }

@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
 use super::{
-    arrow_information::{ArrowInformation, CellInformation, STATE, StateMatrix, StateVector, scaled_cholesky},
+    arrow_information::{ArrowInformation, CellInformation, STATE, StateVector, scaled_solution},
     contour::median,
     noise_level::STRETCHES,
     outline_map::OutlineMap,
@@ -18,6 +18,8 @@ const BEND: f64 = 0.2;
 const MOST_ITERATIONS: usize = 6;
 /// A step that moves points by less than this many standard deviations of the noise is the last.
 const SETTLED: f64 = 0.03;
+/// Share of what is known of a cell beyond which a point says nothing of the noise: the cell follows it.
+const LARGEST_LEVERAGE: f64 = 0.8;
 /// Fewest points beyond the known ends that make the map grow.
 const FEWEST_NEW_POINTS: usize = 4;
 
@@ -136,7 +138,8 @@ impl OutlineMap {
             let right = self.accumulate(scratch, &mut work, &state);
             marginal = work.marginal();
             let reduced = reduce(&work, &scratch.right, right);
-            let Some(next) = solve(&marginal, &reduced, k) else {
+            let solution = scaled_solution(&marginal, &reduced, k);
+            let Some(next) = solution.filter(|next| next.iter().all(|e| e.is_finite())) else {
                 std::mem::swap(&mut work.cells, &mut scratch.cells);
                 return self.rejected(iterations);
             };
@@ -172,9 +175,9 @@ impl OutlineMap {
             self.compare_innovations(&scratch.shifts, &scratch.cells);
             let units = 1.0 / (self.sigma * self.sigma);
             for r in scratch.readings.iter().filter(|r| r.weight > 0.0) {
-                let leverage = r.weight * r.slope * r.slope / self.information.cells[r.cell].own;
-                if leverage < 0.8 {
-                    self.cells[r.cell].scatter.take(r.residual * r.residual * units / (1.0 - leverage));
+                let (own, of_point) = (self.information.cells[r.cell].own, r.weight * r.slope * r.slope);
+                if of_point < LARGEST_LEVERAGE * own {
+                    self.cells[r.cell].scatter.take(r.residual * r.residual * units * (own / (own - of_point)));
                 }
             }
             if let Some(noise) = update.noise {
@@ -213,9 +216,9 @@ impl OutlineMap {
             }
             known += 1;
             agreeing += usize::from(r.residual.abs() < tolerance);
-            let leverage = r.weight * r.slope * r.slope / cells[r.cell].own;
-            if r.weight > 0.0 && leverage < 0.8 {
-                values.push(r.residual.abs() / (1.0 - leverage).sqrt());
+            let (own, of_point) = (cells[r.cell].own, r.weight * r.slope * r.slope);
+            if r.weight > 0.0 && of_point < LARGEST_LEVERAGE * own {
+                values.push(r.residual.abs() * (own / (own - of_point)).sqrt());
             }
         }
         let enough = values.len() * 4 > readings.len();
@@ -268,12 +271,4 @@ fn reduce(work: &ArrowInformation, right_of_cells: &[f64], mut right: StateVecto
         }
     }
     right
-}
-
-/// Solves `m x = b`, scaled to unit diagonal on the way; entries beyond the state stay zero.
-fn solve(m: &StateMatrix, b: &StateVector, k: usize) -> Option<StateVector> {
-    let (scale, factor) = scaled_cholesky(m)?;
-    let mut x = factor.solve(&b.component_mul(&scale)).component_mul(&scale);
-    (2 * k..STATE).for_each(|i| x[i] = 0.0);
-    x.iter().all(|e| e.is_finite()).then_some(x)
 }

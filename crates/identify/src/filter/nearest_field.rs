@@ -59,10 +59,10 @@ impl NearestField {
     }
 
     fn pixel_of(&self, p: &Point2<f64>) -> usize {
-        // A float beyond the range of the integer, and NaN, end at its limits.
-        let column = ((p.x - self.origin.x) * self.per_length) as usize;
-        let row = ((p.y - self.origin.y) * self.per_length) as usize;
-        row.min(self.height - 1) * self.width + column.min(self.width - 1)
+        // Pixels of the border stand for what lies beyond; NaN becomes 0.
+        let within =
+            |length: f64, count: usize| (length * self.per_length).clamp(0.0, (count - 1) as f64) as u32 as usize;
+        within(p.y - self.origin.y, self.height) * self.width + within(p.x - self.origin.x, self.width)
     }
 
     fn centre(&self, index: usize) -> Point2<f64> {

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     estimate::MAX_PARAMETERS,
-    motion_algebra::{Coordinates, map_point, normal_velocities, pull_back},
+    motion_algebra::{Coordinates, is_affine, map_point_by, normal_velocities, pull_back_by},
 };
 
 /// Residuals up to this many standard deviations count in full...
@@ -39,10 +39,12 @@ pub(crate) struct Reading {
     pub(crate) residual: f64,
     /// How fast the residual falls as the offset grows.
     pub(crate) slope: f64,
-    /// Of the outline in the image.
-    normal: Vector2<f64>,
     pub(crate) row: Coordinates,
     pub(crate) weight: f64,
+}
+
+impl Reading {
+    const NOTHING: Self = Self { cell: NO_CELL, residual: 0.0, slope: 0.0, row: [0.0; MAX_PARAMETERS], weight: 0.0 };
 }
 
 impl OutlineMap {
@@ -53,29 +55,47 @@ impl OutlineMap {
     /// The mean of its neighbours along the contour has little of that noise, and its nearest cell is taken.
     pub(crate) fn read_points(&self, scratch: &mut Scratch, pose: &Matrix3<f64>, unseen: &[Unseen], first: bool) {
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
-        let Scratch { points, readings, values, shifts, pieces, smooth, .. } = scratch;
+        let half_window = self.half_window_of_places(pose, scratch.points.len());
         if first {
-            readings.clear();
-            readings.extend(points.iter().map(|p| {
-                let q = map_point(&inverse, p);
-                self.measure(p, &q, self.cell_of(&q), &inverse, shifts)
-            }));
-            self.weigh(readings, values, first);
+            scratch.readings.clear();
+            scratch.readings.resize(scratch.points.len(), Reading::NOTHING);
         }
-        let half_window = self.half_window_of_places(pose, points.len());
-        if half_window == 0 {
-            smooth.clone_from(points);
+        if is_affine(&inverse) {
+            self.read_points_by::<true>(scratch, &inverse, half_window, unseen, first);
         } else {
-            smooth.clear();
+            self.read_points_by::<false>(scratch, &inverse, half_window, unseen, first);
+        }
+    }
+
+    fn read_points_by<const AFFINE: bool>(
+        &self,
+        scratch: &mut Scratch,
+        inverse: &Matrix3<f64>,
+        half_window: usize,
+        unseen: &[Unseen],
+        first: bool,
+    ) {
+        let Scratch { points, readings, values, shifts, pieces, smooth, .. } = scratch;
+        smooth.clear();
+        if half_window == 0 {
+            smooth.extend_from_slice(points);
+        } else {
+            if first {
+                // What the points count with in the means.
+                self.find_cells::<AFFINE>(readings, inverse, points, points);
+                for (reading, p) in readings.iter_mut().zip(points.iter()) {
+                    self.measure::<AFFINE>(reading, p, inverse, shifts);
+                }
+                self.weigh(readings, values, first);
+            }
             for piece in pieces.iter() {
                 smooth_piece(&points[piece.range()], &readings[piece.range()], piece.closed, half_window, smooth);
             }
         }
-        for ((reading, p), place) in readings.iter_mut().zip(points.iter()).zip(smooth.iter()) {
-            let q = map_point(&inverse, p);
-            let cell = if reading.weight > 0.0 { self.cell_of(&map_point(&inverse, place)) } else { self.cell_of(&q) };
-            *reading = self.measure(p, &q, cell, &inverse, shifts);
-            self.linearise(reading, p, unseen);
+        self.find_cells::<AFFINE>(readings, inverse, points, smooth);
+        for (reading, p) in readings.iter_mut().zip(points.iter()) {
+            let normal = self.measure::<AFFINE>(reading, p, inverse, shifts);
+            self.linearise(reading, p, &normal, unseen);
         }
         self.weigh(readings, values, first);
     }
@@ -89,8 +109,27 @@ impl OutlineMap {
         (0.5 * (needed.min(most) - 1.0)).round().max(0.0) as usize
     }
 
-    pub(crate) fn cell_of(&self, q: &Point2<f64>) -> usize {
-        self.nearest_cell(q).filter(|number| !self.is_beyond_end(*number, q)).unwrap_or(NO_CELL)
+    /// The cells of points, by the means of their neighbours where they count and by themselves where they do not.
+    fn find_cells<const AFFINE: bool>(
+        &self,
+        readings: &mut [Reading],
+        inverse: &Matrix3<f64>,
+        points: &[Point2<f64>],
+        smooth: &[Point2<f64>],
+    ) {
+        let body_place =
+            |reading: &Reading, p, place| map_point_by::<AFFINE>(inverse, if reading.weight > 0.0 { place } else { p });
+        // A first look at all of them waits for none; which way to go from there cannot be foreseen.
+        for (reading, (p, place)) in readings.iter_mut().zip(points.iter().zip(smooth)) {
+            reading.cell = self.field.lookup(&body_place(reading, p, place)).unwrap_or(NO_CELL);
+        }
+        for (reading, (p, place)) in readings.iter_mut().zip(points.iter().zip(smooth)) {
+            if reading.cell != NO_CELL {
+                let q = body_place(reading, p, place);
+                let number = self.nearest_from(reading.cell, &q);
+                reading.cell = if self.is_beyond_end(number, &q) { NO_CELL } else { number };
+            }
+        }
     }
 
     /// Tukey's weights.
@@ -128,48 +167,50 @@ impl OutlineMap {
         }
     }
 
-    /// Distance of an image point from a cell, its body point given.
-    fn measure(
+    /// Distance of an image point from its cell. Returns the normal of the outline in the image.
+    #[inline(always)]
+    fn measure<const AFFINE: bool>(
         &self,
+        reading: &mut Reading,
         p: &Point2<f64>,
-        q: &Point2<f64>,
-        number: usize,
         inverse: &Matrix3<f64>,
         shifts: &[f64],
-    ) -> Reading {
-        let mut reading = Reading {
-            cell: number,
-            residual: 0.0,
-            slope: 0.0,
-            normal: Vector2::zeros(),
-            row: [0.0; MAX_PARAMETERS],
-            weight: 0.0,
-        };
-        if number != NO_CELL {
-            let cell = &self.cells[number];
-            let z = cell.normal.dot(&(q - cell.centre)) - cell.offset - shifts[number];
-            // A unit step along the image normal moves the body point by |D' n| along n.
-            let pulled = pull_back(inverse, p, q, &cell.normal);
-            reading.slope = 1.0 / pulled.norm();
-            reading.normal = pulled * reading.slope;
-            reading.residual = z * reading.slope;
+    ) -> Vector2<f64> {
+        if reading.cell == NO_CELL {
+            (reading.residual, reading.slope) = (0.0, 0.0);
+            return Vector2::zeros();
         }
-        reading
+        let cell = &self.cells[reading.cell];
+        let q = map_point_by::<AFFINE>(inverse, p);
+        let z = cell.normal.dot(&(q - cell.centre)) - cell.offset - shifts[reading.cell];
+        // A unit step along the image normal moves the body point by |D' n| along n.
+        let pulled = pull_back_by::<AFFINE>(inverse, p, &q, &cell.normal);
+        reading.slope = 1.0 / pulled.norm();
+        reading.residual = z * reading.slope;
+        pulled * reading.slope
     }
 
     /// How the distance changes with the pose.
-    fn linearise(&self, reading: &mut Reading, p: &Point2<f64>, unseen: &[Unseen]) {
+    #[inline]
+    fn linearise(&self, reading: &mut Reading, p: &Point2<f64>, normal: &Vector2<f64>, unseen: &[Unseen]) {
         if reading.cell == NO_CELL {
+            reading.row = [0.0; MAX_PARAMETERS];
             return;
         }
-        let foot = p - reading.residual * reading.normal;
-        reading.row = normal_velocities(self.model, &foot, &reading.normal);
+        let foot = p - reading.residual * normal;
+        reading.row = normal_velocities(self.model, &foot, normal);
         unseen.iter().for_each(|unseen| unseen.take_off(&mut reading.row));
     }
 
     /// Number of the cell nearest to a body point.
     pub(crate) fn nearest_cell(&self, q: &Point2<f64>) -> Option<usize> {
-        let mut number = self.field.lookup(q)?;
+        self.field.lookup(q).map(|near| self.nearest_from(near, q))
+    }
+
+    /// The cell nearest to a body point, from one near it.
+    #[inline(always)]
+    fn nearest_from(&self, near: usize, q: &Point2<f64>) -> usize {
+        let mut number = near;
         let mut distance = (self.cells[number].centre - q).norm_squared();
         loop {
             let mut better = number;
@@ -180,7 +221,7 @@ impl OutlineMap {
                 }
             }
             if better == number {
-                return Some(number);
+                return number;
             }
             number = better;
         }
@@ -262,7 +303,8 @@ fn smooth_piece(
     let count = points.len();
     let w = half_window.min((count - 1) / 2);
     let weighted = |i: usize| (readings[i].weight * points[i].coords).push(readings[i].weight);
-    let at = |i: usize| weighted(i % count);
+    // Less than two rounds on, where a remainder would be most of the work.
+    let at = |i: usize| weighted(if i < count { i } else { i - count });
     let mut sum = nalgebra::Vector3::zeros();
     if closed {
         // The window of the first point reaches back over the end.
@@ -284,6 +326,6 @@ fn smooth_piece(
                 sum + at(i + now) - at(i - 1 - before)
             };
         }
-        smooth.push(if sum.z > 1e-3 { Point2::from(sum.xy() / sum.z) } else { *point });
+        smooth.push(if sum.z > 1e-3 { Point2::from(sum.xy() * (1.0 / sum.z)) } else { *point });
     }
 }

@@ -132,7 +132,7 @@ impl OutlineMap {
             return Some(blind);
         }
         let k = self.information.k;
-        let covariance = scaled_inverse(&self.marginal)?;
+        let covariance = scaled_inverse(&self.marginal, k)?;
         let covariance = nalgebra::DMatrix::from_fn(k, k, |i, j| covariance[(k + i, k + j)]);
         let frame = self.pose * self.body_frame;
         let from_centred = adjoint(self.model, &frame, &frame.try_inverse()?);
