@@ -25,6 +25,12 @@ pub(crate) struct History {
 }
 
 impl History {
+    /// One of an object that nothing is known of.
+    pub(crate) fn of(object: String) -> Self {
+        let (estimates, residuals, innovations, rejected) = Default::default();
+        Self { object, start: None, estimates, residuals, innovations, rejected, latest: None }
+    }
+
     /// Adds a frame to the history of its object.
     pub(crate) fn take(
         histories: &mut Vec<Self>,
@@ -34,15 +40,7 @@ impl History {
     ) {
         let position = histories.iter().position(|history| history.object == observation.object);
         let position = position.unwrap_or_else(|| {
-            histories.push(Self {
-                object: observation.object.clone(),
-                start: None,
-                estimates: Vec::new(),
-                residuals: Vec::new(),
-                innovations: Vec::new(),
-                rejected: Vec::new(),
-                latest: None,
-            });
+            histories.push(Self::of(observation.object.clone()));
             histories.len() - 1
         });
         let history = &mut histories[position];

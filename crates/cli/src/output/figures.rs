@@ -1,4 +1,5 @@
 use freeform_motion::curve_fit::Outline;
+use freeform_motion::identify::ParameterEstimate;
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
 
@@ -7,6 +8,7 @@ use crate::commands::FittedOutline;
 use crate::history::History;
 use crate::level_set::{Area, curve_of, stray};
 use crate::plot::{Curve, Look, Panel, stacked_svg};
+use crate::tracking::Estimate;
 use crate::truth::parameters_in;
 
 /// What is seen around the points, as a share of their extent.
@@ -144,30 +146,50 @@ impl History {
         Some((self.estimates.first()?.0, self.estimates.last()?.0))
     }
 
-    /// What was identified of a parameter, with a band where its standard deviation is known.
+    /// What was identified of a parameter, with a band where its standard deviation is known; both with gaps where it was not.
     fn curves(&self, parameter: usize) -> Vec<Curve> {
-        let (mut line, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
-        let mut runs = Vec::new();
-        for (time, estimate) in &self.estimates {
-            let found = estimate.parameters().nth(parameter);
-            let Some(value) = found.and_then(|p| p.value) else {
-                runs.push(std::mem::take(&mut line));
-                continue;
+        let found = |estimate: &Estimate| estimate.parameters().nth(parameter).and_then(|p| p.value.map(|_| p));
+        let estimates = self.estimates.iter().map(|(time, estimate)| (*time, found(estimate))).collect::<Vec<_>>();
+        let (mut runs, mut band) = (Vec::new(), Vec::new());
+        for run in estimates.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
+            let known = || run.iter().filter_map(|(time, found)| found.map(|p| (*time, p)));
+            let edge = |side: f64| {
+                let offset = move |p: ParameterEstimate| Some(p.value? + side * BAND * p.standard_deviation?);
+                known().filter_map(move |(time, p)| Some([time, offset(p)?]))
             };
-            line.push([*time, value]);
-            if let Some(deviation) = found.and_then(|p| p.standard_deviation) {
-                low.push([*time, value - BAND * deviation]);
-                high.push([*time, value + BAND * deviation]);
-            }
+            let outer: Vec<_> = edge(1.0).collect();
+            runs.push(known().filter_map(|(time, p)| Some([time, p.value?])).collect());
+            band.push(edge(-1.0).chain(outer.into_iter().rev()).collect());
         }
-        runs.push(line);
-        runs.retain(|run| !run.is_empty());
-        high.reverse();
-        low.append(&mut high);
-        let band = if low.is_empty() { Vec::new() } else { vec![low] };
+        let is_drawn = |run: &Vec<[f64; 2]>| !run.is_empty();
+        runs.retain(is_drawn);
+        band.retain(is_drawn);
         vec![
             Curve { name: "2 std".to_owned(), look: Look::Band, runs: band },
             Curve { name: "identified".to_owned(), look: Look::Line, runs },
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::identify::MotionEstimate;
+
+    use super::*;
+
+    #[test]
+    fn neither_line_nor_band_bridges_a_time_at_which_nothing_was_known() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.0, 2.0, 3.0], Some(&[0.1, 0.1, 0.1]));
+        let estimates = (0..5).map(|frame| {
+            let found = if frame == 2 { estimate.with_unobservable(0) } else { estimate };
+            (f64::from(frame), Estimate::of(found, None).expect("finite"))
+        });
+        let mut history = History::of("0".to_owned());
+        history.estimates = estimates.collect();
+        let curves = history.curves(0);
+        assert_eq!(curves[0].runs[0], [[0.0, 0.8], [1.0, 0.8], [1.0, 1.2], [0.0, 1.2]]);
+        let lengths = |curve: &Curve| curve.runs.iter().map(Vec::len).collect::<Vec<_>>();
+        assert_eq!((lengths(&curves[0]), lengths(&curves[1])), (vec![4, 4], vec![2, 2]));
+        assert_eq!(lengths(&history.curves(1)[1]), [5]);
     }
 }

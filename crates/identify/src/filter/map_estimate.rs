@@ -24,9 +24,9 @@ impl OutlineMap {
     /// Covariance of pose and motion in normalised units, of their marginal information or of that with the outline given; `None`
     /// where it cannot be computed.
     pub(crate) fn state_covariance(&self, information: &StateMatrix) -> Option<DMatrix<f64>> {
-        let size = 2 * self.information.k;
-        let inverse = scaled_inverse(information, self.information.k)? * self.effective_variance();
-        Some(DMatrix::from_fn(size, size, |i, j| inverse[(i, j)]))
+        let k = self.information.k;
+        let inverse = scaled_inverse(information, k)? * self.effective_variance();
+        Some(DMatrix::from_fn(2 * k, 2 * k, |i, j| inverse[(i, j)]))
     }
 
     /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed.
