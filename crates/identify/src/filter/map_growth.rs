@@ -39,9 +39,11 @@ impl OutlineMap {
         let first_new = self.cells.len();
         let scale = self.pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let sigma = self.sigma / scale;
+        let points: usize = contours.iter().map(Contour::len).sum();
         let resampled = |mut contour: Contour| contour.resampled(sigma, self.half_window, self.spacing);
         let pieces: Vec<_> = contours.into_iter().filter_map(resampled).collect();
-        self.most_seen = self.most_seen.max(pieces.iter().map(|piece| piece.places.len()).sum());
+        let places = pieces.iter().map(|piece| piece.places.len()).sum();
+        self.most_seen = self.most_seen.max(places);
         if first_new >= MOST_TIMES_SEEN * self.most_seen {
             return;
         }
@@ -54,8 +56,11 @@ impl OutlineMap {
         self.information.cells.resize(self.cells.len(), CellInformation::NOTHING);
         let w = self.half_window as f64;
         let levers = (w * (w + 1.0) * (2.0 * w + 1.0) / 3.0).sqrt();
-        let normal_noise = (self.sigma / (levers * 0.5 * self.spacing)).min(0.2);
-        self.find_unseen_directions(normal_noise);
+        let step = self.spacing * places as f64 / points as f64;
+        let normal_noise = (self.sigma / (levers * step)).min(0.2);
+        let share_of_new = (self.cells.len() - first_new) as f64 / self.cells.len() as f64;
+        self.normal_variance += share_of_new * (normal_noise * normal_noise - self.normal_variance);
+        self.find_unseen_directions();
         let mut scratch = std::mem::take(&mut self.scratch);
         self.measure_new_cells(&mut scratch, first_new);
         self.scratch = scratch;

@@ -139,10 +139,11 @@ impl OutlineMap {
             marginal = work.marginal();
             let reduced = reduce(&work, &scratch.right, right);
             let solution = scaled_solution(&marginal, &reduced, k);
-            let Some(next) = solution.filter(|next| next.iter().all(|e| e.is_finite())) else {
+            let Some(mut next) = solution.filter(|next| next.iter().all(|e| e.is_finite())) else {
                 std::mem::swap(&mut work.cells, &mut scratch.cells);
                 return self.rejected(iterations);
             };
+            unseen.iter().for_each(|unseen| unseen.take_off_step(&mut next, k));
             scratch.take_solution(&work.cells, &(next - state), &next, k);
             let step = (0..k).map(|i| (next[i] - state[i]).abs()).fold(0.0, f64::max);
             state = next;

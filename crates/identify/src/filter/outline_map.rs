@@ -88,6 +88,8 @@ pub struct OutlineMap {
     /// What bent cells alone would leave of the residuals.
     sigma_floor: f64,
     pub(crate) half_window: usize,
+    /// Mean variance of the directions of the cells' normals, rad squared.
+    pub(crate) normal_variance: f64,
     /// In the body frame.
     pub(crate) unseen_in_body: Vec<Coordinates>,
     /// Whether frames have not shown the turn, whatever the normals promise.
@@ -146,6 +148,7 @@ impl OutlineMap {
             sigma_weight: 0.5,
             sigma_floor: SMALLEST_NOISE,
             half_window: 2,
+            normal_variance: 0.0,
             unseen_in_body: Vec::new(),
             turn_is_hidden: false,
             body_frame: Matrix3::identity(),

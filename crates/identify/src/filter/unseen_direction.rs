@@ -1,7 +1,10 @@
 //! Directions of the pose that an outline does not show, such as the turning of a circle about its centre.
 use nalgebra::{Matrix3, Point2, SMatrix, Vector2};
 
-use super::{arrow_information::scaled_inverse, outline_map::OutlineMap};
+use super::{
+    arrow_information::{StateVector, scaled_inverse},
+    outline_map::OutlineMap,
+};
 use crate::{
     estimate::MAX_PARAMETERS,
     motion_algebra::{Coordinates, adjoint, coordinates, normal_velocities},
@@ -27,6 +30,14 @@ impl Unseen {
     pub(crate) fn take_off(&self, row: &mut Coordinates) {
         let along: f64 = row.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
         row.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
+    }
+
+    /// Takes the direction off a step of pose and motion, both of so many coordinates: what cannot be seen goes on as it was predicted.
+    pub(crate) fn take_off_step(&self, step: &mut StateVector, k: usize) {
+        for block in [0, k] {
+            let along: f64 = (0..k).map(|i| self.dual[i] * step[block + i]).sum();
+            (0..k).for_each(|i| step[block + i] -= along * self.direction[i]);
+        }
     }
 }
 
@@ -61,7 +72,7 @@ impl OutlineMap {
     }
 
     /// Directions of the pose that the cells do not show, from their lever arms about their mean.
-    pub(crate) fn find_unseen_directions(&mut self, normal_noise: f64) {
+    pub(crate) fn find_unseen_directions(&mut self) {
         let was_unseen = self.turn_is_unseen();
         let count = self.cells.len() as f64;
         let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
@@ -75,7 +86,7 @@ impl OutlineMap {
             levers += row * row.transpose() / count;
         }
         let eigen = levers.symmetric_eigen();
-        let threshold = DEGENERATE + 1.5 * normal_noise * normal_noise;
+        let threshold = DEGENERATE + 1.5 * self.normal_variance;
         let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
         self.unseen_in_body.clear();
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
