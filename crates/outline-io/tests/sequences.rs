@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use freeform_outline_io::{
     Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
     PictureSequence, PictureSettings, Ring, Selection, SequenceSettings, TraceError, TraceSettings, TracedFrame,
-    TracedOutline, trace_mask,
+    TracedOutline, picture_files, trace_mask,
 };
 use image::codecs::gif::GifEncoder;
 use image::{Delay, DynamicImage, Frame, Luma, Rgb, RgbImage};
@@ -78,6 +78,20 @@ fn a_folder_and_a_pattern_are_read_in_natural_order() {
     assert_eq!(files(open(&[folder.path().join("f[19]*")])), ["f1.tiff", "f9.bmp", "f10.png"]);
     let nothing = PictureSequence::open(&[folder.path().join("g*.png")], SequenceSettings::default());
     assert!(nothing.expect_err("no match").to_string().ends_with("g*.png: no pictures found"));
+}
+
+#[test]
+fn of_a_folder_with_nothing_but_compressed_video_the_first_video_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("a.txt"), "no video").expect("a file");
+    let said = || picture_files(folder.path()).expect_err("nothing to read").to_string();
+    assert!(said().ends_with(": no pictures found"), "{}", said());
+    for name in ["clip-10.mp4", "clip-9.mp4"] {
+        std::fs::write(folder.path().join(name), b"\0\0\0\x20ftypisom\0\0\x02\0isom").expect("a file");
+    }
+    assert!(said().contains("clip-9.mp4: MP4 video is not decoded here"), "{}", said());
+    disc(20.0, 10.0).save(folder.path().join("frame.png")).expect("a picture");
+    assert_eq!(picture_files(folder.path()).expect("pictures"), [folder.path().join("frame.png")]);
 }
 
 #[test]
@@ -267,7 +281,8 @@ fn a_background_leaves_only_what_moves() {
     let other_size = Background::Picture(GrayImage::new(3, 3));
     let settings = PictureSettings { background: Some(other_size), ..PictureSettings::default() };
     let refused = traced(vec![disc(20.0, 10.0)], settings);
-    assert_eq!(refused[0].objects, Err(TraceError::BackgroundSize { width: 3, height: 3 }));
+    let said = refused[0].objects.as_ref().expect_err("another size").to_string();
+    assert_eq!(said, "80 x 60 pixels, the background has 3 x 3");
 }
 
 #[test]
