@@ -60,6 +60,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     }
     let input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
+    let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
     let mut sink = Sink::stdout();
     let mut collected = Collected::default();
     let (mut reasons, mut first_missing, mut warnings) = (Vec::new(), None::<Missing>, MissingWarnings::default());
@@ -127,8 +128,8 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;
     }
     let printed = sink.finish();
-    if let Some(path) = &args.svg {
-        WholeFile::write(path, &fit_figure(&collected.drawn))?;
+    if let Some(file) = svg {
+        file.finish_with(fit_figure(&collected.drawn).as_bytes())?;
     }
     failure.map_or(printed, Err)
 }
