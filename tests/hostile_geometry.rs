@@ -183,6 +183,34 @@ proptest! {
     }
 
     #[test]
+    fn objects_whose_curves_have_nearly_double_lines_move_as_their_twins_in_another_place_and_unit(
+        seed in any::<u64>(),
+        flatness in 0.3..0.95_f64,
+        exponent in -6.0..0.0_f64,
+        unit in -6.0..6.0_f64,
+    ) {
+        // The quartic of an ellipse is the square of a conic but for its dents, so that its lines come in pairs.
+        let round = dented_circle(0.2 * 10.0_f64.powf(exponent));
+        let here = sequence(move |place| { let p = round(place); Point2::new(p.x, flatness * p.y) }, 200, 0.003, seed);
+        let map = scaling(10.0_f64.powf(unit), Vector2::new(-5.0, 2.0));
+        let there = through(&here, &map);
+        let (filter, filter_there) = (by_filter(&here), by_filter(&there));
+        prop_assert_eq!(filter.0.frames_rejected(), filter_there.0.frames_rejected());
+        prop_assert_eq!(filter.1.is_some(), filter_there.1.is_some());
+        if let (Some(a), Some(b)) = (&filter.1, &filter_there.1) {
+            let error = difference(a, b, &map);
+            prop_assert!(error < 1e-4, "filter: {error:e}");
+        }
+        let (pipeline, pipeline_there) = (by_pipeline(&here), by_pipeline(&there));
+        prop_assert_eq!(pipeline.0, pipeline_there.0);
+        prop_assert_eq!(pipeline.1.is_some(), pipeline_there.1.is_some());
+        if let (Some(a), Some(b)) = (pipeline.1, pipeline_there.1) {
+            let error = difference(&a, &b, &map);
+            prop_assert!(error < 1e-4, "pipeline: {error:e}");
+        }
+    }
+
+    #[test]
     fn a_nearly_round_object_leaves_both_identifiers_finite(
         seed in any::<u64>(),
         exponent in -12.0..0.0_f64,

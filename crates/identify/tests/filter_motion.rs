@@ -168,6 +168,20 @@ fn a_first_frame_of_another_object_is_forgotten() {
 }
 
 #[test]
+fn a_map_that_more_frames_speak_against_than_for_is_begun_anew() {
+    let mut frames = frames_of(BuiltInShape::Bird, RIGID, settings(30, 5));
+    let others = frames_of(BuiltInShape::Van, RIGID, settings(3, 5));
+    for (frame, other) in frames.iter_mut().zip(&others) {
+        frame.outline = other.outline.clone();
+    }
+    let run = filtered(MotionModel::Rigid, &frames);
+    // Three frames of the van, four of the bird against it, the last of which begins the new map.
+    assert_eq!((run.restarts(), run.frames_rejected()), (1, 4));
+    let bound = bound(BuiltInShape::Bird, MotionModel::Rigid, RIGID.into(), 24, 1.0);
+    assert!(ratios(&run, &values(MotionModel::Rigid, RIGID.into()), &bound).iter().all(|r| r.0.abs() < 5.0));
+}
+
+#[test]
 fn gaps_and_uneven_times_change_nothing() {
     let all = frames_of(BuiltInShape::Bird, RIGID, settings(90, 11));
     let kept: Vec<_> =

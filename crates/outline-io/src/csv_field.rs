@@ -9,6 +9,11 @@ const QUOTED_CHARACTERS: usize = 40;
 
 /// A finite number of bounded size.
 pub(crate) fn number(field: &[u8]) -> Result<f64, ReadErrorKind> {
+    // Most fields are a number and nothing else.
+    let plain = std::str::from_utf8(field).ok().and_then(|text| text.parse::<f64>().ok());
+    if let Some(value) = plain.filter(|value| value.abs() <= NUMBER_LIMIT) {
+        return Ok(value);
+    }
     let text = text(field)?;
     if text.is_empty() {
         return Err(ReadErrorKind::EmptyField);

@@ -9,9 +9,10 @@ const SIGNIFICANT: f64 = 7.0;
 const SIGNIFICANT_AGAIN: f64 = 3.0;
 /// Squared innovation per parameter beyond which two frames in a row show a sudden change.
 pub(crate) const SUDDEN: f64 = 25.0;
-/// Squared innovation per parameter that counts at most in the running estimate: squares have long tails, and by this limit
-/// it takes several frames that agree to see a change.
+/// Squared innovation per parameter that counts at most in the running estimate: squares have long tails.
 const LIMIT: f64 = 4.0;
+/// Standard deviations of the slope of one frame that count at most as evidence, so that it takes several frames that agree.
+const EVIDENCE: f64 = 4.0;
 
 /// Recursive maximum-likelihood estimate, by Fisher's scoring, of the variance by which the motion changes per second; none until
 /// the evidence is significant.
@@ -41,12 +42,27 @@ impl MotionChange {
             return;
         }
         let kept = 1.0 - 1.0 / MEMORY;
-        self.gradient = kept * self.gradient + gradient;
+        self.gradient = kept * self.gradient + gradient.min(EVIDENCE * innovation.fisher.sqrt());
         self.fisher = kept * self.fisher + innovation.fisher;
         let significant = if self.has_changed { SIGNIFICANT_AGAIN } else { SIGNIFICANT };
         if self.gradient > significant * self.fisher.sqrt() {
             self.variance = self.gradient / self.fisher;
             (self.gradient, self.fisher) = (0.0, 0.0);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_frame_however_far_off_shows_no_change_but_several_in_a_row_do() {
+        let innovation = PoseInnovation { squared: 20.0, gradient: 12.0, fisher: 1.0 };
+        let mut change = MotionChange::default();
+        change.take(&innovation, 6);
+        assert_eq!(change.variance, 0.0);
+        (0..4).for_each(|_| change.take(&innovation, 6));
+        assert!(change.variance > 0.0);
     }
 }

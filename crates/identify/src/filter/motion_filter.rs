@@ -90,6 +90,9 @@ pub struct MotionFilter {
     accepted: usize,
     rejected: usize,
     rejected_in_a_row: usize,
+    /// Frames that the present map has taken, and that it has not.
+    taken_by_map: usize,
+    refused_by_map: usize,
     restarts: usize,
     change: MotionChange,
     motion_changed: bool,
@@ -114,6 +117,8 @@ impl MotionFilter {
             accepted: 0,
             rejected: 0,
             rejected_in_a_row: 0,
+            taken_by_map: 0,
+            refused_by_map: 0,
             restarts: 0,
             change: MotionChange::default(),
             motion_changed: false,
@@ -142,10 +147,12 @@ impl MotionFilter {
         let accepted = update.is_some_and(|update| update.accepted);
         if accepted {
             self.accepted += 1;
+            self.taken_by_map += 1;
             self.rejected_in_a_row = 0;
             self.keep(time, outline);
         } else {
             self.rejected += 1;
+            self.refused_by_map += 1;
             self.rejected_in_a_row += 1;
             self.fall_back(time, outline);
         }
@@ -161,6 +168,7 @@ impl MotionFilter {
         self.rivals = Rivals::default();
         (self.last_time, self.map_time) = (time, time);
         self.accepted += 1;
+        (self.taken_by_map, self.refused_by_map) = (1, 0);
         self.rejected_in_a_row = 0;
         self.phase = Phase::Acquiring;
         Ok(())
@@ -207,9 +215,11 @@ impl MotionFilter {
     /// After a rejected frame: look elsewhere, or begin again.
     fn fall_back(&mut self, time: f64, outline: &Outline) {
         let in_a_row = self.rejected_in_a_row;
+        // A map that more frames speak against than for was begun from what is not the object.
+        let is_outvoted = in_a_row >= self.settings.patience && self.refused_by_map > self.taken_by_map;
         let give_up = match self.phase {
             Phase::Acquiring => in_a_row >= FALSE_START,
-            _ => in_a_row >= GIVEN_UP,
+            _ => in_a_row >= GIVEN_UP || is_outvoted,
         };
         if give_up && outline.point_count() >= FEWEST_POINTS && self.start(time, outline).is_ok() {
             self.restarts += 1;
