@@ -84,7 +84,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         for result in results.iter().filter(|_| !args.quiet) {
             result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
-        print(args, &results, truth.as_ref(), &b, (&left_out, input.has_pictures()))
+        print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
     } else {
         Ok(())
     };
@@ -198,7 +198,8 @@ fn print(
     results: &[ObjectResult],
     truth: Option<&AffineMotion>,
     b: &MeaningOfB,
-    (left_out, has_pictures): (&LeftOut, bool),
+    left_out: &LeftOut,
+    has_pictures: bool,
 ) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let format = if args.json { IdentifyFormat::Json } else { args.format };
