@@ -66,7 +66,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let (mut reasons, mut first_missing, mut warnings) = (Vec::new(), None::<Missing>, MissingWarnings::default());
     let mut failure = None;
     let mut frames = FrameRanges::default();
-    let progress = Progress::of_frames(input.frame_count(), false);
+    let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
     for item in input {
         progress.advance();

@@ -43,7 +43,7 @@ type Written = Result<Outcome, WriteError>;
 fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Written, Failure> {
     let mut overlay = args.overlay.as_deref().map(|path| Overlay::open(path, &args.inputs)).transpose()?;
     let mut outcome = Outcome { outlines: 0, first_missing: None };
-    let progress = Progress::of_frames(input.frame_count(), args.quiet);
+    let progress = Progress::of_frames(input.frame_count(), args.quiet || sink.is_disturbed_by_progress());
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
     let object_column = args.pictures.follows_all();

@@ -8,6 +8,7 @@ use tempfile::{Builder, NamedTempFile};
 
 use crate::failure::{Failure, plain};
 use crate::interrupt::Unfinished;
+use crate::progress::would_stand_in_output;
 
 /// A file that appears whole or not at all: written beside its place and moved there in the end. A place that is no
 /// regular file (a device, a pipe) is written to as it is.
@@ -150,6 +151,11 @@ impl Sink {
     /// Standard output.
     pub(crate) fn stdout() -> Self {
         Self::Stdout(BufWriter::new(io::stdout().lock()))
+    }
+
+    /// Whether a progress bar would stand in what is written here.
+    pub(crate) fn is_disturbed_by_progress(&self) -> bool {
+        matches!(self, Self::Stdout(_)) && would_stand_in_output()
     }
 
     /// Writes out what is buffered, puts a file in its place.

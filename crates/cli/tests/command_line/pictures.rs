@@ -366,3 +366,21 @@ fn values_out_of_range_are_refused_with_the_range() {
         assert!(stderr(&output).contains(message), "{arguments}: {}", stderr(&output));
     }
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn on_a_terminal_no_progress_bar_stands_in_the_lines_of_a_result() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, _) = pears(folder.path(), "frames", 4);
+    let binary = assert_cmd::cargo::cargo_bin("freeform");
+    for (command, start) in [("track", "{\"schema\""), ("outline", "frame,time"), ("fit", "object 0, frame")] {
+        let line = format!("'{}' {command} {frames}", binary.display());
+        let Ok(output) = std::process::Command::new("script").args(["-qec", &line, "/dev/null"]).output() else {
+            println!("skipped: there is no program script, which makes a terminal");
+            return;
+        };
+        let printed = stdout(&output);
+        let results: Vec<&str> = printed.lines().filter(|line| line.contains(start)).collect();
+        assert!(!results.is_empty() && results.iter().all(|line| line.starts_with(start)), "{command}: {printed}");
+    }
+}
