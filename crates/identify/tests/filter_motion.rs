@@ -168,7 +168,7 @@ fn a_first_frame_of_another_object_is_forgotten() {
 }
 
 #[test]
-fn a_map_that_more_frames_speak_against_than_for_is_begun_anew() {
+fn a_map_of_few_frames_that_more_speak_against_than_for_is_begun_anew() {
     let mut frames = frames_of(BuiltInShape::Bird, RIGID, settings(30, 5));
     let others = frames_of(BuiltInShape::Van, RIGID, settings(3, 5));
     for (frame, other) in frames.iter_mut().zip(&others) {

@@ -11,7 +11,9 @@ const SIGNIFICANT_AGAIN: f64 = 3.0;
 pub(crate) const SUDDEN: f64 = 25.0;
 /// Squared innovation per parameter that counts at most in the running estimate: squares have long tails.
 const LIMIT: f64 = 4.0;
-/// Standard deviations of the slope of one frame that count at most as evidence, so that it takes several frames that agree.
+/// Squared innovation per parameter that chance does not make; up to this one frame counts at most so many standard deviations of its
+/// slope as evidence, which takes several frames that agree.
+const BEYOND_CHANCE: f64 = 8.0;
 const EVIDENCE: f64 = 4.0;
 
 /// Recursive maximum-likelihood estimate, by Fisher's scoring, of the variance by which the motion changes per second; none until
@@ -42,7 +44,9 @@ impl MotionChange {
             return;
         }
         let kept = 1.0 - 1.0 / MEMORY;
-        self.gradient = kept * self.gradient + gradient.min(EVIDENCE * innovation.fisher.sqrt());
+        let by_chance = innovation.squared < BEYOND_CHANCE * parameters as f64;
+        let most = if by_chance { EVIDENCE * innovation.fisher.sqrt() } else { f64::INFINITY };
+        self.gradient = kept * self.gradient + gradient.min(most);
         self.fisher = kept * self.fisher + innovation.fisher;
         let significant = if self.has_changed { SIGNIFICANT_AGAIN } else { SIGNIFICANT };
         if self.gradient > significant * self.fisher.sqrt() {
@@ -57,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_frame_however_far_off_shows_no_change_but_several_in_a_row_do() {
+    fn one_frame_that_chance_may_make_shows_no_change_but_several_in_a_row_do() {
         let innovation = PoseInnovation { squared: 20.0, gradient: 12.0, fisher: 1.0 };
         let mut change = MotionChange::default();
         change.take(&innovation, 6);

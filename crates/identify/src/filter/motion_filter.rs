@@ -19,6 +19,8 @@ const BEND: f64 = 0.1;
 const MOST_CUTS: usize = 4;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
 const FALSE_START: usize = 3;
+/// A map that has taken no more frames than this may have been begun from what is not the object.
+const FEW_FRAMES: usize = 5;
 /// Frames rejected in a row after which the object is given up and a new one taken.
 const GIVEN_UP: usize = 30;
 
@@ -215,8 +217,10 @@ impl MotionFilter {
     /// After a rejected frame: look elsewhere, or begin again.
     fn fall_back(&mut self, time: f64, outline: &Outline) {
         let in_a_row = self.rejected_in_a_row;
-        // A map that more frames speak against than for was begun from what is not the object.
-        let is_outvoted = in_a_row >= self.settings.patience && self.refused_by_map > self.taken_by_map;
+        // Few frames that more speak against than for did not show the object.
+        let is_outvoted = in_a_row >= self.settings.patience
+            && self.taken_by_map <= FEW_FRAMES
+            && self.refused_by_map > self.taken_by_map;
         let give_up = match self.phase {
             Phase::Acquiring => in_a_row >= FALSE_START,
             _ => in_a_row >= GIVEN_UP || is_outvoted,
