@@ -7,7 +7,7 @@ use crate::failure::{Failure, warn};
 use crate::input::{Input, Item, SeenIn};
 use crate::interrupt;
 use crate::left_out::{Missing, MissingWarnings};
-use crate::progress::Progress;
+use crate::progress::{Progress, would_stand_in_output};
 
 /// Points of all outlines read ahead: half a megabyte. Enough for the frames of a batch to be many times the work of
 /// sharing them out; not more, since nothing goes on beside the reading of the first batch and the last one's filters.
@@ -48,7 +48,8 @@ pub(crate) struct BatchReader<'a> {
 
 impl<'a> BatchReader<'a> {
     pub(crate) fn new(input: &'a mut Input, pace: Pace, quiet: bool) -> Self {
-        let progress = Progress::of_frames(input.frame_count(), quiet);
+        let is_in_the_way = pace == Pace::FrameByFrame && would_stand_in_output();
+        let progress = Progress::of_frames(input.frame_count(), quiet || is_in_the_way);
         Self { input, pace, quiet, progress, warnings: MissingWarnings::default(), failure: None }
     }
 

@@ -50,8 +50,8 @@ impl Failure {
     }
 }
 
-/// An error of the system without the number that Rust adds.
-pub(crate) fn plain(error: &io::Error) -> String {
+/// An error, which may be one of the system, without the number that Rust adds to those.
+pub(crate) fn plain(error: &impl Display) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_owned()
 }

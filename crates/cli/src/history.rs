@@ -12,8 +12,8 @@ pub(crate) struct History {
     pub(crate) object: String,
     /// Time of the first frame in seconds.
     pub(crate) start: Option<f64>,
-    /// Time in seconds and what was known then.
-    pub(crate) estimates: Vec<(f64, Estimate)>,
+    /// Time in seconds and what was known then, if anything was.
+    pub(crate) estimates: Vec<(f64, Option<Estimate>)>,
     /// Time in seconds and root mean square residual, of frames that were used.
     pub(crate) residuals: Vec<[f64; 2]>,
     /// Time in seconds and squared innovation, of frames that were used.
@@ -45,9 +45,7 @@ impl History {
         });
         let history = &mut histories[position];
         history.start = history.start.or(observation.time);
-        if let (Some(time), Some(estimate)) = (observation.time, observation.estimate) {
-            history.estimates.push((time, estimate));
-        }
+        history.estimates.extend(observation.time.map(|time| (time, observation.estimate)));
         if !observation.is_accepted() {
             history.rejected.push((observation.frame, observation.time));
             return;

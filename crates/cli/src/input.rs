@@ -1,7 +1,7 @@
 //! Outlines from a file, pictures or standard input.
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use freeform_motion::outline_io::{
@@ -60,6 +60,10 @@ impl Input {
             [first, rest @ ..] => format!("{} and {} more", first.display(), rest.len()),
             [] => return Err(Failure::unusable("no input is named")),
         };
+        if let (Some(csv), [_, _, ..]) = (paths.iter().find(|path| is_csv(path)), paths) {
+            let reason = "outlines are read from one CSV file, several inputs are pictures";
+            return Err(Failure::unusable(format_args!("{}: {reason}", csv.display())));
+        }
         let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
         if path.as_os_str() == "-" {
             return Self::from_source(Stdin::open(), name, options);
@@ -83,12 +87,15 @@ impl Input {
         options: &PictureOptions,
     ) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::unusable(format_args!("{name}: {}", plain(&error)));
-        if PictureSequence::begins_with(source.fill_buf().map_err(failed)?) {
+        let start = source.fill_buf().map_err(failed)?;
+        if start.is_empty() {
+            return Err(Failure::unusable(format_args!("{name}: empty, neither outlines (CSV) nor pictures")));
+        }
+        if PictureSequence::begins_with(start) {
             let pictures = PictureInput::from_stream(source, &name, options)?;
             return Self::of_pictures(pictures, name);
         }
-        // Of an empty input it is better said that it is empty.
-        if let (given @ [_, ..], false) = (&options.given()[..], source.fill_buf().map_err(failed)?.is_empty()) {
+        if let given @ [_, ..] = &options.given()[..] {
             let options = given.join(", ");
             return Err(Failure::unusable(format_args!("{options}: for pictures, but {name} is none (read as CSV)")));
         }
@@ -147,6 +154,10 @@ fn rejected(error: ReadError) -> Result<Item, Failure> {
 /// What is said of a file that cannot be read.
 fn unreadable(error: &ReadError) -> Failure {
     Failure::unusable(error)
+}
+
+fn is_csv(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
 }
 
 /// The lines at the beginning that start with `#`. Nothing beyond them is taken from the source.

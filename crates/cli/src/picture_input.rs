@@ -1,19 +1,19 @@
 //! Outlines of the objects in pictures.
 use std::collections::VecDeque;
 use std::io::BufRead;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use freeform_motion::outline_io::{
     Background, Clipping, Contrast, Difference, OutlineFrame, PictureError, PictureErrorKind, PictureFrame,
     PictureOutlines, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold, TraceError,
-    TraceSettings, TracedOutline, read_picture,
+    TraceSettings, TracedOutline, read_picture_channel,
 };
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
-use crate::commands::quoted;
-use crate::failure::Failure;
+use crate::commands::{command_line_of_stdin, quoted};
+use crate::failure::{Failure, plain};
 use crate::input::{Item, SeenIn};
 use crate::left_out::{Missing, MissingKind};
 use crate::meaning_of_b::MeaningOfB;
@@ -24,6 +24,8 @@ const MEDIAN_SIZE: usize = 25;
 
 /// The outlines in pictures, one object after the other.
 pub(crate) struct PictureInput {
+    /// What was named for input.
+    inputs: Vec<PathBuf>,
     outlines: PictureOutlines<PictureSequence>,
     options: PictureOptions,
     trace: TraceSettings,
@@ -59,8 +61,8 @@ impl Found {
 impl PictureInput {
     /// Pictures in files, folders and patterns.
     pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions) -> Result<Self, Failure> {
-        let sequence = PictureSequence::open(paths, sequence_settings(options)).map_err(|error| unreadable(&error))?;
-        Self::of(sequence, options)
+        let sequence = PictureSequence::open(paths, sequence_settings(options));
+        Self::of(sequence, paths.to_owned(), options)
     }
 
     /// Pictures in a stream.
@@ -70,15 +72,21 @@ impl PictureInput {
         options: &PictureOptions,
     ) -> Result<Self, Failure> {
         let sequence = PictureSequence::from_stream(source, name, sequence_settings(options));
-        Self::of(sequence.map_err(|error| unreadable(&error))?, options)
+        Self::of(sequence, vec![PathBuf::from(name)], options)
     }
 
-    fn of(sequence: PictureSequence, options: &PictureOptions) -> Result<Self, Failure> {
+    fn of(
+        sequence: Result<PictureSequence, PictureError>,
+        inputs: Vec<PathBuf>,
+        options: &PictureOptions,
+    ) -> Result<Self, Failure> {
+        let sequence = sequence.map_err(|error| Failure::unusable(described(&error, &inputs)))?;
         let settings = picture_settings(options, sequence.pixel_aspect())?;
         let trace = settings.trace;
         let outlines = PictureOutlines::new(sequence, settings).map_err(Failure::unusable)?;
         let options = options.clone();
-        Ok(Self { outlines, options, trace, waiting: VecDeque::new(), frames: 0, found: Found::default() })
+        let (waiting, found) = (VecDeque::new(), Found::default());
+        Ok(Self { inputs, outlines, options, trace, waiting, frames: 0, found })
     }
 
     /// Number of pictures, where it is known.
@@ -135,7 +143,7 @@ impl PictureInput {
         self.frames += 1;
         match traced {
             Err(error) => {
-                let (reason, kind) = (described(&error), MissingKind::from(&error.kind));
+                let (reason, kind) = (described(&error, &self.inputs), MissingKind::from(&error.kind));
                 self.waiting.push_back(Item::Missing(Missing { frame, reason, hint: None, kind, seen_in: None }));
             }
             Ok(traced) => {
@@ -172,18 +180,14 @@ impl Iterator for PictureInput {
     }
 }
 
-fn unreadable(error: &PictureError) -> Failure {
-    Failure::unusable(described(error))
-}
-
 /// An error, and what to do about it where that is known.
-fn described(error: &PictureError) -> String {
+fn described(error: &PictureError, inputs: &[PathBuf]) -> String {
     match error.kind {
         PictureErrorKind::CompressedVideo { .. } => {
             let video = if error.file == "<stdin>" { "video.mp4".to_owned() } else { quoted(&error.file) };
-            format!("{error}; pipe it: {}", through_ffmpeg(&video))
+            format!("{error}; pipe it: {}", through_ffmpeg(&video, &command_line_of_stdin(inputs)))
         }
-        _ => error.to_string(),
+        _ => plain(error),
     }
 }
 
@@ -207,7 +211,11 @@ fn sequence_settings(options: &PictureOptions) -> SequenceSettings {
 fn picture_settings(options: &PictureOptions, aspect: Option<f64>) -> Result<PictureSettings, Failure> {
     let background = match &options.background {
         Some(path) if path.as_os_str() == "median" => Some(Background::RunningMedian(MEDIAN_SIZE)),
-        Some(path) => Some(Background::Picture(background_picture(path, options)?)),
+        Some(path) => {
+            let picture = read_picture_channel(path, options.channel.channel());
+            let failed = |error| Failure::unusable(format_args!("--background {}", plain(&error)));
+            Some(Background::Picture(picture.map_err(failed)?))
+        }
         None => None,
     };
     let difference = match (options.light, options.dark) {
@@ -227,20 +235,4 @@ fn picture_settings(options: &PictureOptions, aspect: Option<f64>) -> Result<Pic
         pixel_aspect: options.pixel_aspect.or(aspect).unwrap_or(1.0),
     };
     Ok(PictureSettings { trace, selection: options.objects.selection(), background, difference })
-}
-
-fn background_picture(
-    path: &Path,
-    options: &PictureOptions,
-) -> Result<freeform_motion::outline_io::GrayImage, Failure> {
-    if options.channel == crate::args::ChannelChoice::Luminance {
-        return read_picture(path).map_err(|error| unreadable(&error));
-    }
-    let mut single = PictureSequence::open(&[path.to_owned()], sequence_settings(options));
-    let first = single.as_mut().map_err(|error| Failure::unusable(&*error))?.next();
-    match first {
-        Some(Ok(frame)) => Ok(frame.picture),
-        Some(Err(error)) => Err(unreadable(&error)),
-        None => Err(Failure::unusable(format_args!("{}: no picture", path.display()))),
-    }
 }

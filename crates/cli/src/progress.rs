@@ -1,7 +1,13 @@
-use std::io::{IsTerminal as _, stderr};
+use std::io::{IsTerminal as _, stderr, stdout};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+
+/// Whether standard output is a terminal: a bar would stand in the lines that are printed there meanwhile, and they show how
+/// far the work has come.
+pub(crate) fn would_stand_in_output() -> bool {
+    stdout().is_terminal()
+}
 
 /// What is shown of a running command, on a terminal only.
 #[derive(Debug)]

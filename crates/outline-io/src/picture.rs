@@ -32,7 +32,7 @@ const DEFAULT_DELAY: f64 = 0.1;
 /// The file cannot be read, is empty, is no picture, has a format that is not supported, has more than 2^26 pixels, or
 /// is damaged.
 pub fn read_picture(path: impl AsRef<Path>) -> Result<GrayImage, PictureError> {
-    read_channel(path.as_ref(), Channel::Luminance)
+    read_picture_channel(path, Channel::Luminance)
 }
 
 /// Like [`read_picture`], from any source; the name stands in error messages.
@@ -43,7 +43,12 @@ pub fn decode_picture(source: impl BufRead + Seek, name: &str) -> Result<GrayIma
     decode(source, Channel::Luminance).map_err(|kind| PictureError::of_file(name, kind))
 }
 
-pub(crate) fn read_channel(path: &Path, channel: Channel) -> Result<GrayImage, PictureError> {
+/// Like [`read_picture`], with what is looked at of a colour picture.
+///
+/// # Errors
+/// As [`read_picture`].
+pub fn read_picture_channel(path: impl AsRef<Path>, channel: Channel) -> Result<GrayImage, PictureError> {
+    let path = path.as_ref();
     let picture = File::open(path).map_err(PictureErrorKind::Io);
     let picture = picture.and_then(|file| decode(BufReader::new(file), channel));
     picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))

@@ -170,12 +170,16 @@ pub enum TraceError {
         spread: f64,
     },
     /// The background picture has another size.
-    #[error("the background has {width} x {height} pixels, the picture has not")]
+    #[error("{width} x {height} pixels, the background has {background_width} x {background_height}")]
     BackgroundSize {
-        /// Columns of the background.
+        /// Columns of the picture.
         width: u32,
-        /// Rows of the background.
+        /// Rows of the picture.
         height: u32,
+        /// Columns of the background.
+        background_width: u32,
+        /// Rows of the background.
+        background_height: u32,
     },
     /// No closed line stands out from the picture.
     #[error("no object: no closed ring stands out from the ground")]

@@ -141,9 +141,10 @@ fn checked_difference(
     picture: &GrayImage,
     ground: &GrayImage,
 ) -> Result<GrayImage, TraceError> {
-    if picture.dimensions() != ground.dimensions() {
-        let (width, height) = ground.dimensions();
-        return Err(TraceError::BackgroundSize { width, height });
+    let (width, height) = picture.dimensions();
+    let (background_width, background_height) = ground.dimensions();
+    if (width, height) != (background_width, background_height) {
+        return Err(TraceError::BackgroundSize { width, height, background_width, background_height });
     }
     Ok(difference.of(picture, ground))
 }

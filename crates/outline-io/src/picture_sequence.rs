@@ -7,7 +7,7 @@ use image::{GrayImage, ImageFormat};
 use crate::channel::Channel;
 use crate::compressed_video::compressed_video;
 use crate::natural_order::natural_order;
-use crate::picture::{Animation, decode, read_channel};
+use crate::picture::{Animation, decode, read_picture_channel};
 use crate::picture_error::{PictureError, PictureErrorKind};
 use crate::y4m::{MAGIC, VideoReader};
 
@@ -84,7 +84,7 @@ impl PictureSequence {
     pub fn open(paths: &[PathBuf], settings: SequenceSettings) -> Result<Self, PictureError> {
         let mut files = Vec::new();
         for path in paths {
-            expand(path, &mut files)?;
+            files.append(&mut picture_files(path)?);
         }
         let single = files.len() == 1;
         let frame_count = (!files.iter().any(|file| may_hold_several(file))).then_some(files.len() as u64);
@@ -250,7 +250,7 @@ impl Iterator for PictureSequence {
                 Ok(None) => {
                     self.next_frame += 1;
                     let time = frame as f64 / self.rate();
-                    let read = read_channel(&path, self.settings.channel);
+                    let read = read_picture_channel(&path, self.settings.channel);
                     let read = read.map(|picture| PictureFrame { frame, time, file: name, picture });
                     return Some(read.and_then(|frame| self.checked(frame, None)));
                 }
@@ -295,31 +295,55 @@ pub fn has_picture_extension(path: &Path) -> bool {
 
 /// Whether a file may hold several pictures, as far as its name and beginning tell.
 fn may_hold_several(path: &Path) -> bool {
-    let mut start = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(MAGIC_LENGTH as u64).read_to_end(&mut start));
-    read.is_ok() && (start.starts_with(MAGIC) || start.starts_with(b"GIF"))
+    let start = beginning(path).unwrap_or_default();
+    start.starts_with(MAGIC) || start.starts_with(b"GIF")
 }
 
-/// The files that a path stands for.
-fn expand(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), PictureError> {
+/// What a file begins with, as far as it tells the format.
+fn beginning(path: &Path) -> io::Result<Vec<u8>> {
+    let mut start = Vec::new();
+    File::open(path)?.take(MAGIC_LENGTH as u64).read_to_end(&mut start)?;
+    Ok(start)
+}
+
+/// Why there are no pictures among files: video that is not decoded, or none at all.
+fn nothing_to_read(path: &Path, mut files: Vec<PathBuf>) -> PictureError {
+    files.sort_by(|a, b| natural_order(&a.to_string_lossy(), &b.to_string_lossy()));
+    let format = |file: &PathBuf| compressed_video(&beginning(file).unwrap_or_default());
+    match files.iter().find_map(|file| Some((file, format(file)?))) {
+        Some((file, format)) => {
+            PictureError::of_file(file.display().to_string(), PictureErrorKind::CompressedVideo { format })
+        }
+        None => PictureError::of_file(path.display().to_string(), PictureErrorKind::NoPictures),
+    }
+}
+
+/// The files that a path stands for: those of the pictures in a folder or that match a pattern, in natural order, or the path.
+///
+/// # Errors
+/// A folder that cannot be read; a folder or a pattern without pictures; a folder of nothing but compressed video, whose
+/// first is named.
+pub fn picture_files(path: &Path) -> Result<Vec<PathBuf>, PictureError> {
     let failed = |kind| PictureError::of_file(path.display().to_string(), kind);
     let mut found: Vec<PathBuf> = if path.is_dir() {
         let entries = fs::read_dir(path).map_err(|error| failed(error.into()))?;
         let entries = entries.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
         let is_hidden = |path: &Path| path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
-        let all = entries.into_iter().map(|entry| entry.path());
-        all.filter(|path| has_picture_extension(path) && !is_hidden(path) && path.is_file()).collect()
+        let all = entries.into_iter().map(|entry| entry.path()).filter(|path| !is_hidden(path) && path.is_file());
+        let (pictures, others): (Vec<_>, Vec<_>) = all.partition(|path| has_picture_extension(path));
+        if pictures.is_empty() {
+            return Err(nothing_to_read(path, others));
+        }
+        pictures
     } else if is_pattern(path) {
         let matches = glob::glob(&path.to_string_lossy()).map_err(|_| failed(PictureErrorKind::WrongPattern))?;
         matches.filter_map(Result::ok).filter(|path| path.is_file()).collect()
     } else {
-        files.push(path.to_owned());
-        return Ok(());
+        return Ok(vec![path.to_owned()]);
     };
     if found.is_empty() {
         return Err(failed(PictureErrorKind::NoPictures));
     }
     found.sort_by(|a, b| natural_order(&a.to_string_lossy(), &b.to_string_lossy()));
-    files.append(&mut found);
-    Ok(())
+    Ok(found)
 }

@@ -1,15 +1,18 @@
-//! Sequences of pictures: files, folders, animations, video; rings, backgrounds, identities; and bad ones.
+//! Sequences of pictures: files, folders, animations, video; rings and backgrounds; and bad ones.
+mod support;
+
 use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
 use freeform_outline_io::{
-    Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
-    PictureSequence, PictureSettings, Ring, Selection, SequenceSettings, TraceError, TraceSettings, TracedFrame,
-    TracedOutline, trace_mask,
+    Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureOutlines,
+    PictureSequence, PictureSettings, Ring, SequenceSettings, TraceError, TraceSettings, TracedFrame, TracedOutline,
+    picture_files, trace_mask,
 };
 use image::codecs::gif::GifEncoder;
 use image::{Delay, DynamicImage, Frame, Luma, Rgb, RgbImage};
+use support::traced;
 
 /// A light disc on dark ground.
 fn disc(centre: f64, radius: f64) -> GrayImage {
@@ -17,17 +20,6 @@ fn disc(centre: f64, radius: f64) -> GrayImage {
         let distance = (f64::from(column) + 0.5 - centre).hypot(f64::from(row) + 0.5 - 30.0);
         Luma([(20.0 + 180.0 * (radius - distance + 0.5).clamp(0.0, 1.0)) as u8])
     })
-}
-
-fn frames(pictures: Vec<GrayImage>) -> impl Iterator<Item = Result<PictureFrame, PictureError>> {
-    (0_u64..).zip(pictures).map(|(frame, picture)| {
-        Ok(PictureFrame { frame, time: frame as f64 / 30.0, file: "memory".to_owned(), picture })
-    })
-}
-
-fn traced(pictures: Vec<GrayImage>, settings: PictureSettings) -> Vec<TracedFrame> {
-    let outlines = PictureOutlines::new(frames(pictures), settings).expect("settings");
-    outlines.collect::<Result<_, _>>().expect("pictures in memory")
 }
 
 fn open(paths: &[PathBuf]) -> PictureSequence {
@@ -78,6 +70,20 @@ fn a_folder_and_a_pattern_are_read_in_natural_order() {
     assert_eq!(files(open(&[folder.path().join("f[19]*")])), ["f1.tiff", "f9.bmp", "f10.png"]);
     let nothing = PictureSequence::open(&[folder.path().join("g*.png")], SequenceSettings::default());
     assert!(nothing.expect_err("no match").to_string().ends_with("g*.png: no pictures found"));
+}
+
+#[test]
+fn of_a_folder_with_nothing_but_compressed_video_the_first_video_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("a.txt"), "no video").expect("a file");
+    let said = || picture_files(folder.path()).expect_err("nothing to read").to_string();
+    assert!(said().ends_with(": no pictures found"), "{}", said());
+    for name in ["clip-10.mp4", "clip-9.mp4"] {
+        std::fs::write(folder.path().join(name), b"\0\0\0\x20ftypisom\0\0\x02\0isom").expect("a file");
+    }
+    assert!(said().contains("clip-9.mp4: MP4 video is not decoded here"), "{}", said());
+    disc(20.0, 10.0).save(folder.path().join("frame.png")).expect("a picture");
+    assert_eq!(picture_files(folder.path()).expect("pictures"), [folder.path().join("frame.png")]);
 }
 
 #[test]
@@ -267,7 +273,8 @@ fn a_background_leaves_only_what_moves() {
     let other_size = Background::Picture(GrayImage::new(3, 3));
     let settings = PictureSettings { background: Some(other_size), ..PictureSettings::default() };
     let refused = traced(vec![disc(20.0, 10.0)], settings);
-    assert_eq!(refused[0].objects, Err(TraceError::BackgroundSize { width: 3, height: 3 }));
+    let said = refused[0].objects.as_ref().expect_err("another size").to_string();
+    assert_eq!(said, "80 x 60 pixels, the background has 3 x 3");
 }
 
 #[test]
@@ -283,134 +290,6 @@ fn pictures_of_changing_size_have_a_median_of_their_own_size() {
     let wrong_size = |frame: &TracedFrame| matches!(frame.objects, Err(TraceError::BackgroundSize { .. }));
     assert!(seen.iter().filter(|frame| wrong_size(frame)).count() <= 5);
     assert!(seen[29].objects.is_ok() && seen[0].objects.is_ok());
-}
-
-/// Discs at these places.
-fn discs(places: &[(f64, f64, f64)]) -> GrayImage {
-    GrayImage::from_fn(200, 100, |x, y| {
-        let inside = |&(cx, cy, r): &(f64, f64, f64)| (f64::from(x) - cx).hypot(f64::from(y) - cy) < r;
-        Luma([if places.iter().any(inside) { 220 } else { 10 }])
-    })
-}
-
-#[test]
-fn objects_keep_their_names_while_they_pass_each_other_vanish_and_come_back() {
-    let pictures: Vec<GrayImage> = (0..40)
-        .map(|frame| {
-            let along = 4.0 * f64::from(frame);
-            let mut places = vec![(20.0 + along, 30.0, 12.0), (180.0 - along, 56.0, 9.0)];
-            if (12..16).contains(&frame) {
-                places.remove(1);
-            }
-            discs(&places)
-        })
-        .collect();
-    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
-    for (frame, traced) in traced(pictures, settings).iter().enumerate() {
-        for (name, object) in traced.objects.as_ref().expect("objects") {
-            let along = 4.0 * frame as f64;
-            let expected = if *name == 0 { 20.0 + along } else { 180.0 - along };
-            assert!(*name < 2 && (object.centre.x - expected).abs() < 1.5, "frame {frame}: {name} {}", object.centre);
-        }
-    }
-}
-
-/// A square and a triangle of like area at these places, each turned by an angle.
-fn square_and_triangle(square: Option<(f64, f64)>, triangle: Option<(f64, f64)>, turn: f64) -> GrayImage {
-    let (sin, cos) = turn.sin_cos();
-    GrayImage::from_fn(240, 100, |x, y| {
-        let body = |(cx, cy): (f64, f64)| {
-            let (x, y) = (f64::from(x) - cx, f64::from(y) - cy);
-            (cos * x + sin * y, cos * y - sin * x)
-        };
-        let in_square = square.map(body).is_some_and(|(x, y)| x.abs() < 12.0 && y.abs() < 12.0);
-        let in_triangle =
-            triangle.map(body).is_some_and(|(x, y)| y > -12.0 && y < 24.0 && x.abs() < (24.0 - y) * 16.0 / 36.0);
-        Luma([if in_square || in_triangle { 220 } else { 10 }])
-    })
-}
-
-#[test]
-fn objects_of_like_size_keep_their_names_whether_they_pass_through_each_other_or_turn_back() {
-    for turns_back in [false, true] {
-        let along =
-            |frame: u32| if turns_back && frame > 20 { 3.0 * f64::from(40 - frame) } else { 3.0 * f64::from(frame) };
-        let pictures: Vec<GrayImage> = (0..40)
-            .map(|frame| {
-                let (square, triangle) = ((50.0 + along(frame), 46.0), (180.0 - along(frame), 50.0));
-                square_and_triangle(Some(square), Some(triangle), 0.05 * f64::from(frame))
-            })
-            .collect();
-        let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
-        let seen = traced(pictures, settings);
-        let first = seen[0].objects.as_ref().expect("both");
-        let triangle = first.iter().find(|(_, object)| object.centre.x > 120.0).expect("the triangle").0;
-        let mut touching = 0;
-        for (frame, traced) in seen.iter().enumerate() {
-            let objects = match &traced.objects {
-                Ok(objects) => objects,
-                Err(error) => {
-                    assert_eq!(error, &TraceError::Touching { objects: 2 }, "frame {frame}");
-                    touching += 1;
-                    continue;
-                }
-            };
-            for (name, object) in objects {
-                let along = along(frame as u32);
-                let expected = if *name == triangle { 180.0 - along } else { 50.0 + along };
-                assert!(
-                    *name < 2 && (object.centre.x - expected).abs() < 3.0,
-                    "turns back: {turns_back}, frame {frame}: {name} at {}, not {expected}",
-                    object.centre
-                );
-            }
-        }
-        assert!((3..15).contains(&touching), "{touching}");
-    }
-}
-
-#[test]
-fn objects_that_come_back_elsewhere_are_told_by_their_shape() {
-    // Where each was when they were last seen, the other comes back.
-    let pictures: Vec<GrayImage> = (0..16)
-        .map(|frame| match frame {
-            0..6 => square_and_triangle(Some((100.0, 50.0)), Some((145.0, 50.0)), 0.0),
-            6..10 => square_and_triangle(None, None, 0.0),
-            _ => square_and_triangle(Some((145.0, 50.0)), Some((100.0, 50.0)), 0.3),
-        })
-        .collect();
-    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
-    let seen = traced(pictures, settings);
-    let place = |frame: usize, name: u64| {
-        let objects = seen[frame].objects.as_ref().expect("objects");
-        objects.iter().find(|(other, _)| *other == name).expect("both names").1.centre.x
-    };
-    for (name, other) in [(0, 1), (1, 0)] {
-        let (before, after) = (place(0, other), place(15, name));
-        assert!((after - before).abs() < 3.0, "object {name} at {after}, not {before}");
-    }
-}
-
-#[test]
-fn the_nearest_object_is_followed_where_a_larger_one_comes_in() {
-    let pictures: Vec<GrayImage> = (0..20)
-        .map(|frame| {
-            let mut places = vec![(30.0 + 3.0 * f64::from(frame), 30.0, 10.0)];
-            if frame > 5 {
-                places.push((150.0, 70.0, 20.0));
-            }
-            discs(&places)
-        })
-        .collect();
-    let mut with_gap = pictures.clone();
-    with_gap[10] = discs(&[(150.0, 70.0, 20.0)]);
-    let settings = PictureSettings { selection: Selection::Nearest, ..PictureSettings::default() };
-    for (frame, traced) in traced(with_gap, settings).iter().enumerate() {
-        match &traced.objects {
-            Ok(objects) => assert!((objects[0].1.centre.x - 30.5 - 3.0 * frame as f64).abs() < 1.0, "frame {frame}"),
-            Err(error) => assert!(frame == 10 && matches!(error, TraceError::NotNear { .. }), "{frame}: {error}"),
-        }
-    }
 }
 
 #[test]

@@ -20,7 +20,7 @@ Examples:
 /// lie from it, the complex lines x + l y + k of every level, the related points that move with the curve, and its affine
 /// invariants.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs()))]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("fit")))]
 pub(crate) struct FitArgs {
     /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
     #[arg(required = true, value_name = "INPUT")]

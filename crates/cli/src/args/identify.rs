@@ -22,7 +22,7 @@ the result.";
 
 /// Identify the motion of every object in a sequence of outlines.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs()))]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("identify")))]
 pub(crate) struct IdentifyArgs {
     /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
     #[arg(required = true, value_name = "INPUT")]
@@ -105,7 +105,7 @@ before it. Ctrl-C ends it after the line being written.";
 ///
 /// A frame is complete when the row after it has been read. Memory does not grow with the number of frames.
 #[derive(Debug, Args)]
-#[command(after_help = TRACK_EXAMPLES, after_long_help = format!("{TRACK_EXAMPLES}\n\n{}", picture_inputs()))]
+#[command(after_help = TRACK_EXAMPLES, after_long_help = format!("{TRACK_EXAMPLES}\n\n{}", picture_inputs("track")))]
 pub(crate) struct TrackArgs {
     /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
     #[arg(default_value = "-", value_name = "INPUT")]

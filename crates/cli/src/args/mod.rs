@@ -17,7 +17,7 @@ pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat, EvaluatedMethod, Samplin
 pub(crate) use fit::{FitArgs, FitFormat};
 pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
 pub(crate) use outline::OutlineArgs;
-pub(crate) use pictures::{ChannelChoice, PictureOptions, through_ffmpeg};
+pub(crate) use pictures::{PictureOptions, through_ffmpeg};
 pub(crate) use reproduce::{Part, ReproduceArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
@@ -121,10 +121,21 @@ pub(crate) fn definition() -> clap::Command {
     Cli::command()
 }
 
+/// Whether an argument is an option whose value is the argument after it.
+pub(crate) fn takes_next(argument: &str) -> bool {
+    let definition = definition();
+    let mut options = definition.get_subcommands().flat_map(clap::Command::get_arguments);
+    options.any(|option| {
+        let long = option.get_long().map(|name| format!("--{name}"));
+        let short = option.get_short().map(|name| format!("-{name}"));
+        option.get_action().takes_values() && long.into_iter().chain(short).any(|name| name == argument)
+    })
+}
+
 /// What clap says, without the usage that it prints below.
 fn one_line(rendered: &str) -> String {
     let message = rendered.split("\n\nUsage:").next().unwrap_or(rendered);
     let message = message.split("\n\nFor more information").next().unwrap_or(message);
-    let message = message.strip_prefix("error: ").unwrap_or(message);
+    let message = message.strip_prefix("error: ").unwrap_or(message).replace("\n\n  tip:", "; tip:");
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }

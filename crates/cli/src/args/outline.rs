@@ -16,7 +16,7 @@ Examples:
 /// Each picture is one frame. The outer outline of its largest object, or of all, is traced to a fraction of a pixel, its
 /// holes filled; what the edge of the picture clips becomes open arcs. y runs upwards from the lower edge.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs()))]
+#[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("outline")))]
 pub(crate) struct OutlineArgs {
     /// The pictures in the order of time: files, folders, quoted patterns; '-' is standard input
     #[arg(required = true, value_name = "INPUT")]

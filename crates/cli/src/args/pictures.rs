@@ -9,18 +9,18 @@ use super::values::{not_negative, positive};
 const SMALLEST_OBJECT: u64 = 64;
 
 /// What the help of a command that takes pictures says of them.
-pub(crate) fn picture_inputs() -> String {
+pub(crate) fn picture_inputs(command: &str) -> String {
     format!(
         "Pictures: PNG, JPEG, TIFF, BMP, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted pattern, in \
          natural order (frame-9 before frame-10). Any other video comes through a pipe:\n  {}\nA picture that cannot be read, \
          has another size than the first, or shows no object is named in a warning and left out.",
-        through_ffmpeg("video.mp4")
+        through_ffmpeg("video.mp4", &format!("freeform {command} -"))
     )
 }
 
-/// The command that hands on a video which is not read directly.
-pub(crate) fn through_ffmpeg(video: &str) -> String {
-    format!("ffmpeg -loglevel error -i {video} -f yuv4mpegpipe -pix_fmt yuv420p - | freeform COMMAND -")
+/// The command that hands on a video which is not read directly to one that reads standard input.
+pub(crate) fn through_ffmpeg(video: &str, command: &str) -> String {
+    format!("ffmpeg -loglevel error -i {video} -f yuv4mpegpipe -pix_fmt yuv420p - | {command}")
 }
 
 /// How outlines are found in pictures.

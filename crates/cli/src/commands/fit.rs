@@ -60,12 +60,13 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     }
     let input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
+    let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
     let mut sink = Sink::stdout();
     let mut collected = Collected::default();
     let (mut reasons, mut first_missing, mut warnings) = (Vec::new(), None::<Missing>, MissingWarnings::default());
     let mut failure = None;
     let mut frames = FrameRanges::default();
-    let progress = Progress::of_frames(input.frame_count(), false);
+    let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
     for item in input {
         progress.advance();
@@ -127,8 +128,8 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;
     }
     let printed = sink.finish();
-    if let Some(path) = &args.svg {
-        WholeFile::write(path, &fit_figure(&collected.drawn))?;
+    if let Some(file) = svg {
+        file.finish_with(fit_figure(&collected.drawn).as_bytes())?;
     }
     failure.map_or(printed, Err)
 }

@@ -33,6 +33,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = input.name.clone();
     let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
     let mut files = Files::create(args)?;
+    let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
     let mut overlay =
         ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
     interrupt::listen();
@@ -61,7 +62,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         None => MeaningOfB::in_coordinates(args.options.scale),
     };
     let is_anything_read = !results.is_empty() || left_out.readable > 0;
-    if let Some(path) = args.report.as_ref().filter(|_| is_anything_read) {
+    let mut reported = Ok(());
+    if let Some(file) = report_file.filter(|_| is_anything_read) {
         let mut listed = settings(&args.options, &name);
         listed.extend(input.pictures().map(PictureInput::listed).unwrap_or_default());
         let reason = failure.as_ref().map(Failure::text);
@@ -76,25 +78,26 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
             read_error: reason.filter(|_| is_found),
             left_out: &left_out,
         };
-        WholeFile::write(path, &write_report(&report))?;
+        reported = file.finish_with(write_report(&report).as_bytes());
     }
     let printed = if is_found {
         for result in results.iter().filter(|_| !args.quiet) {
             result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
-        print(args, &results, truth.as_ref(), &b, (&left_out, input.has_pictures()))
+        print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
     } else {
         Ok(())
     };
     files.finish(&tracking, truth.as_ref(), &results)?;
     printed?;
+    reported?;
     failure.map_or(Ok(()), Err)
 }
 
 /// Refuses options that do not go together.
 fn check(args: &IdentifyArgs) -> Result<(), Failure> {
-    let outputs: Vec<_> =
-        [&args.trace, &args.trajectory, &args.svg, &args.report].into_iter().flatten().map(AsRef::as_ref).collect();
+    let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay];
+    let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &outputs))?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
         return Err(Failure::unusable(
@@ -107,11 +110,13 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What is written frame by frame, or kept for figures.
+/// What is written frame by frame, or kept for figures. Files are begun before the work, which is not to be lost where there
+/// is no place for them.
 struct Files<'a> {
     args: &'a IdentifyArgs,
     trace: Option<(&'a Path, TraceWriter<WholeFile>)>,
     trajectory: Option<(&'a Path, WholeFile, Trajectory)>,
+    svg: Option<WholeFile>,
     curves: CurveFitter,
     histories: Vec<History>,
 }
@@ -124,8 +129,9 @@ impl<'a> Files<'a> {
         });
         let trajectory = args.trajectory.as_deref();
         let trajectory = trajectory.map(|path| Ok((path, WholeFile::create(path)?, Trajectory::default())));
-        let curves = CurveFitter::new(&args.options)?;
-        Ok(Self { args, trace: trace.transpose()?, trajectory: trajectory.transpose()?, curves, histories: Vec::new() })
+        let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
+        let (trace, trajectory) = (trace.transpose()?, trajectory.transpose()?);
+        Ok(Self { args, trace, trajectory, svg, curves: CurveFitter::new(&args.options)?, histories: Vec::new() })
     }
 
     /// Takes what a frame of an object gave.
@@ -149,7 +155,7 @@ impl<'a> Files<'a> {
         truth: Option<&AffineMotion>,
         results: &[ObjectResult],
     ) -> Result<(), Failure> {
-        let Self { args, trace, trajectory, histories, .. } = self;
+        let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
         let not_written = |options: &[(&str, bool)], reason: &str| {
             let names: Vec<&str> = options.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect();
@@ -159,7 +165,7 @@ impl<'a> Files<'a> {
         };
         if results.iter().all(|result| result.frames == result.frames_rejected) {
             let options =
-                [("--trace", trace.is_some()), ("--trajectory", trajectory.is_some()), ("--svg", args.svg.is_some())];
+                [("--trace", trace.is_some()), ("--trajectory", trajectory.is_some()), ("--svg", svg.is_some())];
             not_written(&options, "no outline could be used");
             return Ok(());
         }
@@ -179,9 +185,9 @@ impl<'a> Files<'a> {
             file.finish()?;
         }
         if results.iter().all(|result| result.estimate.is_none()) {
-            not_written(&[("--svg", args.svg.is_some())], "there is no motion to draw");
-        } else if let Some(path) = &args.svg {
-            WholeFile::write(path, &parameter_figure(&histories, model, truth))?;
+            not_written(&[("--svg", svg.is_some())], "there is no motion to draw");
+        } else if let Some(file) = svg {
+            file.finish_with(parameter_figure(&histories, model, truth).as_bytes())?;
         }
         Ok(())
     }
@@ -192,7 +198,8 @@ fn print(
     results: &[ObjectResult],
     truth: Option<&AffineMotion>,
     b: &MeaningOfB,
-    (left_out, has_pictures): (&LeftOut, bool),
+    left_out: &LeftOut,
+    has_pictures: bool,
 ) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let format = if args.json { IdentifyFormat::Json } else { args.format };

@@ -11,7 +11,8 @@ use crate::progress::Progress;
 
 /// Traces the outlines of pictures and writes them.
 pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
-    args.inputs.iter().try_for_each(|image| refuse_overwriting(image, &[&args.output]))?;
+    let outputs: Vec<_> = std::iter::once(&args.output).chain(&args.overlay).map(AsRef::as_ref).collect();
+    args.inputs.iter().try_for_each(|image| refuse_overwriting(image, &outputs))?;
     let input = Input::open(&args.inputs, &args.pictures)?;
     if !input.has_pictures() {
         return Err(Failure::unusable(format_args!("{}: not a picture", input.name)));
@@ -42,7 +43,7 @@ type Written = Result<Outcome, WriteError>;
 fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Written, Failure> {
     let mut overlay = args.overlay.as_deref().map(|path| Overlay::open(path, &args.inputs)).transpose()?;
     let mut outcome = Outcome { outlines: 0, first_missing: None };
-    let progress = Progress::of_frames(input.frame_count(), args.quiet);
+    let progress = Progress::of_frames(input.frame_count(), args.quiet || sink.is_disturbed_by_progress());
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
     let object_column = args.pictures.follows_all();

@@ -5,12 +5,14 @@ use crate::batch::Pace;
 use crate::failure::Failure;
 use crate::input::Input;
 use crate::interrupt;
-use crate::output::{Sink, track_line};
+use crate::output::{Sink, refuse_overwriting, track_line};
 use crate::overlay::ObservedOverlay;
 use crate::tracking::{Event, Tracking};
 
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
+    let outputs: Vec<_> = args.overlay.iter().map(AsRef::as_ref).collect();
+    args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &outputs))?;
     let mut tracking = Tracking::new(&args.options)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let mut overlay =

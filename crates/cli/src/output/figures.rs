@@ -143,13 +143,16 @@ fn meaning(name: &str) -> String {
 
 impl History {
     fn time_range(&self) -> Option<(f64, f64)> {
-        Some((self.estimates.first()?.0, self.estimates.last()?.0))
+        let mut known = self.estimates.iter().filter(|(_, estimate)| estimate.is_some()).map(|(time, _)| *time);
+        let first = known.next()?;
+        Some((first, known.next_back().unwrap_or(first)))
     }
 
     /// What was identified of a parameter, with a band where its standard deviation is known; both with gaps where it was not.
     fn curves(&self, parameter: usize) -> Vec<Curve> {
         let found = |estimate: &Estimate| estimate.parameters().nth(parameter).and_then(|p| p.value.map(|_| p));
-        let estimates = self.estimates.iter().map(|(time, estimate)| (*time, found(estimate))).collect::<Vec<_>>();
+        let estimates = self.estimates.iter().map(|(time, estimate)| (*time, estimate.as_ref().and_then(found)));
+        let estimates: Vec<_> = estimates.collect();
         let (mut runs, mut band) = (Vec::new(), Vec::new());
         for run in estimates.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
             let known = || run.iter().filter_map(|(time, found)| found.map(|p| (*time, p)));
@@ -180,16 +183,19 @@ mod tests {
     #[test]
     fn neither_line_nor_band_bridges_a_time_at_which_nothing_was_known() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.0, 2.0, 3.0], Some(&[0.1, 0.1, 0.1]));
-        let estimates = (0..5).map(|frame| {
+        let estimates = (0..9).map(|frame| {
             let found = if frame == 2 { estimate.with_unobservable(0) } else { estimate };
-            (f64::from(frame), Estimate::of(found, None).expect("finite"))
+            // Nothing at all in the first frame of all, and while the object is lost.
+            let is_lost = frame == 0 || frame == 5;
+            (f64::from(frame), Estimate::of(found, None).filter(|_| !is_lost))
         });
         let mut history = History::of("0".to_owned());
         history.estimates = estimates.collect();
         let curves = history.curves(0);
-        assert_eq!(curves[0].runs[0], [[0.0, 0.8], [1.0, 0.8], [1.0, 1.2], [0.0, 1.2]]);
+        assert_eq!(curves[0].runs[1], [[3.0, 0.8], [4.0, 0.8], [4.0, 1.2], [3.0, 1.2]]);
         let lengths = |curve: &Curve| curve.runs.iter().map(Vec::len).collect::<Vec<_>>();
-        assert_eq!((lengths(&curves[0]), lengths(&curves[1])), (vec![4, 4], vec![2, 2]));
-        assert_eq!(lengths(&history.curves(1)[1]), [5]);
+        assert_eq!((lengths(&curves[0]), lengths(&curves[1])), (vec![2, 4, 6], vec![1, 2, 3]));
+        assert_eq!(lengths(&history.curves(1)[1]), [4, 3]);
+        assert_eq!(history.time_range(), Some((1.0, 8.0)));
     }
 }

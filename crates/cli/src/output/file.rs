@@ -3,11 +3,12 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, IntoInnerError, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 
-use freeform_motion::outline_io::has_picture_extension;
+use freeform_motion::outline_io::picture_files;
 use tempfile::{Builder, NamedTempFile};
 
 use crate::failure::{Failure, plain};
 use crate::interrupt::Unfinished;
+use crate::progress::would_stand_in_output;
 
 /// A file that appears whole or not at all: written beside its place and moved there in the end. A place that is no
 /// regular file (a device, a pipe) is written to as it is.
@@ -56,10 +57,14 @@ impl WholeFile {
 
     /// Writes a whole file at once.
     pub(crate) fn write_bytes(path: &Path, content: &[u8]) -> Result<(), Failure> {
-        let mut file = Self::create(path)?;
-        match file.write_all(content) {
-            Ok(()) => file.finish(),
-            Err(error) => Err(file.failure(&error)),
+        Self::create(path)?.finish_with(content)
+    }
+
+    /// Writes the content of a file that was started, and puts it in its place.
+    pub(crate) fn finish_with(mut self, content: &[u8]) -> Result<(), Failure> {
+        match self.write_all(content) {
+            Ok(()) => self.finish(),
+            Err(error) => Err(self.failure(&error)),
         }
     }
 }
@@ -148,6 +153,11 @@ impl Sink {
         Self::Stdout(BufWriter::new(io::stdout().lock()))
     }
 
+    /// Whether a progress bar would stand in what is written here.
+    pub(crate) fn is_disturbed_by_progress(&self) -> bool {
+        matches!(self, Self::Stdout(_)) && would_stand_in_output()
+    }
+
     /// Writes out what is buffered, puts a file in its place.
     pub(crate) fn finish(self) -> Result<(), Failure> {
         match self {
@@ -203,18 +213,16 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Refuses output files that are the input or a picture in its folder, or one another.
+/// Refuses output files that are the input or one of its pictures, or one another.
 pub(crate) fn refuse_overwriting(input: &Path, outputs: &[&Path]) -> Result<(), Failure> {
-    let input = Some(input).filter(|input| input.as_os_str() != "-").and_then(|input| fs::canonicalize(input).ok());
+    // What cannot be listed cannot be read either, which is told in its place.
+    let files = if input.as_os_str() == "-" { Vec::new() } else { picture_files(input).unwrap_or_default() };
     for (index, output) in outputs.iter().enumerate() {
-        let place = fs::canonicalize(output).ok().filter(|place| place.is_file());
-        if let (Some(input), Some(place)) = (&input, place) {
-            if place == *input {
-                return Err(Failure::unusable(format_args!("{}: this is the input", output.display())));
-            }
-            if has_picture_extension(output) && place.parent() == Some(input) {
-                return Err(Failure::unusable(format_args!("{}: this is a file of the input", output.display())));
-            }
+        if let Some(place) = fs::canonicalize(output).ok().filter(|place| place.is_file())
+            && files.iter().any(|file| fs::canonicalize(file).is_ok_and(|file| file == place))
+        {
+            let what = if files == [input] { "the input" } else { "a file of the input" };
+            return Err(Failure::unusable(format_args!("{}: this is {what}", output.display())));
         }
         let is_device = output.exists() && !output.is_file();
         if outputs[..index].contains(output) && !is_device {

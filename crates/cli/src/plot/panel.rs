@@ -290,7 +290,12 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
         let pixels: Vec<[f64; 2]> = finite.map(|point| [x.pixel(point[0]), y.pixel(point[1])]).collect();
         path.push_str(&match curve.look {
             Look::Line | Look::Truth | Look::Reference | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
-                connected(&thinned(&pixels), "")
+                // A line of one point has no length, and would not be seen.
+                if let [[x, y]] = pixels[..] {
+                    format!("M{:.2} {y:.2}h3", x - 1.5)
+                } else {
+                    connected(&thinned(&pixels), "")
+                }
             }
             Look::Band => connected(&pixels, "Z"),
             Look::Dots | Look::FineDots => dots(&pixels),
@@ -350,6 +355,15 @@ mod tests {
             runs: vec![vec![[0.0, *value], [1.0, *value]]],
         };
         Panel { curves: values.iter().map(line).collect(), ..Panel::default() }
+    }
+
+    #[test]
+    fn a_line_of_one_point_is_seen() {
+        let axis = |from, to| Axis { low: 0.0, high: 2.0, from, to, logarithmic: false };
+        let curve = Curve { name: String::new(), look: Look::Line, runs: vec![vec![[1.0, 1.0]]] };
+        let mut svg = String::new();
+        draw_curve(&mut svg, &curve, &axis(0.0, 100.0), &axis(100.0, 0.0));
+        assert!(svg.contains("M48.50 50.00h3\""), "{svg}");
     }
 
     #[test]

@@ -163,6 +163,34 @@ fn pictures_of_the_input_folder_are_not_overwritten() {
 }
 
 #[test]
+fn no_output_takes_the_place_of_a_picture_of_the_input_or_of_another_output() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = file(folder.path(), "frame-1.gif", "a picture");
+    let other = file(folder.path(), "drawn.gif", "no picture of the pattern");
+    let pattern = folder.path().join("frame-*.gif").display().to_string();
+    let (input, file_of_input) = ("this is the input", "this is a file of the input");
+    for (arguments, reason) in [
+        (format!("identify {picture} --overlay {picture}"), input),
+        (format!("outline {picture} --overlay {picture}"), input),
+        (format!("track {picture} --overlay {picture}"), input),
+        (format!("identify {pattern} --overlay {picture}"), file_of_input),
+        (format!("outline {other} {pattern} --output {picture}"), file_of_input),
+        (format!("fit {pattern} --svg {picture}"), file_of_input),
+        (format!("outline {} --overlay {other}", folder.path().display()), file_of_input),
+        (format!("outline {pattern} --overlay {other} --output {other}"), "named for two outputs"),
+        (format!("identify {pattern} --overlay {other} --report {other}"), "named for two outputs"),
+        // Not of the pattern: it may be drawn anew, and here is nothing to draw.
+        (format!("outline {pattern} --overlay {other}"), "not a picture"),
+    ] {
+        let output = run(&arguments, "");
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        assert!(stderr(&output).contains(reason), "{arguments}: {}", stderr(&output));
+        assert_eq!(fs::read_to_string(&picture).expect("the picture"), "a picture", "{arguments}");
+        assert_eq!(fs::read_to_string(&other).expect("the other"), "no picture of the pattern", "{arguments}");
+    }
+}
+
+#[test]
 fn a_motion_that_changed_is_said_to_have_and_is_not_smoothed_as_if_it_were_constant() {
     let folder = tempfile::tempdir().expect("a folder");
     let still = sequence("--seconds 5 --omega 0 --b 0,0");

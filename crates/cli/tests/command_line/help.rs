@@ -19,6 +19,13 @@ fn the_help_reads_as_it_should() {
 }
 
 #[test]
+fn a_mistyped_option_is_told_on_one_line_with_the_one_that_may_be_meant() {
+    let output = run("identify outlines.csv --fps25", "");
+    let expected = "freeform: unexpected argument '--fps25' found; tip: a similar argument exists: '--fps'\n";
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(2), expected));
+}
+
+#[test]
 fn the_version_is_that_of_the_package() {
     assert_eq!(succeed("--version", ""), format!("freeform {}\n", env!("CARGO_PKG_VERSION")));
 }
@@ -33,8 +40,15 @@ fn no_command_at_all_is_wrong_usage() {
 
 #[test]
 fn nothing_is_coloured_where_colour_is_not_wanted() {
-    let output = freeform("--help").env("NO_COLOR", "1").output().expect("the binary runs");
-    assert!(!stdout(&output).contains('\u{1b}'));
+    // As on a terminal, which the output of a test is not.
+    let coloured = || {
+        let mut command = freeform("--help");
+        command.env("CLICOLOR_FORCE", "1");
+        command
+    };
+    let is_coloured = |output| stdout(&output).contains('\u{1b}');
+    assert!(is_coloured(coloured().env_remove("NO_COLOR").output().expect("the binary runs")));
+    assert!(!is_coloured(coloured().env("NO_COLOR", "1").output().expect("the binary runs")));
 }
 
 #[test]

@@ -64,30 +64,107 @@ fn options_for_pictures_are_refused_where_the_input_is_none() {
         assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{command}");
         let expected = "--fps, --ring, --pixel-size: for pictures, but <stdin> is none (read as CSV)";
         assert!(stderr(&output).contains(expected), "{command}: {}", stderr(&output));
-        // Of an input of nothing it is better known that it is empty.
+        // Of an input of nothing it is better said that it is empty.
         assert!(stderr(&run(&format!("{command} - --background median"), "")).contains("empty"));
     }
 }
 
 #[test]
-fn compressed_video_is_told_to_come_through_ffmpeg() {
+fn compressed_video_is_told_to_come_through_ffmpeg_to_the_command_as_it_was_typed() {
     let folder = tempfile::tempdir().expect("a folder");
-    let video = file(folder.path(), "a clip.mp4", b"\0\0\0\x20ftypisom\0\0\x02\0isomiso2avc1mp41");
+    let mp4 = b"\0\0\0\x20ftypisom\0\0\x02\0isomiso2avc1mp41";
+    let video = file(folder.path(), "a clip.mp4", mp4);
     let unnamed = file(folder.path(), "clip", b"\x1a\x45\xdf\xa3\x01\0\0\0\0\0\0\x1f");
+    let place = folder.path().to_str().expect("UTF-8");
     for command in ["outline", "identify", "track", "fit"] {
-        let output = assert_cmd::Command::cargo_bin("freeform")
-            .expect("the binary is built")
-            .args([command, &video, "--background", "median"])
-            .output()
-            .expect("the binary runs");
-        let pipe = format!("ffmpeg -loglevel error -i '{video}' -f yuv4mpegpipe -pix_fmt yuv420p - | freeform");
-        let errors = stderr(&output);
-        assert_eq!((output.status.code(), errors.lines().count()), (Some(2), 1), "{command}");
-        assert!(errors.contains("MP4 video is not decoded here") && errors.contains(&pipe), "{command}: {errors}");
+        let pipe = |video: &str, rest: &str| {
+            format!("pipe it: ffmpeg -loglevel error -i {video} -f yuv4mpegpipe -pix_fmt yuv420p - | freeform {rest}\n")
+        };
+        // By its name, and as all that a folder holds.
+        for input in [&video, place] {
+            let output = assert_cmd::Command::cargo_bin("freeform")
+                .expect("the binary is built")
+                .args([command, "--background", "median", input, "--fps", "25"])
+                .output()
+                .expect("the binary runs");
+            let errors = stderr(&output);
+            assert_eq!((output.status.code(), errors.lines().count()), (Some(2), 1), "{command}");
+            let expected = pipe(&format!("'{video}'"), &format!("{command} --background median - --fps 25"));
+            assert!(errors.contains("MP4 video is not decoded here") && errors.ends_with(&expected), "{errors}");
+        }
         let output = run(&format!("{command} {unnamed} {unnamed}"), "");
         assert_eq!(output.status.code(), Some(2), "{command}");
         assert!(stderr(&output).contains("Matroska or WebM video is not decoded here"), "{}", stderr(&output));
+        assert!(stderr(&output).ends_with(&pipe(&unnamed, &format!("{command} -"))), "{}", stderr(&output));
+        let piped = std::str::from_utf8(mp4).expect("ASCII");
+        assert!(stderr(&run(&format!("{command} -"), piped)).ends_with(&pipe("video.mp4", &format!("{command} -"))));
     }
+}
+
+#[test]
+fn an_empty_video_is_not_taken_for_an_empty_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let video = file(folder.path(), "clip.mp4", "");
+    for command in ["outline", "identify", "track", "fit"] {
+        let output = run(&format!("{command} {video} --background median"), "");
+        let expected = format!("freeform: {video}: empty, neither outlines (CSV) nor pictures\n");
+        assert_eq!((output.status.code(), stderr(&output)), (Some(2), expected), "{command}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_background_is_told_with_its_option() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = pears(folder.path(), "frames", 2);
+    file(folder.path(), "clip.mp4", b"\0\0\0\x20ftypisom\0\0\x02\0isomiso2avc1mp41");
+    for channel in ["luminance", "red"] {
+        for (background, reason) in [
+            ("nosuch.png", "No such file or directory\n"),
+            ("frames", "Is a directory\n"),
+            ("clip.mp4", "MP4 video is not decoded here, only uncompressed video (y4m) is\n"),
+        ] {
+            let output = run(&format!("outline {frames} --channel {channel} --background {base}/{background}"), "");
+            let expected = format!("freeform: --background {base}/{background}: {reason}");
+            assert_eq!((output.status.code(), stderr(&output)), (Some(2), expected), "{channel}");
+        }
+    }
+}
+
+#[test]
+fn a_csv_among_several_inputs_is_told_to_be_read_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let csv = file(folder.path(), "outlines.csv", sequence(""));
+    for command in ["outline", "identify", "track", "fit"] {
+        let output = run(&format!("{command} {csv} {csv}"), "");
+        let expected = format!("freeform: {csv}: outlines are read from one CSV file, several inputs are pictures\n");
+        assert_eq!((output.status.code(), stderr(&output)), (Some(2), expected), "{command}");
+    }
+}
+
+#[test]
+fn a_file_that_has_no_place_is_told_before_the_work_and_not_after_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = pears(folder.path(), "frames", 8);
+    // A picture that would be warned of.
+    GrayImage::new(160, 120).save(format!("{frames}/3.png")).expect("a picture");
+    for arguments in [
+        "identify --trace",
+        "identify --trajectory",
+        "identify --svg",
+        "identify --report",
+        "identify --overlay",
+        "fit --svg",
+        "outline --output",
+    ] {
+        let output = run(&format!("{arguments} {base}/no/file.gif {frames}"), "");
+        assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{arguments}");
+        assert_eq!(
+            stderr(&output),
+            format!("freeform: {base}/no/file.gif: No such file or directory\n"),
+            "{arguments}"
+        );
+    }
+    assert_eq!(names(&base), ["frames"]);
 }
 
 #[test]
@@ -287,5 +364,23 @@ fn values_out_of_range_are_refused_with_the_range() {
         let output = run(&arguments, "");
         assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(status), 1), "{arguments}");
         assert!(stderr(&output).contains(message), "{arguments}: {}", stderr(&output));
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn on_a_terminal_no_progress_bar_stands_in_the_lines_of_a_result() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, _) = pears(folder.path(), "frames", 4);
+    let binary = assert_cmd::cargo::cargo_bin("freeform");
+    for (command, start) in [("track", "{\"schema\""), ("outline", "frame,time"), ("fit", "object 0, frame")] {
+        let line = format!("'{}' {command} {frames}", binary.display());
+        let Ok(output) = std::process::Command::new("script").args(["-qec", &line, "/dev/null"]).output() else {
+            println!("skipped: there is no program script, which makes a terminal");
+            return;
+        };
+        let printed = stdout(&output);
+        let results: Vec<&str> = printed.lines().filter(|line| line.contains(start)).collect();
+        assert!(!results.is_empty() && results.iter().all(|line| line.starts_with(start)), "{command}: {printed}");
     }
 }
