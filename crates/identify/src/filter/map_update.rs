@@ -1,5 +1,6 @@
 //! One frame measured against the map, and the map grown by what it shows for the first time.
 use freeform_curve_fit::Outline;
+use freeform_riccati::MotionModel;
 use nalgebra::Point2;
 
 use super::{
@@ -122,6 +123,8 @@ impl OutlineMap {
     fn update_loaded(&mut self, scratch: &mut Scratch, accept: impl Fn(&MapUpdate) -> bool) -> MapUpdate {
         let k = self.information.k;
         let unseen = self.unseen_in_image(&self.pose);
+        // What shear and growth do to a thin outline is next to nothing in one step, but shows in the long run.
+        let keeps_unseen = self.model <= MotionModel::Similarity;
         scratch.shifts.clear();
         scratch.shifts.resize(self.cells.len(), 0.0);
         let mut state = StateVector::zeros();
@@ -143,7 +146,9 @@ impl OutlineMap {
                 std::mem::swap(&mut work.cells, &mut scratch.cells);
                 return self.rejected(iterations);
             };
-            unseen.iter().for_each(|unseen| unseen.take_off_step(&mut next, k));
+            if keeps_unseen {
+                unseen.iter().for_each(|unseen| unseen.take_off_step(&mut next, k));
+            }
             scratch.take_solution(&work.cells, &(next - state), &next, k);
             let step = (0..k).map(|i| (next[i] - state[i]).abs()).fold(0.0, f64::max);
             state = next;

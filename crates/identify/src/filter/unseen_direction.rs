@@ -12,6 +12,8 @@ use crate::{
 
 /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
 const DEGENERATE: f64 = 0.003;
+/// Times the variance of the normals' directions: what they alone would make of a direction that is not seen, and some more.
+const EXPLAINED: f64 = 2.0;
 /// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
 const SEEN_BY_PATH: f64 = 0.02;
 
@@ -86,7 +88,7 @@ impl OutlineMap {
             levers += row * row.transpose() / count;
         }
         let eigen = levers.symmetric_eigen();
-        let threshold = DEGENERATE + 1.5 * self.normal_variance;
+        let threshold = DEGENERATE.max(EXPLAINED * self.normal_variance);
         let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
         self.unseen_in_body.clear();
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
