@@ -1,0 +1,92 @@
+//! What the motion filter says of parameters that outlines do not show, or not alone.
+mod filter_support;
+
+use filter_support::{filter, filtered, frames_of, settings};
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_identify::MotionFilter;
+use freeform_riccati::{MotionModel, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Settings};
+use nalgebra::Point2;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal};
+
+#[test]
+fn the_rotation_of_a_circle_and_the_slide_of_an_edge_are_reported_as_unobservable() {
+    let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(20, 1)));
+    let observable = |run: &MotionFilter| -> Vec<bool> {
+        run.estimate().expect("an estimate").parameters().map(|p| p.value.is_some()).collect()
+    };
+    assert_eq!(observable(&run), [false, true, true]);
+
+    for seed in 0..5 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut line = |shift: f64| {
+            let noise = Normal::new(0.0, 0.001).expect("a deviation");
+            let mut point = |i: i32| Point2::new(0.005 * f64::from(i) - 0.5, noise.sample(&mut random) + shift);
+            let arc = OpenArc::new((0..200).map(&mut point).collect()).expect("an arc");
+            Outline::Open(OpenOutline::new(vec![arc]).expect("one arc"))
+        };
+        let mut edge = filter(MotionModel::Rigid);
+        for frame in 0..20 {
+            let time = f64::from(frame) / 30.0;
+            edge.step(time, &line(0.1 * time)).expect("increasing times");
+        }
+        assert_eq!(observable(&edge), [true, false, true], "seed {seed}");
+        let b2 = edge.estimate().expect("an estimate").values()[2];
+        assert!((b2 - 0.1).abs() < 0.02, "{b2}");
+    }
+}
+
+#[test]
+fn turns_that_a_symmetric_outline_cannot_tell_apart_are_listed() {
+    let turned = |shape| {
+        let motion = RigidMotion { omega: -0.3, b1: 0.1, b2: 0.0 };
+        let frames = frames_of(shape, motion, Settings { fps: 1.0, ..settings(2, 1) });
+        filtered(MotionModel::Rigid, &frames).rival_turns().to_vec()
+    };
+    assert!(turned(BuiltInShape::Bird).is_empty());
+    let ellipse = turned(BuiltInShape::Ellipse);
+    assert!(ellipse.iter().any(|turn| (turn.abs() - (std::f64::consts::PI - 0.3)).abs() < 0.1), "{ellipse:?}");
+}
+
+/// A filter that has seen a shape at the times given.
+fn seen_at(shape: BuiltInShape, omega: f64, b1: f64, times: &[f64]) -> MotionFilter {
+    let motion = RigidMotion { omega, b1, b2: 0.0 };
+    // A simulator has frames at even times only.
+    let fps = 10.0;
+    let count = (times[times.len() - 1] * fps).round() as usize + 1;
+    let frames = frames_of(shape, motion, Settings { fps, ..settings(count, 1) });
+    let mut filter = filter(MotionModel::Rigid);
+    for time in times {
+        let frame = &frames[(time * fps).round() as usize];
+        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").accepted, "at {time} s");
+    }
+    filter
+}
+
+#[test]
+fn a_third_frame_at_another_distance_decides_between_the_turns_of_a_symmetric_outline() {
+    let two = seen_at(BuiltInShape::Ellipse, -0.3, 0.1, &[0.0, 1.0]);
+    let three = seen_at(BuiltInShape::Ellipse, -0.3, 0.1, &[0.0, 1.0, 2.5]);
+    assert_eq!((two.rival_turns().len(), three.rival_turns().len()), (1, 0));
+    let omega = three.estimate().expect("an estimate").values()[0];
+    assert!((omega + 0.3).abs() < 0.05, "{omega}");
+}
+
+#[test]
+fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_decides() {
+    let omega = |filter: &MotionFilter| filter.estimate().expect("an estimate").parameters().next().expect("omega");
+    let turn = 50.0_f64.to_radians();
+    let two = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0]);
+    assert!(two.is_ambiguous() && omega(&two).value.is_none(), "{:?} {:?}", omega(&two), two.rival_turns());
+    // It moves along an arc, which no other turn would.
+    let three = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0, 2.0]);
+    let stated = omega(&three).value.expect("decided");
+    assert!(!three.is_ambiguous() && (stated - turn).abs() < 0.02, "{stated}");
+    // Nothing tells how often a square that stays in its place has turned, unless it is little.
+    let in_place = seen_at(BuiltInShape::Square, turn, 0.0, &[0.0, 1.0, 2.0]);
+    assert!(in_place.is_ambiguous() && omega(&in_place).value.is_none(), "{:?}", in_place.rival_turns());
+    let little = seen_at(BuiltInShape::Square, 0.4 * turn, 0.0, &[0.0, 1.0, 2.0]);
+    assert!(!little.is_ambiguous() && (omega(&little).value.expect("stated") - 0.4 * turn).abs() < 0.02);
+}
