@@ -12,6 +12,20 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
 #[test]
+fn a_circle_that_moves_along_an_arc_tells_its_turn_by_the_path_and_one_that_moves_straight_has_none() {
+    for (omega, seeds) in [(1.0, 0..4), (0.0, 4..8)] {
+        let motion = RigidMotion { omega, b1: 0.5, b2: 0.0 };
+        for seed in seeds {
+            let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, motion, settings(90, seed)));
+            assert_eq!(run.frames_rejected(), 0, "seed {seed}");
+            let found = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+            let (value, std) = (found.value.expect("told by the path"), found.standard_deviation.expect("one"));
+            assert!((value - omega).abs() < 6.0 * std && std < 0.1, "seed {seed}: {value} {std}");
+        }
+    }
+}
+
+#[test]
 fn the_rotation_of_a_circle_and_the_slide_of_an_edge_are_reported_as_unobservable() {
     let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(20, 1)));
     let observable = |run: &MotionFilter| -> Vec<bool> {

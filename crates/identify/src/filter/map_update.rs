@@ -123,11 +123,13 @@ impl OutlineMap {
     fn update_loaded(&mut self, scratch: &mut Scratch, accept: impl Fn(&MapUpdate) -> bool) -> MapUpdate {
         let k = self.information.k;
         let unseen = self.unseen_in_image(&self.pose);
-        // What shear and growth do to a thin outline is next to nothing in one step, but shows in the long run.
-        let keeps_unseen = self.model <= MotionModel::Similarity;
+        // A turn may be told by the path, and what shear and growth do to a thin outline in one step in the long run. A slide is not.
+        let keeps_unseen = self.model <= MotionModel::Similarity && !self.turn_is_unseen();
         scratch.shifts.clear();
         scratch.shifts.resize(self.cells.len(), 0.0);
         let mut state = StateVector::zeros();
+        // The same with what cannot be seen.
+        let mut whole_state = state;
         let mut pose = self.pose;
         let mut work = ArrowInformation::new(k);
         let mut marginal = self.marginal;
@@ -146,6 +148,7 @@ impl OutlineMap {
                 std::mem::swap(&mut work.cells, &mut scratch.cells);
                 return self.rejected(iterations);
             };
+            whole_state = next;
             if keeps_unseen {
                 unseen.iter().for_each(|unseen| unseen.take_off_step(&mut next, k));
             }
@@ -162,7 +165,7 @@ impl OutlineMap {
             std::mem::swap(&mut work.cells, &mut scratch.cells);
         }
         let variance = self.comparable_noise().powi(2) * self.noise_level.correlation();
-        self.innovation = self.pose_innovation(&marginal, &state, variance);
+        self.innovation = self.pose_innovation(&marginal, &whole_state, variance);
         if self.is_compared {
             self.last_misfit = self.misfit(scratch);
             self.last_misfit.squares += self.innovation.squared;

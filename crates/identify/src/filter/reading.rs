@@ -229,7 +229,7 @@ impl OutlineMap {
     }
 
     /// Whether a body point lies beyond a known end of the outline, its nearest cell given.
-    fn is_beyond_end(&self, number: usize, q: &Point2<f64>) -> bool {
+    pub(crate) fn is_beyond_end(&self, number: usize, q: &Point2<f64>) -> bool {
         let cell = &self.cells[number];
         let [a, b] = cell.neighbours;
         if a != number && b != number {

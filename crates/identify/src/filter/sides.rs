@@ -51,7 +51,7 @@ impl<const AFFINE: bool> Course<'_, AFFINE> {
             let mut cells = near.map(|j| (j, readings[j].cell)).filter(|(j, cell)| is_known(&readings[*j], *cell));
             let (_, start) = cells.find(|(j, cell)| sign * self.along(*j, *cell) > 0.0)?;
             let cell = self.map.nearest_from(start, &q);
-            (sign * self.along(i, cell) > 0.0).then_some(cell)
+            (sign * self.along(i, cell) > 0.0 && !self.map.is_beyond_end(cell, &q)).then_some(cell)
         });
         let distance = |cell: &usize| (self.map.cells[*cell].centre - q).norm_squared();
         led_to.min_by(|a, b| distance(a).total_cmp(&distance(b)))
