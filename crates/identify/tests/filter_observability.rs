@@ -27,11 +27,17 @@ fn a_circle_that_moves_along_an_arc_tells_its_turn_by_the_path_and_one_that_move
 
 #[test]
 fn the_rotation_of_a_circle_and_the_slide_of_an_edge_are_reported_as_unobservable() {
-    let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(20, 1)));
     let observable = |run: &MotionFilter| -> Vec<bool> {
         run.estimate().expect("an estimate").parameters().map(|p| p.value.is_some()).collect()
     };
-    assert_eq!(observable(&run), [false, true, true]);
+    let circles = (0..10).map(|seed| {
+        let frames = frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(20, seed));
+        observable(&filtered(MotionModel::Rigid, &frames))
+    });
+    let circles: Vec<_> = circles.collect();
+    assert!(circles.iter().all(|circle| !circle[0]), "{circles:?}");
+    // Some are lost, and nothing is known then.
+    assert!(circles.iter().filter(|circle| circle[1] && circle[2]).count() >= 8, "{circles:?}");
 
     for seed in 0..5 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -17,6 +17,8 @@ const EXPLAINED: f64 = 2.0;
 /// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
 const SEEN_BY_PATH: f64 = 0.02;
 
+/// Standard deviations by which the velocity of the centre must differ from none to be a path.
+const MOVES: f64 = 6.0;
 /// Turn, in rad, of a unit step in a direction that counts as turning.
 const HOLDS_TURN: f64 = 0.3;
 
@@ -151,17 +153,45 @@ impl OutlineMap {
         let from_centred = adjoint(self.model, &frame, &frame.try_inverse()?);
         let from_centred = nalgebra::DMatrix::from_fn(k, k, |i, j| from_centred[i][j]);
         let to_centred = from_centred.clone().try_inverse()?;
-        let information = (&to_centred * covariance * to_centred.transpose()).try_inverse()?;
+        let covariance = &to_centred * covariance * to_centred.transpose();
+        let has_path = self.has_path(&to_centred, &covariance);
+        let information = covariance.try_inverse()?;
         let typical = information.trace() / k as f64;
         for unseen in self.unseen_in_image(&self.pose) {
             let direction = nalgebra::DVector::from_column_slice(&unseen.direction[..k]);
             let centred = &to_centred * &direction;
             let seen = (centred.transpose() * &information * &centred)[(0, 0)] / centred.norm_squared();
-            if seen < SEEN_BY_PATH * typical {
+            if seen < SEEN_BY_PATH * typical || !has_path {
                 let largest = direction.amax();
                 (0..k).filter(|j| direction[*j].abs() > 0.1 * largest).for_each(|j| blind[j] = true);
             }
         }
         Some(blind)
+    }
+
+    /// Whether the object's centre moves beyond doubt, and turns by less than half a circle per step: noise is no path, and of a
+    /// faster turn the path shows another. Given the change to centred coordinates of the motion and its covariance there, in units
+    /// of the noise.
+    fn has_path(&self, to_centred: &nalgebra::DMatrix<f64>, covariance: &nalgebra::DMatrix<f64>) -> bool {
+        let k = self.information.k;
+        let motion = to_centred * nalgebra::DVector::from_column_slice(&self.motion[..k]);
+        let generator = self.model.generator(motion.as_slice());
+        let turn = 0.5 * (generator[(0, 1)] - generator[(1, 0)]) * self.step_seconds;
+        let (b1, b2) = self.velocity_coordinates();
+        let velocity = Vector2::new(motion[b1], motion[b2]);
+        let block = nalgebra::Matrix2::new(
+            covariance[(b1, b1)],
+            covariance[(b1, b2)],
+            covariance[(b2, b1)],
+            covariance[(b2, b2)],
+        ) * self.effective_variance();
+        let squared = block.try_inverse().map_or(0.0, |inverse| velocity.dot(&(inverse * velocity)));
+        squared > MOVES * MOVES && turn.abs() < std::f64::consts::PI
+    }
+
+    /// Places of b1 and b2 among the coordinates of the motion.
+    fn velocity_coordinates(&self) -> (usize, usize) {
+        let place = |name: &str| self.model.parameter_names().iter().position(|n| *n == name).unwrap_or(0);
+        (place("b1"), place("b2"))
     }
 }
