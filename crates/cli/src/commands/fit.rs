@@ -56,7 +56,7 @@ impl FittedOutline {
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let mut fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
     if let Some(svg) = &args.svg {
-        args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &[svg]))?;
+        refuse_overwriting(&args.inputs, &[svg])?;
     }
     let input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();

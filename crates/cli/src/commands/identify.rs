@@ -98,7 +98,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
-    args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &outputs))?;
+    refuse_overwriting(&args.inputs, &outputs)?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
         return Err(Failure::unusable(
             "--trajectory: the adaptive method tells no poses, use --method filter or curve",

@@ -12,7 +12,7 @@ use crate::progress::Progress;
 /// Traces the outlines of pictures and writes them.
 pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = std::iter::once(&args.output).chain(&args.overlay).map(AsRef::as_ref).collect();
-    args.inputs.iter().try_for_each(|image| refuse_overwriting(image, &outputs))?;
+    refuse_overwriting(&args.inputs, &outputs)?;
     let input = Input::open(&args.inputs, &args.pictures)?;
     if !input.has_pictures() {
         return Err(Failure::unusable(format_args!("{}: not a picture", input.name)));

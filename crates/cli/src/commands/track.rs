@@ -12,7 +12,7 @@ use crate::tracking::{Event, Tracking};
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = args.overlay.iter().map(AsRef::as_ref).collect();
-    args.inputs.iter().try_for_each(|input| refuse_overwriting(input, &outputs))?;
+    refuse_overwriting(&args.inputs, &outputs)?;
     let mut tracking = Tracking::new(&args.options)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let mut overlay =

@@ -213,20 +213,27 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Refuses output files that are the input or one of its pictures, or one another.
-pub(crate) fn refuse_overwriting(input: &Path, outputs: &[&Path]) -> Result<(), Failure> {
+/// Refuses output files that are an input or one of its pictures, or one another.
+pub(crate) fn refuse_overwriting(inputs: &[PathBuf], outputs: &[&Path]) -> Result<(), Failure> {
+    inputs.iter().try_for_each(|input| refuse_files_of(input, outputs))?;
+    for (index, output) in outputs.iter().enumerate() {
+        let is_device = output.exists() && !output.is_file();
+        if outputs[..index].contains(output) && !is_device {
+            return Err(Failure::unusable(format_args!("{}: named for two outputs", output.display())));
+        }
+    }
+    Ok(())
+}
+
+fn refuse_files_of(input: &Path, outputs: &[&Path]) -> Result<(), Failure> {
     // What cannot be listed cannot be read either, which is told in its place.
     let files = if input.as_os_str() == "-" { Vec::new() } else { picture_files(input).unwrap_or_default() };
-    for (index, output) in outputs.iter().enumerate() {
+    for output in outputs {
         if let Some(place) = fs::canonicalize(output).ok().filter(|place| place.is_file())
             && files.iter().any(|file| fs::canonicalize(file).is_ok_and(|file| file == place))
         {
             let what = if files == [input] { "the input" } else { "a file of the input" };
             return Err(Failure::unusable(format_args!("{}: this is {what}", output.display())));
-        }
-        let is_device = output.exists() && !output.is_file();
-        if outputs[..index].contains(output) && !is_device {
-            return Err(Failure::unusable(format_args!("{}: named for two outputs", output.display())));
         }
     }
     Ok(())

@@ -150,7 +150,7 @@ fn transform<const K: usize>(v: &mut [f64; STATE], inverse: &CoordinateMatrix, p
 
 /// Subtracts `c c' / o` of every cell.
 fn eliminate<const S: usize>(cells: &[CellInformation], sum: &mut [[f64; STATE]; STATE]) {
-    // Of this size alone, so that it stays close.
+    // A sum of the size of the model fits where the processor is fastest; that of the largest one does not.
     let mut taken = [[0.0; S]; S];
     for CellInformation { coupling, own } in cells {
         if *own <= 0.0 {

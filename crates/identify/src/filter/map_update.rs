@@ -184,9 +184,8 @@ impl OutlineMap {
             self.compare_innovations(&scratch.shifts, &scratch.cells);
             let units = 1.0 / (self.sigma * self.sigma);
             for r in scratch.readings.iter().filter(|r| r.weight > 0.0) {
-                let (own, of_point) = (self.information.cells[r.cell].own, r.weight * r.slope * r.slope);
-                if of_point < LARGEST_LEVERAGE * own {
-                    self.cells[r.cell].scatter.take(r.residual * r.residual * units * (own / (own - of_point)));
+                if let Some(factor) = without_leverage(r, self.information.cells[r.cell].own) {
+                    self.cells[r.cell].scatter.take(r.residual * r.residual * units * factor);
                 }
             }
             if let Some(noise) = update.noise {
@@ -225,9 +224,8 @@ impl OutlineMap {
             }
             known += 1;
             agreeing += usize::from(r.residual.abs() < tolerance);
-            let (own, of_point) = (cells[r.cell].own, r.weight * r.slope * r.slope);
-            if r.weight > 0.0 && of_point < LARGEST_LEVERAGE * own {
-                values.push(r.residual.abs() * (own / (own - of_point)).sqrt());
+            if let Some(factor) = without_leverage(r, cells[r.cell].own).filter(|_| r.weight > 0.0) {
+                values.push(r.residual.abs() * factor.sqrt());
             }
         }
         let enough = values.len() * 4 > readings.len();
@@ -246,6 +244,13 @@ impl OutlineMap {
             spread: spread * self.radius,
         }
     }
+}
+
+/// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is;
+/// `None` where that share is too large to tell.
+fn without_leverage(reading: &Reading, own: f64) -> Option<f64> {
+    let of_point = reading.weight * reading.slope * reading.slope;
+    (of_point < LARGEST_LEVERAGE * own).then(|| own / (own - of_point))
 }
 
 /// Robust standard deviation of all residuals.

@@ -28,6 +28,8 @@ mod unseen_direction;
 pub(crate) use contour::median;
 pub use error::FilterError;
 pub use map_update::MapUpdate;
+pub(crate) use motion_filter::{FALSE_START, GIVEN_UP};
 pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use outline_map::OutlineMap;
+pub(crate) use pose_search::LARGEST_INNOVATION;
 pub use settings::{FilterSettings, ProcessNoise};

@@ -18,11 +18,11 @@ const BEND: f64 = 0.1;
 /// Times that a map is cut from the same frames at most.
 const MOST_CUTS: usize = 4;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
-const FALSE_START: usize = 3;
+pub(crate) const FALSE_START: usize = 3;
 /// A map that has taken no more frames than this may have been begun from what is not the object.
 const FEW_FRAMES: usize = 5;
 /// Frames rejected in a row after which the object is given up and a new one taken.
-const GIVEN_UP: usize = 30;
+pub(crate) const GIVEN_UP: usize = 30;
 
 /// What the filter is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

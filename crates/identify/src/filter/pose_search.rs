@@ -13,7 +13,7 @@ use super::{
 use crate::motion_algebra::map_point;
 
 /// Squared innovation of one frame beyond which the motion has not gone on as it was.
-const LARGEST_INNOVATION: f64 = 80.0;
+pub(crate) const LARGEST_INNOVATION: f64 = 80.0;
 /// Turns from the best that are compared with it, spread by the golden angle, rad.
 const OTHER_TURNS: usize = 32;
 const GOLDEN_ANGLE: f64 = 2.399_963;

@@ -48,9 +48,9 @@ impl<const AFFINE: bool> Course<'_, AFFINE> {
         let q = map_point_by::<AFFINE>(self.inverse, &self.places[i]);
         let led_to = [false, true].into_iter().filter_map(|forth| {
             let near = (1..=FURTHEST * self.reach).map_while(|steps| self.beside(i, steps, forth));
-            let mut cells = near.map(|j| (j, readings[j].cell)).filter(|(j, cell)| is_known(&readings[*j], *cell));
-            let (_, start) = cells.find(|(j, cell)| sign * self.along(*j, *cell) > 0.0)?;
-            let cell = self.map.nearest_from(start, &q);
+            let mut known = near.filter(|j| is_known(&readings[*j]));
+            let start = known.find(|j| sign * self.along(*j, readings[*j].cell) > 0.0)?;
+            let cell = self.map.nearest_from(readings[start].cell, &q);
             (sign * self.along(i, cell) > 0.0 && !self.map.is_beyond_end(cell, &q)).then_some(cell)
         });
         let distance = |cell: &usize| (self.map.cells[*cell].centre - q).norm_squared();
@@ -58,8 +58,8 @@ impl<const AFFINE: bool> Course<'_, AFFINE> {
     }
 }
 
-fn is_known(reading: &Reading, cell: usize) -> bool {
-    cell != NO_CELL && reading.weight > 0.0
+fn is_known(reading: &Reading) -> bool {
+    reading.cell != NO_CELL && reading.weight > 0.0
 }
 
 impl OutlineMap {
@@ -85,7 +85,7 @@ impl OutlineMap {
                 continue;
             }
             let (mut forth, mut total) = (0usize, 0usize);
-            for (i, reading) in readings.iter().enumerate().filter(|(_, r)| is_known(r, r.cell)) {
+            for (i, reading) in readings.iter().enumerate().filter(|(_, r)| is_known(r)) {
                 forth += usize::from(course.along(i, reading.cell) > 0.0);
                 total += 1;
             }
@@ -94,8 +94,8 @@ impl OutlineMap {
                 continue;
             }
             for i in 0..readings.len() {
-                let Reading { cell, .. } = readings[i];
-                if is_known(&readings[i], cell) && sign * course.along(i, cell) < 0.0 {
+                let cell = readings[i].cell;
+                if is_known(&readings[i]) && sign * course.along(i, cell) < 0.0 {
                     readings[i].cell = course.cell_on_side(readings, i, sign).unwrap_or(cell);
                 }
             }

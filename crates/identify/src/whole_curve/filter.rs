@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     estimate::MAX_PARAMETERS,
-    filter::{FilterError, Phase, ProcessNoise},
+    filter::{FALSE_START, FilterError, GIVEN_UP, LARGEST_INNOVATION, Phase, ProcessNoise},
     group_logarithm::logarithm,
     motion_algebra::{Coordinates, columns, coordinates},
 };
@@ -25,14 +25,9 @@ const RIDGE: f64 = 1e-9;
 const MOTION_PRIOR: f64 = 1e-9;
 /// How much more of a frame than usual may lie off the curve, as a share of what usually lies on it.
 const LARGEST_MISFIT: f64 = 0.2;
-/// Squared innovation of one frame beyond which the motion has not gone on as it was...
-const LARGEST_INNOVATION: f64 = 80.0;
-/// ...if points moved by more than this share of the level-set offset, in the root mean square.
+/// A frame with the largest innovation of the motion filter goes on as before if points moved by no more than this share of the level-set
+/// offset, in the root mean square.
 const LARGEST_SURPRISE: f64 = 0.5;
-/// Frames rejected in a row before the second one was ever found: the first was not the object.
-const FALSE_START: usize = 3;
-/// Frames rejected in a row after which the object is given up and a new one taken.
-const GIVEN_UP: usize = 30;
 
 /// Identifies the motion of one object from its outlines by one implicit polynomial that all frames share: no pairing of points
 /// or lines, no roots, constant memory and time per frame.
