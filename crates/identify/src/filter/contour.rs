@@ -11,6 +11,10 @@ const PILOT_HALF_WINDOW: usize = 4;
 const OUTLYING: f64 = 3.5;
 /// Standard deviation of a normal's direction that the window is chosen for, rad.
 const NORMAL_NOISE: f64 = 0.05;
+/// Share of the points that neighbours are looked for among on either side, where outliers lie between.
+const FARTHEST: usize = 8;
+/// The same for the pilot regression.
+const PILOT_NORMAL_NOISE: f64 = 0.25;
 const HALF_WINDOWS: std::ops::RangeInclusive<usize> = 2..=30;
 
 /// A place on the contour: position and unit normal, and the length of contour it stands for.
@@ -32,7 +36,8 @@ pub(crate) struct SmoothPiece {
 struct LocalFit {
     position: Point2<f64>,
     tangent: Vector2<f64>,
-    leverage: f64,
+    /// Variance of the point's residual in units of the noise: below one if the point took part, above if it did not.
+    residual_variance: f64,
 }
 
 /// Points of one piece with what is found of them.
@@ -58,16 +63,22 @@ impl Contour {
     pub(crate) fn noise(&mut self) -> Option<f64> {
         let mut sigma = self.residual_scale(PILOT_HALF_WINDOW)?;
         for _ in 0..2 {
-            self.mark_outliers(PILOT_HALF_WINDOW, sigma);
-            sigma = self.residual_scale(PILOT_HALF_WINDOW)?;
+            // Along a line whose direction is noise, residuals are too small.
+            let window = self.half_window_for(sigma, PILOT_NORMAL_NOISE).max(PILOT_HALF_WINDOW);
+            self.mark_outliers(window, sigma);
+            sigma = self.residual_scale(window)?;
         }
         Some(sigma)
     }
 
     /// Smallest window that gives normals their direction, for noise `sigma`.
     pub(crate) fn half_window(&self, sigma: f64) -> usize {
+        self.half_window_for(sigma, NORMAL_NOISE)
+    }
+
+    fn half_window_for(&self, sigma: f64, normal_noise: f64) -> usize {
         let step = self.median_step();
-        let needed = (sigma / (NORMAL_NOISE * step)).powi(2);
+        let needed = (sigma / (normal_noise * step)).powi(2);
         let enough = |w: &usize| (w * (w + 1) * (2 * w + 1)) as f64 / 3.0 >= needed;
         let largest = (self.points.len() / 8).clamp(*HALF_WINDOWS.start(), *HALF_WINDOWS.end());
         HALF_WINDOWS.take_while(|w| *w <= largest).find(enough).unwrap_or(largest)
@@ -177,16 +188,17 @@ impl Contour {
         }
     }
 
+    /// Distance of a point from the line of its neighbours, in units that make its variance that of the noise.
     fn residual(&self, i: usize, fit: &LocalFit) -> Option<f64> {
         let tangent = fit.tangent.try_normalize(1e-12)?;
-        let share = (1.0 - fit.leverage).max(0.05).sqrt();
-        Some(tangent.perp(&(self.points[i] - fit.position)).abs() / share)
+        let deviation = fit.residual_variance.max(0.05).sqrt();
+        Some(tangent.perp(&(self.points[i] - fit.position)).abs() / deviation)
     }
 
     fn residual_scale(&self, half_window: usize) -> Option<f64> {
         let residuals = (0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| {
             let fit = self.local_fit(i, half_window)?;
-            (fit.leverage < 0.9).then(|| self.residual(i, &fit)).flatten()
+            (fit.residual_variance > 0.1).then(|| self.residual(i, &fit)).flatten()
         });
         median(&mut residuals.collect::<Vec<_>>()).map(|m| 1.4826 * m)
     }
@@ -194,11 +206,7 @@ impl Contour {
     fn mark_outliers(&mut self, half_window: usize, sigma: f64) {
         let marks: Vec<bool> = (0..self.points.len())
             .map(|i| {
-                let residual = self.local_fit(i, half_window).and_then(|fit| {
-                    // Judged by the line of its neighbours, whether it took part in it or not.
-                    let share = if self.outlier[i] { (1.0 - fit.leverage).max(0.05).sqrt() } else { 1.0 };
-                    self.residual(i, &fit).map(|r| r * share)
-                });
+                let residual = self.local_fit(i, half_window).and_then(|fit| self.residual(i, &fit));
                 residual.is_none_or(|r| r > OUTLYING * sigma)
             })
             .collect();
@@ -208,25 +216,33 @@ impl Contour {
         }
     }
 
-    /// Least-squares quadratic of position against the number of the point, over the neighbours that are not outliers.
+    /// Least-squares quadratic of position against the number of the point, over the point and the nearest neighbours on either side that
+    /// are not outliers.
     fn local_fit(&self, i: usize, half_window: usize) -> Option<LocalFit> {
         let w = half_window as isize;
         let mut gram = Matrix3::zeros();
         let (mut x, mut y) = (Vector3::zeros(), Vector3::zeros());
-        let mut count = 0;
         let origin = self.points[i];
-        for offset in -w..=w {
-            let Some(j) = self.neighbour(i, offset) else { continue };
-            if self.outlier[j] {
-                continue;
-            }
+        let mut take = |offset: isize, j: usize| {
             let u = offset as f64 / w as f64;
             let row = Vector3::new(1.0, u, u * u);
             let p = self.points[j] - origin;
             gram += row * row.transpose();
             x += row * p.x;
             y += row * p.y;
+        };
+        let mut count = 0;
+        if !self.outlier[i] {
+            take(0, i);
             count += 1;
+        }
+        for side in [-1, 1] {
+            let farther = (1..=w.max((self.points.len() / FARTHEST) as isize)).map(|distance| side * distance);
+            let kept = farther.filter_map(|offset| Some((offset, self.neighbour(i, offset)?)));
+            for (offset, j) in kept.filter(|(_, j)| !self.outlier[*j]).take(half_window) {
+                take(offset, j);
+                count += 1;
+            }
         }
         if count < 4 {
             return None;
@@ -236,7 +252,7 @@ impl Contour {
         Some(LocalFit {
             position: origin + Vector2::new(x[0], y[0]),
             tangent: Vector2::new(x[1], y[1]),
-            leverage: if self.outlier[i] { 0.0 } else { inverse[(0, 0)] },
+            residual_variance: if self.outlier[i] { 1.0 + inverse[(0, 0)] } else { 1.0 - inverse[(0, 0)] },
         })
     }
 }

@@ -28,10 +28,15 @@ impl OutlineMap {
     /// From the marginal information before and after a frame and the step that it made; `variance` is that of the noise, with
     /// its correlation. The covariance of the pose step is `P - P+`; with `A = P^-1` of the pose alone the innovation v obeys
     /// `S^-1 v = A step` and `S^-1 = A (P - P+) A`.
-    pub(crate) fn pose_innovation(&self, after: &StateMatrix, state: &StateVector, variance: f64) -> PoseInnovation {
+    pub(crate) fn pose_innovation(
+        &self,
+        [before, after]: [&StateMatrix; 2],
+        state: &StateVector,
+        variance: f64,
+    ) -> PoseInnovation {
         let k = self.information.k;
         let innovation = || {
-            let (before, after) = (pose_information(&self.marginal, k)?, pose_information(after, k)?);
+            let (before, after) = (pose_information(before, k)?, pose_information(after, k)?);
             let (p, p_after) = (inverse(&before)?, inverse(&after)?);
             let step = PoseVector::from_fn(|i, _| if i < k { state[i] } else { 0.0 });
             let gained = p - p_after;

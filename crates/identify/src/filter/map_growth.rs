@@ -39,7 +39,6 @@ impl OutlineMap {
         let first_new = self.cells.len();
         let scale = self.pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let sigma = self.sigma / scale;
-        let points: usize = contours.iter().map(Contour::len).sum();
         let resampled = |mut contour: Contour| contour.resampled(sigma, self.half_window, self.spacing);
         let pieces: Vec<_> = contours.into_iter().filter_map(resampled).collect();
         let places = pieces.iter().map(|piece| piece.places.len()).sum();
@@ -54,12 +53,6 @@ impl OutlineMap {
         let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
         self.field.build(&centres, self.spacing);
         self.information.cells.resize(self.cells.len(), CellInformation::NOTHING);
-        let w = self.half_window as f64;
-        let levers = (w * (w + 1.0) * (2.0 * w + 1.0) / 3.0).sqrt();
-        let step = self.spacing * places as f64 / points as f64;
-        let normal_noise = (self.sigma / (levers * step)).min(0.2);
-        let share_of_new = (self.cells.len() - first_new) as f64 / self.cells.len() as f64;
-        self.normal_variance += share_of_new * (normal_noise * normal_noise - self.normal_variance);
         self.find_unseen_directions();
         let mut scratch = std::mem::take(&mut self.scratch);
         self.measure_new_cells(&mut scratch, first_new);

@@ -18,8 +18,16 @@ const PLENTY: usize = 3200;
 const PLENTY_PER_CELL: f64 = 3.5;
 /// Points nearer than so many spacings are one.
 const COINCIDENT: f64 = 0.05;
+/// Share of the noise that the map has seen, which the points are taken to have at least: where those of many frames lie in one place
+/// they make contours of their own.
+const LEAST_NOISE: f64 = 0.5;
+/// Points that follow each other in less than this share of the mean distance lie in one place.
+const COMMON: f64 = 0.2;
 /// Fewest points that make a contour.
 const FEWEST_POINTS: usize = 8;
+
+/// Points in their order along a chain of cells, with how far along it they lie, in cells.
+type Run = Vec<(f64, Point2<f64>)>;
 
 /// The frames that a map was begun from, kept until it has been cut from enough of them.
 #[derive(Debug, Clone, Default)]
@@ -93,8 +101,14 @@ impl OutlineMap {
         if self.has_common_points(&points) {
             return None;
         }
+        let runs = self.along_chains(points);
+        if has_common_places(&runs) {
+            return None;
+        }
+        let contours =
+            runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
         map.load(first);
-        map.cut(self.along_chains(points))?;
+        map.cut(contours.collect(), LEAST_NOISE * self.sigma)?;
         map.motion = self.motion;
         map.noise_level = self.noise_level;
         let mut before = *first_time;
@@ -117,14 +131,15 @@ impl OutlineMap {
         2 * common > points.len()
     }
 
-    /// Contours that points in the body frame make, given with their cells and places, in the order along the cells.
-    fn along_chains(&self, points: Vec<(usize, Point2<f64>, Point2<f64>)>) -> Vec<Contour> {
+    /// Points in the body frame, given with their cells and places, in their order along each chain of cells with how far along it they
+    /// lie, in cells; and whether the chain is closed.
+    fn along_chains(&self, points: Vec<(usize, Point2<f64>, Point2<f64>)>) -> Vec<(Run, bool)> {
         let chains = self.chains();
         let mut place_of = vec![(0, 0); self.cells.len()];
         for (number, (chain, _)) in chains.iter().enumerate() {
             chain.iter().enumerate().for_each(|(index, cell)| place_of[*cell] = (number, index));
         }
-        let mut runs: Vec<Vec<(f64, Point2<f64>)>> = vec![Vec::new(); chains.len()];
+        let mut runs: Vec<Run> = vec![Vec::new(); chains.len()];
         for (cell, place, q) in points {
             if cell == NO_CELL {
                 continue;
@@ -133,13 +148,12 @@ impl OutlineMap {
             let (chain, closed) = &chains[number];
             runs[number].push((index as f64 + self.along(chain, *closed, index, &place), q));
         }
-        let contours = runs.into_iter().zip(&chains).filter(|(run, _)| run.len() >= FEWEST_POINTS);
-        contours
-            .map(|(mut run, (_, closed))| {
-                run.sort_by(|a, b| a.0.total_cmp(&b.0));
-                Contour::new(run.into_iter().map(|(_, q)| q).collect(), *closed)
-            })
-            .collect()
+        let kept = runs.into_iter().zip(&chains).filter(|(run, _)| run.len() >= FEWEST_POINTS);
+        kept.map(|(mut run, (_, closed))| {
+            run.sort_by(|a, b| a.0.total_cmp(&b.0));
+            (run, *closed)
+        })
+        .collect()
     }
 
     /// How far along the line through the cells of a chain a point lies from the cell nearest to it, in cells.
@@ -191,4 +205,15 @@ impl OutlineMap {
         }
         chains
     }
+}
+
+/// Whether most of the points lie as far along their chains as others do, as those of frames that are sampled alike.
+fn has_common_places(runs: &[(Run, bool)]) -> bool {
+    let (mut common, mut all) = (0, 0);
+    for (run, _) in runs {
+        let mean = (run[run.len() - 1].0 - run[0].0) / run.len() as f64;
+        common += run.windows(2).filter(|pair| pair[1].0 - pair[0].0 < COMMON * mean).count();
+        all += run.len();
+    }
+    2 * common > all
 }

@@ -1,14 +1,14 @@
 //! One frame measured against the map, and the map grown by what it shows for the first time.
 use freeform_curve_fit::Outline;
-use freeform_riccati::MotionModel;
-use nalgebra::Point2;
+use nalgebra::{Matrix3, Point2};
 
 use super::{
-    arrow_information::{ArrowInformation, CellInformation, STATE, StateVector, scaled_solution},
+    arrow_information::{ArrowInformation, CellInformation, STATE, StateMatrix, StateVector, scaled_solution},
     contour::median,
     noise_level::STRETCHES,
     outline_map::OutlineMap,
     reading::{NO_CELL, Reading},
+    unseen_direction::Unseen,
 };
 
 /// Residuals within this many standard deviations agree with the map.
@@ -57,6 +57,20 @@ pub(crate) struct Scratch {
     pub(crate) right: Vec<f64>,
     pub(crate) shifts: Vec<f64>,
     pub(crate) values: Vec<f64>,
+}
+
+/// A frame's solution for pose and motion.
+pub(crate) struct Solution {
+    /// Step from what was predicted.
+    pub(crate) state: StateVector,
+    /// The same where nothing is held.
+    pub(crate) released: Option<StateVector>,
+    pub(crate) pose: Matrix3<f64>,
+    /// Information on pose and motion with the frame, the outline given.
+    dense: [[f64; STATE]; STATE],
+    /// The same with the offsets eliminated.
+    pub(crate) marginal: StateMatrix,
+    iterations: usize,
 }
 
 /// A connected run of points.
@@ -123,49 +137,22 @@ impl OutlineMap {
     fn update_loaded(&mut self, scratch: &mut Scratch, accept: impl Fn(&MapUpdate) -> bool) -> MapUpdate {
         let k = self.information.k;
         let unseen = self.unseen_in_image(&self.pose);
-        // A turn may be told by the path, and what shear and growth do to a thin outline in one step in the long run. A slide is not.
-        let keeps_unseen = self.model <= MotionModel::Similarity && !self.turn_is_unseen();
-        scratch.shifts.clear();
-        scratch.shifts.resize(self.cells.len(), 0.0);
-        let mut state = StateVector::zeros();
-        // The same with what cannot be seen.
-        let mut whole_state = state;
-        let mut pose = self.pose;
-        let mut work = ArrowInformation::new(k);
-        let mut marginal = self.marginal;
-        let mut iterations = 0;
-        let mut settled = false;
-        while iterations < MOST_ITERATIONS && !settled {
-            self.read_points(scratch, &pose, &unseen, iterations == 0);
-            scratch.cells.clone_from(&self.information.cells);
-            std::mem::swap(&mut work.cells, &mut scratch.cells);
-            work.dense = self.information.dense;
-            let right = self.accumulate(scratch, &mut work, &state);
-            marginal = work.marginal();
-            let reduced = reduce(&work, &scratch.right, right);
-            let solution = scaled_solution(&marginal, &reduced, k);
-            let Some(mut next) = solution.filter(|next| next.iter().all(|e| e.is_finite())) else {
-                std::mem::swap(&mut work.cells, &mut scratch.cells);
-                return self.rejected(iterations);
-            };
-            whole_state = next;
-            if keeps_unseen {
-                unseen.iter().for_each(|unseen| unseen.take_off_step(&mut next, k));
-            }
-            scratch.take_solution(&work.cells, &(next - state), &next, k);
-            let step = (0..k).map(|i| (next[i] - state[i]).abs()).fold(0.0, f64::max);
-            state = next;
-            pose = self.model.flow(&state.as_slice()[..k], 1.0).into_inner() * self.pose;
-            if !pose.iter().all(|e| e.is_finite()) || pose.determinant().abs() < 1e-12 {
-                std::mem::swap(&mut work.cells, &mut scratch.cells);
-                return self.rejected(iterations);
-            }
-            iterations += 1;
-            settled = step < SETTLED * self.sigma;
-            std::mem::swap(&mut work.cells, &mut scratch.cells);
-        }
+        let mut hold = self.hold(&unseen);
+        let mut solution = match self.solve(scratch, &unseen, hold.as_ref()) {
+            Ok(solution) => solution,
+            Err(iterations) => return self.rejected(iterations),
+        };
         let variance = self.comparable_noise().powi(2) * self.noise_level.correlation();
-        self.innovation = self.pose_innovation(&marginal, &whole_state, variance);
+        self.innovation = self.solution_innovation(&solution, hold.as_ref(), variance);
+        if hold.is_some() && self.tells_path(&solution, variance) {
+            hold = None;
+            solution = match self.solve(scratch, &unseen, None) {
+                Ok(solution) => solution,
+                Err(iterations) => return self.rejected(iterations),
+            };
+            self.innovation = self.solution_innovation(&solution, None, variance);
+        }
+        let Solution { state, pose, dense, marginal, iterations, .. } = solution;
         if self.is_compared {
             self.last_misfit = self.misfit(scratch);
             self.last_misfit.squares += self.innovation.squared;
@@ -175,11 +162,12 @@ impl OutlineMap {
         update.accepted = accept(&update);
         if update.accepted {
             std::mem::swap(&mut self.information.cells, &mut scratch.cells);
-            self.information.dense = work.dense;
+            self.information.dense = dense;
             self.marginal = marginal;
             self.pose = pose;
             (0..k).for_each(|i| self.motion[i] += state[k + i]);
             self.cells.iter_mut().zip(&scratch.shifts).for_each(|(cell, shift)| cell.offset += shift);
+            self.withhold(&unseen, hold.as_ref(), &state);
             // The buffer holds the cells as they were.
             self.compare_innovations(&scratch.shifts, &scratch.cells);
             let units = 1.0 / (self.sigma * self.sigma);
@@ -196,6 +184,53 @@ impl OutlineMap {
             }
         }
         update
+    }
+
+    /// Linearises and solves until the pose settles; the number of linearisations where there is no solution. `hold` is information that
+    /// is added for the solution only.
+    fn solve(&self, scratch: &mut Scratch, unseen: &[Unseen], hold: Option<&StateMatrix>) -> Result<Solution, usize> {
+        let k = self.information.k;
+        scratch.shifts.clear();
+        scratch.shifts.resize(self.cells.len(), 0.0);
+        let mut solution = Solution {
+            state: StateVector::zeros(),
+            released: None,
+            pose: self.pose,
+            dense: self.information.dense,
+            marginal: self.marginal,
+            iterations: 0,
+        };
+        let mut work = ArrowInformation::new(k);
+        let mut settled = false;
+        while solution.iterations < MOST_ITERATIONS && !settled {
+            self.read_points(scratch, &solution.pose, unseen, solution.iterations == 0);
+            scratch.cells.clone_from(&self.information.cells);
+            std::mem::swap(&mut work.cells, &mut scratch.cells);
+            work.dense = self.information.dense;
+            let right = self.accumulate(scratch, &mut work, &solution.state);
+            let marginal = work.marginal();
+            let reduced = reduce(&work, &scratch.right, right + self.withheld.gradient);
+            let held = hold.map_or_else(
+                || scaled_solution(&marginal, &reduced, k),
+                |hold| scaled_solution(&(marginal + hold), &reduced, k),
+            );
+            let next = held.filter(|next| next.iter().all(|e| e.is_finite()));
+            if let Some(next) = next {
+                scratch.take_solution(&work.cells, &(next - solution.state), &next, k);
+            }
+            std::mem::swap(&mut work.cells, &mut scratch.cells);
+            let next = next.ok_or(solution.iterations)?;
+            let step = (0..k).map(|i| (next[i] - solution.state[i]).abs()).fold(0.0, f64::max);
+            let pose = self.model.flow(&next.as_slice()[..k], 1.0).into_inner() * self.pose;
+            if !pose.iter().all(|e| e.is_finite()) || pose.determinant().abs() < 1e-12 {
+                return Err(solution.iterations);
+            }
+            let released = hold.and_then(|_| scaled_solution(&marginal, &reduced, k));
+            let iterations = solution.iterations + 1;
+            solution = Solution { state: next, released, pose, dense: work.dense, marginal, iterations };
+            settled = step < SETTLED * self.sigma;
+        }
+        Ok(solution)
     }
 
     fn rejected(&self, iterations: usize) -> MapUpdate {

@@ -24,6 +24,7 @@ mod settings;
 mod sides;
 mod state;
 mod unseen_direction;
+mod withheld;
 
 pub(crate) use contour::median;
 pub use error::FilterError;

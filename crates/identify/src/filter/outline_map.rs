@@ -13,6 +13,7 @@ use super::{
     nearest_field::NearestField,
     noise_level::NoiseLevel,
     outline_drift::OutlineDrift,
+    withheld::Withheld,
 };
 use crate::{
     estimate::MAX_PARAMETERS,
@@ -88,10 +89,10 @@ pub struct OutlineMap {
     /// What bent cells alone would leave of the residuals.
     sigma_floor: f64,
     pub(crate) half_window: usize,
-    /// Mean variance of the directions of the cells' normals, rad squared.
-    pub(crate) normal_variance: f64,
     /// In the body frame.
     pub(crate) unseen_in_body: Vec<Coordinates>,
+    /// What is known of it all the same, and not taken.
+    pub(crate) withheld: Withheld,
     /// Whether frames have not shown the turn, whatever the normals promise.
     pub(crate) turn_is_hidden: bool,
     /// From centred coordinates of unit RMS radius to the body frame.
@@ -126,7 +127,7 @@ impl OutlineMap {
         let mut map = Self::without_cells(model, outline.centroid(), outline.rms_radius());
         map.load(outline);
         let contours: Vec<Contour> = map.contours().collect();
-        map.cut(contours).ok_or(too_few)?;
+        map.cut(contours, 0.0).ok_or(too_few)?;
         Ok(map)
     }
 
@@ -148,8 +149,8 @@ impl OutlineMap {
             sigma_weight: 0.5,
             sigma_floor: SMALLEST_NOISE,
             half_window: 2,
-            normal_variance: 0.0,
             unseen_in_body: Vec::new(),
+            withheld: Withheld::default(),
             turn_is_hidden: false,
             body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
@@ -165,14 +166,14 @@ impl OutlineMap {
     }
 
     /// Takes cells along contours in the body frame, and the loaded points, those of the first frame, as their first measurement. `None`
-    /// where the contours do not make an outline.
-    pub(crate) fn cut(&mut self, contours: Vec<Contour>) -> Option<()> {
+    /// where the contours do not make an outline. Their noise is no less than what is known of it.
+    pub(crate) fn cut(&mut self, contours: Vec<Contour>, least_noise: f64) -> Option<()> {
         let (k, loaded) = (self.information.k, self.scratch.points.len());
         for i in 0..k {
             self.information.dense[i][i] = GAUGE_WEIGHT * loaded as f64;
             self.information.dense[k + i][k + i] = MOTION_PRIOR;
         }
-        self.choose_resolution(&contours);
+        self.choose_resolution(&contours, least_noise);
         if loaded < FEWEST_POINTS || !(self.spacing > 0.0 && self.sigma.is_finite()) {
             return None;
         }
@@ -198,12 +199,12 @@ impl OutlineMap {
     }
 
     /// Noise, window and spacing for contours.
-    fn choose_resolution(&mut self, contours: &[Contour]) {
+    fn choose_resolution(&mut self, contours: &[Contour], least_noise: f64) {
         let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
         for contour in contours {
             let mut contour = contour.clone();
             let weight = contour.len() as f64;
-            let Some(sigma) = contour.noise() else { continue };
+            let Some(sigma) = contour.noise().map(|noise| noise.max(least_noise)) else { continue };
             window = contour.half_window(sigma).max(window);
             variance += weight * sigma * sigma;
             count += weight;

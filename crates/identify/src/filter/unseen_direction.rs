@@ -1,10 +1,7 @@
 //! Directions of the pose that an outline does not show, such as the turning of a circle about its centre.
-use nalgebra::{Matrix3, Point2, SMatrix, Vector2};
+use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::{
-    arrow_information::{StateVector, scaled_inverse},
-    outline_map::OutlineMap,
-};
+use super::{arrow_information::scaled_inverse, outline_map::OutlineMap};
 use crate::{
     estimate::MAX_PARAMETERS,
     motion_algebra::{Coordinates, adjoint, coordinates, normal_velocities},
@@ -12,13 +9,17 @@ use crate::{
 
 /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
 const DEGENERATE: f64 = 0.003;
-/// Times the variance of the normals' directions: what they alone would make of a direction that is not seen, and some more.
+/// Times what the errors of the normals would make of the levers in a direction that is not seen: that, and some more.
 const EXPLAINED: f64 = 2.0;
+/// Standard deviation of a normal's direction that cells are far enough apart for, rad...
+const NORMAL_NOISE: f64 = 0.035;
+/// ...unless that is more than this share of all.
+const LARGEST_SHARE: usize = 16;
+/// Points of a window over which a quadratic is fitted, for each that its middle is worth.
+const QUADRATIC: f64 = 2.25;
 /// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
 const SEEN_BY_PATH: f64 = 0.02;
 
-/// Standard deviations by which the velocity of the centre must differ from none to be a path.
-const MOVES: f64 = 6.0;
 /// Turn, in rad, of a unit step in a direction that counts as turning.
 const HOLDS_TURN: f64 = 0.3;
 
@@ -34,14 +35,6 @@ impl Unseen {
     pub(crate) fn take_off(&self, row: &mut Coordinates) {
         let along: f64 = row.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
         row.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
-    }
-
-    /// Takes the direction off a step of pose and motion, both of so many coordinates: what cannot be seen goes on as it was predicted.
-    pub(crate) fn take_off_step(&self, step: &mut StateVector, k: usize) {
-        for block in [0, k] {
-            let along: f64 = (0..k).map(|i| self.dual[i] * step[block + i]).sum();
-            (0..k).for_each(|i| step[block + i] -= along * self.direction[i]);
-        }
     }
 }
 
@@ -83,18 +76,22 @@ impl OutlineMap {
         let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
         let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
         levers.view_mut((0, 0), (self.information.k, self.information.k)).fill(0.0);
-        for cell in &self.cells {
+        // What errors of the normals alone would make of the levers.
+        let mut levers_of_noise = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
+        for (number, cell) in self.cells.iter().enumerate() {
+            let (normal, variance) = self.normal_by_neighbours(number);
             let p = Point2::from((cell.centre - centroid) / spread);
-            let row = normal_velocities(self.model, &p, &cell.normal);
-            let row = nalgebra::SVector::from(row);
-            levers += row * row.transpose() / count;
+            let velocities = |along| SVector::from(normal_velocities(self.model, &p, along));
+            let (across, along) = (velocities(&normal), velocities(&Vector2::new(-normal.y, normal.x)));
+            levers += across * across.transpose() / count;
+            levers_of_noise += variance / count * along * along.transpose();
         }
         let eigen = levers.symmetric_eigen();
-        let threshold = DEGENERATE.max(EXPLAINED * self.normal_variance);
         let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
         self.unseen_in_body.clear();
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value < threshold {
+            let of_noise = (vector.transpose() * levers_of_noise * vector)[(0, 0)];
+            if *value < DEGENERATE.max(EXPLAINED * of_noise) {
                 let generator = self.model.generator(&vector.as_slice()[..self.information.k]);
                 let Some(inverse) = to_body.try_inverse() else { continue };
                 self.unseen_in_body.push(coordinates(self.model, &(to_body * generator * inverse)));
@@ -105,6 +102,31 @@ impl OutlineMap {
         // What a few more cells show would be taken to have turned by what was never seen.
         if was_unseen {
             self.hide_turn();
+        }
+    }
+
+    /// Normal of the outline at a cell, and the variance of its direction in rad squared, by the cells some way before and after it. Where
+    /// cells err together this does not, as their own normals do: a circle would have its middle beside where it is.
+    fn normal_by_neighbours(&self, number: usize) -> (Vector2<f64>, f64) {
+        // Of the value of a quadratic in the middle of its window.
+        let window = (2 * self.half_window + 1) as f64;
+        let noise = self.sigma * (QUADRATIC / window).sqrt();
+        let steps = (noise / (std::f64::consts::SQRT_2 * NORMAL_NOISE * self.spacing)).ceil() as usize;
+        let steps = steps.clamp(1, (self.cells.len() / LARGEST_SHARE).max(1));
+        let [before, after] = [0, 1].map(|side| {
+            let (mut last, mut here) = (number, self.cells[number].neighbours[side]);
+            for _ in 1..steps {
+                // Links may point either way.
+                let [a, b] = self.cells[here].neighbours;
+                let next = if a == last { b } else { a };
+                (last, here) = (here, next);
+            }
+            self.cells[here].centre
+        });
+        let chord = after - before;
+        match chord.try_normalize(1e-12) {
+            Some(along) => (Vector2::new(along.y, -along.x), 2.0 * noise * noise / chord.norm_squared()),
+            None => (self.cells[number].normal, 0.0),
         }
     }
 
@@ -154,44 +176,17 @@ impl OutlineMap {
         let from_centred = nalgebra::DMatrix::from_fn(k, k, |i, j| from_centred[i][j]);
         let to_centred = from_centred.clone().try_inverse()?;
         let covariance = &to_centred * covariance * to_centred.transpose();
-        let has_path = self.has_path(&to_centred, &covariance);
         let information = covariance.try_inverse()?;
         let typical = information.trace() / k as f64;
         for unseen in self.unseen_in_image(&self.pose) {
             let direction = nalgebra::DVector::from_column_slice(&unseen.direction[..k]);
             let centred = &to_centred * &direction;
             let seen = (centred.transpose() * &information * &centred)[(0, 0)] / centred.norm_squared();
-            if seen < SEEN_BY_PATH * typical || !has_path {
+            if seen < SEEN_BY_PATH * typical || !self.withheld.is_given_by_path {
                 let largest = direction.amax();
                 (0..k).filter(|j| direction[*j].abs() > 0.1 * largest).for_each(|j| blind[j] = true);
             }
         }
         Some(blind)
-    }
-
-    /// Whether the object's centre moves beyond doubt, and turns by less than half a circle per step: noise is no path, and of a
-    /// faster turn the path shows another. Given the change to centred coordinates of the motion and its covariance there, in units
-    /// of the noise.
-    fn has_path(&self, to_centred: &nalgebra::DMatrix<f64>, covariance: &nalgebra::DMatrix<f64>) -> bool {
-        let k = self.information.k;
-        let motion = to_centred * nalgebra::DVector::from_column_slice(&self.motion[..k]);
-        let generator = self.model.generator(motion.as_slice());
-        let turn = 0.5 * (generator[(0, 1)] - generator[(1, 0)]) * self.step_seconds;
-        let (b1, b2) = self.velocity_coordinates();
-        let velocity = Vector2::new(motion[b1], motion[b2]);
-        let block = nalgebra::Matrix2::new(
-            covariance[(b1, b1)],
-            covariance[(b1, b2)],
-            covariance[(b2, b1)],
-            covariance[(b2, b2)],
-        ) * self.effective_variance();
-        let squared = block.try_inverse().map_or(0.0, |inverse| velocity.dot(&(inverse * velocity)));
-        squared > MOVES * MOVES && turn.abs() < std::f64::consts::PI
-    }
-
-    /// Places of b1 and b2 among the coordinates of the motion.
-    fn velocity_coordinates(&self) -> (usize, usize) {
-        let place = |name: &str| self.model.parameter_names().iter().position(|n| *n == name).unwrap_or(0);
-        (place("b1"), place("b2"))
     }
 }

@@ -1,0 +1,160 @@
+//! Steps in directions of the pose that an outline does not show: not taken, and not forgotten.
+//!
+//! The path of an object tells its turn even where its outline does not, but noise makes a path of its own, and by that the turn would
+//! become anything. So such a step is held back until there is a path, with the gradient of the likelihood that asks for it.
+use freeform_riccati::MotionModel;
+use nalgebra::{Matrix2, Point2, Vector2};
+
+use super::{
+    arrow_information::{StateMatrix, StateVector, moved_gradient, scaled_inverse, scaled_solution},
+    innovation::PoseInnovation,
+    map_update::Solution,
+    outline_map::OutlineMap,
+    unseen_direction::Unseen,
+};
+use crate::motion_algebra::{CoordinateMatrix, map_point};
+
+/// Information that holds a direction, in units of the noise: it moves by a thousandth of it.
+const HOLDING: f64 = 1e6;
+/// Standard deviations by which the velocity of the centre must differ from none to be a path.
+const MOVES: f64 = 6.0;
+
+/// Standard deviation of the turn, rad, beyond which it is not linear in what is measured.
+const KNOWN: f64 = 0.25;
+
+/// What is held back.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Withheld {
+    /// Of the log-likelihood by pose and motion, in units of the noise.
+    pub(crate) gradient: StateVector,
+    /// Whether nothing is, since the path gives the turn.
+    pub(crate) is_given_by_path: bool,
+}
+
+impl Withheld {
+    /// Moves on by one step, as the information does.
+    pub(crate) fn predict(&mut self, k: usize, inverse: &CoordinateMatrix, product: &CoordinateMatrix) {
+        self.gradient = moved_gradient(&self.gradient, k, inverse, product);
+    }
+}
+
+impl OutlineMap {
+    /// Information by which unseen directions are held where they are predicted; zero where they are not.
+    pub(crate) fn hold(&self, unseen: &[Unseen]) -> Option<StateMatrix> {
+        // What shear and growth do to a thin outline in one step is seen in the long run.
+        if unseen.is_empty() || self.model > MotionModel::Similarity || self.withheld.is_given_by_path {
+            return None;
+        }
+        let k = self.information.k;
+        let mut hold = StateMatrix::zeros();
+        for Unseen { dual, .. } in unseen {
+            for (block, information) in [(0, HOLDING), (k, HOLDING * self.span * self.span)] {
+                for i in 0..k {
+                    (0..k).for_each(|j| hold[(block + i, block + j)] += information * dual[i] * dual[j]);
+                }
+            }
+        }
+        Some(hold)
+    }
+
+    /// Innovation of a solution, against the prediction with what was held back before it.
+    pub(crate) fn solution_innovation(
+        &self,
+        solution: &Solution,
+        hold: Option<&StateMatrix>,
+        variance: f64,
+    ) -> PoseInnovation {
+        let held = |marginal: &StateMatrix| hold.map_or(*marginal, |hold| marginal + hold);
+        self.innovation_between([held(&self.marginal), held(&solution.marginal)], &solution.state, variance)
+    }
+
+    fn innovation_between(
+        &self,
+        [before, after]: [StateMatrix; 2],
+        state: &StateVector,
+        variance: f64,
+    ) -> PoseInnovation {
+        let withheld = &self.withheld.gradient;
+        let step = if withheld.iter().all(|e| *e == 0.0) {
+            *state
+        } else {
+            state - scaled_solution(&before, withheld, self.information.k).unwrap_or_default()
+        };
+        self.pose_innovation([&before, &after], &step, variance)
+    }
+
+    /// Whether a frame that contradicts a turn held where it is predicted agrees with another.
+    pub(crate) fn tells_path(&self, solution: &Solution, variance: f64) -> bool {
+        let Some(released) = solution.released.filter(|_| self.turn_is_unseen()) else { return false };
+        let with_turn = self.innovation_between([self.marginal, solution.marginal], &released, variance);
+        self.innovation.squared - with_turn.squared > MOVES * MOVES
+    }
+
+    /// Keeps the gradient by what was held, and lets it go if the path gives the turn.
+    pub(crate) fn withhold(&mut self, unseen: &[Unseen], hold: Option<&StateMatrix>, state: &StateVector) {
+        if unseen.is_empty() {
+            return;
+        }
+        self.withheld.gradient = hold.map_or_else(StateVector::zeros, |hold| hold * state);
+        self.find_path(unseen, hold);
+    }
+
+    /// Finds whether the path gives a turn that the outline does not show: whether the object's centre moves beyond doubt, the turn since
+    /// the beginning is known well enough for steps to be small, and it is less than half a circle per step, since of a faster turn the
+    /// path shows another. Takes what was held back if so.
+    fn find_path(&mut self, unseen: &[Unseen], hold: Option<&StateMatrix>) {
+        let was_given = std::mem::take(&mut self.withheld.is_given_by_path);
+        if !self.turn_is_unseen() || !self.moves(hold).unwrap_or(false) {
+            return;
+        }
+        let k = self.information.k;
+        let Some(covariance) = scaled_inverse(&self.marginal, k) else { return };
+        let step = covariance * self.withheld.gradient;
+        let motion: Vec<f64> = (0..k).map(|i| self.motion[i] + step[k + i]).collect();
+        let generator = self.model.generator(&motion);
+        let turn = 0.5 * (generator[(0, 1)] - generator[(1, 0)]) * self.step_seconds;
+        let is_known = |unseen: &Unseen| {
+            let dual = StateVector::from_fn(|i, _| if (k..2 * k).contains(&i) { unseen.dual[i - k] } else { 0.0 });
+            let variance = dual.dot(&(covariance * dual)) * self.effective_variance();
+            variance.sqrt() * self.span < KNOWN
+        };
+        if turn.abs() >= std::f64::consts::PI || !unseen.iter().all(is_known) {
+            return;
+        }
+        self.withheld.is_given_by_path = true;
+        if was_given {
+            return;
+        }
+        self.withheld.gradient = StateVector::zeros();
+        self.motion[..k].copy_from_slice(&motion);
+        self.pose = self.model.flow(&step.as_slice()[..k], 1.0).into_inner() * self.pose;
+        for (cell, information) in self.cells.iter_mut().zip(&self.information.cells).filter(|(_, i)| i.own > 0.0) {
+            cell.offset -= StateVector::from(information.coupling).dot(&step) / information.own;
+        }
+    }
+
+    /// Whether the object's centre moves beyond doubt.
+    fn moves(&self, hold: Option<&StateMatrix>) -> Option<bool> {
+        let k = self.information.k;
+        let generator = self.model.generator(&self.motion[..k]);
+        let centre = map_point(&self.pose, &Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)]));
+        let velocity = (generator * centre.to_homogeneous()).xy();
+        // By the parameters of the motion.
+        let held = hold.map_or(self.marginal, |hold| self.marginal + hold);
+        let covariance = scaled_inverse(&held, k)? * self.effective_variance();
+        let mut by_motion = [Vector2::zeros(); crate::estimate::MAX_PARAMETERS];
+        for (j, column) in by_motion.iter_mut().enumerate().take(k) {
+            let mut unit = [0.0; crate::estimate::MAX_PARAMETERS];
+            unit[j] = 1.0;
+            *column = (self.model.generator(&unit[..k]) * centre.to_homogeneous()).xy();
+        }
+        let mut of_velocity = Matrix2::zeros();
+        for i in 0..k {
+            for j in 0..k {
+                of_velocity += covariance[(k + i, k + j)] * by_motion[i] * by_motion[j].transpose();
+            }
+        }
+        let squared = velocity.dot(&(of_velocity.try_inverse()? * velocity));
+        Some(squared > MOVES * MOVES)
+    }
+}
