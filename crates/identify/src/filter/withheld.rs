@@ -42,7 +42,10 @@ impl OutlineMap {
     /// Information by which unseen directions are held where they are predicted; zero where they are not.
     pub(crate) fn hold(&self, unseen: &[Unseen]) -> Option<StateMatrix> {
         // What shear and growth do to a thin outline in one step is seen in the long run.
-        if unseen.is_empty() || self.model > MotionModel::Similarity || self.withheld.is_given_by_path {
+        if unseen.is_empty()
+            || (self.model > MotionModel::Similarity && !self.turn_is_unseen())
+            || self.withheld.is_given_by_path
+        {
             return None;
         }
         let k = self.information.k;
