@@ -4,7 +4,7 @@ mod filter_support;
 use filter_support::{filter, filtered, frames_of, settings};
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_identify::MotionFilter;
-use freeform_riccati::{MotionModel, RigidMotion};
+use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Settings};
 use nalgebra::Point2;
 use rand::SeedableRng as _;
@@ -36,6 +36,27 @@ fn a_circle_at_rest_keeps_its_turn_unknown_and_its_place_known_whatever_the_nois
             let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, RigidMotion::default(), settings));
             assert_eq!(observable(&run), [false, true, true], "noise {noise}, seed {seed}");
             assert_eq!(run.frames_rejected(), 0, "noise {noise}, seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn a_circle_under_affine_motion_states_what_its_path_tells_and_no_more() {
+    let moving = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
+    let in_place = AffineMotion { a1: 0.1, a2: 0.3, a3: -0.2, a4: 0.1, b1: 0.0, b2: 0.0 };
+    for (motion, turn_is_known) in [(moving, true), (in_place, false)] {
+        for (seed, noise) in (0..6).zip([0.0005, 0.005].into_iter().cycle()) {
+            let frames = frames_of(BuiltInShape::Circle, motion, Settings { noise, ..settings(60, seed) });
+            let run = filtered(MotionModel::Affine, &frames);
+            let known = observable(&run);
+            assert_eq!([known[1], known[2]], [turn_is_known; 2], "{motion:?} {noise}, seed {seed}");
+            assert!(known[4] && known[5], "{motion:?} {noise}, seed {seed}");
+            let estimate = run.estimate().expect("an estimate");
+            let truth = [motion.a1, motion.a2, motion.a3, motion.a4, motion.b1, motion.b2];
+            for (parameter, truth) in estimate.parameters().zip(truth) {
+                let Some((value, std)) = parameter.value.zip(parameter.standard_deviation) else { continue };
+                assert!((value - truth).abs() < 6.0 * std, "{motion:?} {noise}, seed {seed}: {value} {truth} {std}");
+            }
         }
     }
 }
