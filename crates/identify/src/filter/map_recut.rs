@@ -81,6 +81,10 @@ impl OutlineMap {
         frames: &[(f64, Outline)],
         take: impl Fn(&mut Self, f64, &Outline) -> MapUpdate,
     ) -> Option<Self> {
+        // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
+        if self.turn_is_unseen() && !self.withheld.is_given_by_path {
+            return None;
+        }
         let k = self.information.k;
         let ((first_time, first), last_time) = (frames.first()?, frames.last()?.0);
         let mut map = Self::without_cells(self.model, self.origin, self.radius);
