@@ -119,6 +119,11 @@ fn search(map: &OutlineMap, points: &[Point2<f64>], landmarks: Option<[Landmarks
         best.extend(more);
         best.retain(|h| h.score.is_finite());
     }
+    for hypothesis in &mut best {
+        // A start between middles slides along what the frame shows more of.
+        hypothesis.pose = map.without_unseen(&hypothesis.pose);
+        hypothesis.turn = turn_of(&hypothesis.pose, map);
+    }
     best
 }
 
@@ -207,9 +212,14 @@ fn refined(
     distances.sort_unstable_by(f64::total_cmp);
     let kept = ((TRIMMED * distances.len() as f64) as usize).max(1).min(distances.len());
     let score = if distances.is_empty() { f64::INFINITY } else { distances[..kept].iter().sum::<f64>() / kept as f64 };
-    let step = map.pose.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
-    let turn = (step[(1, 0)] - step[(0, 1)]).atan2(step[(0, 0)] + step[(1, 1)]);
+    let turn = turn_of(&pose, map);
     Hypothesis { pose, score, turn }
+}
+
+/// Turn of a pose from the one that the map is in.
+fn turn_of(pose: &Matrix3<f64>, map: &OutlineMap) -> f64 {
+    let step = map.pose.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
+    (step[(1, 0)] - step[(0, 1)]).atan2(step[(0, 0)] + step[(1, 1)])
 }
 
 /// The constant motion that makes `change` in `seconds`, from the turn of less than half a circle: by Newton's method on the flow,

@@ -1,4 +1,5 @@
 //! The map grown by what a frame shows for the first time.
+use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
 use super::{
@@ -28,6 +29,17 @@ impl Cell {
 }
 
 impl OutlineMap {
+    /// A map of the same body frame of what one outline shows, in the pose that this map is in; its motion is unknown again.
+    pub(crate) fn begun_anew(&self, outline: &Outline) -> Option<Self> {
+        let mut map = Self::without_cells(self.model, self.origin, self.radius);
+        map.pose = self.pose;
+        map.load(outline);
+        let contours = map.contours().collect();
+        map.cut(contours, 0.0)?;
+        map.noise_level = self.noise_level;
+        Some(map)
+    }
+
     /// Adds cells for the parts of the loaded outline that the map does not have yet, and measures them.
     pub(crate) fn grow(&mut self) {
         let contours = self.contours().collect();
@@ -53,7 +65,13 @@ impl OutlineMap {
         let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
         self.field.build(&centres, self.spacing);
         self.information.cells.resize(self.cells.len(), CellInformation::NOTHING);
+        let (unseen, turn_was_unseen) = (self.unseen_in_image(&self.pose), self.turn_is_unseen());
         self.find_unseen_directions();
+        if !unseen.is_empty() {
+            self.forget(&unseen);
+            self.forget(&self.unseen_in_image(&self.pose));
+            self.shows_turn_at_last = turn_was_unseen && !self.turn_is_unseen();
+        }
         let mut scratch = std::mem::take(&mut self.scratch);
         self.measure_new_cells(&mut scratch, first_new);
         self.scratch = scratch;
@@ -152,7 +170,6 @@ impl OutlineMap {
 
 #[cfg(test)]
 mod tests {
-    use freeform_curve_fit::Outline;
     use freeform_riccati::MotionModel;
 
     use super::*;

@@ -82,7 +82,7 @@ impl OutlineMap {
         take: impl Fn(&mut Self, f64, &Outline) -> MapUpdate,
     ) -> Option<Self> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
-        if self.turn_is_unseen() && !self.withheld.is_given_by_path {
+        if self.withheld.is_forgotten || self.turn_is_unknown() {
             return None;
         }
         let k = self.information.k;

@@ -1,5 +1,5 @@
 use freeform_curve_fit::Outline;
-use nalgebra::Projective2;
+use nalgebra::{Affine2, Projective2};
 
 use super::{
     acquisition::Landmarks,
@@ -152,6 +152,9 @@ impl MotionFilter {
             self.taken_by_map += 1;
             self.rejected_in_a_row = 0;
             self.keep(time, outline);
+            if self.map.as_ref().is_some_and(|map| map.shows_turn_at_last) {
+                self.begin_turn(outline);
+            }
         } else {
             self.rejected += 1;
             self.refused_by_map += 1;
@@ -184,6 +187,10 @@ impl MotionFilter {
         if !self.first_frames.take(time, outline) {
             return;
         }
+        if self.map.as_ref().is_some_and(OutlineMap::turn_is_unknown) {
+            self.begin_turn(outline);
+            return;
+        }
         let smallest = self.settings.smallest_agreement;
         let recut = |map: &OutlineMap| {
             map.recut(self.first_frames.frames(), |map, seconds, outline| {
@@ -212,6 +219,19 @@ impl MotionFilter {
             self.change = MotionChange::default();
         }
         self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
+    }
+
+    /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
+    /// knows.
+    fn begin_turn(&mut self, outline: &Outline) {
+        let new = self.map.as_ref().and_then(|map| map.begun_anew(outline));
+        let Some(new) = new.filter(|new| !new.turn_is_unseen()) else { return };
+        let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
+        self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
+        self.first_frames.end();
+        self.rivals = Rivals::default();
+        (self.taken_by_map, self.refused_by_map) = (1, 0);
+        self.replace(new, self.map_time, Phase::Acquiring);
     }
 
     /// After a rejected frame: look elsewhere, or begin again.

@@ -95,6 +95,8 @@ pub struct OutlineMap {
     pub(crate) withheld: Withheld,
     /// Whether frames have not shown the turn, whatever the normals promise.
     pub(crate) turn_is_hidden: bool,
+    /// Whether what a frame has shown for the first time shows the turn.
+    pub(crate) shows_turn_at_last: bool,
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(crate) body_frame: Matrix3<f64>,
     pub(crate) scratch: Scratch,
@@ -152,6 +154,7 @@ impl OutlineMap {
             unseen_in_body: Vec::new(),
             withheld: Withheld::default(),
             turn_is_hidden: false,
+            shows_turn_at_last: false,
             body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
             noise_level: NoiseLevel::NEW,

@@ -74,7 +74,7 @@ impl OutlineMap {
         self.add_covariance(&added);
     }
 
-    fn add_covariance(&mut self, added: &StateMatrix) {
+    pub(crate) fn add_covariance(&mut self, added: &StateMatrix) {
         let k = self.information.k;
         let Some(covariance) = scaled_inverse(&self.marginal, k) else { return };
         for (j, span) in self.spans.iter_mut().enumerate().take(k) {

@@ -1,7 +1,7 @@
 //! Directions of the pose that an outline does not show, such as the turning of a circle about its centre.
 use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::{arrow_information::scaled_inverse, outline_map::OutlineMap};
+use super::{acquisition::motion_between, arrow_information::scaled_inverse, outline_map::OutlineMap};
 use crate::{
     estimate::MAX_PARAMETERS,
     motion_algebra::{Coordinates, adjoint, coordinates, normal_velocities},
@@ -17,6 +17,8 @@ const NORMAL_NOISE: f64 = 0.035;
 const LARGEST_SHARE: usize = 16;
 /// Points of a window over which a quadratic is fitted, for each that its middle is worth.
 const QUADRATIC: f64 = 2.25;
+/// Steps to the least of the motions that look alike.
+const LEAST_STEPS: usize = 3;
 /// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
 const SEEN_BY_PATH: f64 = 0.02;
 
@@ -70,7 +72,6 @@ impl OutlineMap {
 
     /// Directions of the pose that the cells do not show, from their lever arms about their mean.
     pub(crate) fn find_unseen_directions(&mut self) {
-        let was_unseen = self.turn_is_unseen();
         let count = self.cells.len() as f64;
         let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
         let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
@@ -99,10 +100,6 @@ impl OutlineMap {
         }
         self.body_frame = to_body;
         self.turn_is_hidden = false;
-        // What a few more cells show would be taken to have turned by what was never seen.
-        if was_unseen {
-            self.hide_turn();
-        }
     }
 
     /// Normal of the outline at a cell, and the variance of its direction in rad squared, by the cells some way before and after it. Where
@@ -160,6 +157,25 @@ impl OutlineMap {
             Unseen { direction, dual }
         });
         list.collect()
+    }
+
+    /// Of all poses that differ from one by what the outline does not show, the one that moves the least from the map's own.
+    pub(crate) fn without_unseen(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
+        let k = self.information.k;
+        let mut pose = *pose;
+        let inverses = (self.pose.try_inverse(), self.body_frame.try_inverse());
+        let (Some(to_body), Some(to_centred)) = inverses else { return pose };
+        for direction in &self.unseen_in_body {
+            let generator = self.model.generator(&direction[..k]);
+            let centred = coordinates(self.model, &(to_centred * generator * self.body_frame));
+            for _ in 0..LEAST_STEPS {
+                let change = to_centred * to_body * pose * self.body_frame;
+                let Some(step) = motion_between(self.model, &change, 1.0) else { break };
+                let along: f64 = step.iter().zip(&centred).map(|(a, b)| a * b).sum();
+                pose *= self.model.flow(&direction[..k], -along).into_inner();
+            }
+        }
+        pose
     }
 
     /// Parameters that take part in a motion which the outline does not show, and which the path of the object has not shown either.

@@ -3,7 +3,7 @@
 //! The path of an object tells its turn even where its outline does not, but noise makes a path of its own, and by that the turn would
 //! become anything. So such a step is held back until there is a path, with the gradient of the likelihood that asks for it.
 use freeform_riccati::MotionModel;
-use nalgebra::{Matrix2, Point2, Vector2};
+use nalgebra::{Matrix2, Matrix3, Point2, Vector2};
 
 use super::{
     arrow_information::{StateMatrix, StateVector, moved_gradient, scaled_inverse, scaled_solution},
@@ -12,7 +12,7 @@ use super::{
     outline_map::OutlineMap,
     unseen_direction::Unseen,
 };
-use crate::motion_algebra::{CoordinateMatrix, map_point};
+use crate::motion_algebra::CoordinateMatrix;
 
 /// Information that holds a direction, in units of the noise: it moves by a thousandth of it.
 const HOLDING: f64 = 1e6;
@@ -29,6 +29,8 @@ pub(crate) struct Withheld {
     pub(crate) gradient: StateVector,
     /// Whether nothing is, since the path gives the turn.
     pub(crate) is_given_by_path: bool,
+    /// Whether something of it has been forgotten as the map grew: earlier poses are off by what nobody knows.
+    pub(crate) is_forgotten: bool,
 }
 
 impl Withheld {
@@ -39,6 +41,11 @@ impl Withheld {
 }
 
 impl OutlineMap {
+    /// Whether neither the outline nor its path tells the turn.
+    pub(crate) fn turn_is_unknown(&self) -> bool {
+        self.turn_is_unseen() && !self.withheld.is_given_by_path
+    }
+
     /// Information by which unseen directions are held where they are predicted; zero where they are not.
     pub(crate) fn hold(&self, unseen: &[Unseen]) -> Option<StateMatrix> {
         // What shear and growth do to a thin outline in one step is seen in the long run.
@@ -102,12 +109,33 @@ impl OutlineMap {
         self.find_path(unseen, hold);
     }
 
+    /// Forgets all that is known of pose and motion in directions that were not seen: another place of the middle of a turn makes something
+    /// known of it that is not.
+    pub(crate) fn forget(&mut self, unseen: &[Unseen]) {
+        let k = self.information.k;
+        let units = self.effective_variance();
+        for Unseen { direction, .. } in unseen {
+            let rate = 1.0 / self.step_seconds.max(f64::MIN_POSITIVE);
+            let unknown = StateMatrix::from_fn(|i, j| {
+                let (block, row, column) = (i / k, i % k, j % k);
+                if i >= 2 * k || j / k != block {
+                    return 0.0;
+                }
+                let size = if block == 0 { 1.0 } else { rate };
+                size * size * direction[row] * direction[column] / units
+            });
+            self.add_covariance(&unknown);
+        }
+        self.withheld.gradient = StateVector::zeros();
+        self.withheld.is_forgotten = true;
+    }
+
     /// Finds whether the path gives a turn that the outline does not show: whether the object's centre moves beyond doubt, the turn since
     /// the beginning is known well enough for steps to be small, and it is less than half a circle per step, since of a faster turn the
     /// path shows another. Takes what was held back if so.
     fn find_path(&mut self, unseen: &[Unseen], hold: Option<&StateMatrix>) {
         let was_given = std::mem::take(&mut self.withheld.is_given_by_path);
-        if !self.turn_is_unseen() || !self.moves(hold).unwrap_or(false) {
+        if !self.turn_is_unseen() || !self.moves(unseen, hold).unwrap_or(false) {
             return;
         }
         let k = self.information.k;
@@ -136,11 +164,11 @@ impl OutlineMap {
         }
     }
 
-    /// Whether the object's centre moves beyond doubt.
-    fn moves(&self, hold: Option<&StateMatrix>) -> Option<bool> {
+    /// Whether the point that a turn which is not seen would leave where it is, moves beyond doubt.
+    fn moves(&self, unseen: &[Unseen], hold: Option<&StateMatrix>) -> Option<bool> {
         let k = self.information.k;
+        let centre = unseen.iter().find_map(|unseen| still_point(&self.model.generator(&unseen.direction[..k])))?;
         let generator = self.model.generator(&self.motion[..k]);
-        let centre = map_point(&self.pose, &Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)]));
         let velocity = (generator * centre.to_homogeneous()).xy();
         // By the parameters of the motion.
         let held = hold.map_or(self.marginal, |hold| self.marginal + hold);
@@ -160,4 +188,11 @@ impl OutlineMap {
         let squared = velocity.dot(&(of_velocity.try_inverse()? * velocity));
         Some(squared > MOVES * MOVES)
     }
+}
+
+/// The point that an affine generator does not move; `None` where there is none.
+fn still_point(generator: &Matrix3<f64>) -> Option<Point2<f64>> {
+    let turn = generator.fixed_view::<2, 2>(0, 0).into_owned();
+    let point = turn.try_inverse()? * -generator.fixed_view::<2, 1>(0, 2);
+    Some(Point2::from(point)).filter(|p| p.iter().all(|e| e.is_finite()))
 }
