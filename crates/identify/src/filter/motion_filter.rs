@@ -193,7 +193,7 @@ impl MotionFilter {
         }
         let smallest = self.settings.smallest_agreement;
         let recut = |map: &OutlineMap| {
-            map.recut(self.first_frames.frames(), |map, seconds, outline| {
+            map.recut(&self.first_frames.frames(), 1, |map, seconds, outline| {
                 map.predict(seconds);
                 map.add_process_noise(&self.settings.process_noise, seconds);
                 // That it shows the object has been seen: the noise of the few points on cells seen before tells less.
