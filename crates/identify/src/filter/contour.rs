@@ -11,10 +11,10 @@ const PILOT_HALF_WINDOW: usize = 4;
 const OUTLYING: f64 = 3.5;
 /// Standard deviation of a normal's direction that the window is chosen for, rad.
 const NORMAL_NOISE: f64 = 0.05;
-/// Share of the points that neighbours are looked for among on either side, where outliers lie between.
-const FARTHEST: usize = 8;
 /// The same for the pilot regression.
 const PILOT_NORMAL_NOISE: f64 = 0.25;
+/// Neighbours are looked for among one of so many parts of the points, on either side, where outliers lie between.
+const PARTS: usize = 8;
 const HALF_WINDOWS: std::ops::RangeInclusive<usize> = 2..=30;
 
 /// A place on the contour: position and unit normal, and the length of contour it stands for.
@@ -36,7 +36,7 @@ pub(crate) struct SmoothPiece {
 struct LocalFit {
     position: Point2<f64>,
     tangent: Vector2<f64>,
-    /// Variance of the point's residual in units of the noise: below one if the point took part, above if it did not.
+    /// Variance of the point's residual in units of the noise: below one if the point took part.
     residual_variance: f64,
 }
 
@@ -237,7 +237,7 @@ impl Contour {
             count += 1;
         }
         for side in [-1, 1] {
-            let farther = (1..=w.max((self.points.len() / FARTHEST) as isize)).map(|distance| side * distance);
+            let farther = (1..=w.max((self.points.len() / PARTS) as isize)).map(|distance| side * distance);
             let kept = farther.filter_map(|offset| Some((offset, self.neighbour(i, offset)?)));
             for (offset, j) in kept.filter(|(_, j)| !self.outlier[*j]).take(half_window) {
                 take(offset, j);
@@ -252,7 +252,8 @@ impl Contour {
         Some(LocalFit {
             position: origin + Vector2::new(x[0], y[0]),
             tangent: Vector2::new(x[1], y[1]),
-            residual_variance: if self.outlier[i] { 1.0 + inverse[(0, 0)] } else { 1.0 - inverse[(0, 0)] },
+            // An outlier stays one unless it lies within the noise of its neighbours' line as if that were exact.
+            residual_variance: if self.outlier[i] { 1.0 } else { 1.0 - inverse[(0, 0)] },
         })
     }
 }

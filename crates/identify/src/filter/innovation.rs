@@ -20,8 +20,9 @@ pub(crate) struct PoseInnovation {
     pub(crate) squared: f64,
     /// Derivatives of the log-likelihood by the variances of the motion's change per second, in normalised units.
     pub(crate) gradient: ByKind,
-    /// Fisher information of each.
+    /// Fisher information of each, and of one variance for both.
     pub(crate) fisher: ByKind,
+    pub(crate) fisher_of_both: f64,
 }
 
 /// One number for the rates of turning, growth and shear, and one for the velocities, both about the object's centre. A thrown object
@@ -59,11 +60,13 @@ impl OutlineMap {
                 (by_change.transpose() * weighted, by_change.transpose() * before * gained * before * by_change);
             let growth = self.step_seconds.powi(3) / variance;
             let mut all = PoseInnovation { squared, ..PoseInnovation::default() };
-            let kinds: Vec<usize> = self.model.parameter_names().iter().map(|name| kind(name)).collect();
-            for (i, of_i) in kinds.iter().enumerate() {
-                all.gradient[*of_i] += 0.5 * growth * (slope[i] * slope[i] - curvature[(i, i)]);
-                for (j, _) in kinds.iter().enumerate().filter(|(_, of_j)| *of_j == of_i) {
-                    all.fisher[*of_i] += 0.5 * growth * growth * curvature[(i, j)] * curvature[(i, j)];
+            let kinds = || self.model.parameter_names().iter().map(|name| kind(name)).enumerate();
+            for (i, of_i) in kinds() {
+                all.gradient[of_i] += 0.5 * growth * (slope[i] * slope[i] - curvature[(i, i)]);
+                for (j, of_j) in kinds() {
+                    let fisher = 0.5 * growth * growth * curvature[(i, j)] * curvature[(i, j)];
+                    all.fisher_of_both += fisher;
+                    all.fisher[of_i] += if of_i == of_j { fisher } else { 0.0 };
                 }
             }
             let is_finite = all.gradient.iter().chain(&all.fisher).all(|e| e.is_finite());

@@ -12,6 +12,8 @@ use crate::{
 
 /// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
 const WORTHLESS: f64 = 0.25;
+/// Standard deviations that what is held back of a parameter may make; noise asks for some of them.
+const WITHHELD: f64 = 3.0;
 /// Steps over which a parameter must be known at least, however fast the motion changes.
 const STEPS_KNOWN: f64 = 30.0;
 
@@ -56,6 +58,9 @@ impl OutlineMap {
         let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
         let mut estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
         let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
+        let withheld = self.withheld_motion().unwrap_or([0.0; MAX_PARAMETERS]);
+        let withheld = to_image * self.model.generator(&withheld[..k]) * to_image.try_inverse()?;
+        let withheld = crate::motion_algebra::coordinates(self.model, &withheld);
         let reach = self.radius + self.origin.coords.norm();
         let floor = self.span.min(STEPS_KNOWN * self.step_seconds);
         let shortest = self.spans[..k].iter().copied().fold(f64::INFINITY, f64::min);
@@ -67,7 +72,8 @@ impl OutlineMap {
                 _ => (1.0, self.spans[j]),
             };
             let known = deviations[j] * span.max(floor) <= WORTHLESS * limit;
-            if !known || blind[j] {
+            // What is not taken is no error that the deviations know of.
+            if !known || blind[j] || withheld[j].abs() > WITHHELD * deviations[j] {
                 estimate = estimate.with_unobservable(j);
             }
         }

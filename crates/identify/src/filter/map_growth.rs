@@ -9,6 +9,7 @@ use super::{
     map_update::Scratch,
     outline_map::{Cell, OutlineMap},
     reading::NO_CELL,
+    withheld::Withheld,
 };
 
 /// Places further than this many spacings from all cells are new.
@@ -29,7 +30,13 @@ impl Cell {
 }
 
 impl OutlineMap {
-    /// A map of the same body frame of what one outline shows, in the pose that this map is in; its motion is unknown again.
+    /// Whether the next frame may show the turn where those before it did not. Says so of each growth once.
+    pub(crate) fn may_show_turn(&mut self) -> bool {
+        std::mem::take(&mut self.shows_turn_at_last) || self.turn_is_new && self.turn_is_hidden
+    }
+
+    /// A map of the same body frame of what one outline shows, in the pose that this map is in but for its turn, which is unknown as its
+    /// motion is.
     pub(crate) fn begun_anew(&self, outline: &Outline) -> Option<Self> {
         let mut map = Self::without_cells(self.model, self.origin, self.radius);
         map.pose = self.pose;
@@ -37,6 +44,13 @@ impl OutlineMap {
         let contours = map.contours().collect();
         map.cut(contours, 0.0)?;
         map.noise_level = self.noise_level;
+        if !map.turn_is_unseen() {
+            map.hide_turn();
+            map.forget(&map.unseen_in_image(&map.pose));
+            map.show_turn();
+            map.turn_is_new = true;
+        }
+        map.withheld = Withheld::default();
         Some(map)
     }
 
@@ -68,8 +82,10 @@ impl OutlineMap {
         let (unseen, turn_was_unseen) = (self.unseen_in_image(&self.pose), self.turn_is_unseen());
         self.find_unseen_directions();
         if !unseen.is_empty() {
-            self.forget(&unseen);
-            self.forget(&self.unseen_in_image(&self.pose));
+            if !self.withheld.is_given_by_path {
+                self.forget(&unseen);
+                self.forget(&self.unseen_in_image(&self.pose));
+            }
             self.shows_turn_at_last = turn_was_unseen && !self.turn_is_unseen();
         }
         let mut scratch = std::mem::take(&mut self.scratch);

@@ -66,6 +66,8 @@ pub(crate) struct Solution {
     /// The same where nothing is held.
     pub(crate) released: Option<StateVector>,
     pub(crate) pose: Matrix3<f64>,
+    /// Directions that the outline does not show.
+    unseen: Vec<Unseen>,
     /// Information on pose and motion with the frame, the outline given.
     dense: [[f64; STATE]; STATE],
     /// The same with the offsets eliminated.
@@ -152,7 +154,7 @@ impl OutlineMap {
             };
             self.innovation = self.solution_innovation(&solution, None, variance);
         }
-        let Solution { state, pose, dense, marginal, iterations, .. } = solution;
+        let Solution { state, pose, unseen, dense, marginal, iterations, .. } = solution;
         if self.is_compared {
             self.last_misfit = self.misfit(scratch);
             self.last_misfit.squares += self.innovation.squared;
@@ -196,6 +198,7 @@ impl OutlineMap {
             state: StateVector::zeros(),
             released: None,
             pose: self.pose,
+            unseen: unseen.to_vec(),
             dense: self.information.dense,
             marginal: self.marginal,
             iterations: 0,
@@ -203,7 +206,11 @@ impl OutlineMap {
         let mut work = ArrowInformation::new(k);
         let mut settled = false;
         while solution.iterations < MOST_ITERATIONS && !settled {
-            self.read_points(scratch, &solution.pose, unseen, solution.iterations == 0);
+            // A turn that is not seen is one about the middle as the frame has it.
+            if solution.iterations > 0 && !solution.unseen.is_empty() {
+                solution.unseen = self.unseen_in_image(&solution.pose);
+            }
+            self.read_points(scratch, &solution.pose, &solution.unseen, solution.iterations == 0);
             scratch.cells.clone_from(&self.information.cells);
             std::mem::swap(&mut work.cells, &mut scratch.cells);
             work.dense = self.information.dense;
@@ -227,7 +234,8 @@ impl OutlineMap {
             }
             let released = hold.and_then(|_| scaled_solution(&marginal, &reduced, k));
             let iterations = solution.iterations + 1;
-            solution = Solution { state: next, released, pose, dense: work.dense, marginal, iterations };
+            let unseen = solution.unseen;
+            solution = Solution { state: next, released, pose, unseen, dense: work.dense, marginal, iterations };
             settled = step < SETTLED * self.sigma;
         }
         Ok(solution)

@@ -3,6 +3,7 @@ use super::innovation::{ByKind, PoseInnovation};
 
 /// Frames that the estimate looks back on.
 const MEMORY: f64 = 15.0;
+const KEPT: f64 = 1.0 - 1.0 / MEMORY;
 /// Standard deviations of the likelihood's slope from which a change counts as seen. Constant motion must stay at the bound.
 const SIGNIFICANT: f64 = 7.0;
 /// The same for a motion that has been seen to change before.
@@ -19,7 +20,12 @@ const EVIDENCE: f64 = 4.0;
 /// Recursive maximum-likelihood estimates, by Fisher's scoring, of the variances by which the rates and the velocities of the motion change
 /// per second; none until the evidence is significant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct MotionChange([Change; 2]);
+pub(crate) struct MotionChange {
+    kinds: [Change; 2],
+    /// Of one variance for both: chance has no more than one occasion.
+    gradient: f64,
+    fisher: f64,
+}
 
 /// One of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -34,7 +40,7 @@ struct Change {
 impl MotionChange {
     /// The variances, unless both are none.
     pub(crate) fn variances(&self) -> Option<ByKind> {
-        let variances = self.0.map(|change| change.variance);
+        let variances = self.kinds.map(|change| change.variance);
         variances.iter().any(|v| *v > 0.0).then_some(variances)
     }
 
@@ -43,19 +49,34 @@ impl MotionChange {
         let limit = LIMIT * parameters as f64;
         let share = if innovation.squared > limit { limit / innovation.squared } else { 1.0 };
         let by_chance = innovation.squared < BEYOND_CHANCE * parameters as f64;
-        for (change, (gradient, fisher)) in self.0.iter_mut().zip(innovation.gradient.iter().zip(innovation.fisher)) {
+        for (change, (gradient, fisher)) in self.kinds.iter_mut().zip(innovation.gradient.iter().zip(innovation.fisher))
+        {
             if fisher > 0.0 {
                 change.take(gradient * share, fisher, by_chance);
             }
         }
-        let evidence = self.0.map(|change| change.evidence());
-        let (clearest, other) = if evidence[0] > evidence[1] { (0, 1) } else { (1, 0) };
-        if evidence[clearest] > 1.0 {
-            self.0[clearest].begin();
+        let open = |kind: &usize| self.kinds[*kind].variance <= 0.0;
+        let gradient = (0..2).filter(open).map(|kind| innovation.gradient[kind] * share).sum();
+        let is_open = (0..2).all(|kind| open(&kind));
+        let fisher =
+            if is_open { innovation.fisher_of_both } else { (0..2).filter(open).map(|k| innovation.fisher[k]).sum() };
+        self.gradient = KEPT * self.gradient + capped(gradient, fisher, by_chance);
+        self.fisher = KEPT * self.fisher + fisher;
+        let [rates, velocities] = &self.kinds;
+        let significant = if rates.has_changed || velocities.has_changed { SIGNIFICANT_AGAIN } else { SIGNIFICANT };
+        if self.fisher > 0.0 && self.gradient > significant * self.fisher.sqrt() {
+            let (clearest, other) = if rates.evidence() > velocities.evidence() { (0, 1) } else { (1, 0) };
+            self.kinds[clearest].begin();
             // What the one explains is no evidence of the other.
-            self.0[other].forget();
+            self.kinds[other].forget();
+            (self.gradient, self.fisher) = (0.0, 0.0);
         }
     }
+}
+
+/// Evidence of one frame, no more than chance may make unless it is beyond that.
+fn capped(gradient: f64, fisher: f64, by_chance: bool) -> f64 {
+    if by_chance { gradient.min(EVIDENCE * fisher.sqrt()) } else { gradient }
 }
 
 impl Change {
@@ -67,16 +88,13 @@ impl Change {
             }
             return;
         }
-        let kept = 1.0 - 1.0 / MEMORY;
-        let most = if by_chance { EVIDENCE * fisher.sqrt() } else { f64::INFINITY };
-        self.gradient = kept * self.gradient + gradient.min(most);
-        self.fisher = kept * self.fisher + fisher;
+        self.gradient = KEPT * self.gradient + capped(gradient, fisher, by_chance);
+        self.fisher = KEPT * self.fisher + fisher;
     }
 
-    /// Slope of the likelihood in units of what is significant; none where a change has been found.
+    /// Slope of the likelihood in standard deviations; none where a change has been found.
     fn evidence(&self) -> f64 {
-        let significant = if self.has_changed { SIGNIFICANT_AGAIN } else { SIGNIFICANT };
-        if self.fisher > 0.0 { self.gradient / (significant * self.fisher.sqrt()) } else { 0.0 }
+        if self.fisher > 0.0 { self.gradient / self.fisher.sqrt() } else { 0.0 }
     }
 
     fn begin(&mut self) {
@@ -95,7 +113,7 @@ mod tests {
 
     #[test]
     fn one_frame_that_chance_may_make_shows_no_change_but_several_in_a_row_do() {
-        let innovation = PoseInnovation { squared: 20.0, gradient: [12.0, -1.0], fisher: [1.0; 2] };
+        let innovation = PoseInnovation { squared: 20.0, gradient: [14.0, 2.0], fisher: [1.0; 2], fisher_of_both: 2.5 };
         let mut change = MotionChange::default();
         change.take(&innovation, 6);
         assert_eq!(change.variances(), None);

@@ -152,8 +152,8 @@ impl MotionFilter {
             self.taken_by_map += 1;
             self.rejected_in_a_row = 0;
             self.keep(time, outline);
-            if self.map.as_ref().is_some_and(|map| map.shows_turn_at_last) {
-                self.begin_turn(outline);
+            if self.map.as_mut().is_some_and(OutlineMap::may_show_turn) {
+                self.begin_with_turn(outline);
             }
         } else {
             self.rejected += 1;
@@ -188,7 +188,8 @@ impl MotionFilter {
             return;
         }
         if self.map.as_ref().is_some_and(OutlineMap::turn_is_unknown) {
-            self.begin_turn(outline);
+            self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
+            self.begin_with_turn(outline);
             return;
         }
         let smallest = self.settings.smallest_agreement;
@@ -223,13 +224,18 @@ impl MotionFilter {
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
     /// knows.
-    fn begin_turn(&mut self, outline: &Outline) {
-        let new = self.map.as_ref().and_then(|map| map.begun_anew(outline));
-        let Some(new) = new.filter(|new| !new.turn_is_unseen()) else { return };
+    fn begin_with_turn(&mut self, outline: &Outline) {
+        let Some(map) = &mut self.map else { return };
+        let Some(new) = map.begun_anew(outline).filter(|new| !new.turn_is_unseen()) else {
+            map.hide_turn();
+            map.turn_is_new = true;
+            return;
+        };
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
         self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
         self.first_frames.end();
         self.rivals = Rivals::default();
+        self.change = MotionChange::default();
         (self.taken_by_map, self.refused_by_map) = (1, 0);
         self.replace(new, self.map_time, Phase::Acquiring);
     }
@@ -301,7 +307,8 @@ impl MotionFilter {
         self.phase
     }
 
-    /// The motion as far as it is known; `None` before the second accepted frame.
+    /// The motion as far as it is known; `None` before the second accepted frame, of those too that begin anew with what shows the turn
+    /// of an object at last.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
         if self.phase == Phase::Waiting || (self.phase == Phase::Acquiring) {

@@ -97,6 +97,8 @@ pub struct OutlineMap {
     pub(crate) turn_is_hidden: bool,
     /// Whether what a frame has shown for the first time shows the turn.
     pub(crate) shows_turn_at_last: bool,
+    /// Whether the map was begun anew with a frame that shows the turn, and no other frame has told it since.
+    pub(crate) turn_is_new: bool,
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(crate) body_frame: Matrix3<f64>,
     pub(crate) scratch: Scratch,
@@ -155,6 +157,7 @@ impl OutlineMap {
             withheld: Withheld::default(),
             turn_is_hidden: false,
             shows_turn_at_last: false,
+            turn_is_new: false,
             body_frame: Matrix3::identity(),
             scratch: Scratch::default(),
             noise_level: NoiseLevel::NEW,

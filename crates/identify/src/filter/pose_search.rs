@@ -20,6 +20,10 @@ const GOLDEN_ANGLE: f64 = 2.399_963;
 /// Turns nearer than this to the best are no others, rad.
 const NEAR: f64 = 0.3;
 
+/// Shares of other turns that a frame must explain worse than the best to show the turn, the latter where no frame has before.
+const MOST: f64 = 0.5;
+const NEARLY_ALL: f64 = 0.88;
+
 /// Points that turns are compared by.
 const ENOUGH_POINTS: usize = 2000;
 
@@ -65,6 +69,9 @@ impl MotionFilter {
         if let Some(taken) = taken {
             // Where a lost object is now says nothing of how it moves now.
             self.replace(taken.map, time, if lost { Phase::Acquiring } else { Phase::Tracking });
+            if let Some(map) = self.map.as_mut().filter(|map| !map.turn_is_hidden) {
+                map.turn_is_new = false;
+            }
         }
         if let Some(map) = self.map.as_mut().filter(|_| update.accepted || lost) {
             map.noise_level.take(update.spread / map.radius);
@@ -148,6 +155,10 @@ impl OutlineMap {
         let poses: Vec<_> = std::iter::once(*pose).chain(turned).collect();
         let misfits = self.compared(outline, &poses);
         let worse = misfits[1..].iter().filter(|other| other.is_worse_than(&misfits[0])).count();
-        2 * worse > misfits.len() - 1
+        // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in
+        // what that frame does not show.
+        let share = if self.turn_is_new { NEARLY_ALL } else { MOST };
+        worse as f64 > share * (misfits.len() - 1) as f64
+            && (!self.turn_is_new || self.begun_anew(outline).is_some_and(|alone| !alone.turn_is_unseen()))
     }
 }

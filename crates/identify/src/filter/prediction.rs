@@ -81,13 +81,13 @@ impl OutlineMap {
     pub(crate) fn add_covariance(&mut self, added: &StateMatrix) {
         let k = self.information.k;
         let Some(covariance) = scaled_inverse(&self.marginal, k) else { return };
+        // Before (x) given after (x'): x = K x' + rest.
+        let Some(after) = scaled_inverse(&(covariance + added), k) else { return };
         for (j, span) in self.spans.iter_mut().enumerate().take(k) {
             let (known, new) = (covariance[(k + j, k + j)], added[(k + j, k + j)]);
             // What a filter forgets at this rate in each step it remembers for steps over rate.
             *span *= known / (known + new);
         }
-        // Before (x) given after (x'): x = K x' + rest.
-        let Some(after) = scaled_inverse(&(covariance + added), k) else { return };
         let gain = covariance * after;
         let rest = covariance - gain * covariance;
         let mut dense = after;

@@ -12,9 +12,9 @@ const DEGENERATE: f64 = 0.003;
 /// Times what the errors of the normals would make of the levers in a direction that is not seen: that, and some more.
 const EXPLAINED: f64 = 2.0;
 /// Standard deviation of a normal's direction that cells are far enough apart for, rad...
-const NORMAL_NOISE: f64 = 0.035;
-/// ...unless that is more than this share of all.
-const LARGEST_SHARE: usize = 16;
+const CHORD_NOISE: f64 = 0.035;
+/// ...but no further than one of so many parts of all.
+const FEWEST_PARTS: usize = 16;
 /// Variance that stands for any direction: the mean squared sine.
 const ANY_DIRECTION: f64 = 0.5;
 /// Points of a window over which a quadratic is fitted, for each that its middle is worth.
@@ -110,14 +110,17 @@ impl OutlineMap {
         // Of the value of a quadratic in the middle of its window.
         let window = (2 * self.half_window + 1) as f64;
         let noise = self.sigma * (QUADRATIC / window).sqrt();
-        let steps = (noise / (std::f64::consts::SQRT_2 * NORMAL_NOISE * self.spacing)).ceil() as usize;
-        let steps = steps.clamp(1, (self.cells.len() / LARGEST_SHARE).max(1));
+        let steps = (noise / (std::f64::consts::SQRT_2 * CHORD_NOISE * self.spacing)).ceil() as usize;
+        let steps = steps.clamp(1, (self.cells.len() / FEWEST_PARTS).max(1));
         let [before, after] = [0, 1].map(|side| {
             let (mut last, mut here) = (number, self.cells[number].neighbours[side]);
             for _ in 1..steps {
                 // Links may point either way.
                 let [a, b] = self.cells[here].neighbours;
                 let next = if a == last { b } else { a };
+                if a == here || b == here {
+                    break;
+                }
                 (last, here) = (here, next);
             }
             self.cells[here].centre

@@ -12,7 +12,10 @@ use super::{
     outline_map::OutlineMap,
     unseen_direction::Unseen,
 };
-use crate::motion_algebra::CoordinateMatrix;
+use crate::{
+    estimate::MAX_PARAMETERS,
+    motion_algebra::{CoordinateMatrix, Coordinates},
+};
 
 /// Information that holds a direction, in units of the noise: it moves by a thousandth of it.
 const HOLDING: f64 = 1e6;
@@ -56,9 +59,10 @@ impl OutlineMap {
             return None;
         }
         let k = self.information.k;
+        let span = self.remembered();
         let mut hold = StateMatrix::zeros();
         for Unseen { dual, .. } in unseen {
-            for (block, information) in [(0, HOLDING), (k, HOLDING * self.span * self.span)] {
+            for (block, information) in [(0, HOLDING), (k, HOLDING * span * span)] {
                 for i in 0..k {
                     (0..k).for_each(|j| hold[(block + i, block + j)] += information * dual[i] * dual[j]);
                 }
@@ -96,17 +100,35 @@ impl OutlineMap {
     /// Whether a frame that contradicts a turn held where it is predicted agrees with another.
     pub(crate) fn tells_path(&self, solution: &Solution, variance: f64) -> bool {
         let Some(released) = solution.released.filter(|_| self.turn_is_unseen()) else { return false };
+        // No innovation is one that cannot be computed.
         let with_turn = self.innovation_between([self.marginal, solution.marginal], &released, variance);
-        self.innovation.squared - with_turn.squared > MOVES * MOVES
+        with_turn.squared > 0.0 && self.innovation.squared - with_turn.squared > MOVES * MOVES
+    }
+
+    /// Seconds of the past that the motion is known from.
+    fn remembered(&self) -> f64 {
+        let shortest = self.spans[..self.information.k].iter().copied().fold(self.span, f64::min);
+        shortest.max(self.step_seconds)
+    }
+
+    /// What is held back of the motion.
+    pub(crate) fn withheld_motion(&self) -> Option<Coordinates> {
+        let k = self.information.k;
+        let step = scaled_solution(&self.marginal, &self.withheld.gradient, k)?;
+        let mut motion = [0.0; MAX_PARAMETERS];
+        motion[..k].copy_from_slice(&step.as_slice()[k..2 * k]);
+        Some(motion)
     }
 
     /// Keeps the gradient by what was held, and lets it go if the path gives the turn.
     pub(crate) fn withhold(&mut self, unseen: &[Unseen], hold: Option<&StateMatrix>, state: &StateVector) {
         if unseen.is_empty() {
+            self.withheld.gradient = StateVector::zeros();
+            self.withheld.is_given_by_path = false;
             return;
         }
         self.withheld.gradient = hold.map_or_else(StateVector::zeros, |hold| hold * state);
-        self.find_path(unseen, hold);
+        self.follow_path(unseen, hold);
     }
 
     /// Forgets all that is known of pose and motion in directions that were not seen: another place of the middle of a turn makes something
@@ -115,7 +137,7 @@ impl OutlineMap {
         let k = self.information.k;
         let units = self.effective_variance();
         for Unseen { direction, .. } in unseen {
-            let rate = 1.0 / self.step_seconds.max(f64::MIN_POSITIVE);
+            let rate = if self.step_seconds > 0.0 { 1.0 / self.step_seconds } else { 0.0 };
             let unknown = StateMatrix::from_fn(|i, j| {
                 let (block, row, column) = (i / k, i % k, j % k);
                 if i >= 2 * k || j / k != block {
@@ -126,14 +148,13 @@ impl OutlineMap {
             });
             self.add_covariance(&unknown);
         }
-        self.withheld.gradient = StateVector::zeros();
         self.withheld.is_forgotten = true;
     }
 
-    /// Finds whether the path gives a turn that the outline does not show: whether the object's centre moves beyond doubt, the turn since
+    /// Lets go of a turn that the outline does not show once the path gives it: where the object's centre moves beyond doubt, the turn since
     /// the beginning is known well enough for steps to be small, and it is less than half a circle per step, since of a faster turn the
     /// path shows another. Takes what was held back if so.
-    fn find_path(&mut self, unseen: &[Unseen], hold: Option<&StateMatrix>) {
+    fn follow_path(&mut self, unseen: &[Unseen], hold: Option<&StateMatrix>) {
         let was_given = std::mem::take(&mut self.withheld.is_given_by_path);
         if !self.turn_is_unseen() || !self.moves(unseen, hold).unwrap_or(false) {
             return;
@@ -147,7 +168,7 @@ impl OutlineMap {
         let is_known = |unseen: &Unseen| {
             let dual = StateVector::from_fn(|i, _| if (k..2 * k).contains(&i) { unseen.dual[i - k] } else { 0.0 });
             let variance = dual.dot(&(covariance * dual)) * self.effective_variance();
-            variance.sqrt() * self.span < KNOWN
+            variance.sqrt() * self.remembered() < KNOWN
         };
         if turn.abs() >= std::f64::consts::PI || !unseen.iter().all(is_known) {
             return;
@@ -173,9 +194,9 @@ impl OutlineMap {
         // By the parameters of the motion.
         let held = hold.map_or(self.marginal, |hold| self.marginal + hold);
         let covariance = scaled_inverse(&held, k)? * self.effective_variance();
-        let mut by_motion = [Vector2::zeros(); crate::estimate::MAX_PARAMETERS];
+        let mut by_motion = [Vector2::zeros(); MAX_PARAMETERS];
         for (j, column) in by_motion.iter_mut().enumerate().take(k) {
-            let mut unit = [0.0; crate::estimate::MAX_PARAMETERS];
+            let mut unit = [0.0; MAX_PARAMETERS];
             unit[j] = 1.0;
             *column = (self.model.generator(&unit[..k]) * centre.to_homogeneous()).xy();
         }
