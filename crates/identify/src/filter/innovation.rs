@@ -18,10 +18,19 @@ type PoseVector = SVector<f64, MAX_PARAMETERS>;
 pub(crate) struct PoseInnovation {
     /// Squared, in units of its covariance: chi-squared with one degree of freedom per parameter.
     pub(crate) squared: f64,
-    /// Derivative of the log-likelihood by the variance of the motion's change per second, in normalised units.
-    pub(crate) gradient: f64,
-    /// Its Fisher information.
-    pub(crate) fisher: f64,
+    /// Derivatives of the log-likelihood by the variances of the motion's change per second, in normalised units.
+    pub(crate) gradient: ByKind,
+    /// Fisher information of each.
+    pub(crate) fisher: ByKind,
+}
+
+/// One number for the rates of turning, growth and shear, and one for the velocities, both about the object's centre. A thrown object
+/// keeps the former, while the latter, which turn with it in the motions of the models, change all the time.
+pub(crate) type ByKind = [f64; 2];
+
+/// Which of the two a parameter of the motion belongs to.
+pub(crate) fn kind(name: &str) -> usize {
+    usize::from(name.starts_with('b'))
 }
 
 impl OutlineMap {
@@ -44,22 +53,23 @@ impl OutlineMap {
             let regular = gained + PoseMatrix::from_diagonal(&(p.diagonal() * 1e-9));
             let squared = step.dot(&(inverse(&regular)? * step)) / variance;
             let weighted = before * step / variance.sqrt();
-            let change = self.change_of_pose()?;
-            let s_inverse = before * gained * before;
-            let by_change = s_inverse * change;
-            let gradient = 0.5 * ((weighted.transpose() * change * weighted).x - by_change.trace());
-            let fisher = 0.5 * (by_change * by_change).trace();
-            let all = PoseInnovation { squared, gradient: gradient / variance, fisher: fisher / (variance * variance) };
-            (squared >= 0.0 && all.gradient.is_finite() && all.fisher > 0.0).then_some(all)
+            let by_change = self.unit_change()?;
+            // Of the pose by unit changes of the motion, over the last step.
+            let (slope, curvature) =
+                (by_change.transpose() * weighted, by_change.transpose() * before * gained * before * by_change);
+            let growth = self.step_seconds.powi(3) / variance;
+            let mut all = PoseInnovation { squared, ..PoseInnovation::default() };
+            let kinds: Vec<usize> = self.model.parameter_names().iter().map(|name| kind(name)).collect();
+            for (i, of_i) in kinds.iter().enumerate() {
+                all.gradient[*of_i] += 0.5 * growth * (slope[i] * slope[i] - curvature[(i, i)]);
+                for (j, _) in kinds.iter().enumerate().filter(|(_, of_j)| *of_j == of_i) {
+                    all.fisher[*of_i] += 0.5 * growth * growth * curvature[(i, j)] * curvature[(i, j)];
+                }
+            }
+            let is_finite = all.gradient.iter().chain(&all.fisher).all(|e| e.is_finite());
+            (squared >= 0.0 && is_finite && all.fisher.iter().all(|f| *f > 0.0)).then_some(all)
         };
         innovation().unwrap_or_default()
-    }
-
-    /// Covariance of the pose per unit variance of the motion's change per second, over the last step: the rates of turning,
-    /// growth and shear, about the object's centre, and the velocities in RMS radii change alike.
-    fn change_of_pose(&self) -> Option<PoseMatrix> {
-        let by_motion = self.unit_change()?;
-        Some(by_motion * by_motion.transpose() * self.step_seconds.powi(3))
     }
 
     /// Motion parameters by the rates and velocities about the object's present centre.

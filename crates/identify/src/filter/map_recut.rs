@@ -13,7 +13,7 @@ use crate::motion_algebra::map_point;
 /// Frames after which the map is cut anew.
 const OCCASIONS: [usize; 3] = [4, 16, 64];
 /// Points of several frames beyond which more of them would not make cells finer.
-const PLENTY: usize = 3200;
+pub(crate) const PLENTY: usize = 3200;
 /// With so many points of one frame for each cell there is nothing to be gained.
 const PLENTY_PER_CELL: f64 = 3.5;
 /// Points nearer than so many spacings are one.
@@ -68,17 +68,18 @@ impl FirstFrames {
         }
     }
 
-    pub(crate) fn frames(&self) -> &[(f64, Outline)] {
-        &self.frames
+    pub(crate) fn frames(&self) -> Vec<(f64, &Outline)> {
+        self.frames.iter().map(|(time, outline)| (*time, outline)).collect()
     }
 }
 
 impl OutlineMap {
-    /// A map of the same body frame with cells cut from all the frames, which are those that this map has taken, and then taken one by
-    /// one. `None` where one of them is not.
+    /// A map of the same body frame with cells cut from every frame out of `stride`, which are those that this map has taken, and all then
+    /// taken one by one. `None` where one of them is not.
     pub(crate) fn recut(
         &self,
-        frames: &[(f64, Outline)],
+        frames: &[(f64, &Outline)],
+        stride: usize,
         take: impl Fn(&mut Self, f64, &Outline) -> MapUpdate,
     ) -> Option<Self> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
@@ -89,7 +90,7 @@ impl OutlineMap {
         let ((first_time, first), last_time) = (frames.first()?, frames.last()?.0);
         let mut map = Self::without_cells(self.model, self.origin, self.radius);
         let mut points = Vec::new();
-        for (time, outline) in frames {
+        for (time, outline) in frames.iter().step_by(stride) {
             map.load(outline);
             let to_image = self.model.flow(&self.motion[..k], time - last_time).into_inner() * self.pose;
             let inverse = to_image.try_inverse()?;

@@ -28,6 +28,7 @@ mod withheld;
 
 pub(crate) use contour::median;
 pub use error::FilterError;
+pub(crate) use map_recut::PLENTY;
 pub use map_update::MapUpdate;
 pub(crate) use motion_filter::{FALSE_START, GIVEN_UP};
 pub use motion_filter::{FilterStep, MotionFilter, Phase};

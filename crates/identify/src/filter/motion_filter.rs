@@ -193,7 +193,7 @@ impl MotionFilter {
         }
         let smallest = self.settings.smallest_agreement;
         let recut = |map: &OutlineMap| {
-            map.recut(self.first_frames.frames(), |map, seconds, outline| {
+            map.recut(&self.first_frames.frames(), 1, |map, seconds, outline| {
                 map.predict(seconds);
                 map.add_process_noise(&self.settings.process_noise, seconds);
                 // That it shows the object has been seen: the noise of the few points on cells seen before tells less.
@@ -260,8 +260,8 @@ impl MotionFilter {
         self.map_time = time;
         map.add_process_noise(&self.settings.process_noise, seconds);
         let adaptive = self.settings.adaptive && self.settings.process_noise == ProcessNoise::default();
-        if adaptive && self.change.variance > 0.0 {
-            map.add_change(self.change.variance);
+        if let Some(variances) = self.change.variances().filter(|_| adaptive) {
+            map.add_change(variances);
             self.motion_changed = true;
         }
         let parameters = map.information.k;
@@ -270,9 +270,9 @@ impl MotionFilter {
         let mut update = map.update(outline, |update| fits(update) && update.innovation <= limit);
         let innovation = map.innovation;
         let has_changed = !update.accepted && fits(&update) && self.rejected_in_a_row > 0;
-        if adaptive && has_changed && innovation.fisher > 0.0 {
+        if adaptive && has_changed && innovation.fisher[0] > 0.0 {
             // The outline is there, but for the second time not where it was going: the motion has changed.
-            map.add_change((innovation.gradient / innovation.fisher).max(0.0));
+            map.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
             self.motion_changed = true;
             update = map.update(outline, fits);
         }

@@ -280,11 +280,6 @@ impl OutlineMap {
         self.sigma * self.radius
     }
 
-    /// Unit normal of the outline nearest to a point of the body frame, both in normalised coordinates.
-    pub(crate) fn normal_near(&self, q: &Point2<f64>) -> Option<Vector2<f64>> {
-        self.nearest_cell(q).map(|number| self.cells[number].normal)
-    }
-
     /// Number of cells.
     #[must_use]
     pub fn cell_count(&self) -> usize {

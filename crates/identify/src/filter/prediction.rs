@@ -3,6 +3,7 @@ use nalgebra::Matrix3;
 
 use super::{
     arrow_information::{ArrowInformation, CellInformation, StateMatrix, StateVector, moved_marginal, scaled_inverse},
+    innovation::{ByKind, kind},
     outline_map::{MOTION_PRIOR, OutlineMap},
     settings::ProcessNoise,
     withheld::Withheld,
@@ -57,12 +58,15 @@ impl OutlineMap {
         self.add_covariance(&added);
     }
 
-    /// Lets the motion have changed at random during the last step predicted: its rates and velocities about the object's centre by
-    /// `variance` per second, in normalised units.
-    pub(crate) fn add_change(&mut self, variance: f64) {
+    /// Lets the motion have changed at random during the last step predicted: its rates and its velocities about the object's centre by
+    /// variances per second, in normalised units.
+    pub(crate) fn add_change(&mut self, variances: ByKind) {
         let (k, seconds) = (self.information.k, self.step_seconds);
-        let Some(unit) = self.unit_change() else { return };
-        let motion = unit * unit.transpose() * (variance * seconds / self.effective_variance());
+        let Some(mut unit) = self.unit_change() else { return };
+        for (mut column, name) in unit.column_iter_mut().zip(self.model.parameter_names()) {
+            column *= variances[kind(name)].sqrt();
+        }
+        let motion = unit * unit.transpose() * (seconds / self.effective_variance());
         // The pose has moved by the change of motion times the step.
         let added = StateMatrix::from_fn(|i, j| {
             if i >= 2 * k || j >= 2 * k {

@@ -15,6 +15,8 @@ const EXPLAINED: f64 = 2.0;
 const NORMAL_NOISE: f64 = 0.035;
 /// ...unless that is more than this share of all.
 const LARGEST_SHARE: usize = 16;
+/// Variance that stands for any direction: the mean squared sine.
+const ANY_DIRECTION: f64 = 0.5;
 /// Points of a window over which a quadratic is fitted, for each that its middle is worth.
 const QUADRATIC: f64 = 2.25;
 /// Steps to the least of the motions that look alike.
@@ -122,8 +124,10 @@ impl OutlineMap {
         });
         let chord = after - before;
         match chord.try_normalize(1e-12) {
-            Some(along) => (Vector2::new(along.y, -along.x), 2.0 * noise * noise / chord.norm_squared()),
-            None => (self.cells[number].normal, 0.0),
+            Some(along) => {
+                (Vector2::new(along.y, -along.x), (2.0 * noise * noise / chord.norm_squared()).min(ANY_DIRECTION))
+            }
+            None => (self.cells[number].normal, ANY_DIRECTION),
         }
     }
 
