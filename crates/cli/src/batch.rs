@@ -12,8 +12,8 @@ use crate::progress::{Progress, would_stand_in_output};
 /// Points of all outlines read ahead at least: a quarter of a megabyte. Enough for the frames of a batch to be many times
 /// the work of sharing them out; not more, since nothing goes on beside the reading of the first batch.
 const LEAST_POINTS_AHEAD: usize = 1 << 14;
-/// Points read ahead at most, as long as those before are dealt with: eight megabytes.
-const MOST_POINTS_AHEAD: usize = 1 << 19;
+/// Points read ahead at most, as long as those before are dealt with: four megabytes.
+const MOST_POINTS_AHEAD: usize = 1 << 18;
 /// Outlines read ahead, however small.
 const OUTLINES_AHEAD: usize = 4096;
 /// Pictures read ahead, which are held with their outlines.
