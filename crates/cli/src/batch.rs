@@ -9,9 +9,11 @@ use crate::interrupt;
 use crate::left_out::{Missing, MissingWarnings};
 use crate::progress::{Progress, would_stand_in_output};
 
-/// Points of all outlines read ahead: half a megabyte. Enough for the frames of a batch to be many times the work of
-/// sharing them out; not more, since nothing goes on beside the reading of the first batch and the last one's filters.
-const POINTS_AHEAD: usize = 1 << 15;
+/// Points of all outlines read ahead at least: a quarter of a megabyte. Enough for the frames of a batch to be many times
+/// the work of sharing them out; not more, since nothing goes on beside the reading of the first batch.
+const LEAST_POINTS_AHEAD: usize = 1 << 14;
+/// Points read ahead at most, as long as those before are dealt with: four megabytes.
+const MOST_POINTS_AHEAD: usize = 1 << 18;
 /// Outlines read ahead, however small.
 const OUTLINES_AHEAD: usize = 4096;
 /// Pictures read ahead, which are held with their outlines.
@@ -53,15 +55,20 @@ impl<'a> BatchReader<'a> {
         Self { input, pace, quiet, progress, warnings: MissingWarnings::default(), failure: None }
     }
 
-    /// The next frames; none at the end of the input, at an error that ends it, and after Ctrl-C.
-    pub(crate) fn batch(&mut self) -> Vec<Taken> {
-        let (most, mut points_left) = match self.pace {
-            Pace::FrameByFrame => (1, 1),
-            Pace::Ahead if self.input.has_pictures() => (PICTURES_AHEAD, POINTS_AHEAD),
-            Pace::Ahead => (OUTLINES_AHEAD, POINTS_AHEAD),
+    /// The next frames; none at the end of the input, at an error that ends it, and after Ctrl-C. Beyond what is read at
+    /// least it goes on while there is time: as long as the frames before are still dealt with.
+    pub(crate) fn batch(&mut self, is_time: impl Fn() -> bool) -> Vec<Taken> {
+        let most = match self.pace {
+            Pace::FrameByFrame => 1,
+            Pace::Ahead if self.input.has_pictures() => PICTURES_AHEAD,
+            Pace::Ahead => OUTLINES_AHEAD,
         };
         let mut batch = Vec::new();
-        while batch.len() < most && points_left > 0 && self.failure.is_none() {
+        let mut points = 0;
+        while batch.len() < most && self.failure.is_none() {
+            if points >= MOST_POINTS_AHEAD || points >= LEAST_POINTS_AHEAD && !is_time() {
+                break;
+            }
             let Some(item) = self.input.next() else { break };
             // What came after Ctrl-C may be cut short.
             if interrupt::was_asked_for() {
@@ -69,7 +76,7 @@ impl<'a> BatchReader<'a> {
             }
             match item {
                 Ok(Item::Outline(frame, seen_in)) => {
-                    points_left = points_left.saturating_sub(frame.outline.point_count());
+                    points += frame.outline.point_count();
                     batch.push(Taken::Outline(frame, seen_in));
                 }
                 Ok(Item::Rejected { object, frame, reason }) => batch.push(Taken::Rejected { object, frame, reason }),

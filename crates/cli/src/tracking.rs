@@ -1,6 +1,7 @@
 //! What each frame of an object gave, and what was found of it in the end.
 use std::collections::HashMap;
 use std::rc::Rc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use freeform_motion::curve_fit::Fit;
 use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate};
@@ -141,7 +142,7 @@ impl Tracking {
     ) -> Result<Option<Failure>, Failure> {
         let mut reader = BatchReader::new(input, pace, quiet);
         let mut first_missing = None;
-        let mut next = reader.batch();
+        let mut next = reader.batch(|| false);
         while !next.is_empty() {
             let batch = next;
             let mut steps = self.assign(&batch)?;
@@ -152,9 +153,13 @@ impl Tracking {
                 }
                 // The objects side by side, and what comes next is read meanwhile.
                 Pace::Ahead => {
+                    let followed = AtomicBool::new(false);
                     next = rayon::in_place_scope(|scope| {
-                        scope.spawn(|_| steps.par_iter_mut().for_each(ObjectSteps::run));
-                        reader.batch()
+                        scope.spawn(|_| {
+                            steps.par_iter_mut().for_each(ObjectSteps::run);
+                            followed.store(true, Relaxed);
+                        });
+                        reader.batch(|| !followed.load(Relaxed))
                     });
                 }
             }
@@ -184,7 +189,7 @@ impl Tracking {
                 reader.progress.advance();
             }
             if pace == Pace::FrameByFrame {
-                next = reader.batch();
+                next = reader.batch(|| false);
             }
         }
         // Nothing but pictures without an object: the first says why.

@@ -54,6 +54,17 @@ pub(crate) struct Columns {
     pub(crate) arc: Option<usize>,
 }
 
+/// What a column is to the rows of one outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// Holds a coordinate of the point: 0 for x, 1 for y.
+    Coordinate(usize),
+    /// Tells outlines and their arcs apart: the same in every row of one.
+    Outline,
+    /// Is not looked at.
+    Ignored,
+}
+
 /// Why a header is not usable; the column is set where one is to blame.
 pub(crate) type HeaderError = (Option<Column>, ReadErrorKind);
 
@@ -63,6 +74,16 @@ impl Columns {
         let object = position(header, Column::Object)?;
         let arc = position(header, Column::Arc)?;
         Ok(Self { frame, time, x, y, object, arc })
+    }
+
+    /// The role of the column at an index.
+    pub(crate) fn role(&self, index: usize) -> Role {
+        match index {
+            _ if index == self.x => Role::Coordinate(0),
+            _ if index == self.y => Role::Coordinate(1),
+            _ if [Some(self.frame), Some(self.time), self.object, self.arc].contains(&Some(index)) => Role::Outline,
+            _ => Role::Ignored,
+        }
     }
 }
 

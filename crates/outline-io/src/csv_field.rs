@@ -30,6 +30,45 @@ pub(crate) fn number(field: &[u8]) -> Result<f64, ReadErrorKind> {
     Ok(value)
 }
 
+/// Powers of ten that a float holds exactly, up to as many digits as it holds of any number.
+const POWERS_OF_TEN: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+
+/// The number that a row or its rest begins with, as [`number`] reads it, and the length of its field; `None` where
+/// that is none, is quoted or is not seen to end.
+pub(crate) fn leading_number(text: &[u8]) -> Option<(f64, usize)> {
+    let sign = usize::from(text.first() == Some(&b'-'));
+    let (mut digits, mut point, mut end) = (0_u64, None, None);
+    for (at, &byte) in text.iter().enumerate().skip(sign) {
+        match byte {
+            b'0'..=b'9' => digits = digits.wrapping_mul(10).wrapping_add(u64::from(byte - b'0')),
+            b'.' if point.is_none() => point = Some(at),
+            _ => {
+                end = Some(at).filter(|_| matches!(byte, b',' | b'\n'));
+                break;
+            }
+        }
+    }
+    let decimals = end.map(|end| point.map_or(0, |point| end - point - 1));
+    let count = end.map(|end| end - sign - usize::from(point.is_some()));
+    match (end, count, decimals) {
+        // Two exact floats: their quotient is the float nearest to the number (W. D. Clinger, 1990).
+        (Some(end), Some(1..=15), Some(decimals)) => {
+            let size = digits as f64 / POWERS_OF_TEN[decimals];
+            Some((if sign == 1 { -size } else { size }, end))
+        }
+        _ => {
+            let length = unquoted_length(text)?;
+            number(&text[..length]).ok().map(|value| (value, length))
+        }
+    }
+}
+
+/// Length of the field that a row or its rest begins with; `None` where it has quotes or is not seen to end.
+pub(crate) fn unquoted_length(text: &[u8]) -> Option<usize> {
+    let length = text.iter().position(|byte| matches!(byte, b',' | b'\n' | b'"'))?;
+    (text[length] != b'"').then_some(length)
+}
+
 /// A whole number from 0.
 pub(crate) fn frame_number(field: &[u8]) -> Result<u64, ReadErrorKind> {
     let text = text(field)?;
@@ -58,6 +97,8 @@ pub(crate) fn quoted_start(field: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     #[test]
@@ -65,6 +106,23 @@ mod tests {
         for (field, value) in [("1", 1.0), (" -2.5\r", -2.5), ("1e-3", 1e-3), (".5", 0.5), ("+4.", 4.0), ("-0", 0.0)] {
             assert_eq!(number(field.as_bytes()).expect("a number"), value);
         }
+    }
+
+    proptest! {
+        #[test]
+        fn a_leading_number_is_the_number_of_its_field(field in "-?[0-9]{0,20}(\\.[0-9]{0,20})?", end in "[,\n][0-9.]{0,3}") {
+            let expected = number(field.as_bytes()).ok().map(|value| (value.to_bits(), field.len()));
+            let found = leading_number(format!("{field}{end}").as_bytes());
+            prop_assert_eq!(found.map(|(value, length)| (value.to_bits(), length)), expected);
+        }
+    }
+
+    #[test]
+    fn a_leading_number_is_left_where_its_field_is_quoted_or_not_seen_to_end() {
+        for text in ["1.5", "1", "", "-", "1\"", "\"1\",", "x,", "1e400,", "-,", ".\n", " "] {
+            assert_eq!(leading_number(text.as_bytes()), None, "{text:?}");
+        }
+        assert_eq!(leading_number(b" 1e2\r\n"), Some((100.0, 5)));
     }
 
     #[test]

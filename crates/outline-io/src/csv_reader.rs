@@ -5,7 +5,7 @@ use std::path::Path;
 
 use nalgebra::Point2;
 
-use crate::csv_columns::{Column, Columns};
+use crate::csv_columns::{Column, Columns, Role};
 use crate::csv_field::{frame_number, number, text};
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind};
@@ -33,6 +33,8 @@ use crate::outline_rows::OutlineRows;
 pub struct OutlineReader<R> {
     rows: Rows<R>,
     columns: Columns,
+    /// What each column is.
+    roles: Vec<Role>,
     /// The outline whose rows are being read.
     present: Option<OutlineRows>,
     /// Frame number and time of the latest outline of every object.
@@ -71,11 +73,16 @@ impl<R: Read> OutlineReader<R> {
 
     /// Goes on with a file whose header has been read.
     pub(crate) fn with_columns(rows: Rows<R>, columns: Columns) -> Self {
-        Self { rows, columns, present: None, latest: HashMap::new(), failure: None, ended: false }
+        let roles = (0..rows.field_count()).map(|index| columns.role(index)).collect();
+        Self { rows, columns, roles, present: None, latest: HashMap::new(), failure: None, ended: false }
     }
 
     /// Reads one row; returns the outline that it completes, if any.
     fn step(&mut self) -> Result<Option<OutlineRows>, ReadError> {
+        if let Some(point) = self.rows.next_point(&self.roles) {
+            self.add(point, true)?;
+            return Ok(None);
+        }
         if !self.rows.advance()? {
             self.ended = true;
             return Ok(self.present.take());
@@ -86,7 +93,8 @@ impl<R: Read> OutlineReader<R> {
             None => false,
         };
         let finished = if continued { None } else { self.begin()? };
-        self.add(point)?;
+        let arc_continues = self.columns.arc.is_none_or(|index| self.rows.same_as_before(index));
+        self.add(point, arc_continues)?;
         Ok(finished)
     }
 
@@ -141,11 +149,11 @@ impl<R: Read> OutlineReader<R> {
         Ok(self.present.replace(OutlineRows::new(frame, time, object, self.rows.line(), capacity)))
     }
 
-    /// Adds the point of the present row to the present outline.
-    fn add(&mut self, point: Point2<f64>) -> Result<(), ReadError> {
+    /// Adds the point of the present row to the present outline. `arc_continues` tells that the row has the arc value of
+    /// the row before.
+    fn add(&mut self, point: Point2<f64>, arc_continues: bool) -> Result<(), ReadError> {
         let Some(present) = &mut self.present else { return Ok(()) };
         let arc = self.columns.arc.map_or(&b""[..], |index| self.rows.field(index)).trim_ascii();
-        let arc_continues = self.columns.arc.is_none_or(|index| self.rows.same_as_before(index));
         match present.add(point, arc, arc_continues, self.rows.end_line()) {
             Ok(()) => Ok(()),
             Err(kind) => Err(self.rows.error(kind.1, kind.0)),

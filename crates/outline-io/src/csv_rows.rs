@@ -1,19 +1,33 @@
 use std::io::{self, Chain, Cursor, Read};
 
 use csv::{ByteRecord, ReaderBuilder, Terminator};
+use nalgebra::Point2;
 
-use crate::csv_columns::{Column, HeaderError};
+use crate::csv_columns::{Column, HeaderError, Role};
+use crate::csv_field::{leading_number, unquoted_length};
+use crate::csv_lines::{Lines, ROW_LIMIT};
 use crate::error::{Place, ReadError, ReadErrorKind};
-use crate::row_limit::{ROW_LIMIT, RowLimit};
+
+/// What a line begins with that is no row.
+const COMMENT: u8 = b'#';
 
 /// The rows of a CSV file one after the other, with their line numbers; comments and blank lines left out. Two rows
 /// are held at a time, whatever the length of the file.
+///
+/// Most rows repeat the one before in all but the point, see [`Self::next_point`]; all others are read by the csv
+/// crate. It is given one line at a time, so that it holds no more of the file than the row that it returns, and both
+/// can take turns.
 #[derive(Debug)]
 pub(crate) struct Rows<R> {
     file: String,
-    reader: csv::Reader<RowLimit<Chain<Cursor<Vec<u8>>, R>>>,
+    reader: csv::Reader<Lines<Chain<Cursor<Vec<u8>>, R>>>,
     field_count: usize,
+    /// The latest row that the csv crate has read.
     row: ByteRecord,
+    /// Whether that row reads the same without quotes.
+    needs_no_quotes: bool,
+    /// Lines that the csv crate has not seen.
+    lines_repeated: u64,
     previous: ByteRecord,
 }
 
@@ -37,18 +51,52 @@ impl<R: Read> Rows<R> {
         let reader = ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
-            .comment(Some(b'#'))
+            .comment(Some(COMMENT))
             .terminator(Terminator::Any(b'\n'))
-            .buffer_capacity(1 << 16)
-            .from_reader(RowLimit::new(Cursor::new(start).chain(source)));
-        let mut rows = Self { file, reader, field_count: 0, row: ByteRecord::new(), previous: ByteRecord::new() };
+            .from_reader(Lines::new(Cursor::new(start).chain(source)));
+        let (row, previous) = (ByteRecord::new(), ByteRecord::new());
+        let mut rows = Self { file, reader, field_count: 0, row, needs_no_quotes: false, lines_repeated: 0, previous };
         if !rows.read_row()? {
             return Err(rows.error_at(None, None, ReadErrorKind::Empty));
         }
         rows.field_count = rows.row.len();
         let found = columns(&rows.row).map_err(|(column, kind)| rows.error(column, kind))?;
         rows.row.clear();
+        rows.needs_no_quotes = false;
         Ok((rows, found))
+    }
+
+    /// Moves to the next row and returns its point, provided that what is buffered begins with that row, that it has
+    /// no quotes and that it agrees with the row before to the byte wherever that is the role of a column. Otherwise
+    /// nothing changes, and [`Self::advance`] is to be called. There is a role for every column.
+    pub(crate) fn next_point(&mut self, roles: &[Role]) -> Option<Point2<f64>> {
+        let mut rest = self.reader.get_ref().buffered();
+        if !self.needs_no_quotes || rest.first() == Some(&COMMENT) {
+            return None;
+        }
+        let mut point = Point2::origin();
+        let length = rest.len();
+        for (index, role) in roles.iter().enumerate() {
+            let used = match *role {
+                Role::Coordinate(axis) => {
+                    let (value, used) = leading_number(rest)?;
+                    point[axis] = value;
+                    used
+                }
+                Role::Outline => rest.starts_with(&self.row[index]).then_some(self.row[index].len())?,
+                Role::Ignored => unquoted_length(rest)?,
+            };
+            let (end, after) = rest[used..].split_first()?;
+            let expected = if index + 1 == roles.len() { b'\n' } else { b',' };
+            if *end != expected {
+                return None;
+            }
+            rest = after;
+        }
+        let length = length - rest.len();
+        self.reader.get_mut().skip_line(length);
+        self.lines_repeated += 1;
+        Some(point)
     }
 
     /// Moves to the next row; false at the end of the file. The row has as many fields as the header.
@@ -67,6 +115,11 @@ impl<R: Read> Rows<R> {
             ReadErrorKind::FieldCount { found, expected }
         };
         Err(self.error(None, kind))
+    }
+
+    /// Fields of the header and of every row.
+    pub(crate) fn field_count(&self) -> usize {
+        self.field_count
     }
 
     /// A field of the present row.
@@ -96,7 +149,7 @@ impl<R: Read> Rows<R> {
     /// Line on which the present row ends: another than [`Self::line`] only where a quoted name holds line breaks.
     pub(crate) fn end_line(&self) -> u64 {
         let terminated = !self.reader.get_ref().ended_within_line();
-        self.reader.position().line() - u64::from(terminated)
+        self.csv_line() - u64::from(terminated)
     }
 
     /// An error in the present row.
@@ -113,20 +166,28 @@ impl<R: Read> Rows<R> {
     fn read_row(&mut self) -> Result<bool, ReadError> {
         std::mem::swap(&mut self.row, &mut self.previous);
         loop {
-            self.reader.get_mut().renew();
+            self.reader.get_mut().begin_row();
             match self.reader.read_byte_record(&mut self.row) {
                 Ok(true) if is_blank(&self.row) => {}
-                Ok(more) => return Ok(more),
+                Ok(more) => {
+                    self.needs_no_quotes = !self.row.as_slice().iter().any(|byte| b",\n\"".contains(byte));
+                    return Ok(more);
+                }
                 Err(error) => return Err(self.failure(error)),
             }
         }
     }
 
+    /// Line that the csv crate has come to.
+    fn csv_line(&self) -> u64 {
+        self.lines_repeated + self.reader.position().line()
+    }
+
     fn failure(&mut self, error: csv::Error) -> ReadError {
-        let line = self.reader.position().line();
+        let line = self.csv_line();
         self.row.clear();
         let kind = if self.reader.get_ref().exceeded() {
-            ReadErrorKind::RowTooLong { limit: ROW_LIMIT }
+            ReadErrorKind::RowTooLong { limit: ROW_LIMIT as u64 }
         } else {
             match error.into_kind() {
                 csv::ErrorKind::Io(error) => ReadErrorKind::Io(error),

@@ -1,0 +1,70 @@
+use std::io::{self, BufRead, BufReader, Read};
+
+/// Longest stretch of a file without a complete row, in bytes.
+pub(crate) const ROW_LIMIT: usize = 1 << 20;
+
+/// Bytes read from the source at once, if it has as many.
+const BUFFER: usize = 1 << 16;
+
+/// Passes a file on, one line per read at most, until a row takes more than [`ROW_LIMIT`], so that a file without line
+/// ends cannot fill the memory; and knows whether the file ended in the middle of a line.
+#[derive(Debug)]
+pub(crate) struct Lines<R> {
+    source: BufReader<R>,
+    allowance: usize,
+    last_byte: u8,
+    at_end: bool,
+    exceeded: bool,
+}
+
+impl<R: Read> Lines<R> {
+    pub(crate) fn new(source: R) -> Self {
+        let source = BufReader::with_capacity(BUFFER, source);
+        Self { source, allowance: ROW_LIMIT, last_byte: b'\n', at_end: false, exceeded: false }
+    }
+
+    /// The last row is complete: the next may have the full length again.
+    pub(crate) fn begin_row(&mut self) {
+        self.allowance = ROW_LIMIT;
+    }
+
+    /// What has been read from the source and not been passed on. Maybe nothing: the next read is what fills it.
+    pub(crate) fn buffered(&self) -> &[u8] {
+        self.source.buffer()
+    }
+
+    /// Leaves out a whole line of what is buffered; its length counts the line end.
+    pub(crate) fn skip_line(&mut self, length: usize) {
+        self.source.consume(length);
+    }
+
+    /// Whether reading failed because a row was too long.
+    pub(crate) fn exceeded(&self) -> bool {
+        self.exceeded
+    }
+
+    /// Whether the end has been reached and the last line has no line end.
+    pub(crate) fn ended_within_line(&self) -> bool {
+        self.at_end && self.last_byte != b'\n'
+    }
+}
+
+impl<R: Read> Read for Lines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.allowance == 0 {
+            self.exceeded = true;
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        let available = self.source.fill_buf()?;
+        self.at_end |= available.is_empty();
+        let most = available.len().min(buffer.len()).min(self.allowance);
+        let end = available[..most].iter().position(|byte| *byte == b'\n');
+        let line = &available[..end.map_or(most, |end| end + 1)];
+        let count = line.len();
+        buffer[..count].copy_from_slice(line);
+        self.last_byte = *line.last().unwrap_or(&self.last_byte);
+        self.source.consume(count);
+        self.allowance -= count;
+        Ok(count)
+    }
+}
