@@ -45,7 +45,8 @@ pub struct BatchEstimate {
     pub frames_used: usize,
     /// Pieces that the outline was taken as, each with an offset of its own.
     pub outline_pieces: usize,
-    /// Times that the outline was cut anew from all frames.
+    /// Times that the outline was cut anew from all frames; 0 where that cannot be, as for a turn that is not seen, frames sampled alike or
+    /// an object found anew on the way: the motion is then that of the filter.
     pub rounds: usize,
     /// Whether the last of them changed the mean of their motions, which is the estimate, by little against the standard deviations.
     pub converged: bool,

@@ -275,12 +275,17 @@ impl MotionFilter {
         let fits = fits(map, self.settings.smallest_agreement);
         let mut update = map.update(outline, |update| fits(update) && update.innovation <= limit);
         let innovation = map.innovation;
-        let has_changed = !update.accepted && fits(&update) && self.rejected_in_a_row > 0;
-        if adaptive && has_changed && innovation.fisher[0] > 0.0 {
-            // The outline is there, but for the second time not where it was going: the motion has changed.
-            map.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
-            self.motion_changed = true;
-            update = map.update(outline, fits);
+        let is_there = update.agreement >= self.settings.smallest_agreement;
+        if adaptive && !update.accepted && is_there && self.rejected_in_a_row > 0 && innovation.fisher[0] > 0.0 {
+            // If the outline is there, but for the second time not where it was going, the motion has changed.
+            let mut changed = map.clone();
+            changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
+            let found = changed.update(outline, fits);
+            if found.accepted {
+                *map = changed;
+                self.motion_changed = true;
+                update = found;
+            }
         }
         if adaptive && update.accepted {
             self.change.take(&innovation, parameters);
