@@ -10,13 +10,18 @@ pub(crate) type Coordinates = [f64; MAX_PARAMETERS];
 /// Square matrix over the parameters of a model, zeros behind; `m[row][column]`.
 pub(crate) type CoordinateMatrix = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
 
+/// Angular velocity omega of a generator, clockwise where y points up.
+pub(crate) fn turn_rate(generator: &Matrix3<f64>) -> f64 {
+    0.5 * (generator[(0, 1)] - generator[(1, 0)])
+}
+
 /// Coordinates of a generator in the basis of the model. A multiple of the identity, which moves nothing, is taken off
 /// first; what lies outside the model is dropped.
 pub(crate) fn coordinates(model: MotionModel, generator: &Matrix3<f64>) -> Coordinates {
     let g = generator - Matrix3::identity() * generator[(2, 2)];
     let (b1, b2) = (g[(0, 2)], g[(1, 2)]);
     let sigma = 0.5 * (g[(0, 0)] + g[(1, 1)]);
-    let omega = 0.5 * (g[(0, 1)] - g[(1, 0)]);
+    let omega = turn_rate(&g);
     let full = [g[(0, 0)], g[(0, 1)], g[(1, 0)], g[(1, 1)], b1, b2, g[(2, 0)], g[(2, 1)]];
     let mut result = [0.0; MAX_PARAMETERS];
     match model {

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     estimate::{MAX_PARAMETERS, MotionEstimate},
-    motion_algebra::adjoint,
+    motion_algebra::{Coordinates, adjoint, coordinates},
 };
 
 /// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
@@ -53,14 +53,15 @@ impl OutlineMap {
         let covariance = self.covariance()?;
         let k = self.information.k;
         let to_image = self.to_image();
-        let generator = to_image * self.model.generator(&self.motion[..k]) * to_image.try_inverse()?;
-        let values = crate::motion_algebra::coordinates(self.model, &generator);
+        let from_image = to_image.try_inverse()?;
+        let in_image = |motion: &Coordinates| {
+            coordinates(self.model, &(to_image * self.model.generator(&motion[..k]) * from_image))
+        };
+        let values = in_image(&self.motion);
         let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
         let mut estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
         let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
-        let withheld = self.withheld_motion().unwrap_or([0.0; MAX_PARAMETERS]);
-        let withheld = to_image * self.model.generator(&withheld[..k]) * to_image.try_inverse()?;
-        let withheld = crate::motion_algebra::coordinates(self.model, &withheld);
+        let withheld = self.withheld_motion().map_or([0.0; MAX_PARAMETERS], |withheld| in_image(&withheld));
         let reach = self.radius + self.origin.coords.norm();
         let floor = self.span.min(STEPS_KNOWN * self.step_seconds);
         let shortest = self.spans[..k].iter().copied().fold(f64::INFINITY, f64::min);

@@ -9,6 +9,7 @@ use super::{
     outline_map::OutlineMap,
     reading::{NO_CELL, Reading},
     unseen_direction::Unseen,
+    withheld::with_hold,
 };
 
 /// Residuals within this many standard deviations agree with the map.
@@ -217,10 +218,7 @@ impl OutlineMap {
             let right = self.accumulate(scratch, &mut work, &solution.state);
             let marginal = work.marginal();
             let reduced = reduce(&work, &scratch.right, right + self.withheld.gradient);
-            let held = hold.map_or_else(
-                || scaled_solution(&marginal, &reduced, k),
-                |hold| scaled_solution(&(marginal + hold), &reduced, k),
-            );
+            let held = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
             let next = held.filter(|next| next.iter().all(|e| e.is_finite()));
             if let Some(next) = next {
                 scratch.take_solution(&work.cells, &(next - solution.state), &next, k);

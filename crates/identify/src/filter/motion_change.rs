@@ -23,8 +23,7 @@ const EVIDENCE: f64 = 4.0;
 pub(crate) struct MotionChange {
     kinds: [Change; 2],
     /// Of one variance for both: chance has no more than one occasion.
-    gradient: f64,
-    fisher: f64,
+    of_both: Evidence,
 }
 
 /// One of them.
@@ -32,9 +31,15 @@ pub(crate) struct MotionChange {
 struct Change {
     /// Normalised units, per second.
     variance: f64,
+    evidence: Evidence,
+    has_changed: bool,
+}
+
+/// Slope of the likelihood by a variance at none, and its Fisher information, over the frames looked back on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Evidence {
     gradient: f64,
     fisher: f64,
-    has_changed: bool,
 }
 
 impl MotionChange {
@@ -60,50 +65,49 @@ impl MotionChange {
         let is_open = (0..2).all(|kind| open(&kind));
         let fisher =
             if is_open { innovation.fisher_of_both } else { (0..2).filter(open).map(|k| innovation.fisher[k]).sum() };
-        self.gradient = KEPT * self.gradient + capped(gradient, fisher, by_chance);
-        self.fisher = KEPT * self.fisher + fisher;
+        self.of_both.take(gradient, fisher, by_chance);
         let [rates, velocities] = &self.kinds;
         let significant = if rates.has_changed || velocities.has_changed { SIGNIFICANT_AGAIN } else { SIGNIFICANT };
-        if self.fisher > 0.0 && self.gradient > significant * self.fisher.sqrt() {
-            let (clearest, other) = if rates.evidence() > velocities.evidence() { (0, 1) } else { (1, 0) };
+        if self.of_both.deviations() > significant {
+            let (clearest, other) =
+                if rates.evidence.deviations() > velocities.evidence.deviations() { (0, 1) } else { (1, 0) };
             self.kinds[clearest].begin();
             // What the one explains is no evidence of the other.
-            self.kinds[other].forget();
-            (self.gradient, self.fisher) = (0.0, 0.0);
+            self.kinds[other].evidence = Evidence::default();
+            self.of_both = Evidence::default();
         }
     }
-}
-
-/// Evidence of one frame, no more than chance may make unless it is beyond that.
-fn capped(gradient: f64, fisher: f64, by_chance: bool) -> f64 {
-    if by_chance { gradient.min(EVIDENCE * fisher.sqrt()) } else { gradient }
 }
 
 impl Change {
     fn take(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
-        if self.variance > 0.0 {
-            self.variance += gradient / (MEMORY * fisher);
-            if self.variance <= 0.0 {
-                *self = Self { has_changed: true, ..Self::default() };
-            }
+        if self.variance <= 0.0 {
+            self.evidence.take(gradient, fisher, by_chance);
             return;
         }
-        self.gradient = KEPT * self.gradient + capped(gradient, fisher, by_chance);
-        self.fisher = KEPT * self.fisher + fisher;
-    }
-
-    /// Slope of the likelihood in standard deviations; none where a change has been found.
-    fn evidence(&self) -> f64 {
-        if self.fisher > 0.0 { self.gradient / self.fisher.sqrt() } else { 0.0 }
+        self.variance += gradient / (MEMORY * fisher);
+        if self.variance <= 0.0 {
+            *self = Self { has_changed: true, ..Self::default() };
+        }
     }
 
     fn begin(&mut self) {
-        self.variance = self.gradient / self.fisher;
-        self.forget();
+        let Evidence { gradient, fisher } = std::mem::take(&mut self.evidence);
+        self.variance = gradient / fisher;
+    }
+}
+
+impl Evidence {
+    /// Takes that of one frame, no more than chance may make unless it is beyond that.
+    fn take(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
+        let most = if by_chance { EVIDENCE * fisher.sqrt() } else { f64::INFINITY };
+        self.gradient = KEPT * self.gradient + gradient.min(most);
+        self.fisher = KEPT * self.fisher + fisher;
     }
 
-    fn forget(&mut self) {
-        (self.gradient, self.fisher) = (0.0, 0.0);
+    /// Slope in standard deviations; 0 where there is none.
+    fn deviations(&self) -> f64 {
+        if self.fisher > 0.0 { self.gradient / self.fisher.sqrt() } else { 0.0 }
     }
 }
 

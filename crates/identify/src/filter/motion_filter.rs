@@ -188,10 +188,15 @@ impl MotionFilter {
             return;
         }
         if self.map.as_ref().is_some_and(OutlineMap::turn_is_unknown) {
-            self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
             self.begin_with_turn(outline);
-            return;
+        } else {
+            self.recut();
         }
+        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
+    }
+
+    /// Cuts the map anew from the first frames, until it settles.
+    fn recut(&mut self) {
         let smallest = self.settings.smallest_agreement;
         let recut = |map: &OutlineMap| {
             map.recut(&self.first_frames.frames(), 1, |map, seconds, outline| {
@@ -219,7 +224,6 @@ impl MotionFilter {
             // What was taken for a change may have been what coarse cells left.
             self.change = MotionChange::default();
         }
-        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 use super::{acquisition::motion_between, arrow_information::scaled_inverse, outline_map::OutlineMap};
 use crate::{
     estimate::MAX_PARAMETERS,
-    motion_algebra::{Coordinates, adjoint, coordinates, normal_velocities},
+    motion_algebra::{Coordinates, adjoint, coordinates, normal_velocities, turn_rate},
 };
 
 /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
@@ -68,7 +68,7 @@ impl OutlineMap {
         self.unseen_in_body.iter().any(|direction| {
             let generator = self.model.generator(&direction[..self.information.k]);
             let centred = inverse * generator * self.body_frame;
-            0.5 * (centred[(0, 1)] - centred[(1, 0)]).abs() > HOLDS_TURN
+            turn_rate(&centred).abs() > HOLDS_TURN
         })
     }
 

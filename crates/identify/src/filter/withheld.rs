@@ -14,14 +14,13 @@ use super::{
 };
 use crate::{
     estimate::MAX_PARAMETERS,
-    motion_algebra::{CoordinateMatrix, Coordinates},
+    motion_algebra::{CoordinateMatrix, Coordinates, turn_rate},
 };
 
 /// Information that holds a direction, in units of the noise: it moves by a thousandth of it.
 const HOLDING: f64 = 1e6;
 /// Standard deviations by which the velocity of the centre must differ from none to be a path.
 const MOVES: f64 = 6.0;
-
 /// Standard deviation of the turn, rad, beyond which it is not linear in what is measured.
 const KNOWN: f64 = 0.25;
 
@@ -49,7 +48,7 @@ impl OutlineMap {
         self.turn_is_unseen() && !self.withheld.is_given_by_path
     }
 
-    /// Information by which unseen directions are held where they are predicted; zero where they are not.
+    /// Information by which unseen directions are held where they are predicted; `None` where they are not.
     pub(crate) fn hold(&self, unseen: &[Unseen]) -> Option<StateMatrix> {
         // What shear and growth do to a thin outline in one step is seen in the long run.
         if unseen.is_empty()
@@ -78,30 +77,32 @@ impl OutlineMap {
         hold: Option<&StateMatrix>,
         variance: f64,
     ) -> PoseInnovation {
-        let held = |marginal: &StateMatrix| hold.map_or(*marginal, |hold| marginal + hold);
-        self.innovation_between([held(&self.marginal), held(&solution.marginal)], &solution.state, variance)
+        let [before, after] = [&self.marginal, &solution.marginal].map(|marginal| with_hold(marginal, hold));
+        self.innovation_between([&before, &after], &solution.state, variance)
     }
 
     fn innovation_between(
         &self,
-        [before, after]: [StateMatrix; 2],
+        [before, after]: [&StateMatrix; 2],
         state: &StateVector,
         variance: f64,
     ) -> PoseInnovation {
-        let withheld = &self.withheld.gradient;
-        let step = if withheld.iter().all(|e| *e == 0.0) {
-            *state
-        } else {
-            state - scaled_solution(&before, withheld, self.information.k).unwrap_or_default()
-        };
-        self.pose_innovation([&before, &after], &step, variance)
+        let step = self.withheld_step(before).map_or(*state, |withheld| state - withheld);
+        self.pose_innovation([before, after], &step, variance)
+    }
+
+    /// The step that the gradient held back asks for, with this information; `None` where nothing is held back.
+    fn withheld_step(&self, information: &StateMatrix) -> Option<StateVector> {
+        let gradient = &self.withheld.gradient;
+        let is_any = gradient.iter().any(|e| *e != 0.0);
+        is_any.then(|| scaled_solution(information, gradient, self.information.k)).flatten()
     }
 
     /// Whether a frame that contradicts a turn held where it is predicted agrees with another.
     pub(crate) fn tells_path(&self, solution: &Solution, variance: f64) -> bool {
         let Some(released) = solution.released.filter(|_| self.turn_is_unseen()) else { return false };
         // No innovation is one that cannot be computed.
-        let with_turn = self.innovation_between([self.marginal, solution.marginal], &released, variance);
+        let with_turn = self.innovation_between([&self.marginal, &solution.marginal], &released, variance);
         with_turn.squared > 0.0 && self.innovation.squared - with_turn.squared > MOVES * MOVES
     }
 
@@ -111,10 +112,10 @@ impl OutlineMap {
         shortest.max(self.step_seconds)
     }
 
-    /// What is held back of the motion.
+    /// What is held back of the motion, if anything is.
     pub(crate) fn withheld_motion(&self) -> Option<Coordinates> {
         let k = self.information.k;
-        let step = scaled_solution(&self.marginal, &self.withheld.gradient, k)?;
+        let step = self.withheld_step(&self.marginal)?;
         let mut motion = [0.0; MAX_PARAMETERS];
         motion[..k].copy_from_slice(&step.as_slice()[k..2 * k]);
         Some(motion)
@@ -163,8 +164,7 @@ impl OutlineMap {
         let Some(covariance) = scaled_inverse(&self.marginal, k) else { return };
         let step = covariance * self.withheld.gradient;
         let motion: Vec<f64> = (0..k).map(|i| self.motion[i] + step[k + i]).collect();
-        let generator = self.model.generator(&motion);
-        let turn = 0.5 * (generator[(0, 1)] - generator[(1, 0)]) * self.step_seconds;
+        let turn = turn_rate(&self.model.generator(&motion)) * self.step_seconds;
         let is_known = |unseen: &Unseen| {
             let dual = StateVector::from_fn(|i, _| if (k..2 * k).contains(&i) { unseen.dual[i - k] } else { 0.0 });
             let variance = dual.dot(&(covariance * dual)) * self.effective_variance();
@@ -192,8 +192,7 @@ impl OutlineMap {
         let generator = self.model.generator(&self.motion[..k]);
         let velocity = (generator * centre.to_homogeneous()).xy();
         // By the parameters of the motion.
-        let held = hold.map_or(self.marginal, |hold| self.marginal + hold);
-        let covariance = scaled_inverse(&held, k)? * self.effective_variance();
+        let covariance = scaled_inverse(&with_hold(&self.marginal, hold), k)? * self.effective_variance();
         let mut by_motion = [Vector2::zeros(); MAX_PARAMETERS];
         for (j, column) in by_motion.iter_mut().enumerate().take(k) {
             let mut unit = [0.0; MAX_PARAMETERS];
@@ -209,6 +208,11 @@ impl OutlineMap {
         let squared = velocity.dot(&(of_velocity.try_inverse()? * velocity));
         Some(squared > MOVES * MOVES)
     }
+}
+
+/// Information with that of a hold, where there is one.
+pub(crate) fn with_hold(information: &StateMatrix, hold: Option<&StateMatrix>) -> StateMatrix {
+    hold.map_or(*information, |hold| information + hold)
 }
 
 /// The point that an affine generator does not move; `None` where there is none.
