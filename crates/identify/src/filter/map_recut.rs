@@ -48,6 +48,13 @@ impl FirstFrames {
         *self = Self { over: true, ..Self::default() };
     }
 
+    /// Begins anew with a frame, unless a map has been cut from enough of them.
+    pub(crate) fn begin_anew(&mut self, time: f64, outline: &Outline) {
+        if !self.over {
+            *self = Self::begin(time, outline);
+        }
+    }
+
     /// Keeps a frame that follows the others; whether the map is to be cut from them now.
     pub(crate) fn take(&mut self, time: f64, outline: &Outline) -> bool {
         if self.over {
@@ -56,6 +63,11 @@ impl FirstFrames {
         self.frames.push((time, outline.clone()));
         self.points += outline.point_count();
         OCCASIONS.contains(&self.frames.len())
+    }
+
+    /// Whether there are frames to cut a map from.
+    pub(crate) fn are_several(&self) -> bool {
+        self.frames.len() > 1
     }
 
     /// Forgets what is kept unless more frames would make a map of so many cells better.
@@ -80,7 +92,7 @@ impl OutlineMap {
         &self,
         frames: &[(f64, &Outline)],
         stride: usize,
-        take: impl Fn(&mut Self, f64, &Outline) -> MapUpdate,
+        mut take: impl FnMut(&mut Self, f64, &Outline) -> MapUpdate,
     ) -> Option<Self> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
         if self.withheld.is_forgotten || self.turn_is_unknown() {
@@ -113,7 +125,10 @@ impl OutlineMap {
         let contours =
             runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
         map.load(first);
+        map.first_pose = self.first_pose;
+        map.pose = self.first_pose.pose;
         map.cut(contours.collect(), LEAST_NOISE * self.sigma)?;
+        map.doubt_first_pose();
         map.motion = self.motion;
         map.noise_level = self.noise_level;
         let mut before = *first_time;

@@ -49,6 +49,11 @@ impl MotionChange {
         variances.iter().any(|v| *v > 0.0).then_some(variances)
     }
 
+    /// Whether the motion has been seen to change.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.kinds.iter().any(|change| change.variance > 0.0 || change.has_changed)
+    }
+
     /// Takes the innovation of an accepted frame of a motion with so many parameters.
     pub(crate) fn take(&mut self, innovation: &PoseInnovation, parameters: usize) {
         let limit = LIMIT * parameters as f64;

@@ -142,6 +142,7 @@ impl MotionFilter {
             return Ok(FilterStep { time, phase: self.phase, accepted: true, update: None });
         }
         self.last_time = time;
+        let was_changing = self.change.variances().is_some();
         let update = match self.phase {
             Phase::Tracking => self.track(time, outline),
             _ => self.acquire(time, outline),
@@ -151,7 +152,8 @@ impl MotionFilter {
             self.accepted += 1;
             self.taken_by_map += 1;
             self.rejected_in_a_row = 0;
-            self.keep(time, outline);
+            let changes = !was_changing && self.change.variances().is_some();
+            self.keep(time, outline, changes);
             if self.map.as_mut().is_some_and(OutlineMap::may_show_turn) {
                 self.begin_with_turn(outline);
             }
@@ -179,12 +181,18 @@ impl MotionFilter {
         Ok(())
     }
 
-    /// Keeps one of the first frames, and cuts the map anew once there are enough of them.
-    fn keep(&mut self, time: f64, outline: &Outline) {
+    /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
+    /// may be what coarse cells make of it.
+    fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
         if self.phase != Phase::Tracking {
-            self.first_frames.end();
+            // Found again somewhere: what was seen before has come there by what nobody knows.
+            self.first_frames.begin_anew(time, outline);
+            if let Some(map) = &mut self.map {
+                map.begin_here();
+            }
+            return;
         }
-        if !self.first_frames.take(time, outline) {
+        if !self.first_frames.take(time, outline) && !(changes && self.first_frames.are_several()) {
             return;
         }
         if self.map.as_ref().is_some_and(OutlineMap::turn_is_unknown) {
@@ -195,49 +203,60 @@ impl MotionFilter {
         self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
     }
 
-    /// Cuts the map anew from the first frames, until it settles.
+    /// Cuts the map anew from the first frames, until it settles, and looks for changes of the motion once more: what was taken for one may
+    /// have been what coarse cells left.
     fn recut(&mut self) {
-        let smallest = self.settings.smallest_agreement;
-        let recut = |map: &OutlineMap| {
-            map.recut(&self.first_frames.frames(), 1, |map, seconds, outline| {
-                map.predict(seconds);
-                map.add_process_noise(&self.settings.process_noise, seconds);
+        let Some((map, change)) = self.map.as_ref().and_then(|map| self.settled(map)) else { return };
+        let mut rivals = std::mem::take(&mut self.rivals);
+        rivals.recut(|map| self.settled(map).map(|(map, _)| map));
+        self.rivals = rivals;
+        self.map = Some(map);
+        self.motion_changed = change.is_seen();
+        self.change = change;
+    }
+
+    /// A map cut anew from the first frames until its pose settles, and how the motion changes in them.
+    fn settled(&self, map: &OutlineMap) -> Option<(OutlineMap, MotionChange)> {
+        let frames = self.first_frames.frames();
+        let cut = |map: &OutlineMap| {
+            let mut change = MotionChange::default();
+            let map = map.recut(&frames, 1, |map, seconds, outline| {
+                self.predict(map, &change, seconds);
                 // That it shows the object has been seen: the noise of the few points on cells seen before tells less.
-                map.update(outline, |update| update.agreement >= smallest)
-            })
-        };
-        let settled = |map: OutlineMap| {
-            // Better aligned frames make a better map, which aligns them better.
-            (0..MOST_CUTS).try_fold((map, false), |(map, settled), _| {
-                if settled {
-                    return Some((map, settled));
+                let update = map.update(outline, |update| update.agreement >= self.settings.smallest_agreement);
+                if self.is_adaptive() {
+                    change.take(&map.innovation, map.information.k);
                 }
-                let new = recut(&map)?;
-                let settled = (new.pose - map.pose).norm() < new.sigma;
-                Some((new, settled))
-            })
+                update
+            })?;
+            Some((map, change))
         };
-        let settled = |map: &OutlineMap| settled(map.clone()).map(|(map, _)| map);
-        if let Some(map) = self.map.as_ref().and_then(settled) {
-            self.rivals.recut(settled);
-            self.map = Some(map);
-            // What was taken for a change may have been what coarse cells left.
-            self.change = MotionChange::default();
+        let mut before = map.pose;
+        let (mut map, mut change) = cut(map)?;
+        // Better aligned frames make a better map, which aligns them better.
+        for _ in 1..MOST_CUTS {
+            if (map.pose - before).norm() < map.sigma {
+                break;
+            }
+            before = map.pose;
+            (map, change) = cut(&map)?;
         }
+        Some((map, change))
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
     /// knows.
     fn begin_with_turn(&mut self, outline: &Outline) {
         let Some(map) = &mut self.map else { return };
-        let Some(new) = map.begun_anew(outline).filter(|new| !new.turn_is_unseen()) else {
+        let Some(new) = map.begun_anew(outline) else {
             map.hide_turn();
             map.turn_is_new = true;
             return;
         };
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
         self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
-        self.first_frames.end();
+        self.first_frames = FirstFrames::begin(self.last_time, outline);
+        self.first_frames.end_unless_few(new.cell_count());
         self.rivals = Rivals::default();
         self.change = MotionChange::default();
         (self.taken_by_map, self.refused_by_map) = (1, 0);
@@ -264,16 +283,13 @@ impl MotionFilter {
 
     /// Predicts and measures.
     fn track(&mut self, time: f64, outline: &Outline) -> Option<MapUpdate> {
-        let map = self.map.as_mut()?;
         let seconds = time - self.map_time;
-        map.predict(seconds);
         self.map_time = time;
-        map.add_process_noise(&self.settings.process_noise, seconds);
-        let adaptive = self.settings.adaptive && self.settings.process_noise == ProcessNoise::default();
-        if let Some(variances) = self.change.variances().filter(|_| adaptive) {
-            map.add_change(variances);
-            self.motion_changed = true;
-        }
+        let adaptive = self.is_adaptive();
+        let mut predicted = self.map.take()?;
+        self.predict(&mut predicted, &self.change, seconds);
+        let map = self.map.insert(predicted);
+        self.motion_changed |= self.change.is_seen();
         let parameters = map.information.k;
         let limit = SUDDEN * parameters as f64;
         let fits = fits(map, self.settings.smallest_agreement);
@@ -296,6 +312,19 @@ impl MotionFilter {
         }
         map.noise_level.take(update.spread / map.radius);
         Some(self.rivals.decide(&self.settings, map, update, seconds, outline))
+    }
+
+    /// Predicts a map, by how the motion has been seen to change.
+    fn predict(&self, map: &mut OutlineMap, change: &MotionChange, seconds: f64) {
+        map.predict(seconds);
+        map.add_process_noise(&self.settings.process_noise, seconds);
+        if let Some(variances) = change.variances() {
+            map.add_change(variances);
+        }
+    }
+
+    fn is_adaptive(&self) -> bool {
+        self.settings.adaptive && self.settings.process_noise == ProcessNoise::default()
     }
 
     pub(super) fn replace(&mut self, map: OutlineMap, time: f64, phase: Phase) {

@@ -159,6 +159,6 @@ impl OutlineMap {
         // what that frame does not show.
         let share = if self.turn_is_new { NEARLY_ALL } else { MOST };
         worse as f64 > share * (misfits.len() - 1) as f64
-            && (!self.turn_is_new || self.begun_anew(outline).is_some_and(|alone| !alone.turn_is_unseen()))
+            && (!self.turn_is_new || self.begun_anew(outline).is_some())
     }
 }
