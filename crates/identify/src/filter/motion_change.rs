@@ -24,6 +24,8 @@ pub(crate) struct MotionChange {
     kinds: [Change; 2],
     /// Of one variance for both: chance has no more than one occasion.
     of_both: Evidence,
+    /// Whether it has ever changed from one frame to the next by more than such variances tell.
+    pub(crate) was_sudden: bool,
 }
 
 /// One of them.
@@ -51,7 +53,7 @@ impl MotionChange {
 
     /// Whether the motion has been seen to change.
     pub(crate) fn is_seen(&self) -> bool {
-        self.kinds.iter().any(|change| change.variance > 0.0 || change.has_changed)
+        self.was_sudden || self.kinds.iter().any(|change| change.variance > 0.0 || change.has_changed)
     }
 
     /// Takes the innovation of an accepted frame of a motion with so many parameters.

@@ -1,10 +1,10 @@
 use freeform_curve_fit::Outline;
-use nalgebra::{Affine2, Projective2};
+use nalgebra::{Affine2, Matrix3, Projective2};
 
 use super::{
     acquisition::Landmarks,
     error::FilterError,
-    map_recut::FirstFrames,
+    map_recut::{FirstFrames, PlacedFrame},
     map_update::MapUpdate,
     motion_change::{MotionChange, SUDDEN},
     outline_map::{FEWEST_POINTS, OutlineMap},
@@ -102,6 +102,13 @@ pub struct MotionFilter {
     first_frames: FirstFrames,
 }
 
+/// A map cut anew, how the motion changes in the frames that it was cut from, and their poses.
+struct Recut {
+    map: OutlineMap,
+    change: MotionChange,
+    poses: Vec<Matrix3<f64>>,
+}
+
 impl MotionFilter {
     /// A filter that waits for its first frame.
     ///
@@ -168,10 +175,10 @@ impl MotionFilter {
 
     /// Builds the map from a first frame.
     fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
-        self.map = Some(OutlineMap::new(self.settings.model, outline)?);
+        let map = OutlineMap::new(self.settings.model, outline)?;
         self.landmarks = Landmarks::of(outline);
-        self.first_frames = FirstFrames::begin(time, outline);
-        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
+        self.first_frames = FirstFrames::begin(time, outline, &map);
+        self.map = Some(map);
         self.rivals = Rivals::default();
         (self.last_time, self.map_time) = (time, time);
         self.accepted += 1;
@@ -184,64 +191,69 @@ impl MotionFilter {
     /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
     /// may be what coarse cells make of it.
     fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
+        let Some(map) = &mut self.map else { return };
         if self.phase != Phase::Tracking {
             // Found again somewhere: what was seen before has come there by what nobody knows.
-            self.first_frames.begin_anew(time, outline);
-            if let Some(map) = &mut self.map {
-                map.begin_here();
-            }
+            self.first_frames.begin_anew(time, outline, map);
+            map.begin_here();
             return;
         }
-        if !self.first_frames.take(time, outline) && !(changes && self.first_frames.are_several()) {
+        if !self.first_frames.take(time, outline, map) && !(changes && self.first_frames.are_several()) {
             return;
         }
-        if self.map.as_ref().is_some_and(OutlineMap::turn_is_unknown) {
+        if map.turn_is_unknown() {
             self.begin_with_turn(outline);
         } else {
             self.recut();
+            self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
         }
-        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
     }
 
     /// Cuts the map anew from the first frames, until it settles, and looks for changes of the motion once more: what was taken for one may
     /// have been what coarse cells left.
     fn recut(&mut self) {
-        let Some((map, change)) = self.map.as_ref().and_then(|map| self.settled(map)) else { return };
+        let Some(cut) = self.map.as_ref().and_then(|map| self.settled(map, self.may_change(&self.change))) else {
+            return;
+        };
         let mut rivals = std::mem::take(&mut self.rivals);
-        rivals.recut(|map| self.settled(map).map(|(map, _)| map));
+        rivals.recut(|map| self.settled(map, false).map(|cut| cut.map));
         self.rivals = rivals;
-        self.map = Some(map);
-        self.motion_changed = change.is_seen();
-        self.change = change;
+        self.map = Some(cut.map);
+        self.motion_changed = cut.change.is_seen();
+        // What the first few frames seem to say of it counts for nothing.
+        self.change = if cut.change.is_seen() { cut.change } else { MotionChange::default() };
+        self.first_frames.take_poses(cut.poses);
     }
 
-    /// A map cut anew from the first frames until its pose settles, and how the motion changes in them.
-    fn settled(&self, map: &OutlineMap) -> Option<(OutlineMap, MotionChange)> {
-        let frames = self.first_frames.frames();
-        let cut = |map: &OutlineMap| {
-            let mut change = MotionChange::default();
-            let map = map.recut(&frames, 1, |map, seconds, outline| {
-                self.predict(map, &change, seconds);
-                // That it shows the object has been seen: the noise of the few points on cells seen before tells less.
-                let update = map.update(outline, |update| update.agreement >= self.settings.smallest_agreement);
-                if self.is_adaptive() {
-                    change.take(&map.innovation, map.information.k);
-                }
-                update
-            })?;
-            Some((map, change))
-        };
+    /// A map cut anew from the first frames until its pose settles; `changes` tells whether its motion has been another in them.
+    fn settled(&self, map: &OutlineMap, changes: bool) -> Option<Recut> {
+        let frames = if changes { self.first_frames.as_found() } else { self.first_frames.by_motion(map) };
+        let mut cut = self.cut(map, &frames)?;
         let mut before = map.pose;
-        let (mut map, mut change) = cut(map)?;
         // Better aligned frames make a better map, which aligns them better.
         for _ in 1..MOST_CUTS {
-            if (map.pose - before).norm() < map.sigma {
+            if (cut.map.pose - before).norm() < cut.map.sigma {
                 break;
             }
-            before = map.pose;
-            (map, change) = cut(&map)?;
+            before = cut.map.pose;
+            let mut frames = self.first_frames.by_motion(&cut.map);
+            if self.may_change(&cut.change) {
+                frames.iter_mut().zip(&cut.poses).for_each(|(frame, pose)| frame.pose = *pose);
+            }
+            cut = self.cut(&cut.map, &frames)?;
         }
-        Some((map, change))
+        Some(cut)
+    }
+
+    fn cut(&self, map: &OutlineMap, frames: &[PlacedFrame<'_>]) -> Option<Recut> {
+        let mut change = MotionChange::default();
+        let mut poses = vec![map.first_pose.pose];
+        let map = map.recut(frames, 1, |map, seconds, outline| {
+            let update = self.advance(map, &mut change, seconds, outline, true);
+            poses.push(map.pose);
+            update
+        })?;
+        Some(Recut { map, change, poses })
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
@@ -255,8 +267,7 @@ impl MotionFilter {
         };
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
         self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
-        self.first_frames = FirstFrames::begin(self.last_time, outline);
-        self.first_frames.end_unless_few(new.cell_count());
+        self.first_frames = FirstFrames::begin(self.last_time, outline, &new);
         self.rivals = Rivals::default();
         self.change = MotionChange::default();
         (self.taken_by_map, self.refused_by_map) = (1, 0);
@@ -285,42 +296,60 @@ impl MotionFilter {
     fn track(&mut self, time: f64, outline: &Outline) -> Option<MapUpdate> {
         let seconds = time - self.map_time;
         self.map_time = time;
-        let adaptive = self.is_adaptive();
-        let mut predicted = self.map.take()?;
-        self.predict(&mut predicted, &self.change, seconds);
-        let map = self.map.insert(predicted);
-        self.motion_changed |= self.change.is_seen();
-        let parameters = map.information.k;
-        let limit = SUDDEN * parameters as f64;
-        let fits = fits(map, self.settings.smallest_agreement);
-        let mut update = map.update(outline, |update| fits(update) && update.innovation <= limit);
-        let innovation = map.innovation;
-        let is_there = update.agreement >= self.settings.smallest_agreement;
-        if adaptive && !update.accepted && is_there && self.rejected_in_a_row > 0 && innovation.fisher[0] > 0.0 {
-            // If the outline is there, but for the second time not where it was going, the motion has changed.
-            let mut changed = map.clone();
-            changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
-            let found = changed.update(outline, fits);
-            if found.accepted {
-                *map = changed;
-                self.motion_changed = true;
-                update = found;
-            }
-        }
-        if adaptive && update.accepted {
-            self.change.take(&innovation, parameters);
-        }
+        let (mut map, mut change) = (self.map.take()?, self.change);
+        let update = self.advance(&mut map, &mut change, seconds, outline, false);
+        self.change = change;
+        self.motion_changed |= change.is_seen();
+        let map = self.map.insert(map);
         map.noise_level.take(update.spread / map.radius);
         Some(self.rivals.decide(&self.settings, map, update, seconds, outline))
     }
 
-    /// Predicts a map, by how the motion has been seen to change.
-    fn predict(&self, map: &mut OutlineMap, change: &MotionChange, seconds: f64) {
+    /// Predicts a map and measures a frame, and finds how the motion changes. That a frame shows the object may be known already: the
+    /// noise of the few points on cells seen before tells less.
+    fn advance(
+        &self,
+        map: &mut OutlineMap,
+        change: &mut MotionChange,
+        seconds: f64,
+        outline: &Outline,
+        is_known: bool,
+    ) -> MapUpdate {
         map.predict(seconds);
         map.add_process_noise(&self.settings.process_noise, seconds);
         if let Some(variances) = change.variances() {
             map.add_change(variances);
         }
+        let parameters = map.information.k;
+        let limit = SUDDEN * parameters as f64;
+        let (smallest, fits) = (self.settings.smallest_agreement, fits(map, self.settings.smallest_agreement));
+        let shows = |update: &MapUpdate| if is_known { update.agreement >= smallest } else { fits(update) };
+        let mut update = map.update(outline, |update| shows(update) && update.innovation <= limit);
+        if !self.is_adaptive() {
+            return update;
+        }
+        let innovation = map.innovation;
+        let is_there = update.agreement >= smallest && (is_known || self.rejected_in_a_row > 0);
+        if !update.accepted && is_there && innovation.fisher[0] > 0.0 {
+            // If the outline is there, but for the second time not where it was going, the motion has changed.
+            let mut changed = map.clone();
+            changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
+            let found = changed.update(outline, shows);
+            if found.accepted {
+                *map = changed;
+                change.was_sudden = true;
+                update = found;
+            }
+        }
+        if update.accepted {
+            change.take(&innovation, parameters);
+        }
+        update
+    }
+
+    /// Whether the motion changes, as is seen or as the settings say.
+    fn may_change(&self, change: &MotionChange) -> bool {
+        change.is_seen() || self.settings.process_noise != ProcessNoise::default()
     }
 
     fn is_adaptive(&self) -> bool {
