@@ -10,12 +10,8 @@ use super::{
 };
 use crate::motion_algebra::map_point;
 
-/// Frames after which the map is cut anew.
-const OCCASIONS: [usize; 3] = [4, 16, 64];
 /// Points of several frames beyond which more of them would not make cells finer.
 pub(crate) const PLENTY: usize = 3200;
-/// With so many points of one frame for each cell there is nothing to be gained.
-const PLENTY_PER_CELL: f64 = 3.5;
 /// Points nearer than so many spacings are one.
 const COINCIDENT: f64 = 0.05;
 /// Share of the noise that the map has seen, which the points are taken to have at least: where those of many frames lie in one place
@@ -35,84 +31,6 @@ pub(crate) struct PlacedFrame<'a> {
     pub(crate) time: f64,
     pub(crate) outline: &'a Outline,
     pub(crate) pose: Matrix3<f64>,
-}
-
-/// The frames that a map was begun from, kept until it has been cut from enough of them.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct FirstFrames {
-    frames: Vec<(f64, Outline)>,
-    /// What the map found of them.
-    poses: Vec<Matrix3<f64>>,
-    points: usize,
-    over: bool,
-}
-
-impl FirstFrames {
-    /// Begins with the first frame of a map.
-    pub(crate) fn begin(time: f64, outline: &Outline, map: &OutlineMap) -> Self {
-        let mut frames = Self {
-            frames: vec![(time, outline.clone())],
-            poses: vec![map.pose],
-            points: outline.point_count(),
-            over: false,
-        };
-        frames.end_unless_few(map.cells.len());
-        frames
-    }
-
-    /// Forgets what is kept.
-    pub(crate) fn end(&mut self) {
-        *self = Self { over: true, ..Self::default() };
-    }
-
-    /// Begins anew with a frame, unless a map has been cut from enough of them.
-    pub(crate) fn begin_anew(&mut self, time: f64, outline: &Outline, map: &OutlineMap) {
-        if !self.over {
-            *self = Self::begin(time, outline, map);
-        }
-    }
-
-    /// Keeps a frame that follows the others, in the pose of the map; whether the map is to be cut from them now.
-    pub(crate) fn take(&mut self, time: f64, outline: &Outline, map: &OutlineMap) -> bool {
-        if self.over {
-            return false;
-        }
-        self.frames.push((time, outline.clone()));
-        self.poses.push(map.pose);
-        self.points += outline.point_count();
-        OCCASIONS.contains(&self.frames.len())
-    }
-
-    /// Whether there are frames to cut a map from.
-    pub(crate) fn are_several(&self) -> bool {
-        self.frames.len() > 1
-    }
-
-    /// Forgets what is kept unless more frames would make a map of so many cells better.
-    pub(crate) fn end_unless_few(&mut self, cells: usize) {
-        let count = self.frames.len().max(1);
-        let next = OCCASIONS.into_iter().find(|occasion| *occasion > count);
-        let each = self.points / count;
-        if next.is_none_or(|next| next * each > PLENTY) && count > 1 || each as f64 > PLENTY_PER_CELL * cells as f64 {
-            self.end();
-        }
-    }
-
-    /// Takes the poses that a map cut anew has found.
-    pub(crate) fn take_poses(&mut self, poses: Vec<Matrix3<f64>>) {
-        self.poses = poses;
-    }
-
-    /// In the poses that they were found in.
-    pub(crate) fn as_found(&self) -> Vec<PlacedFrame<'_>> {
-        let placed = self.frames.iter().zip(&self.poses);
-        placed.map(|((time, outline), pose)| PlacedFrame { time: *time, outline, pose: *pose }).collect()
-    }
-
-    /// In the poses that the motion of a map puts them in, if it has never been another.
-    pub(crate) fn by_motion(&self, map: &OutlineMap) -> Vec<PlacedFrame<'_>> {
-        map.placed(self.frames.iter().map(|(time, outline)| (*time, outline)))
-    }
 }
 
 impl OutlineMap {

@@ -4,6 +4,7 @@ mod arrow_information;
 mod cell_scatter;
 mod contour;
 mod error;
+mod first_frames;
 mod first_pose;
 mod innovation;
 mod map_estimate;

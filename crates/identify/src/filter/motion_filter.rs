@@ -1,10 +1,10 @@
 use freeform_curve_fit::Outline;
-use nalgebra::{Affine2, Matrix3, Projective2};
+use nalgebra::Projective2;
 
 use super::{
     acquisition::Landmarks,
     error::FilterError,
-    map_recut::{FirstFrames, PlacedFrame},
+    first_frames::FirstFrames,
     map_update::MapUpdate,
     motion_change::{MotionChange, SUDDEN},
     outline_map::{FEWEST_POINTS, OutlineMap},
@@ -15,8 +15,6 @@ use crate::estimate::MotionEstimate;
 
 /// Noise below this many lengths of a cell is never too much.
 const BEND: f64 = 0.1;
-/// Times that a map is cut from the same frames at most.
-const MOST_CUTS: usize = 4;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
 pub(crate) const FALSE_START: usize = 3;
 /// A map that has taken no more frames than this may have been begun from what is not the object.
@@ -86,27 +84,20 @@ pub struct MotionFilter {
     pub(super) map: Option<OutlineMap>,
     /// Of the first outline, in its image coordinates.
     pub(super) landmarks: Option<Landmarks>,
-    last_time: f64,
+    pub(super) last_time: f64,
     /// Time that the map stands at.
     pub(super) map_time: f64,
     accepted: usize,
     rejected: usize,
     rejected_in_a_row: usize,
     /// Frames that the present map has taken, and that it has not.
-    taken_by_map: usize,
-    refused_by_map: usize,
+    pub(super) taken_by_map: usize,
+    pub(super) refused_by_map: usize,
     restarts: usize,
-    change: MotionChange,
-    motion_changed: bool,
+    pub(super) change: MotionChange,
+    pub(super) motion_changed: bool,
     pub(super) rivals: Rivals,
-    first_frames: FirstFrames,
-}
-
-/// A map cut anew, how the motion changes in the frames that it was cut from, and their poses.
-struct Recut {
-    map: OutlineMap,
-    change: MotionChange,
-    poses: Vec<Matrix3<f64>>,
+    pub(super) first_frames: FirstFrames,
 }
 
 impl MotionFilter {
@@ -188,92 +179,6 @@ impl MotionFilter {
         Ok(())
     }
 
-    /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
-    /// may be what coarse cells make of it.
-    fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
-        let Some(map) = &mut self.map else { return };
-        if self.phase != Phase::Tracking {
-            // Found again somewhere: what was seen before has come there by what nobody knows.
-            self.first_frames.begin_anew(time, outline, map);
-            map.begin_here();
-            return;
-        }
-        if !self.first_frames.take(time, outline, map) && !(changes && self.first_frames.are_several()) {
-            return;
-        }
-        if map.turn_is_unknown() {
-            self.begin_with_turn(outline);
-        } else {
-            self.recut();
-            self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
-        }
-    }
-
-    /// Cuts the map anew from the first frames, until it settles, and looks for changes of the motion once more: what was taken for one may
-    /// have been what coarse cells left.
-    fn recut(&mut self) {
-        let Some(cut) = self.map.as_ref().and_then(|map| self.settled(map, self.may_change(&self.change))) else {
-            return;
-        };
-        let mut rivals = std::mem::take(&mut self.rivals);
-        rivals.recut(|map| self.settled(map, false).map(|cut| cut.map));
-        self.rivals = rivals;
-        self.map = Some(cut.map);
-        self.motion_changed = cut.change.is_seen();
-        // What the first few frames seem to say of it counts for nothing.
-        self.change = if cut.change.is_seen() { cut.change } else { MotionChange::default() };
-        self.first_frames.take_poses(cut.poses);
-    }
-
-    /// A map cut anew from the first frames until its pose settles; `changes` tells whether its motion has been another in them.
-    fn settled(&self, map: &OutlineMap, changes: bool) -> Option<Recut> {
-        let frames = if changes { self.first_frames.as_found() } else { self.first_frames.by_motion(map) };
-        let mut cut = self.cut(map, &frames)?;
-        let mut before = map.pose;
-        // Better aligned frames make a better map, which aligns them better.
-        for _ in 1..MOST_CUTS {
-            if (cut.map.pose - before).norm() < cut.map.sigma {
-                break;
-            }
-            before = cut.map.pose;
-            let mut frames = self.first_frames.by_motion(&cut.map);
-            if self.may_change(&cut.change) {
-                frames.iter_mut().zip(&cut.poses).for_each(|(frame, pose)| frame.pose = *pose);
-            }
-            cut = self.cut(&cut.map, &frames)?;
-        }
-        Some(cut)
-    }
-
-    fn cut(&self, map: &OutlineMap, frames: &[PlacedFrame<'_>]) -> Option<Recut> {
-        let mut change = MotionChange::default();
-        let mut poses = vec![map.first_pose.pose];
-        let map = map.recut(frames, 1, |map, seconds, outline| {
-            let update = self.advance(map, &mut change, seconds, outline, true);
-            poses.push(map.pose);
-            update
-        })?;
-        Some(Recut { map, change, poses })
-    }
-
-    /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
-    /// knows.
-    fn begin_with_turn(&mut self, outline: &Outline) {
-        let Some(map) = &mut self.map else { return };
-        let Some(new) = map.begun_anew(outline) else {
-            map.hide_turn();
-            map.turn_is_new = true;
-            return;
-        };
-        let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
-        self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
-        self.first_frames = FirstFrames::begin(self.last_time, outline, &new);
-        self.rivals = Rivals::default();
-        self.change = MotionChange::default();
-        (self.taken_by_map, self.refused_by_map) = (1, 0);
-        self.replace(new, self.map_time, Phase::Acquiring);
-    }
-
     /// After a rejected frame: look elsewhere, or begin again.
     fn fall_back(&mut self, time: f64, outline: &Outline) {
         let in_a_row = self.rejected_in_a_row;
@@ -307,7 +212,7 @@ impl MotionFilter {
 
     /// Predicts a map and measures a frame, and finds how the motion changes. That a frame shows the object may be known already: the
     /// noise of the few points on cells seen before tells less.
-    fn advance(
+    pub(super) fn advance(
         &self,
         map: &mut OutlineMap,
         change: &mut MotionChange,
@@ -348,7 +253,7 @@ impl MotionFilter {
     }
 
     /// Whether the motion changes, as is seen or as the settings say.
-    fn may_change(&self, change: &MotionChange) -> bool {
+    pub(super) fn may_change(&self, change: &MotionChange) -> bool {
         change.is_seen() || self.settings.process_noise != ProcessNoise::default()
     }
 
