@@ -155,3 +155,22 @@ fn objects_that_are_followed_side_by_side_are_found_as_each_would_be_alone_in_th
     assert_eq!(frames.len(), 15 * shapes.len());
     assert!(frames.iter().enumerate().all(|(line, object)| *object == format!("object {}", line % shapes.len())));
 }
+
+/// The rows of every frame taken in steps of 47 of 120, which are all of them in an order that is not the contour's.
+fn out_of_order(csv: &str) -> String {
+    let (head, rows): (Vec<&str>, Vec<&str>) = csv.lines().partition(|line| line.starts_with(['#', 'f']));
+    let rows = rows.chunks(120).flat_map(|frame| (0..120).map(|index| frame[47 * index % 120]));
+    head.into_iter().chain(rows).map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn rows_that_do_not_follow_the_contour_are_told_once_whatever_the_method() {
+    let in_order = sequence("");
+    let shuffled = out_of_order(&in_order);
+    let told = |command: &str, csv: &str| stderr(&run(command, csv)).matches("do not follow the contour").count();
+    for command in ["identify -", "identify - --method curve", "identify - --method adaptive", "track -"] {
+        assert_eq!(told(command, &shuffled), 1, "{command}");
+        assert_eq!(told(command, &in_order), 0, "{command}");
+    }
+    assert_eq!(told("track - --quiet", &shuffled), 0);
+}
