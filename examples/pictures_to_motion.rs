@@ -77,7 +77,8 @@ fn arguments() -> Result<Arguments, Box<dyn std::error::Error>> {
             }
         };
         let text = rest.next().ok_or_else(|| format!("{} needs a number", argument.display()))?;
-        *value = Some(text.to_string_lossy().parse::<f64>().map_err(|error| format!("{}: {error}", argument.display()))?);
+        *value =
+            Some(text.to_string_lossy().parse::<f64>().map_err(|error| format!("{}: {error}", argument.display()))?);
     }
     if found.paths.is_empty() {
         return Err("usage: pictures_to_motion [--fps RATE] [--pixel-aspect RATIO] PICTURES...".into());

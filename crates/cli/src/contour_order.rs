@@ -88,9 +88,9 @@ mod tests {
 
     const COUNTS: [usize; 4] = [20, 40, 100, 400];
 
-    fn simulated(shape: BuiltInShape, points: usize, settings: Settings) -> Vec<Outline> {
+    fn simulated(shape: BuiltInShape, points: usize, settings: &Settings) -> Vec<Outline> {
         let motion = RigidMotion { omega: 1.0, b1: 0.0, b2: 0.0 };
-        let settings = Settings { points, length: SequenceLength::Frames(FRAMES), ..settings };
+        let settings = Settings { points, length: SequenceLength::Frames(FRAMES), ..settings.clone() };
         let simulator = Simulator::new(Scene::new(shape.shape(), motion, Camera::default()), settings);
         simulator.expect("settings that can be simulated").frames().map(|frame| frame.outline).collect()
     }
@@ -98,7 +98,7 @@ mod tests {
     /// A star with notches to a fifth of its radius, with so many points on it.
     fn star(spikes: usize, points: usize) -> Outline {
         let corner = |index: usize| {
-            let (angle, radius) = (PI * index as f64 / spikes as f64, if index % 2 == 0 { 1.0 } else { 0.2 });
+            let (angle, radius) = (PI * index as f64 / spikes as f64, if index.is_multiple_of(2) { 1.0 } else { 0.2 });
             Point2::new(radius * angle.cos(), radius * angle.sin())
         };
         let on_edges = (0..points).map(|index| {
@@ -126,7 +126,7 @@ mod tests {
         ];
         for (shape, points) in BuiltInShape::ALL.iter().flat_map(|shape| COUNTS.map(|points| (*shape, points))) {
             for settings in &disturbances {
-                for outline in simulated(shape, points, settings.clone()) {
+                for outline in simulated(shape, points, settings) {
                     assert_eq!(hops(&outline), None, "{} with {points} points, {settings:?}", shape.name());
                 }
             }
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn points_in_any_order_or_sorted_by_a_coordinate_hop() {
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let shapes = BuiltInShape::ALL.map(|shape| simulated(shape, 400, Settings::default()).remove(0));
+        let shapes = BuiltInShape::ALL.map(|shape| simulated(shape, 400, &Settings::default()).remove(0));
         for outline in shapes.iter().chain(&[star(5, 100), star(20, 400)]) {
             let shuffled = reordered(outline, |points| points.shuffle(&mut random));
             assert!(hops(&shuffled).is_some_and(|times| times > LONG));
