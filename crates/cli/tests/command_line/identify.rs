@@ -174,3 +174,25 @@ fn rows_that_do_not_follow_the_contour_are_told_once_whatever_the_method() {
     }
     assert_eq!(told("track - --quiet", &shuffled), 0);
 }
+
+#[test]
+fn outlines_of_pictures_follow_the_contour_however_deep_its_notches_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for spikes in [3.0_f64, 12.0] {
+        let frames: Vec<String> = (0..3_u8)
+            .map(|frame| {
+                let picture = image::GrayImage::from_fn(200, 200, |column, row| {
+                    let (x, y) = (f64::from(column) - 98.0 - f64::from(frame), f64::from(row) - 100.0);
+                    let radius = 90.0 * (0.6 + 0.4 * (spikes * y.atan2(x)).cos() + 0.05 * x / 90.0);
+                    image::Luma([if x.hypot(y) < radius { 255 } else { 0 }])
+                });
+                let path = folder.path().join(format!("{spikes}-{frame}.png"));
+                picture.save(&path).expect("a picture");
+                path.to_str().expect("UTF-8").to_owned()
+            })
+            .collect();
+        let output = run(&format!("identify {}", frames.join(" ")), "");
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(!stderr(&output).contains("contour"), "{}", stderr(&output));
+    }
+}
