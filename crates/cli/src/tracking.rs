@@ -283,11 +283,12 @@ impl Tracking {
     fn result(&self, object: &Object) -> ObjectResult {
         let raw = object.identifier.estimate();
         let estimate = raw.and_then(|estimate| Estimate::of(estimate, self.options.scale));
-        let mut warnings = object.identifier.warnings();
+        // First, as it is the reason for others.
+        let out_of_order = object.contour_order.warning().map(str::to_owned);
+        let mut warnings: Vec<String> = out_of_order.into_iter().chain(object.identifier.warnings()).collect();
         if raw.is_some() && estimate.is_none() {
             warnings.push("the identifier diverged: its numbers are not finite".to_owned());
         }
-        warnings.extend(object.contour_order.warning().map(str::to_owned));
         warnings.extend(object.reasons.iter().map(|reason| format!("rejected: {reason}")));
         if object.rejected > object.reasons.len() {
             let (count, frames) = (object.rejected - object.reasons.len(), &object.rejected_later);
