@@ -4,12 +4,12 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use super::number::{significant, with_deviation};
 use crate::meaning_of_b::MeaningOfB;
 
-/// Where the middle of an object is and how fast it moves, on one line.
+/// Where the middle of an object is at the end and how fast it moves, on one line.
 pub(super) fn velocity_text(velocity: &PointVelocity, b: &MeaningOfB) -> String {
     let deviations = velocity.standard_deviations();
     let [[x, x_std], [y, y_std]] = [0, 1].map(|i| with_deviation(velocity.velocity[i], deviations[i]));
     let [at_x, at_y] = [0, 1].map(|i| significant(velocity.point[i], 4));
-    format!("middle: moves at ({x}, {y}) +- ({x_std}, {y_std}), in {}, at ({at_x}, {at_y})", b.of_velocity())
+    format!("middle: at ({at_x}, {at_y}), velocity ({x}, {y}) +- ({x_std}, {y_std}), in {}", b.of_velocity())
 }
 
 /// The same as JSON; the unit is that of b.
