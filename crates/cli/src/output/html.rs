@@ -4,7 +4,7 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
-use super::velocity::velocity_text;
+use super::velocity::meaning_of_v;
 use crate::frame_ranges::FrameRanges;
 use crate::history::History;
 use crate::left_out::LeftOut;
@@ -119,7 +119,7 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
     let b = &report.meaning_of_b;
     let _ = writeln!(body, "</table></div>\n<p class=\"soft\">b: {}</p>", escape(&b.to_string()));
     if let Some(velocity) = &result.velocity {
-        let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&velocity_text(velocity, b)));
+        let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&meaning_of_v(velocity)));
     }
     if !result.warnings.is_empty() {
         body.push_str("<p class=\"alert\">Warnings</p>\n<ul>\n");

@@ -4,7 +4,7 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::aligned::write_aligned;
 use super::number::{significant, with_deviation};
-use super::velocity::velocity_text;
+use super::velocity::{VELOCITY_NAMES, meaning_of_v};
 use crate::meaning_of_b::MeaningOfB;
 use crate::tracking::ObjectResult;
 use crate::truth::parameters_in;
@@ -12,36 +12,56 @@ use crate::truth::parameters_in;
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
 
-/// The parameters of an object as text, one row each.
+/// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
 pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>, b: &MeaningOfB) -> Vec<Vec<String>> {
     let model = result.motion;
-    let truth = truth.and_then(|motion| parameters_in(model, motion));
+    let truth = truth.and_then(|motion| Some((motion, parameters_in(model, motion)?)));
     let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
     let is_ambiguous = |name| result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name));
+    let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
     let names = model.parameter_names().iter().zip(model.units());
-    names
+    let mut rows: Vec<Vec<String>> = names
         .enumerate()
         .map(|(index, (name, unit))| {
             let parameter = found.get(index);
-            let value = parameter.and_then(|p| p.value);
-            let deviation = parameter.and_then(|p| p.standard_deviation);
-            let none = || "-".to_owned();
-            let [value_text, deviation_text] = match (value, deviation) {
-                (Some(value), Some(deviation)) => with_deviation(value, deviation),
-                (Some(value), None) => [significant(value, 6), none()],
-                (None, _) if is_ambiguous(name) => ["ambiguous".to_owned(), none()],
-                (None, _) if parameter.is_some() => ["unobservable".to_owned(), none()],
-                (None, _) => [none(), none()],
+            let unknown = match parameter {
+                Some(_) if is_ambiguous(name) => "ambiguous",
+                Some(_) => "unobservable",
+                None => "-",
             };
-            let unit = b.short_unit.filter(|_| name.starts_with('b')).unwrap_or(unit);
-            let mut row = vec![(*name).to_owned(), value_text, deviation_text, unit.to_owned()];
-            if let Some(truth) = &truth {
-                row.push(significant(truth[index], 6));
-                row.push(value.map_or_else(|| "-".to_owned(), |value| error_text(value, truth[index])));
-            }
-            row
+            let unit = if name.starts_with('b') { unit_of_b(unit) } else { unit };
+            let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
+            row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
         })
-        .collect()
+        .collect();
+    if let Some(velocity) = &result.velocity {
+        let deviations = velocity.standard_deviations();
+        let truth = truth.map(|(motion, _)| {
+            let ([x, y], AffineMotion { a1, a2, a3, a4, b1, b2 }) = (velocity.point.into(), *motion);
+            [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
+        });
+        rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
+            let known = Some((velocity.velocity[i], Some(deviations[i])));
+            row([name, "-", unit_of_b("1/s")], known, truth.map(|truth| truth[i]))
+        }));
+    }
+    rows
+}
+
+/// One row: a value with its standard deviation, or why there is none, and beside it the truth where that is known.
+fn row([name, unknown, unit]: [&str; 3], known: Option<(f64, Option<f64>)>, truth: Option<f64>) -> Vec<String> {
+    let none = || "-".to_owned();
+    let [value, deviation] = match known {
+        Some((value, Some(deviation))) => with_deviation(value, deviation),
+        Some((value, None)) => [significant(value, 6), none()],
+        None => [unknown.to_owned(), none()],
+    };
+    let mut row = vec![name.to_owned(), value, deviation, unit.to_owned()];
+    if let Some(truth) = truth {
+        row.push(significant(truth, 6));
+        row.push(known.map_or_else(none, |(value, _)| error_text(value, truth)));
+    }
+    row
 }
 
 /// The difference from the truth, with its share of the truth where that is not 0.
@@ -72,7 +92,7 @@ pub(crate) fn write_identify_table(
         )?;
         write_aligned(sink, &COLUMNS, &parameter_rows(result, truth, b), &[0, 3])?;
         if let Some(velocity) = &result.velocity {
-            writeln!(sink, "{}", velocity_text(velocity, b))?;
+            writeln!(sink, "{}", meaning_of_v(velocity))?;
         }
     }
     Ok(())

@@ -1,18 +1,18 @@
 use freeform_motion::identify::PointVelocity;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-use super::number::{significant, with_deviation};
-use crate::meaning_of_b::MeaningOfB;
+use super::number::significant;
 
-/// Where the middle of an object is at the end and how fast it moves, on one line.
-pub(super) fn velocity_text(velocity: &PointVelocity, b: &MeaningOfB) -> String {
-    let deviations = velocity.standard_deviations();
-    let [[x, x_std], [y, y_std]] = [0, 1].map(|i| with_deviation(velocity.velocity[i], deviations[i]));
-    let [at_x, at_y] = [0, 1].map(|i| significant(velocity.point[i], 4));
-    format!("middle: at ({at_x}, {at_y}), velocity ({x}, {y}) +- ({x_std}, {y_std}), in {}", b.of_velocity())
+/// Names of its components in a table.
+pub(super) const VELOCITY_NAMES: [&str; 2] = ["v1", "v2"];
+
+/// What v is in a table, on one line.
+pub(super) fn meaning_of_v(velocity: &PointVelocity) -> String {
+    let [x, y] = [0, 1].map(|i| significant(velocity.point[i], 4));
+    format!("v: velocity of the object's middle, at ({x}, {y}), in the unit of b")
 }
 
-/// The same as JSON; the unit is that of b.
+/// A velocity as JSON; the unit is that of b.
 pub(super) struct VelocityJson<'a>(pub(super) &'a PointVelocity);
 
 impl Serialize for VelocityJson<'_> {
