@@ -21,6 +21,7 @@ mod stdin;
 mod tracking;
 mod trajectory;
 mod truth;
+mod turns;
 
 use std::process::ExitCode;
 

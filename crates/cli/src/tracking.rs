@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use freeform_motion::curve_fit::Fit;
-use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate};
+use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate, PointVelocity};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use nalgebra::Matrix3;
@@ -18,6 +18,7 @@ use crate::frame_ranges::FrameRanges;
 use crate::identifier::{Identifier, Step};
 use crate::input::{Input, SeenIn};
 use crate::left_out::Missing;
+use crate::turns::Turns;
 
 /// Reasons told of frames of an object that were rejected, and of pictures left out.
 pub(crate) const REASONS_KEPT: usize = 10;
@@ -41,6 +42,8 @@ pub(crate) struct Observation {
     pub(crate) residual: Option<f64>,
     /// Squared innovation of pose and motion in units of its predicted covariance (filter).
     pub(crate) innovation: Option<f64>,
+    /// Turns that the outlines so far do not decide between (filter).
+    pub(crate) ambiguity: Option<Turns>,
     /// Why the frame was not used; `None` where it was.
     pub(crate) rejected_because: Option<String>,
     /// That points do not follow the contour, told once of every object.
@@ -104,7 +107,24 @@ pub(crate) struct ObjectResult {
     /// Why the first of them was rejected.
     pub(crate) first_rejection: Option<String>,
     pub(crate) estimate: Option<Estimate>,
+    /// Velocity of the object's middle at the end, as its motion is reported: in space where a camera scale was given.
+    pub(crate) velocity: Option<PointVelocity>,
+    /// Turns that the outlines do not decide between.
+    pub(crate) ambiguity: Option<Turns>,
     pub(crate) warnings: Vec<String>,
+}
+
+/// A velocity as it is reported; `None` where a number is not finite.
+fn in_space(velocity: PointVelocity, scale: Option<CameraScale>) -> Option<PointVelocity> {
+    let per_length = 1.0 / scale.map_or(1.0, CameraScale::value);
+    let PointVelocity { point, velocity, covariance } = velocity;
+    let velocity = PointVelocity {
+        point: point * per_length,
+        velocity: velocity * per_length,
+        covariance: covariance * (per_length * per_length),
+    };
+    let numbers = velocity.point.iter().chain(&velocity.velocity).chain(&velocity.covariance);
+    numbers.copied().all(f64::is_finite).then_some(velocity)
 }
 
 /// Follows every object of a sequence.
@@ -241,6 +261,7 @@ impl Tracking {
             fit: step.fit,
             residual: step.residual,
             innovation: step.innovation,
+            ambiguity: step.ambiguity,
             rejected_because,
             out_of_order,
         }
@@ -260,6 +281,7 @@ impl Tracking {
             fit: None,
             residual: None,
             innovation: None,
+            ambiguity: None,
             rejected_because: Some(reason),
             out_of_order: None,
         })
@@ -302,6 +324,8 @@ impl Tracking {
             frames_rejected: object.rejected,
             first_rejection: object.reasons.first().cloned(),
             estimate,
+            velocity: object.identifier.velocity().and_then(|velocity| in_space(velocity, self.options.scale)),
+            ambiguity: object.identifier.ambiguity(),
             warnings,
         }
     }

@@ -46,6 +46,7 @@ mod information;
 mod motion_algebra;
 mod motion_state;
 mod observability;
+mod point_velocity;
 mod smoother;
 mod whole_curve;
 
@@ -56,10 +57,14 @@ pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
 pub use error::IdentifyError;
 pub use estimate::{MotionEstimate, ParameterEstimate};
-pub use filter::{FilterError, FilterSettings, FilterStep, MapUpdate, MotionFilter, OutlineMap, Phase, ProcessNoise};
+pub use filter::{
+    Ambiguity, FilterError, FilterSettings, FilterStep, MapUpdate, MotionFilter, OutlineMap, Phase, ProcessNoise,
+    Rejection,
+};
 pub use motion_state::{MotionState, PoseParameter};
+pub use point_velocity::PointVelocity;
 pub use smoother::{SmootherError, smooth};
-pub use whole_curve::{CurveFilterSettings, CurveStep, WholeCurveFilter};
+pub use whole_curve::{CurveFilterSettings, CurveRejection, CurveStep, WholeCurveFilter};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

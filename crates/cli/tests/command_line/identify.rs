@@ -19,7 +19,10 @@ fn the_json_has_the_fields_of_the_contract_and_says_what_b_is_and_what_was_left_
     assert_eq!(keys(&document["left_out"]), ["count", "pictures"]);
     let object = &document["objects"][0];
     let fields = ["frames", "frames_rejected", "generator", "method", "motion", "object", "parameters", "warnings"];
-    assert_eq!(keys(object), fields);
+    let mut with_later_ones = [&["ambiguity", "velocity"][..], &fields].concat();
+    with_later_ones.sort_unstable();
+    assert_eq!(keys(object), with_later_ones);
+    assert_eq!((&object["ambiguity"], keys(&object["velocity"])), (&Value::Null, vec!["point", "std", "value"]));
     assert_eq!((&object["object"], &object["motion"]), (&"0".into(), &"rigid".into()));
     assert_eq!((&object["frames"], &object["frames_rejected"]), (&15.into(), &0.into()));
     assert_eq!(keys(&object["parameters"]), ["b1", "b2", "omega"]);
@@ -93,6 +96,38 @@ fn the_table_shows_the_truth_where_the_file_tells_it() {
     assert!(!succeed("identify -", &without).contains("truth"));
     let given = succeed("identify - --truth -1.5,2,-3", &without);
     assert!(given.contains("-1.50000") && given.contains("truth"), "{given}");
+}
+
+#[test]
+fn a_truth_that_the_motion_model_does_not_hold_is_told_to_be_left_out() {
+    let csv = sequence("--affine 0.1,0,0,0.1,0.2,0 --scale 1");
+    let output = run("identify -", &csv);
+    assert!(!stdout(&output).contains("truth"), "{}", stdout(&output));
+    assert!(stderr(&output).contains("warning: the truth in the file: no rigid motion"), "{}", stderr(&output));
+    let output = run("identify - --motion similarity", &csv);
+    assert!(stdout(&output).contains("truth") && stderr(&output).is_empty(), "{}", stderr(&output));
+}
+
+#[test]
+fn the_middle_of_the_object_moves_as_the_motion_says_and_the_scale_divides_its_velocity() {
+    let csv = sequence("--seconds 1 --points 400 --shape glider");
+    for scale in [1.0, 0.1] {
+        let object = &json(&succeed(&format!("identify - --json --scale {scale}"), &csv))["objects"][0];
+        let number = |value: &Value| value.as_f64().expect("a number");
+        let pair = |name: &str| [0, 1].map(|i| number(&object["velocity"][name][i]));
+        let [[x, y], velocity, deviations] = ["point", "value", "std"].map(pair);
+        assert!(x.hypot(y) < 2.0 / scale && deviations.iter().all(|std| *std > 0.0 && *std < 0.01 / scale));
+        for (row, found) in velocity.into_iter().enumerate() {
+            let [a, b, c] = [0, 1, 2].map(|column| number(&object["generator"][row][column]));
+            assert!((a * x + b * y + c - found).abs() < 1e-9, "{found}");
+        }
+    }
+    let table = succeed("identify - --scale 0.1", &csv);
+    let line = table.lines().last().expect("a line");
+    assert!(line.starts_with("v: velocity of the object's middle, at ("), "{table}");
+    let rows = table.lines().filter(|line| line.starts_with("  v") && line.split_whitespace().count() > 5).count();
+    assert_eq!(rows, 2, "{table}");
+    assert!(!succeed("identify - --method curve", &csv).contains("middle"));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use super::{
     map_update::MapUpdate,
     motion_change::{MotionChange, SUDDEN},
     outline_map::{FEWEST_POINTS, OutlineMap},
+    rejection::Rejection,
     rivals::Rivals,
     settings::FilterSettings,
 };
@@ -46,6 +47,8 @@ pub struct FilterStep {
     pub accepted: bool,
     /// What it said of the map; `None` where no map or no pose was there to measure it against.
     pub update: Option<MapUpdate>,
+    /// Why it was not used; `None` where it was.
+    pub rejection: Option<Rejection>,
 }
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
@@ -137,7 +140,8 @@ impl MotionFilter {
         }
         if self.map.is_none() {
             self.start(time, outline)?;
-            return Ok(FilterStep { time, phase: self.phase, accepted: true, update: None });
+            self.accepted += 1;
+            return Ok(FilterStep { time, phase: self.phase, accepted: true, update: None, rejection: None });
         }
         self.last_time = time;
         let was_changing = self.change.variances().is_some();
@@ -161,7 +165,8 @@ impl MotionFilter {
             self.rejected_in_a_row += 1;
             self.fall_back(time, outline);
         }
-        Ok(FilterStep { time, phase: self.phase, accepted, update })
+        let rejection = (!accepted).then(|| Rejection::of(update.as_ref(), &self.settings));
+        Ok(FilterStep { time, phase: self.phase, accepted, update, rejection })
     }
 
     /// Builds the map from a first frame.
@@ -172,7 +177,6 @@ impl MotionFilter {
         self.map = Some(map);
         self.rivals = Rivals::default();
         (self.last_time, self.map_time) = (time, time);
-        self.accepted += 1;
         (self.taken_by_map, self.refused_by_map) = (1, 0);
         self.rejected_in_a_row = 0;
         self.phase = Phase::Acquiring;
@@ -262,7 +266,7 @@ impl MotionFilter {
         self.accepted
     }
 
-    /// Frames that did not fit.
+    /// Frames that did not fit, one that a new map was begun from after others among them.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
         self.rejected
