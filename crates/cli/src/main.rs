@@ -2,6 +2,7 @@
 mod args;
 mod batch;
 mod commands;
+mod contour_order;
 mod failure;
 mod frame_ranges;
 mod history;

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::args::{IdentifyMethod, TrackOptions};
 use crate::batch::{BatchReader, Pace, Taken};
+use crate::contour_order::ContourOrder;
 use crate::failure::Failure;
 use crate::frame_ranges::FrameRanges;
 use crate::identifier::{Identifier, Step};
@@ -45,6 +46,8 @@ pub(crate) struct Observation {
     pub(crate) ambiguity: Option<Turns>,
     /// Why the frame was not used; `None` where it was.
     pub(crate) rejected_because: Option<String>,
+    /// That points do not follow the contour, told once of every object.
+    pub(crate) out_of_order: Option<String>,
 }
 
 impl Observation {
@@ -136,6 +139,7 @@ pub(crate) struct Tracking {
 struct Object {
     name: String,
     identifier: Identifier,
+    contour_order: ContourOrder,
     frames: usize,
     rejected: usize,
     reasons: Vec<String>,
@@ -244,7 +248,9 @@ impl Tracking {
         let scale = self.options.scale;
         let in_place = |reason| format!("frame {} of object {:?}: {reason}", frame.frame, frame.object);
         let rejected_because = step.rejected_because.map(in_place);
-        self.objects[position].count(frame.frame, rejected_because.as_deref());
+        let object = &mut self.objects[position];
+        object.count(frame.frame, rejected_because.as_deref());
+        let out_of_order = object.contour_order.look_at(frame).map(str::to_owned);
         Observation {
             object: frame.object.clone(),
             frame: frame.frame,
@@ -257,6 +263,7 @@ impl Tracking {
             innovation: step.innovation,
             ambiguity: step.ambiguity,
             rejected_because,
+            out_of_order,
         }
     }
 
@@ -276,12 +283,18 @@ impl Tracking {
             innovation: None,
             ambiguity: None,
             rejected_because: Some(reason),
+            out_of_order: None,
         })
     }
 
     /// Whether the motion of any object was seen to change.
     pub(crate) fn motion_changed(&self) -> bool {
         self.objects.iter().any(|object| object.identifier.motion_changed())
+    }
+
+    /// The objects whose points do not follow the contour, and the warning of each.
+    pub(crate) fn out_of_order(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.objects.iter().filter_map(|object| Some((object.name.as_str(), object.contour_order.warning()?)))
     }
 
     /// The results so far, in the order in which the objects first appeared.
@@ -292,7 +305,9 @@ impl Tracking {
     fn result(&self, object: &Object) -> ObjectResult {
         let raw = object.identifier.estimate();
         let estimate = raw.and_then(|estimate| Estimate::of(estimate, self.options.scale));
-        let mut warnings = object.identifier.warnings();
+        // First, as it is the reason for others.
+        let out_of_order = object.contour_order.warning().map(str::to_owned);
+        let mut warnings: Vec<String> = out_of_order.into_iter().chain(object.identifier.warnings()).collect();
         if raw.is_some() && estimate.is_none() {
             warnings.push("the identifier diverged: its numbers are not finite".to_owned());
         }
@@ -323,8 +338,15 @@ impl Tracking {
         let identifier = Identifier::new(&self.options)?;
         let (name, position) = (name.to_owned(), self.objects.len());
         self.positions.insert(name.clone(), position);
-        let (reasons, rejected_later) = (Vec::new(), FrameRanges::default());
-        self.objects.push(Object { name, identifier, frames: 0, rejected: 0, reasons, rejected_later });
+        self.objects.push(Object {
+            name,
+            identifier,
+            contour_order: ContourOrder::default(),
+            frames: 0,
+            rejected: 0,
+            reasons: Vec::new(),
+            rejected_later: FrameRanges::default(),
+        });
         Ok(position)
     }
 }

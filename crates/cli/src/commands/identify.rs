@@ -92,6 +92,10 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         }
         print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
     } else {
+        // The failure has the other reasons.
+        for (object, warning) in tracking.out_of_order().filter(|_| !args.quiet) {
+            warn(&format!("object {object}: {warning}"));
+        }
         Ok(())
     };
     files.finish(&tracking, truth.as_ref(), &results)?;

@@ -190,3 +190,44 @@ fn objects_that_are_followed_side_by_side_are_found_as_each_would_be_alone_in_th
     assert_eq!(frames.len(), 15 * shapes.len());
     assert!(frames.iter().enumerate().all(|(line, object)| *object == format!("object {}", line % shapes.len())));
 }
+
+/// The rows of every frame taken in steps of 47 of 120, which are all of them in an order that is not the contour's.
+fn out_of_order(csv: &str) -> String {
+    let (head, rows): (Vec<&str>, Vec<&str>) = csv.lines().partition(|line| line.starts_with(['#', 'f']));
+    let rows = rows.chunks(120).flat_map(|frame| (0..120).map(|index| frame[47 * index % 120]));
+    head.into_iter().chain(rows).map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn rows_that_do_not_follow_the_contour_are_told_once_whatever_the_method() {
+    let in_order = sequence("");
+    let shuffled = out_of_order(&in_order);
+    let told = |command: &str, csv: &str| stderr(&run(command, csv)).matches("do not follow the contour").count();
+    for command in ["identify -", "identify - --method curve", "identify - --method adaptive", "track -"] {
+        assert_eq!(told(command, &shuffled), 1, "{command}");
+        assert_eq!(told(command, &in_order), 0, "{command}");
+    }
+    assert_eq!(told("track - --quiet", &shuffled), 0);
+}
+
+#[test]
+fn outlines_of_pictures_follow_the_contour_however_deep_its_notches_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for spikes in [3.0_f64, 12.0] {
+        let frames: Vec<String> = (0..3_u8)
+            .map(|frame| {
+                let picture = image::GrayImage::from_fn(200, 200, |column, row| {
+                    let (x, y) = (f64::from(column) - 98.0 - f64::from(frame), f64::from(row) - 100.0);
+                    let radius = 90.0 * (0.6 + 0.4 * (spikes * y.atan2(x)).cos() + 0.05 * x / 90.0);
+                    image::Luma([if x.hypot(y) < radius { 255 } else { 0 }])
+                });
+                let path = folder.path().join(format!("{spikes}-{frame}.png"));
+                picture.save(&path).expect("a picture");
+                path.to_str().expect("UTF-8").to_owned()
+            })
+            .collect();
+        let output = run(&format!("identify {}", frames.join(" ")), "");
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(!stderr(&output).contains("contour"), "{}", stderr(&output));
+    }
+}

@@ -42,6 +42,11 @@ impl Default for FilterSettings {
 }
 
 impl FilterSettings {
+    /// Whether changes of the motion are estimated.
+    pub(crate) fn finds_changes(&self) -> bool {
+        self.adaptive && self.process_noise == ProcessNoise::default()
+    }
+
     pub(crate) fn check(&self) -> Result<(), FilterError> {
         let fail = |setting, value, range| Err(FilterError::Setting { setting, value, range });
         let noise = self.process_noise;
