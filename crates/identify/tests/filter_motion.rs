@@ -134,7 +134,7 @@ fn frames_that_show_another_object_are_rejected_and_counted_and_none_of_the_othe
         assert_eq!(step.accepted, frame.corruption.wrong_shape.is_none(), "frame {}", frame.index);
         match step.rejection {
             Some(Rejection::AgreementTooSmall { agreement, smallest }) => {
-                assert!(agreement < smallest && smallest == 0.7)
+                assert!(agreement < smallest && smallest == 0.7);
             }
             other => assert_eq!((other, step.accepted), (None, true), "frame {}", frame.index),
         }
