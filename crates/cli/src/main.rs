@@ -1,6 +1,5 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
-mod batch;
 mod commands;
 mod failure;
 mod frame_ranges;
@@ -16,10 +15,13 @@ mod overlay;
 mod picture_input;
 mod plot;
 mod progress;
+mod queues;
+mod reader;
 mod stdin;
 mod tracking;
 mod trajectory;
 mod truth;
+mod window;
 
 use std::process::ExitCode;
 

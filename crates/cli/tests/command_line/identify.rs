@@ -155,3 +155,44 @@ fn objects_that_are_followed_side_by_side_are_found_as_each_would_be_alone_in_th
     assert_eq!(frames.len(), 15 * shapes.len());
     assert!(frames.iter().enumerate().all(|(line, object)| *object == format!("object {}", line % shapes.len())));
 }
+
+#[test]
+fn what_frames_gave_comes_in_the_order_of_the_input_however_unequal_the_objects_are() {
+    // More points than are read ahead; the first object is most of the work, the last one appears late.
+    let (frames, late) = (150, 100);
+    let sequences = [1600, 60, 60, 200]
+        .map(|points| succeed(&format!("simulate --points {points} --seconds 5 --omega 1 --b 0,0"), ""));
+    let mut csv = String::from("frame,time,x,y,object\n");
+    let mut expected = Vec::new();
+    let mut rows = sequences.each_ref().map(|csv| csv.lines().filter(|row| !row.starts_with(['#', 'f'])).peekable());
+    for frame in 0..frames {
+        for (object, rows) in rows.iter_mut().enumerate() {
+            let is_seen = object < 3 || frame >= late;
+            // Some frames are no outline.
+            let is_point = (frame + object) % 40 == 39;
+            let mut row_count = 0;
+            while let Some(row) = rows.next_if(|row| row.starts_with(&format!("{frame},"))) {
+                if is_seen && (!is_point || row_count == 0) {
+                    csv.push_str(&format!("{row},object {object}\n"));
+                }
+                row_count += 1;
+            }
+            if is_seen {
+                expected.push((format!("object {object}"), frame.to_string(), (!is_point).to_string()));
+            }
+        }
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let trace = folder.path().join("trace.csv");
+    succeed(&format!("identify - --quiet --trace {}", trace.display()), &csv);
+    let trace = std::fs::read_to_string(trace).expect("the trace");
+    let observed: Vec<_> = trace
+        .lines()
+        .skip(1)
+        .map(|row| {
+            let fields: Vec<&str> = row.split(',').collect();
+            (fields[0].to_owned(), fields[1].to_owned(), fields[4].to_owned())
+        })
+        .collect();
+    assert_eq!(observed, expected);
+}
