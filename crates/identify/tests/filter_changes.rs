@@ -93,3 +93,28 @@ fn an_object_that_spins_evenly_and_travels_straight_keeps_its_angular_velocity_t
         }
     }
 }
+
+#[test]
+fn an_object_that_spins_and_travels_keeps_its_pose_where_its_map_is_cut_from_many_frames() {
+    let [omega, v, w] = [1.0, 1.2, 0.0];
+    let thrown = move |t: f64| AffineMotion::from(RigidMotion { omega, b1: v - omega * w * t, b2: w + omega * v * t });
+    for points in [60, 100, 200] {
+        for seed in 0..3 {
+            let settings = Settings { points, noise: 0.006, ..settings(48, seed) };
+            let frames = frames_of(BuiltInShape::Glider, Motion::varying(thrown), settings);
+            let mut run = MotionFilter::new(FilterSettings::default()).expect("settings");
+            let mut worst: f64 = 0.0;
+            for frame in &frames {
+                if run.step(frame.time, &frame.outline).expect("a later frame").accepted {
+                    let pose = run.pose().expect("a pose").into_inner();
+                    let turn = (pose[(1, 0)] - pose[(0, 1)]).atan2(pose[(0, 0)] + pose[(1, 1)]);
+                    worst = worst.max((turn + omega * frame.time).abs());
+                }
+            }
+            let found = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+            let (value, std) = (found.value.expect("known"), found.standard_deviation.expect("known"));
+            let context = format!("{points} points, seed {seed}: {value} {std}, worst {worst}");
+            assert!((value - omega).abs() < 5.0 * std && std < 0.01 && worst < 0.05, "{context}");
+        }
+    }
+}

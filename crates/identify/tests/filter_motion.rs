@@ -301,6 +301,22 @@ fn an_outline_that_few_points_show_is_cut_anew_from_the_first_frames() {
 }
 
 #[test]
+fn forty_points_a_frame_tell_the_motion_whatever_the_first_frames_left_open() {
+    for shape in [BuiltInShape::Bird, BuiltInShape::Van] {
+        for seed in 0..20 {
+            let frames = frames_of(shape, RIGID, Settings { points: 40, noise: 0.005, ..settings(60, seed) });
+            let estimate = filtered(MotionModel::Rigid, &frames).estimate().expect("an estimate");
+            let omega = estimate.parameters().next().expect("omega comes first");
+            let (value, std) = (omega.value.expect("known"), omega.standard_deviation.expect("known"));
+            assert!(
+                (value - RIGID.omega).abs() < 5.0 * std && std < 0.0015,
+                "{shape:?}, seed {seed}: {value}, std {std}"
+            );
+        }
+    }
+}
+
+#[test]
 fn real_masks_with_correlated_errors_are_followed_and_broken_ones_rejected() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/sequences/microrobot_h");
     let Ok(tracker) = std::fs::read_to_string(folder.join("authors_tracker.csv")) else {

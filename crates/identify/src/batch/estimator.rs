@@ -110,7 +110,9 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
     let (mut rounds, mut converged) = (0, false);
     // Nothing to cut from where the filter has begun with another frame.
     while rounds < MOST_ROUNDS && !converged && map.is_begun_with(used[0].1) {
-        let Some(new) = best.recut(&used, points.div_ceil(PLENTY).max(1), take) else { break };
+        let Some(new) = best.recut(&best.placed(used.iter().copied()), points.div_ceil(PLENTY).max(1), take) else {
+            break;
+        };
         best = new;
         rounds += 1;
         let before = mean;

@@ -9,7 +9,6 @@ use super::{
     map_update::Scratch,
     outline_map::{Cell, OutlineMap},
     reading::NO_CELL,
-    withheld::Withheld,
 };
 
 /// Places further than this many spacings from all cells are new.
@@ -36,21 +35,19 @@ impl OutlineMap {
     }
 
     /// A map of the same body frame of what one outline shows, in the pose that this map is in but for its turn, which is unknown as its
-    /// motion is.
+    /// motion is. `None` where that outline does not show the turn either.
     pub(crate) fn begun_anew(&self, outline: &Outline) -> Option<Self> {
         let mut map = Self::without_cells(self.model, self.origin, self.radius);
         map.pose = self.pose;
         map.load(outline);
         let contours = map.contours().collect();
         map.cut(contours, 0.0)?;
-        map.noise_level = self.noise_level;
-        if !map.turn_is_unseen() {
-            map.hide_turn();
-            map.forget(&map.unseen_in_image(&map.pose));
-            map.show_turn();
-            map.turn_is_new = true;
+        if map.turn_is_unseen() {
+            return None;
         }
-        map.withheld = Withheld::default();
+        map.noise_level = self.noise_level;
+        map.turn_is_new = true;
+        map.begin_here_with_any_turn();
         Some(map)
     }
 

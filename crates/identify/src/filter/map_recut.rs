@@ -1,6 +1,6 @@
 //! The map cut anew from the first frames together, once they are aligned.
 use freeform_curve_fit::Outline;
-use nalgebra::Point2;
+use nalgebra::{Matrix3, Point2};
 
 use super::{
     contour::Contour,
@@ -10,12 +10,8 @@ use super::{
 };
 use crate::motion_algebra::map_point;
 
-/// Frames after which the map is cut anew.
-const OCCASIONS: [usize; 3] = [4, 16, 64];
 /// Points of several frames beyond which more of them would not make cells finer.
 pub(crate) const PLENTY: usize = 3200;
-/// With so many points of one frame for each cell there is nothing to be gained.
-const PLENTY_PER_CELL: f64 = 3.5;
 /// Points nearer than so many spacings are one.
 const COINCIDENT: f64 = 0.05;
 /// Share of the noise that the map has seen, which the points are taken to have at least: where those of many frames lie in one place
@@ -29,73 +25,51 @@ const FEWEST_POINTS: usize = 8;
 /// Points in their order along a chain of cells, with how far along it they lie, in cells.
 type Run = Vec<(f64, Point2<f64>)>;
 
-/// The frames that a map was begun from, kept until it has been cut from enough of them.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct FirstFrames {
-    frames: Vec<(f64, Outline)>,
-    points: usize,
-    over: bool,
-}
-
-impl FirstFrames {
-    /// Begins with the first frame of a map.
-    pub(crate) fn begin(time: f64, outline: &Outline) -> Self {
-        Self { frames: vec![(time, outline.clone())], points: outline.point_count(), over: false }
-    }
-
-    /// Forgets what is kept.
-    pub(crate) fn end(&mut self) {
-        *self = Self { over: true, ..Self::default() };
-    }
-
-    /// Keeps a frame that follows the others; whether the map is to be cut from them now.
-    pub(crate) fn take(&mut self, time: f64, outline: &Outline) -> bool {
-        if self.over {
-            return false;
-        }
-        self.frames.push((time, outline.clone()));
-        self.points += outline.point_count();
-        OCCASIONS.contains(&self.frames.len())
-    }
-
-    /// Forgets what is kept unless more frames would make a map of so many cells better.
-    pub(crate) fn end_unless_few(&mut self, cells: usize) {
-        let count = self.frames.len().max(1);
-        let next = OCCASIONS.into_iter().find(|occasion| *occasion > count);
-        let each = self.points / count;
-        if next.is_none_or(|next| next * each > PLENTY) && count > 1 || each as f64 > PLENTY_PER_CELL * cells as f64 {
-            self.end();
-        }
-    }
-
-    pub(crate) fn frames(&self) -> Vec<(f64, &Outline)> {
-        self.frames.iter().map(|(time, outline)| (*time, outline)).collect()
-    }
+/// A frame and the pose, body to image, in which it shows the object.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlacedFrame<'a> {
+    pub(crate) time: f64,
+    pub(crate) outline: &'a Outline,
+    pub(crate) pose: Matrix3<f64>,
 }
 
 impl OutlineMap {
+    /// Frames, the last of which this map stands at, in the poses that its motion puts them in.
+    pub(crate) fn placed<'a>(
+        &self,
+        frames: impl DoubleEndedIterator<Item = (f64, &'a Outline)>,
+    ) -> Vec<PlacedFrame<'a>> {
+        let mut last_time = None;
+        let placed = frames.rev().map(|(time, outline)| {
+            let seconds = time - *last_time.get_or_insert(time);
+            let pose = self.model.flow(&self.motion[..self.information.k], seconds).into_inner() * self.pose;
+            PlacedFrame { time, outline, pose }
+        });
+        let mut placed: Vec<_> = placed.collect();
+        placed.reverse();
+        placed
+    }
+
     /// A map of the same body frame with cells cut from every frame out of `stride`, which are those that this map has taken, and all then
     /// taken one by one. `None` where one of them is not.
     pub(crate) fn recut(
         &self,
-        frames: &[(f64, &Outline)],
+        frames: &[PlacedFrame<'_>],
         stride: usize,
-        take: impl Fn(&mut Self, f64, &Outline) -> MapUpdate,
+        mut take: impl FnMut(&mut Self, f64, &Outline) -> MapUpdate,
     ) -> Option<Self> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
         if self.withheld.is_forgotten || self.turn_is_unknown() {
             return None;
         }
-        let k = self.information.k;
-        let ((first_time, first), last_time) = (frames.first()?, frames.last()?.0);
+        let first = frames.first()?;
         let mut map = Self::without_cells(self.model, self.origin, self.radius);
         let mut points = Vec::new();
-        for (time, outline) in frames.iter().step_by(stride) {
+        for PlacedFrame { outline, pose, .. } in frames.iter().step_by(stride) {
             map.load(outline);
-            let to_image = self.model.flow(&self.motion[..k], time - last_time).into_inner() * self.pose;
-            let inverse = to_image.try_inverse()?;
+            let inverse = pose.try_inverse()?;
             map.scratch.shifts.resize(self.cells.len(), 0.0);
-            self.read_points(&mut map.scratch, &to_image, &[], true);
+            self.read_points(&mut map.scratch, pose, &[], true);
             let Scratch { readings, points: seen, smooth, .. } = &map.scratch;
             for ((reading, p), place) in readings.iter().zip(seen).zip(smooth) {
                 // Where along the outline a point lies its neighbours know better.
@@ -112,12 +86,15 @@ impl OutlineMap {
         }
         let contours =
             runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
-        map.load(first);
+        map.load(first.outline);
+        map.first_pose = self.first_pose;
+        map.pose = self.first_pose.pose;
         map.cut(contours.collect(), LEAST_NOISE * self.sigma)?;
+        map.doubt_first_pose();
         map.motion = self.motion;
         map.noise_level = self.noise_level;
-        let mut before = *first_time;
-        for (time, outline) in &frames[1..] {
+        let mut before = first.time;
+        for PlacedFrame { time, outline, .. } in &frames[1..] {
             if !take(&mut map, time - before, outline).accepted {
                 return None;
             }

@@ -4,6 +4,8 @@ mod arrow_information;
 mod cell_scatter;
 mod contour;
 mod error;
+mod first_frames;
+mod first_pose;
 mod innovation;
 mod map_estimate;
 mod map_growth;

@@ -24,6 +24,8 @@ pub(crate) struct MotionChange {
     kinds: [Change; 2],
     /// Of one variance for both: chance has no more than one occasion.
     of_both: Evidence,
+    /// Whether it has ever changed from one frame to the next by more than such variances tell.
+    pub(crate) was_sudden: bool,
 }
 
 /// One of them.
@@ -35,11 +37,14 @@ struct Change {
     has_changed: bool,
 }
 
-/// Slope of the likelihood by a variance at none, and its Fisher information, over the frames looked back on.
+/// Slope of the likelihood by a variance at none, of every frame in its own standard deviations, over the frames looked back on. Frames in
+/// which much is known count no more than others: their Fisher information is that of a variance of next to none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Evidence {
-    gradient: f64,
-    fisher: f64,
+    slope: f64,
+    /// Roots of the Fisher information: what the slope is for a unit variance.
+    by_variance: f64,
+    frames: f64,
 }
 
 impl MotionChange {
@@ -47,6 +52,11 @@ impl MotionChange {
     pub(crate) fn variances(&self) -> Option<ByKind> {
         let variances = self.kinds.map(|change| change.variance);
         variances.iter().any(|v| *v > 0.0).then_some(variances)
+    }
+
+    /// Whether the motion has been seen to change.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.was_sudden || self.kinds.iter().any(|change| change.variance > 0.0 || change.has_changed)
     }
 
     /// Takes the innovation of an accepted frame of a motion with so many parameters.
@@ -65,7 +75,9 @@ impl MotionChange {
         let is_open = (0..2).all(|kind| open(&kind));
         let fisher =
             if is_open { innovation.fisher_of_both } else { (0..2).filter(open).map(|k| innovation.fisher[k]).sum() };
-        self.of_both.take(gradient, fisher, by_chance);
+        if fisher > 0.0 {
+            self.of_both.take(gradient, fisher, by_chance);
+        }
         let [rates, velocities] = &self.kinds;
         let significant = if rates.has_changed || velocities.has_changed { SIGNIFICANT_AGAIN } else { SIGNIFICANT };
         if self.of_both.deviations() > significant {
@@ -92,22 +104,23 @@ impl Change {
     }
 
     fn begin(&mut self) {
-        let Evidence { gradient, fisher } = std::mem::take(&mut self.evidence);
-        self.variance = gradient / fisher;
+        let Evidence { slope, by_variance, .. } = std::mem::take(&mut self.evidence);
+        self.variance = slope / by_variance;
     }
 }
 
 impl Evidence {
     /// Takes that of one frame, no more than chance may make unless it is beyond that.
     fn take(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
-        let most = if by_chance { EVIDENCE * fisher.sqrt() } else { f64::INFINITY };
-        self.gradient = KEPT * self.gradient + gradient.min(most);
-        self.fisher = KEPT * self.fisher + fisher;
+        let most = if by_chance { EVIDENCE } else { f64::INFINITY };
+        self.slope = KEPT * self.slope + (gradient / fisher.sqrt()).min(most);
+        self.by_variance = KEPT * self.by_variance + fisher.sqrt();
+        self.frames = KEPT * self.frames + 1.0;
     }
 
     /// Slope in standard deviations; 0 where there is none.
     fn deviations(&self) -> f64 {
-        if self.fisher > 0.0 { self.gradient / self.fisher.sqrt() } else { 0.0 }
+        if self.frames > 0.0 { self.slope / self.frames.sqrt() } else { 0.0 }
     }
 }
 

@@ -1,10 +1,10 @@
 use freeform_curve_fit::Outline;
-use nalgebra::{Affine2, Projective2};
+use nalgebra::Projective2;
 
 use super::{
     acquisition::Landmarks,
     error::FilterError,
-    map_recut::FirstFrames,
+    first_frames::FirstFrames,
     map_update::MapUpdate,
     motion_change::{MotionChange, SUDDEN},
     outline_map::{FEWEST_POINTS, OutlineMap},
@@ -15,8 +15,6 @@ use crate::estimate::MotionEstimate;
 
 /// Noise below this many lengths of a cell is never too much.
 const BEND: f64 = 0.1;
-/// Times that a map is cut from the same frames at most.
-const MOST_CUTS: usize = 4;
 /// Frames rejected in a row before the second one was ever found: the first was not the object.
 pub(crate) const FALSE_START: usize = 3;
 /// A map that has taken no more frames than this may have been begun from what is not the object.
@@ -86,20 +84,20 @@ pub struct MotionFilter {
     pub(super) map: Option<OutlineMap>,
     /// Of the first outline, in its image coordinates.
     pub(super) landmarks: Option<Landmarks>,
-    last_time: f64,
+    pub(super) last_time: f64,
     /// Time that the map stands at.
     pub(super) map_time: f64,
     accepted: usize,
     rejected: usize,
     rejected_in_a_row: usize,
     /// Frames that the present map has taken, and that it has not.
-    taken_by_map: usize,
-    refused_by_map: usize,
+    pub(super) taken_by_map: usize,
+    pub(super) refused_by_map: usize,
     restarts: usize,
-    change: MotionChange,
-    motion_changed: bool,
+    pub(super) change: MotionChange,
+    pub(super) motion_changed: bool,
     pub(super) rivals: Rivals,
-    first_frames: FirstFrames,
+    pub(super) first_frames: FirstFrames,
 }
 
 impl MotionFilter {
@@ -142,6 +140,7 @@ impl MotionFilter {
             return Ok(FilterStep { time, phase: self.phase, accepted: true, update: None });
         }
         self.last_time = time;
+        let was_changing = self.change.variances().is_some();
         let update = match self.phase {
             Phase::Tracking => self.track(time, outline),
             _ => self.acquire(time, outline),
@@ -151,7 +150,8 @@ impl MotionFilter {
             self.accepted += 1;
             self.taken_by_map += 1;
             self.rejected_in_a_row = 0;
-            self.keep(time, outline);
+            let changes = !was_changing && self.change.variances().is_some();
+            self.keep(time, outline, changes);
             if self.map.as_mut().is_some_and(OutlineMap::may_show_turn) {
                 self.begin_with_turn(outline);
             }
@@ -166,10 +166,10 @@ impl MotionFilter {
 
     /// Builds the map from a first frame.
     fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
-        self.map = Some(OutlineMap::new(self.settings.model, outline)?);
+        let map = OutlineMap::new(self.settings.model, outline)?;
         self.landmarks = Landmarks::of(outline);
-        self.first_frames = FirstFrames::begin(time, outline);
-        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
+        self.first_frames = FirstFrames::begin(time, outline, &map);
+        self.map = Some(map);
         self.rivals = Rivals::default();
         (self.last_time, self.map_time) = (time, time);
         self.accepted += 1;
@@ -177,71 +177,6 @@ impl MotionFilter {
         self.rejected_in_a_row = 0;
         self.phase = Phase::Acquiring;
         Ok(())
-    }
-
-    /// Keeps one of the first frames, and cuts the map anew once there are enough of them.
-    fn keep(&mut self, time: f64, outline: &Outline) {
-        if self.phase != Phase::Tracking {
-            self.first_frames.end();
-        }
-        if !self.first_frames.take(time, outline) {
-            return;
-        }
-        if self.map.as_ref().is_some_and(OutlineMap::turn_is_unknown) {
-            self.begin_with_turn(outline);
-        } else {
-            self.recut();
-        }
-        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
-    }
-
-    /// Cuts the map anew from the first frames, until it settles.
-    fn recut(&mut self) {
-        let smallest = self.settings.smallest_agreement;
-        let recut = |map: &OutlineMap| {
-            map.recut(&self.first_frames.frames(), 1, |map, seconds, outline| {
-                map.predict(seconds);
-                map.add_process_noise(&self.settings.process_noise, seconds);
-                // That it shows the object has been seen: the noise of the few points on cells seen before tells less.
-                map.update(outline, |update| update.agreement >= smallest)
-            })
-        };
-        let settled = |map: OutlineMap| {
-            // Better aligned frames make a better map, which aligns them better.
-            (0..MOST_CUTS).try_fold((map, false), |(map, settled), _| {
-                if settled {
-                    return Some((map, settled));
-                }
-                let new = recut(&map)?;
-                let settled = (new.pose - map.pose).norm() < new.sigma;
-                Some((new, settled))
-            })
-        };
-        let settled = |map: &OutlineMap| settled(map.clone()).map(|(map, _)| map);
-        if let Some(map) = self.map.as_ref().and_then(settled) {
-            self.rivals.recut(settled);
-            self.map = Some(map);
-            // What was taken for a change may have been what coarse cells left.
-            self.change = MotionChange::default();
-        }
-    }
-
-    /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
-    /// knows.
-    fn begin_with_turn(&mut self, outline: &Outline) {
-        let Some(map) = &mut self.map else { return };
-        let Some(new) = map.begun_anew(outline).filter(|new| !new.turn_is_unseen()) else {
-            map.hide_turn();
-            map.turn_is_new = true;
-            return;
-        };
-        let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
-        self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
-        self.first_frames.end();
-        self.rivals = Rivals::default();
-        self.change = MotionChange::default();
-        (self.taken_by_map, self.refused_by_map) = (1, 0);
-        self.replace(new, self.map_time, Phase::Acquiring);
     }
 
     /// After a rejected frame: look elsewhere, or begin again.
@@ -264,38 +199,66 @@ impl MotionFilter {
 
     /// Predicts and measures.
     fn track(&mut self, time: f64, outline: &Outline) -> Option<MapUpdate> {
-        let map = self.map.as_mut()?;
         let seconds = time - self.map_time;
-        map.predict(seconds);
         self.map_time = time;
+        let (mut map, mut change) = (self.map.take()?, self.change);
+        let update = self.advance(&mut map, &mut change, seconds, outline, false);
+        self.change = change;
+        self.motion_changed |= change.is_seen();
+        let map = self.map.insert(map);
+        map.noise_level.take(update.spread / map.radius);
+        Some(self.rivals.decide(&self.settings, map, update, seconds, outline))
+    }
+
+    /// Predicts a map and measures a frame, and finds how the motion changes. That a frame shows the object may be known already: the
+    /// noise of the few points on cells seen before tells less.
+    pub(super) fn advance(
+        &self,
+        map: &mut OutlineMap,
+        change: &mut MotionChange,
+        seconds: f64,
+        outline: &Outline,
+        is_known: bool,
+    ) -> MapUpdate {
+        map.predict(seconds);
         map.add_process_noise(&self.settings.process_noise, seconds);
-        let adaptive = self.settings.adaptive && self.settings.process_noise == ProcessNoise::default();
-        if let Some(variances) = self.change.variances().filter(|_| adaptive) {
+        if let Some(variances) = change.variances() {
             map.add_change(variances);
-            self.motion_changed = true;
         }
         let parameters = map.information.k;
         let limit = SUDDEN * parameters as f64;
-        let fits = fits(map, self.settings.smallest_agreement);
-        let mut update = map.update(outline, |update| fits(update) && update.innovation <= limit);
+        let (smallest, fits) = (self.settings.smallest_agreement, fits(map, self.settings.smallest_agreement));
+        let shows = |update: &MapUpdate| if is_known { update.agreement >= smallest } else { fits(update) };
+        let mut update = map.update(outline, |update| shows(update) && update.innovation <= limit);
+        if !self.is_adaptive() {
+            return update;
+        }
         let innovation = map.innovation;
-        let is_there = update.agreement >= self.settings.smallest_agreement;
-        if adaptive && !update.accepted && is_there && self.rejected_in_a_row > 0 && innovation.fisher[0] > 0.0 {
+        let is_there = update.agreement >= smallest && (is_known || self.rejected_in_a_row > 0);
+        if !update.accepted && is_there && innovation.fisher[0] > 0.0 {
             // If the outline is there, but for the second time not where it was going, the motion has changed.
             let mut changed = map.clone();
             changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
-            let found = changed.update(outline, fits);
+            let found = changed.update(outline, shows);
             if found.accepted {
                 *map = changed;
-                self.motion_changed = true;
+                change.was_sudden = true;
                 update = found;
             }
         }
-        if adaptive && update.accepted {
-            self.change.take(&innovation, parameters);
+        if update.accepted {
+            change.take(&innovation, parameters);
         }
-        map.noise_level.take(update.spread / map.radius);
-        Some(self.rivals.decide(&self.settings, map, update, seconds, outline))
+        update
+    }
+
+    /// Whether the motion changes, as is seen or as the settings say.
+    pub(super) fn may_change(&self, change: &MotionChange) -> bool {
+        change.is_seen() || self.settings.process_noise != ProcessNoise::default()
+    }
+
+    fn is_adaptive(&self) -> bool {
+        self.settings.adaptive && self.settings.process_noise == ProcessNoise::default()
     }
 
     pub(super) fn replace(&mut self, map: OutlineMap, time: f64, phase: Phase) {

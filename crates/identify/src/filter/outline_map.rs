@@ -7,6 +7,7 @@ use super::{
     cell_scatter::Scatter,
     contour::Contour,
     error::FilterError,
+    first_pose::FirstPose,
     innovation::PoseInnovation,
     map_update::{Piece, Scratch},
     misfit::Misfit,
@@ -75,6 +76,7 @@ pub struct OutlineMap {
     pub(crate) radius: f64,
     /// Body to image.
     pub(crate) pose: Matrix3<f64>,
+    pub(crate) first_pose: FirstPose,
     pub(crate) motion: Coordinates,
     pub(crate) information: ArrowInformation,
     /// Marginal information of pose and motion.
@@ -142,6 +144,7 @@ impl OutlineMap {
             origin,
             radius,
             pose: Matrix3::identity(),
+            first_pose: FirstPose::default(),
             motion: [0.0; MAX_PARAMETERS],
             marginal: information.marginal(),
             information,

@@ -158,7 +158,6 @@ impl OutlineMap {
         // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in
         // what that frame does not show.
         let share = if self.turn_is_new { NEARLY_ALL } else { MOST };
-        worse as f64 > share * (misfits.len() - 1) as f64
-            && (!self.turn_is_new || self.begun_anew(outline).is_some_and(|alone| !alone.turn_is_unseen()))
+        worse as f64 > share * (misfits.len() - 1) as f64 && (!self.turn_is_new || self.begun_anew(outline).is_some())
     }
 }
