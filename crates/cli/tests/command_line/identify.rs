@@ -196,3 +196,26 @@ fn what_frames_gave_comes_in_the_order_of_the_input_however_unequal_the_objects_
         .collect();
     assert_eq!(observed, expected);
 }
+
+#[test]
+fn objects_are_listed_as_they_first_appear_though_it_be_in_a_frame_that_is_no_outline() {
+    // The first frames of the first object and all of the third one are single points; the second object is most of the work.
+    let objects = [("a point at first", 60, 0), ("large", 1600, 0), ("a point", 60, 3), ("late", 60, 5)];
+    let sequences = objects.map(|(_, points, _)| succeed(&format!("simulate --points {points} --seconds 0.5"), ""));
+    let mut csv = String::from("frame,time,x,y,object\n");
+    for frame in 0..15 {
+        for ((name, _, first), sequence) in objects.iter().zip(&sequences).filter(|((_, _, first), _)| frame >= *first)
+        {
+            let is_point = *name == "a point" || *name == "a point at first" && frame < *first + 8;
+            let rows = sequence.lines().filter(|row| row.starts_with(&format!("{frame},")));
+            rows.take(if is_point { 1 } else { usize::MAX }).for_each(|row| csv.push_str(&format!("{row},{name}\n")));
+        }
+    }
+    let document = json(&succeed("identify - --quiet --format json", &csv));
+    let listed = document["objects"].as_array().expect("a list").iter().map(|object| {
+        let count = |field: &str| object[field].as_u64().expect("a number");
+        (object["object"].as_str().expect("a name"), count("frames"), count("frames_rejected"))
+    });
+    let expected = [("a point at first", 15, 8), ("large", 15, 0), ("a point", 12, 12), ("late", 10, 0)];
+    assert_eq!(listed.collect::<Vec<_>>(), expected);
+}
