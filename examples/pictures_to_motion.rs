@@ -1,18 +1,23 @@
-//! From pictures to motion in a loop of one's own: `cargo run --release --example pictures_to_motion -- frames/`.
-use std::collections::HashMap;
+//! From pictures to motion in a loop of one's own, with the default settings of everything but rate and aspect:
+//! `cargo run --release --example pictures_to_motion -- [--fps RATE] [--pixel-aspect WIDTH_OVER_HEIGHT] frames/`.
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::PathBuf;
 
-use freeform_motion::identify::{FilterSettings, MotionFilter};
+use freeform_motion::identify::{FilterSettings, MotionEstimate, MotionFilter};
 use freeform_motion::outline_io::{
     Clipping, PictureOutlines, PictureSequence, PictureSettings, Selection, SequenceSettings, TraceSettings,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let paths: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
-    let pictures = PictureSequence::open(&paths, SequenceSettings::default())?;
-    let trace = TraceSettings { clipping: Clipping::Open, minimum_area: 100, ..TraceSettings::default() };
+    let Arguments { frames_per_second, pixel_aspect, paths } = arguments()?;
+    let pictures =
+        PictureSequence::open(&paths, SequenceSettings { frames_per_second, ..SequenceSettings::default() })?;
+    // A video may say its own aspect.
+    let pixel_aspect = pixel_aspect.or(pictures.pixel_aspect()).unwrap_or(1.0);
+    let trace = TraceSettings { clipping: Clipping::Open, minimum_area: 100, pixel_aspect, ..TraceSettings::default() };
     let settings = PictureSettings { trace, selection: Selection::All, ..PictureSettings::default() };
-    let mut filters: HashMap<u64, MotionFilter> = HashMap::new();
+    let mut filters: BTreeMap<u64, MotionFilter> = BTreeMap::new();
     for traced in PictureOutlines::new(pictures, settings)? {
         // What is wrong with one picture does not end the sequence.
         let traced = match traced {
@@ -28,16 +33,55 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Ok(objects) => {
                 for (name, object) in objects {
                     let filter = match filters.entry(name) {
-                        std::collections::hash_map::Entry::Occupied(entry) => entry.into_mut(),
-                        std::collections::hash_map::Entry::Vacant(entry) => {
-                            entry.insert(MotionFilter::new(FilterSettings::default())?)
-                        }
+                        Entry::Occupied(entry) => entry.into_mut(),
+                        Entry::Vacant(entry) => entry.insert(MotionFilter::new(FilterSettings::default())?),
                     };
                     let step = filter.step(time, &object.outline)?;
-                    println!("{time:.3} s, object {name}: {:?}, {:?}", step.phase, filter.estimate());
+                    let used = if step.accepted { "used" } else { "rejected" };
+                    println!("{time:.3} s, object {name}, {used}: {}", in_words(filter.estimate()));
                 }
             }
         }
     }
     Ok(())
+}
+
+/// The parameters by name, each with its standard deviation.
+fn in_words(estimate: Option<MotionEstimate>) -> String {
+    let Some(estimate) = estimate else { return "no motion known yet".to_owned() };
+    let parameters = estimate.parameters().map(|p| match (p.value, p.standard_deviation) {
+        (Some(value), Some(deviation)) => format!("{} = {value:.4} +- {deviation:.4} {}", p.name, p.unit),
+        _ => format!("{} not observable", p.name),
+    });
+    parameters.collect::<Vec<_>>().join(", ")
+}
+
+struct Arguments {
+    /// `None` for what a video or animation says, else 30.
+    frames_per_second: Option<f64>,
+    /// Width of a pixel over its height; `None` for what a video says, else 1.
+    pixel_aspect: Option<f64>,
+    paths: Vec<PathBuf>,
+}
+
+fn arguments() -> Result<Arguments, Box<dyn std::error::Error>> {
+    let mut found = Arguments { frames_per_second: None, pixel_aspect: None, paths: Vec::new() };
+    let mut rest = std::env::args_os().skip(1);
+    while let Some(argument) = rest.next() {
+        let value = match argument.to_str() {
+            Some("--fps") => &mut found.frames_per_second,
+            Some("--pixel-aspect") => &mut found.pixel_aspect,
+            _ => {
+                found.paths.push(PathBuf::from(argument));
+                continue;
+            }
+        };
+        let text = rest.next().ok_or_else(|| format!("{} needs a number", argument.display()))?;
+        *value =
+            Some(text.to_string_lossy().parse::<f64>().map_err(|error| format!("{}: {error}", argument.display()))?);
+    }
+    if found.paths.is_empty() {
+        return Err("usage: pictures_to_motion [--fps RATE] [--pixel-aspect RATIO] PICTURES...".into());
+    }
+    Ok(found)
 }

@@ -1,20 +1,18 @@
 //! The identifier of one object, whichever method it is.
 use freeform_motion::curve_fit::{Fit, Outline};
 use freeform_motion::identify::{
-    CurveFilterSettings, CurveStep, FilterSettings, FilterStep, MapUpdate, MotionEstimate, MotionFilter, MotionState,
-    Phase, ProcessNoise, WholeCurveFilter,
+    CurveFilterSettings, FilterSettings, MotionEstimate, MotionFilter, MotionState, Phase, PointVelocity, ProcessNoise,
+    WholeCurveFilter,
 };
 use freeform_motion::{Pipeline, PipelineSettings};
 
 use crate::args::{IdentifyMethod, TrackOptions};
 use crate::failure::Failure;
 use crate::output::significant;
+use crate::turns::Turns;
 
 /// Share of rejected frames that is worth a warning.
 const MANY_REJECTED: f64 = 0.05;
-
-/// Squared innovation per parameter beyond which the motion filter takes no frame that should go on as predicted.
-const LARGEST_INNOVATION: f64 = 25.0;
 
 /// What is known of one object.
 #[derive(Debug)]
@@ -48,6 +46,8 @@ pub(crate) struct Step {
     pub(crate) innovation: Option<f64>,
     /// Pose and motion, where the method tells them.
     pub(crate) state: Option<MotionState>,
+    /// Turns that the outlines do not decide between.
+    pub(crate) ambiguity: Option<Turns>,
     pub(crate) rejected_because: Option<String>,
 }
 
@@ -78,8 +78,7 @@ impl Identifier {
                     let phase = if result.estimate.is_some() { "adapt" } else { "start" };
                     let residual = Some(result.fit.diagnostics().geometric_residual);
                     let (estimate, fit) = (result.estimate, Some(result.fit));
-                    let (residual, innovation, state) = (residual, None, None);
-                    Step { phase: Some(phase), estimate, fit, residual, innovation, state, rejected_because: None }
+                    Step { phase: Some(phase), estimate, fit, residual, ..Step::EMPTY }
                 }
                 Err(error) => Step::refused(&error),
             },
@@ -87,11 +86,12 @@ impl Identifier {
                 Ok(step) => {
                     let estimate = object.filter.estimate();
                     object.last_known = estimate.map(|estimate| (time, estimate)).or(object.last_known);
-                    let rejected_because = (!step.accepted).then(|| why_rejected(&step, object.filter.settings()));
+                    let rejected_because = step.rejection.map(|rejection| rejection.to_string());
                     let residual = step.update.and_then(|update| update.noise);
                     let innovation = step.update.map(|update| update.innovation);
                     let (phase, state) = (Some(phase_name(step.phase)), object.filter.state());
-                    Step { phase, estimate, fit: None, residual, innovation, state, rejected_because }
+                    let ambiguity = object.filter.ambiguity().map(Turns::from);
+                    Step { phase, estimate, residual, innovation, state, ambiguity, rejected_because, ..Step::EMPTY }
                 }
                 Err(error) => Step::refused(&error),
             },
@@ -99,10 +99,9 @@ impl Identifier {
                 Ok(step) => {
                     let estimate = object.filter.estimate();
                     object.last_known = estimate.map(|estimate| (time, estimate)).or(object.last_known);
-                    let rejected_because = (!step.accepted).then(|| why_off_curve(&step));
+                    let rejected_because = step.rejection.map(|rejection| rejection.to_string());
                     let (phase, state) = (Some(phase_name(step.phase)), object.filter.state());
-                    let (residual, innovation) = (None, None);
-                    Step { phase, estimate, fit: None, residual, innovation, state, rejected_because }
+                    Step { phase, estimate, state, rejected_because, ..Step::EMPTY }
                 }
                 Err(error) => Step::refused(&error),
             },
@@ -118,6 +117,22 @@ impl Identifier {
         }
     }
 
+    /// Velocity of the middle of the object at the end, where the method tells it and it is known.
+    pub(crate) fn velocity(&self) -> Option<PointVelocity> {
+        match self {
+            Self::Filter(object) => object.filter.velocity(),
+            Self::Adaptive(_) | Self::Curve(_) => None,
+        }
+    }
+
+    /// Turns that the outlines do not decide between, if any.
+    pub(crate) fn ambiguity(&self) -> Option<Turns> {
+        match self {
+            Self::Filter(object) => object.filter.ambiguity().map(Turns::from),
+            Self::Adaptive(_) | Self::Curve(_) => None,
+        }
+    }
+
     /// Whether the motion was seen to change, which a smoother that takes it for constant does not know.
     pub(crate) fn motion_changed(&self) -> bool {
         matches!(self, Self::Filter(object) if object.filter.motion_changed())
@@ -130,10 +145,12 @@ impl Identifier {
             Self::Filter(object) => {
                 let filter = &object.filter;
                 let frames = (filter.frames_accepted(), filter.frames_rejected());
+                let ambiguity = self.ambiguity();
+                let ambiguous = ambiguity.as_ref().map_or(&[][..], |turns| &turns.parameters);
                 let mut warnings =
-                    filter_warnings(object.last_known.as_ref(), filter.phase(), filter.restarts(), frames);
-                if filter.is_ambiguous() {
-                    warnings.push("ambiguous: another turn explains the outlines as well".to_owned());
+                    filter_warnings(object.last_known.as_ref(), ambiguous, filter.phase(), filter.restarts(), frames);
+                if let Some(turns) = ambiguity {
+                    warnings.push(format!("ambiguous: {turns}"));
                 }
                 if filter.motion_changed() {
                     warnings.push("the motion changed on the way: these are its values at the end".to_owned());
@@ -143,7 +160,7 @@ impl Identifier {
             Self::Curve(object) => {
                 let filter = &object.filter;
                 let frames = (filter.frames_accepted(), filter.frames_rejected());
-                filter_warnings(object.last_known.as_ref(), filter.phase(), filter.restarts(), frames)
+                filter_warnings(object.last_known.as_ref(), &[], filter.phase(), filter.restarts(), frames)
             }
         }
     }
@@ -151,13 +168,15 @@ impl Identifier {
 
 fn filter_warnings(
     last_known: Option<&(f64, MotionEstimate)>,
+    ambiguous: &[&str],
     phase: Phase,
     restarts: usize,
     (accepted, rejected): (usize, usize),
 ) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some((_, estimate)) = last_known {
-        let unknown: Vec<_> = estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect();
+        let unknown = estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name);
+        let unknown: Vec<_> = unknown.filter(|name| !ambiguous.contains(name)).collect();
         if !unknown.is_empty() {
             warnings.push(format!("not observable from these outlines: {}", unknown.join(", ")));
         }
@@ -183,16 +202,19 @@ fn filter_warnings(
 }
 
 impl Step {
+    const EMPTY: Self = Self {
+        phase: None,
+        estimate: None,
+        fit: None,
+        residual: None,
+        innovation: None,
+        state: None,
+        ambiguity: None,
+        rejected_because: None,
+    };
+
     fn refused(error: &dyn std::error::Error) -> Self {
-        Self {
-            phase: None,
-            estimate: None,
-            fit: None,
-            residual: None,
-            innovation: None,
-            state: None,
-            rejected_because: Some(with_causes(error)),
-        }
+        Self { rejected_because: Some(with_causes(error)), ..Self::EMPTY }
     }
 }
 
@@ -231,35 +253,6 @@ fn phase_name(phase: Phase) -> &'static str {
         Phase::Acquiring => "acquiring",
         Phase::Tracking => "tracking",
         Phase::Lost => "lost",
-    }
-}
-
-fn why_rejected(step: &FilterStep, settings: &FilterSettings) -> String {
-    match step.update {
-        Some(update) if update.agreement < settings.smallest_agreement => {
-            format!("does not fit the object, {:.0} % of the points lie on its outline", 100.0 * update.agreement)
-        }
-        Some(update) if update.innovation > settings.model.parameter_count() as f64 * LARGEST_INNOVATION => {
-            format!("does not go on from the frames before it, squared innovation {:.0}", update.innovation)
-        }
-        Some(MapUpdate { noise: Some(noise), .. }) => {
-            format!(
-                "its points scatter by {} about the outline known, more than those of other frames",
-                significant(noise, 2)
-            )
-        }
-        Some(_) | None => "the object was not found".to_owned(),
-    }
-}
-
-fn why_off_curve(step: &CurveStep) -> String {
-    if step.innovation > 0.0 {
-        format!(
-            "does not go on from the frames before it, misfit {:.2}, squared innovation {:.0}",
-            step.misfit, step.innovation
-        )
-    } else {
-        format!("does not fit the curve, misfit {:.2}", step.misfit)
     }
 }
 

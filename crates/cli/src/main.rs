@@ -1,6 +1,7 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
 mod commands;
+mod contour_order;
 mod failure;
 mod frame_ranges;
 mod history;
@@ -21,6 +22,7 @@ mod stdin;
 mod tracking;
 mod trajectory;
 mod truth;
+mod turns;
 mod window;
 
 use std::process::ExitCode;

@@ -9,6 +9,8 @@ use crate::args::PictureOptions;
 pub(crate) struct MeaningOfB {
     pub(crate) point: &'static str,
     pub(crate) unit: String,
+    /// The unit as it stands in a table, that of its model where there is none of its own.
+    pub(crate) short_unit: Option<&'static str>,
     /// What it was divided by.
     pub(crate) scale: Option<CameraScale>,
 }
@@ -16,7 +18,7 @@ pub(crate) struct MeaningOfB {
 impl MeaningOfB {
     /// In the coordinates of a file.
     pub(crate) fn in_coordinates(scale: Option<CameraScale>) -> Self {
-        Self { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), scale }
+        Self { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), short_unit: None, scale }
     }
 
     /// In pictures, with pixels of some width over height.
@@ -27,13 +29,19 @@ impl MeaningOfB {
             1.0 => "pixels/s".to_owned(),
             size => format!("lengths/s, a pixel {size} high"),
         };
-        Self { point, unit, scale }
+        let short_unit = (scale.is_none() && unit == "pixels/s").then_some("px/s");
+        Self { point, unit, short_unit, scale }
+    }
+
+    /// Unit of a velocity, and what it was divided by.
+    pub(crate) fn of_velocity(&self) -> String {
+        let scale = self.scale.map_or_else(String::new, |scale| format!(", over f/Z0 = {scale}"));
+        format!("{}{scale}", self.unit)
     }
 }
 
 impl fmt::Display for MeaningOfB {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "velocity at {}, in {}", self.point, self.unit)?;
-        self.scale.map_or(Ok(()), |scale| write!(f, ", over f/Z0 = {scale}"))
+        write!(f, "velocity at {}, in {}", self.point, self.of_velocity())
     }
 }

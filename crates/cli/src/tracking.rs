@@ -4,12 +4,13 @@ use std::rc::Rc;
 use std::thread;
 
 use freeform_motion::curve_fit::Fit;
-use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate};
+use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate, PointVelocity};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use nalgebra::Matrix3;
 
 use crate::args::{IdentifyMethod, TrackOptions};
+use crate::contour_order::ContourOrder;
 use crate::failure::Failure;
 use crate::frame_ranges::FrameRanges;
 use crate::identifier::{Identifier, Step};
@@ -17,6 +18,7 @@ use crate::input::{Input, Item, SeenIn};
 use crate::left_out::Missing;
 use crate::queues::{Queues, SharedIdentifier};
 use crate::reader::{Pace, Reader};
+use crate::turns::Turns;
 use crate::window::{Pending, Window};
 
 /// Reasons told of frames of an object that were rejected, and of pictures left out.
@@ -41,8 +43,12 @@ pub(crate) struct Observation {
     pub(crate) residual: Option<f64>,
     /// Squared innovation of pose and motion in units of its predicted covariance (filter).
     pub(crate) innovation: Option<f64>,
+    /// Turns that the outlines so far do not decide between (filter).
+    pub(crate) ambiguity: Option<Turns>,
     /// Why the frame was not used; `None` where it was.
     pub(crate) rejected_because: Option<String>,
+    /// That points do not follow the contour, told once of every object.
+    pub(crate) out_of_order: Option<String>,
 }
 
 impl Observation {
@@ -102,7 +108,24 @@ pub(crate) struct ObjectResult {
     /// Why the first of them was rejected.
     pub(crate) first_rejection: Option<String>,
     pub(crate) estimate: Option<Estimate>,
+    /// Velocity of the object's middle at the end, as its motion is reported: in space where a camera scale was given.
+    pub(crate) velocity: Option<PointVelocity>,
+    /// Turns that the outlines do not decide between.
+    pub(crate) ambiguity: Option<Turns>,
     pub(crate) warnings: Vec<String>,
+}
+
+/// A velocity as it is reported; `None` where a number is not finite.
+fn in_space(velocity: PointVelocity, scale: Option<CameraScale>) -> Option<PointVelocity> {
+    let per_length = 1.0 / scale.map_or(1.0, CameraScale::value);
+    let PointVelocity { point, velocity, covariance } = velocity;
+    let velocity = PointVelocity {
+        point: point * per_length,
+        velocity: velocity * per_length,
+        covariance: covariance * (per_length * per_length),
+    };
+    let numbers = velocity.point.iter().chain(&velocity.velocity).chain(&velocity.covariance);
+    numbers.copied().all(f64::is_finite).then_some(velocity)
 }
 
 /// Follows every object of a sequence.
@@ -117,6 +140,7 @@ pub(crate) struct Tracking {
 struct Object {
     name: String,
     identifier: SharedIdentifier,
+    contour_order: ContourOrder,
     frames: usize,
     rejected: usize,
     reasons: Vec<String>,
@@ -230,7 +254,9 @@ impl Tracking {
         let scale = self.options.scale;
         let in_place = |reason| format!("frame {} of object {:?}: {reason}", frame.frame, frame.object);
         let rejected_because = step.rejected_because.map(in_place);
-        self.objects[position].count(frame.frame, rejected_because.as_deref());
+        let object = &mut self.objects[position];
+        object.count(frame.frame, rejected_because.as_deref());
+        let out_of_order = object.contour_order.look_at(frame).map(str::to_owned);
         Observation {
             object: frame.object.clone(),
             frame: frame.frame,
@@ -241,7 +267,9 @@ impl Tracking {
             fit: step.fit,
             residual: step.residual,
             innovation: step.innovation,
+            ambiguity: step.ambiguity,
             rejected_because,
+            out_of_order,
         }
     }
 
@@ -258,13 +286,20 @@ impl Tracking {
             fit: None,
             residual: None,
             innovation: None,
+            ambiguity: None,
             rejected_because: Some(reason.to_owned()),
+            out_of_order: None,
         }
     }
 
     /// Whether the motion of any object was seen to change.
     pub(crate) fn motion_changed(&self) -> bool {
         self.objects.iter().any(|object| object.identifier.hold().motion_changed())
+    }
+
+    /// The objects whose points do not follow the contour, and the warning of each.
+    pub(crate) fn out_of_order(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.objects.iter().filter_map(|object| Some((object.name.as_str(), object.contour_order.warning()?)))
     }
 
     /// The results so far, in the order in which the objects first appeared.
@@ -276,7 +311,9 @@ impl Tracking {
         let identifier = object.identifier.hold();
         let raw = identifier.estimate();
         let estimate = raw.and_then(|estimate| Estimate::of(estimate, self.options.scale));
-        let mut warnings = identifier.warnings();
+        // First, as it is the reason for others.
+        let out_of_order = object.contour_order.warning().map(str::to_owned);
+        let mut warnings: Vec<String> = out_of_order.into_iter().chain(identifier.warnings()).collect();
         if raw.is_some() && estimate.is_none() {
             warnings.push("the identifier diverged: its numbers are not finite".to_owned());
         }
@@ -293,6 +330,8 @@ impl Tracking {
             frames_rejected: object.rejected,
             first_rejection: object.reasons.first().cloned(),
             estimate,
+            velocity: identifier.velocity().and_then(|velocity| in_space(velocity, self.options.scale)),
+            ambiguity: identifier.ambiguity(),
             warnings,
         }
     }
@@ -305,8 +344,15 @@ impl Tracking {
         let identifier = SharedIdentifier::new(Identifier::new(&self.options)?);
         let (name, position) = (name.to_owned(), self.objects.len());
         self.positions.insert(name.clone(), position);
-        let (reasons, rejected_later) = (Vec::new(), FrameRanges::default());
-        self.objects.push(Object { name, identifier, frames: 0, rejected: 0, reasons, rejected_later });
+        self.objects.push(Object {
+            name,
+            identifier,
+            contour_order: ContourOrder::default(),
+            frames: 0,
+            rejected: 0,
+            reasons: Vec::new(),
+            rejected_later: FrameRanges::default(),
+        });
         Ok(position)
     }
 }

@@ -61,6 +61,30 @@ pub struct BoundaryPoint {
 /// g' / sigma^2` with g the derivative of the normal displacement by the pose at time 0 and the motion parameters. The
 /// bound is the block of `J^-1` of the motion. It holds for points drawn independently along the outline; regular
 /// spacing can beat it slightly.
+///
+/// ```
+/// use freeform_identify::{BoundaryPoint, CramerRaoBound};
+/// use freeform_riccati::MotionModel;
+/// use nalgebra::{Point2, Vector2};
+///
+/// // How well can 30 frames a second of 300 points with noise 0.005 tell how fast an ellipse turns, after one second?
+/// let omega = 0.5;
+/// let mut bound = CramerRaoBound::new(MotionModel::Rigid, &[omega, 0.0, 0.0])?;
+/// for frame in 0..30 {
+///     let time = f64::from(frame) / 30.0;
+///     let pose = MotionModel::Rigid.flow(&[omega, 0.0, 0.0], time);
+///     let points = (0..300).map(|i| {
+///         let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+///         let normal = Vector2::new(0.3 * t.cos(), 0.5 * t.sin()).normalize();
+///         BoundaryPoint { point: pose * Point2::new(0.5 * t.cos(), 0.3 * t.sin()), normal: pose.matrix().fixed_view::<2, 2>(0, 0) * normal }
+///     });
+///     bound.add_frame(time, points, 0.005, 1.0)?;
+/// }
+/// let covariance = bound.covariance()?;
+/// let of_omega = covariance.standard_deviations().next().flatten().expect("an ellipse is not round");
+/// assert!(of_omega > 0.0005 && of_omega < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct CramerRaoBound {
     model: MotionModel,

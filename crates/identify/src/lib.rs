@@ -1,30 +1,37 @@
-//! Identifies the motion of a planar curve from its moving lines.
+//! Identifies how a planar curve moves, from its outlines or from its moving lines, in four ways:
 //!
-//! A closed curve given by an implicit polynomial is a sum of products of complex lines `x + l y + k`, and under a motion of
-//! the plane every line follows a Riccati equation in which the motion parameters are linear. [`AdaptiveIdentifier`] finds
-//! them from the conjugate pairs of lines frame by frame, by the adaptive law of M. Unel and B. K. Ghosh, *Motion
-//! identification of planar free-form objects* (equations 19 to 22), by that law with the structure of its matrices
-//! known, or by least squares on the filtered equations: see [`AdaptiveLaw`]. A [`MotionEstimate`] names the parameters that
-//! the outlines tell nothing of.
+//! - [`MotionFilter`]: outline, pose and motion together, frame by frame, with standard deviations, near the Cramer-Rao bound from the
+//!   third frame on and robust to hidden arcs, outliers and wrong frames. Take it first.
+//! - [`WholeCurveFilter`]: one implicit polynomial that all frames share, estimated with the motion; no pairing of points or lines.
+//! - [`AdaptiveIdentifier`]: the adaptive law of M. Unel and B. K. Ghosh, *Motion identification of planar free-form objects*
+//!   (equations 19 to 22), or others ([`AdaptiveLaw`]), on complex lines `x + l y + k`. A closed curve given by an implicit polynomial
+//!   is a sum of products of such lines, and under a motion of the plane every line follows a Riccati equation in which the motion
+//!   parameters are linear.
+//! - [`estimate_batch`]: a constant motion from all frames of a recording at once; [`smooth`] gives all poses of one.
+//!
+//! Motions are rigid, similarity, affine or projective (`freeform_riccati::MotionModel`; the adaptive law: up to affine). A
+//! [`MotionEstimate`] names the parameters that the outlines tell nothing of. [`CramerRaoBound`] is what no unbiased estimator can
+//! better, [`baseline`] what the motion filter is compared against.
 //!
 //! ```
-//! use freeform_decompose::Line;
-//! use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings};
-//! use freeform_riccati::{RigidMotion, line_flow};
-//! use nalgebra::Complex;
+//! use freeform_curve_fit::Outline;
+//! use freeform_identify::{FilterSettings, MotionFilter};
+//! use nalgebra::{Point2, Rotation2};
 //!
-//! let motion = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.4 };
-//! let line = Line { l: Complex::new(0.4, 0.7), k: Complex::new(0.1, -0.2) };
-//!
-//! let settings = AdaptiveSettings { law: AdaptiveLaw::FilteredLeastSquares, ..AdaptiveSettings::default() };
-//! let mut identifier = AdaptiveIdentifier::new(settings)?;
-//! for frame in 0..60 {
+//! let mut filter = MotionFilter::new(FilterSettings::default())?;
+//! for frame in 0..30 {
 //!     let time = f64::from(frame) / 30.0;
-//!     let (moved, _) = line_flow(&motion.generator(), &line, time)?;
-//!     identifier.step(time, &[moved])?;
+//!     // Points in their order along an egg that goes round the origin, clockwise by 1.5 rad/s.
+//!     let egg = (0..300).map(|i| {
+//!         let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+//!         Rotation2::new(-1.5 * time) * Point2::new(1.0 + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
+//!     });
+//!     filter.step(time, &Outline::closed(egg.collect())?)?;
 //! }
-//! let estimate = identifier.estimate().expect("more than one frame");
-//! assert!((estimate.values()[0] - motion.omega).abs() < 0.01);
+//! let estimate = filter.estimate().expect("more than one frame");
+//! let omega = estimate.parameters().next().expect("omega, b1 and b2");
+//! println!("{} = {:?} +- {:?} {}", omega.name, omega.value, omega.standard_deviation, omega.unit);
+//! assert!(omega.value.is_some_and(|value| (value - 1.5).abs() < 0.01));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod adaptive;
@@ -39,6 +46,7 @@ mod information;
 mod motion_algebra;
 mod motion_state;
 mod observability;
+mod point_velocity;
 mod smoother;
 mod whole_curve;
 
@@ -49,10 +57,14 @@ pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
 pub use error::IdentifyError;
 pub use estimate::{MotionEstimate, ParameterEstimate};
-pub use filter::{FilterError, FilterSettings, FilterStep, MapUpdate, MotionFilter, OutlineMap, Phase, ProcessNoise};
+pub use filter::{
+    Ambiguity, FilterError, FilterSettings, FilterStep, MapUpdate, MotionFilter, OutlineMap, Phase, ProcessNoise,
+    Rejection,
+};
 pub use motion_state::{MotionState, PoseParameter};
+pub use point_velocity::PointVelocity;
 pub use smoother::{SmootherError, smooth};
-pub use whole_curve::{CurveFilterSettings, CurveStep, WholeCurveFilter};
+pub use whole_curve::{CurveFilterSettings, CurveRejection, CurveStep, WholeCurveFilter};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -4,7 +4,7 @@ mod filter_support;
 use filter_support::{filter, filtered, frames_of, settings};
 use freeform_curve_fit::Outline;
 use freeform_identify::{
-    BoundaryPoint, CramerRaoBound, FilterError, FilterSettings, MotionFilter, Phase, ProcessNoise,
+    BoundaryPoint, CramerRaoBound, FilterError, FilterSettings, MotionFilter, Phase, ProcessNoise, Rejection,
 };
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Frame, Occlusion, Sampling, Settings, Shape};
@@ -132,8 +132,52 @@ fn frames_that_show_another_object_are_rejected_and_counted_and_none_of_the_othe
     for frame in &frames {
         let step = filter.step(frame.time, &frame.outline).expect("increasing times");
         assert_eq!(step.accepted, frame.corruption.wrong_shape.is_none(), "frame {}", frame.index);
+        match step.rejection {
+            Some(Rejection::AgreementTooSmall { agreement, smallest }) => {
+                assert!(agreement < smallest && smallest == 0.7)
+            }
+            other => assert_eq!((other, step.accepted), (None, true), "frame {}", frame.index),
+        }
     }
     assert_eq!((filter.frames_rejected(), filter.frames_accepted()), (wrong, frames.len() - wrong));
+}
+
+/// Rejection of a last frame that is changed.
+fn rejection_of_last(change: impl Fn(Point2<f64>, usize) -> Point2<f64>) -> Option<Rejection> {
+    let frames = frames_of(BuiltInShape::Bird, RIGID, settings(30, 8));
+    let mut filter = filtered(MotionModel::Rigid, &frames[..29]);
+    let changed = frames[29].outline.points().enumerate().map(|(index, p)| change(*p, index)).collect();
+    let outline = Outline::closed(changed).expect("an outline");
+    filter.step(frames[29].time, &outline).expect("increasing times").rejection
+}
+
+#[test]
+fn a_frame_that_jumps_and_one_whose_points_scatter_are_rejected_for_that() {
+    assert_eq!(rejection_of_last(|p, _| p), None);
+    let jumped = rejection_of_last(|p, _| p + Vector2::new(0.02, 0.02)).expect("rejected");
+    let Rejection::InnovationTooLarge { innovation, largest } = jumped else { panic!("{jumped}") };
+    assert!(innovation > largest && jumped.to_string().starts_with("does not go on"), "{jumped}");
+    let scattered = rejection_of_last(|p, index| p * if index % 2 == 0 { 1.05 } else { 0.95 }).expect("rejected");
+    let Rejection::NoiseTooLarge { noise } = scattered else { panic!("{scattered}") };
+    assert!(noise > 0.01 && scattered.to_string().contains("scatter by 0.0"), "{scattered}");
+}
+
+#[test]
+fn the_velocity_of_the_middle_is_known_with_a_standard_deviation_that_holds() {
+    let motion = RigidMotion { omega: 2.0, b1: -5.0, b2: 4.0 };
+    let truth = motion.generator();
+    let (mut squares, runs) = (0.0, 30);
+    for seed in 0..runs {
+        let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Bird, motion, settings(8, seed)));
+        let found = run.velocity().expect("known");
+        let error = found.velocity - (truth * found.point.to_homogeneous()).xy();
+        squares += error.dot(&(found.covariance.try_inverse().expect("regular") * error)) / 2.0;
+        let last = run.map().expect("a map").outline_points().map(|p| p.coords).collect::<Vec<_>>();
+        let middle = Point2::from(last.iter().sum::<Vector2<f64>>() / last.len() as f64);
+        assert!((middle - found.point).norm() < 0.02, "{middle} {}", found.point);
+    }
+    let mean = squares / runs as f64;
+    assert!((0.6..1.6).contains(&mean), "{mean}");
 }
 
 #[test]
@@ -157,6 +201,7 @@ fn a_map_of_few_frames_that_more_speak_against_than_for_is_begun_anew() {
     let run = filtered(MotionModel::Rigid, &frames);
     // Three frames of the van, four of the bird against it, the last of which begins the new map.
     assert_eq!((run.restarts(), run.frames_rejected()), (1, 4));
+    assert_eq!(run.frames_accepted() + run.frames_rejected(), frames.len());
     let bound = bound(BuiltInShape::Bird, MotionModel::Rigid, RIGID.into(), 24, 1.0);
     assert!(ratios(&run, &values(MotionModel::Rigid, RIGID.into()), &bound).iter().all(|r| r.0.abs() < 5.0));
 }

@@ -6,7 +6,7 @@ use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_identify::MotionFilter;
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Camera, Frame, Scene, Settings, Shape, Simulator};
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
@@ -149,15 +149,38 @@ fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_d
     let turn = 50.0_f64.to_radians();
     let two = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0]);
     assert!(two.is_ambiguous() && omega(&two).value.is_none(), "{:?} {:?}", omega(&two), two.rival_turns());
+    let ambiguity = two.ambiguity().expect("two turns");
+    assert!(ambiguity.parameters.contains(&"omega") && two.velocity().is_none(), "{ambiguity:?}");
+    let degrees = |turn: f64| turn.to_degrees().round();
+    let rivals: Vec<f64> = ambiguity.rival_turns.iter().map(|turn| degrees(*turn)).collect();
+    assert_eq!((degrees(ambiguity.turn), rivals), (40.0, vec![-50.0]));
     // It moves along an arc, which no other turn would.
     let three = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0, 2.0]);
     let stated = omega(&three).value.expect("decided");
     assert!(!three.is_ambiguous() && (stated - turn).abs() < 0.02, "{stated}");
+    assert!(three.ambiguity().is_none() && three.velocity().is_some());
     // Nothing tells how often a square that stays in its place has turned, unless it is little.
     let in_place = seen_at(BuiltInShape::Square, turn, 0.0, &[0.0, 1.0, 2.0]);
     assert!(in_place.is_ambiguous() && omega(&in_place).value.is_none(), "{:?}", in_place.rival_turns());
     let little = seen_at(BuiltInShape::Square, 0.4 * turn, 0.0, &[0.0, 1.0, 2.0]);
     assert!(!little.is_ambiguous() && (omega(&little).value.expect("stated") - 0.4 * turn).abs() < 0.02);
+}
+
+#[test]
+fn a_circle_at_rest_far_from_the_origin_shows_the_velocity_of_its_middle_though_not_its_turn() {
+    for seed in 0..4 {
+        let mut frames = frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(30, seed));
+        for frame in &mut frames {
+            let moved = frame.outline.points().map(|p| p + Vector2::new(3.0, 4.0)).collect();
+            frame.outline = Outline::closed(moved).expect("an outline");
+        }
+        let run = filtered(MotionModel::Rigid, &frames);
+        assert!(!observable(&run)[0], "seed {seed}");
+        let found = run.velocity().expect("known");
+        let std = found.standard_deviations();
+        let is_none = found.velocity.iter().zip(&std).all(|(velocity, std)| velocity.abs() < 5.0 * std);
+        assert!(std.max() < 0.01 && is_none, "seed {seed}: {found:?}");
+    }
 }
 
 /// What of an outline lies left of `edge`.

@@ -50,6 +50,27 @@ fn the_state_is_what_the_filter_says_of_pose_and_motion() {
 }
 
 #[test]
+fn the_velocity_of_a_point_is_how_fast_its_pose_takes_it_along() {
+    for model in MotionModel::ALL {
+        let frames = record(BuiltInShape::Bird, &constant_motion(model, 8), Corruption::default(), NOISE, 1);
+        let settings = FilterSettings { model, ..FilterSettings::default() };
+        let state = states(settings, &frames).pop().expect("a state");
+        let first = Point2::new(0.4, -0.3);
+        let at = |seconds: f64| state.predicted(state.time() + seconds, &ProcessNoise::default()).pose() * first;
+        let found = state.velocity_of(&first);
+        assert!((found.point - at(0.0)).norm() < 1e-12);
+        let difference = (at(1e-4) - at(-1e-4)) / 2e-4;
+        assert!((found.velocity - difference).norm() < 1e-6, "{model}: {} {difference}", found.velocity);
+        // The errors go along with the point: those of the velocity are those of places a little later and earlier.
+        let place = |seconds: f64| {
+            let later = state.predicted(state.time() + seconds, &ProcessNoise::default());
+            later.velocity_of(&first).covariance
+        };
+        assert!((place(1e-6) - found.covariance).norm() < 1e-3 * found.covariance.norm(), "{model}");
+    }
+}
+
+#[test]
 fn errors_that_go_together_along_the_outline_widen_the_deviations_of_state_and_estimate_alike() {
     let mut frames =
         record(BuiltInShape::Bird, &constant_motion(MotionModel::Rigid, 20), Corruption::default(), NOISE, 3);

@@ -178,6 +178,21 @@ fn the_curve_goes_along_with_the_object() {
 }
 
 #[test]
+fn every_frame_is_counted_once_and_rejected_ones_say_why_also_where_another_object_comes() {
+    let mut frames =
+        record(BuiltInShape::Bird, &constant_motion(MotionModel::Rigid, 15), Corruption::default(), NOISE, 0);
+    let other = record(BuiltInShape::Van, &constant_motion(MotionModel::Rigid, 1), Corruption::default(), NOISE, 0);
+    frames[0].1 = other[0].1.clone();
+    let mut filter = filter(MotionModel::Rigid, Degree::Sextic);
+    let steps = run(&mut filter, &frames);
+    assert!(filter.restarts() > 0 && steps.iter().all(|step| step.accepted == step.rejection.is_none()));
+    let accepted = steps.iter().filter(|step| step.accepted).count();
+    assert_eq!((filter.frames_accepted(), filter.frames_rejected()), (accepted, frames.len() - accepted));
+    let reason = steps.iter().find_map(|step| step.rejection).expect("one was rejected");
+    assert!(reason.to_string().contains("misfit"), "{reason}");
+}
+
+#[test]
 fn bad_input_is_refused_and_leaves_the_filter_as_it_was() {
     let frames = record(BuiltInShape::Bird, &constant_motion(MotionModel::Rigid, 5), Corruption::default(), NOISE, 0);
     let mut filter = filter(MotionModel::Rigid, Degree::Sextic);

@@ -72,7 +72,7 @@ pub enum ReadErrorKind {
     #[error("the file is empty, expected a header such as frame,time,x,y")]
     Empty,
     /// The header lacks a column.
-    #[error("missing column(s) {}, the header is {header:?}", comma_separated(missing))]
+    #[error("missing column(s) {}, the header is {header:?}{}", comma_separated(missing), separator_hint(header))]
     MissingColumns {
         /// The columns that are not there.
         missing: Vec<Column>,
@@ -223,6 +223,16 @@ pub enum ReadErrorKind {
 
 fn comma_separated(columns: &[Column]) -> String {
     columns.iter().map(Column::name).collect::<Vec<_>>().join(", ")
+}
+
+/// What to say of a header that lacks columns since something else than commas separates them.
+fn separator_hint(header: &str) -> &'static str {
+    match header {
+        _ if header.contains(',') => "",
+        _ if header.contains(';') => ": columns are separated by commas, not by semicolons",
+        _ if header.contains('\t') => ": columns are separated by commas, not by tabs",
+        _ => "",
+    }
 }
 
 /// Why an outline could not be written.

@@ -55,6 +55,15 @@ fn a_header_without_rows_holds_no_outline() {
 }
 
 #[test]
+fn columns_that_are_separated_by_something_else_than_commas_are_told_so() {
+    let missing = "in.csv:1: missing column(s) frame, time, x, y, the header is";
+    let semicolons = format!("{missing} \"frame;time;x;y\": columns are separated by commas, not by semicolons");
+    refused("frame;time;x;y\n0;0;1;2\n", &[], &semicolons);
+    let tabs = format!("{missing} \"frame\\ttime\\tx\\ty\": columns are separated by commas, not by tabs");
+    refused("frame\ttime\tx\ty\n0\t0\t1\t2\n", &[], &tabs);
+}
+
+#[test]
 fn missing_columns_are_named_with_the_header_found() {
     refused("frame,x,y\n0,1,2\n", &[], "in.csv:1: missing column(s) time, the header is \"frame,x,y\"");
     refused("# a\n\nhello\n", &[], "in.csv:3: missing column(s) frame, time, x, y, the header is \"hello\"");

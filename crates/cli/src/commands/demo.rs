@@ -14,6 +14,7 @@ use crate::failure::{Failure, plain, warn};
 use crate::history::History;
 use crate::identifier::pipeline_settings;
 use crate::left_out::LeftOut;
+use crate::meaning_of_b::MeaningOfB;
 use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
 };
@@ -78,11 +79,12 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         ("Noise on each coordinate", simulator.settings().noise.to_string()),
         ("Seed", simulator.settings().seed.to_string()),
     ]);
+    let b = MeaningOfB::in_coordinates(Some(scale));
     let report = Report {
         title: "The flight bird: motion from nothing but its outlines".to_owned(),
         command: command_line(),
         settings: listed,
-        meaning_of_b: format!("velocity at the origin of the coordinates, in space: over f/Z0 = {scale}"),
+        meaning_of_b: b.clone(),
         findings: [&filter, &adaptive].map(Found::findings).into(),
         truth: Some(&truth),
         no_motion: None,
@@ -92,15 +94,21 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     WholeFile::write(&folder.join(REPORT), &write_report(&report))?;
 
     let mut sink = Sink::stdout();
-    let printed = print(&mut sink, &filter, &adaptive, &truth, folder);
+    let printed = print(&mut sink, [&filter, &adaptive], &truth, &b, folder);
     printed.map_err(|error| sink.failure(&error))?;
     sink.finish()
 }
 
-fn print(sink: &mut Sink, filter: &Found, adaptive: &Found, truth: &AffineMotion, folder: &Path) -> io::Result<()> {
-    write_identify_table(sink, &filter.results, Some(truth))?;
+fn print(
+    sink: &mut Sink,
+    [filter, adaptive]: [&Found; 2],
+    truth: &AffineMotion,
+    b: &MeaningOfB,
+    folder: &Path,
+) -> io::Result<()> {
+    write_identify_table(sink, &filter.results, Some(truth), b)?;
     writeln!(sink, "\nFor comparison, by the adaptive law of the paper:")?;
-    write_identify_table(sink, &adaptive.results, Some(truth))?;
+    write_identify_table(sink, &adaptive.results, Some(truth), b)?;
     writeln!(sink, "\nWritten to {}:", folder.display())?;
     writeln!(sink, "  {REPORT}, {OUTLINES}, {CURVE}")?;
     writeln!(sink, "  {TRACE}, {PARAMETERS} (filter)")?;

@@ -24,6 +24,7 @@ use crate::picture_input::PictureInput;
 use crate::reader::Pace;
 use crate::tracking::{Event, ObjectResult, Observation, Tracking};
 use crate::trajectory::Trajectory;
+use crate::truth::parameters_in;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
@@ -32,6 +33,11 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
     let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
+    let model = args.options.motion.model();
+    if !args.quiet && truth.is_some_and(|truth| parameters_in(model, &truth).is_none()) {
+        let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
+        warn(&format!("{origin}: no {model} motion, nothing is compared with it"));
+    }
     let mut files = Files::create(args)?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
     let mut overlay =
@@ -71,7 +77,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
             title: format!("Motion in {name}"),
             command: command_line(),
             settings: listed,
-            meaning_of_b: b.to_string(),
+            meaning_of_b: b.clone(),
             findings: vec![Findings { results: &results, histories: &files.histories }],
             truth: truth.as_ref(),
             no_motion: reason.filter(|_| !is_found),
@@ -86,6 +92,10 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         }
         print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
     } else {
+        // The failure has the other reasons.
+        for (object, warning) in tracking.out_of_order().filter(|_| !args.quiet) {
+            warn(&format!("object {object}: {warning}"));
+        }
         Ok(())
     };
     files.finish(&tracking, truth.as_ref(), &results)?;
@@ -205,7 +215,7 @@ fn print(
     let format = if args.json { IdentifyFormat::Json } else { args.format };
     let written = match format {
         IdentifyFormat::Table => {
-            let table = write_identify_table(&mut sink, results, truth);
+            let table = write_identify_table(&mut sink, results, truth, b);
             table.and_then(|()| if has_pictures { writeln!(sink, "b: {b}") } else { Ok(()) })
         }
         IdentifyFormat::Json => write_identify_json(&mut sink, results, b, left_out),

@@ -1,7 +1,7 @@
 use std::io::Write as _;
 
 use crate::args::TrackArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::output::{Sink, refuse_overwriting, track_line};
@@ -27,6 +27,9 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
             overlay.take(&event)?;
         }
         let Event::Observed { observation, .. } = event else { return Ok(()) };
+        if let Some(warning) = observation.out_of_order.as_ref().filter(|_| !args.quiet) {
+            warn(&format!("object {}: {warning}", observation.object));
+        }
         accepted += u64::from(observation.is_accepted());
         first_reason = first_reason.take().or_else(|| observation.rejected_because.clone());
         let line = track_line(observation).map_err(Failure::unusable)?;

@@ -4,9 +4,11 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
+use super::velocity::meaning_of_v;
 use crate::frame_ranges::FrameRanges;
 use crate::history::History;
 use crate::left_out::LeftOut;
+use crate::meaning_of_b::MeaningOfB;
 use crate::plot::{escape, panel_svg};
 use crate::tracking::{ObjectResult, REASONS_KEPT};
 
@@ -20,7 +22,7 @@ pub(crate) struct Report<'a> {
     pub(crate) command: String,
     pub(crate) settings: Vec<(&'static str, String)>,
     /// Unit and origin of the velocity b.
-    pub(crate) meaning_of_b: String,
+    pub(crate) meaning_of_b: MeaningOfB,
     /// One for each method.
     pub(crate) findings: Vec<Findings<'a>>,
     pub(crate) truth: Option<&'a AffineMotion>,
@@ -109,12 +111,16 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
     let truth = report.truth;
     let object = escape(&result.object);
     let _ = writeln!(body, "<h2>Object {object}: {} motion, {} method</h2>", result.motion, result.method.name());
-    let rows = parameter_rows(result.motion, result.estimate.as_ref(), truth);
+    let rows = parameter_rows(result, truth, &report.meaning_of_b);
     let count = rows.first().map_or(0, Vec::len);
     body.push_str("<div class=\"scroll\"><table>\n");
     write_row(body, "th", COLUMNS.iter().take(count).copied());
     rows.iter().for_each(|row| write_row(body, "td", row.iter().map(String::as_str)));
-    let _ = writeln!(body, "</table></div>\n<p class=\"soft\">b: {}</p>", escape(&report.meaning_of_b));
+    let b = &report.meaning_of_b;
+    let _ = writeln!(body, "</table></div>\n<p class=\"soft\">b: {}</p>", escape(&b.to_string()));
+    if let Some(velocity) = &result.velocity {
+        let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&meaning_of_v(velocity)));
+    }
     if !result.warnings.is_empty() {
         body.push_str("<p class=\"alert\">Warnings</p>\n<ul>\n");
         result.warnings.iter().for_each(|warning| {

@@ -3,9 +3,11 @@ use std::io::{self, Write};
 use freeform_motion::riccati::CameraScale;
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
+use super::velocity::VelocityJson;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::tracking::{Estimate, ObjectResult, Observation};
+use crate::turns::Turns;
 
 /// The result as one JSON object.
 pub(crate) fn write_identify_json(
@@ -36,6 +38,7 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         parameters: estimate.map(Parameters),
         generator: estimate.and_then(generator_rows),
         reason: observation.rejected_because.as_deref(),
+        ambiguity: observation.ambiguity.as_ref(),
     })
 }
 
@@ -79,6 +82,7 @@ struct TrackLine<'a> {
     parameters: Option<Parameters<'a>>,
     generator: Option<[[f64; 3]; 3]>,
     reason: Option<&'a str>,
+    ambiguity: Option<&'a Turns>,
 }
 
 struct ObjectJson<'a>(&'a ObjectResult);
@@ -86,7 +90,7 @@ struct ObjectJson<'a>(&'a ObjectResult);
 impl Serialize for ObjectJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self(result) = self;
-        let mut object = serializer.serialize_struct("Object", 8)?;
+        let mut object = serializer.serialize_struct("Object", 10)?;
         object.serialize_field("object", &result.object)?;
         object.serialize_field("method", result.method.name())?;
         object.serialize_field("motion", &result.motion.to_string())?;
@@ -97,6 +101,8 @@ impl Serialize for ObjectJson<'_> {
             None => object.serialize_field("parameters", &NoParameters(result))?,
         }
         object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
+        object.serialize_field("velocity", &result.velocity.as_ref().map(VelocityJson))?;
+        object.serialize_field("ambiguity", &result.ambiguity)?;
         object.serialize_field("warnings", &result.warnings)?;
         object.end()
     }
@@ -163,10 +169,12 @@ mod tests {
             frames_rejected: 1,
             first_rejection: None,
             estimate: Estimate::of(estimate.with_unobservable(0), Some(CameraScale::new(0.1).expect("a scale"))),
+            velocity: None,
+            ambiguity: None,
             warnings: vec!["a warning".to_owned()],
         };
         let mut text = Vec::new();
-        let b = MeaningOfB { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), scale: None };
+        let b = MeaningOfB::in_coordinates(None);
         write_identify_json(&mut text, &[result], &b, &LeftOut::default()).expect("memory");
         let document: Value = serde_json::from_slice(&text).expect("JSON");
         let object = &document["objects"][0];

@@ -1,45 +1,67 @@
 use std::io::{self, Write};
 
-use freeform_motion::riccati::{AffineMotion, MotionModel};
+use freeform_motion::riccati::AffineMotion;
 
 use super::aligned::write_aligned;
 use super::number::{significant, with_deviation};
-use crate::tracking::{Estimate, ObjectResult};
+use super::velocity::{VELOCITY_NAMES, meaning_of_v};
+use crate::meaning_of_b::MeaningOfB;
+use crate::tracking::ObjectResult;
 use crate::truth::parameters_in;
 
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
 
-/// The parameters of an object as text, one row each.
-pub(crate) fn parameter_rows(
-    model: MotionModel,
-    estimate: Option<&Estimate>,
-    truth: Option<&AffineMotion>,
-) -> Vec<Vec<String>> {
-    let truth = truth.and_then(|motion| parameters_in(model, motion));
-    let found: Vec<_> = estimate.map_or_else(Vec::new, |estimate| estimate.parameters().collect());
+/// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
+pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>, b: &MeaningOfB) -> Vec<Vec<String>> {
+    let model = result.motion;
+    let truth = truth.and_then(|motion| Some((motion, parameters_in(model, motion)?)));
+    let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
+    let is_ambiguous = |name| result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name));
+    let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
     let names = model.parameter_names().iter().zip(model.units());
-    names
+    let mut rows: Vec<Vec<String>> = names
         .enumerate()
         .map(|(index, (name, unit))| {
             let parameter = found.get(index);
-            let value = parameter.and_then(|p| p.value);
-            let deviation = parameter.and_then(|p| p.standard_deviation);
-            let none = || "-".to_owned();
-            let [value_text, deviation_text] = match (value, deviation) {
-                (Some(value), Some(deviation)) => with_deviation(value, deviation),
-                (Some(value), None) => [significant(value, 6), none()],
-                (None, _) if parameter.is_some() => ["unobservable".to_owned(), none()],
-                (None, _) => [none(), none()],
+            let unknown = match parameter {
+                Some(_) if is_ambiguous(name) => "ambiguous",
+                Some(_) => "unobservable",
+                None => "-",
             };
-            let mut row = vec![(*name).to_owned(), value_text, deviation_text, (*unit).to_owned()];
-            if let Some(truth) = &truth {
-                row.push(significant(truth[index], 6));
-                row.push(value.map_or_else(|| "-".to_owned(), |value| error_text(value, truth[index])));
-            }
-            row
+            let unit = if name.starts_with('b') { unit_of_b(unit) } else { unit };
+            let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
+            row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
         })
-        .collect()
+        .collect();
+    if let Some(velocity) = &result.velocity {
+        let deviations = velocity.standard_deviations();
+        let truth = truth.map(|(motion, _)| {
+            let ([x, y], AffineMotion { a1, a2, a3, a4, b1, b2 }) = (velocity.point.into(), *motion);
+            [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
+        });
+        rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
+            let known = Some((velocity.velocity[i], Some(deviations[i])));
+            row([name, "-", unit_of_b("1/s")], known, truth.map(|truth| truth[i]))
+        }));
+    }
+    rows
+}
+
+/// One row: a value with its standard deviation, or why there is none, and beside it the truth where that is known.
+fn row([name, unknown, unit]: [&str; 3], known: Option<(f64, Option<f64>)>, truth: Option<f64>) -> Vec<String> {
+    let none = || "-".to_owned();
+    let [value, deviation] = match known {
+        Some((value, Some(deviation))) => with_deviation(value, deviation),
+        Some((value, None)) => [significant(value, 6), none()],
+        None => [unknown.to_owned(), none()],
+    };
+    let mut row = vec![name.to_owned(), value, deviation, unit.to_owned()];
+    if let Some(truth) = truth {
+        row.push(significant(truth, 6));
+        row.push(known.map_or_else(none, |(value, _)| error_text(value, truth)));
+    }
+    row
 }
 
 /// The difference from the truth, with its share of the truth where that is not 0.
@@ -56,6 +78,7 @@ pub(crate) fn write_identify_table(
     sink: &mut impl Write,
     results: &[ObjectResult],
     truth: Option<&AffineMotion>,
+    b: &MeaningOfB,
 ) -> io::Result<()> {
     for (index, result) in results.iter().enumerate() {
         if index > 0 {
@@ -67,19 +90,24 @@ pub(crate) fn write_identify_table(
             sink,
             "object {object}: {motion} motion, {method} method, {frames} frames, {frames_rejected} rejected"
         )?;
-        let rows = parameter_rows(*motion, result.estimate.as_ref(), truth);
-        write_aligned(sink, &COLUMNS, &rows, &[0, 3])?;
+        write_aligned(sink, &COLUMNS, &parameter_rows(result, truth, b), &[0, 3])?;
+        if let Some(velocity) = &result.velocity {
+            writeln!(sink, "{}", meaning_of_v(velocity))?;
+        }
     }
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::identify::MotionEstimate;
-    use freeform_motion::riccati::RigidMotion;
+    use freeform_motion::identify::{MotionEstimate, PointVelocity};
+    use freeform_motion::riccati::{MotionModel, RigidMotion};
+    use nalgebra::{Matrix2, Point2, Vector2};
 
     use super::*;
     use crate::args::IdentifyMethod;
+    use crate::tracking::Estimate;
+    use crate::turns::Turns;
 
     #[test]
     fn the_table_has_a_line_per_parameter_and_says_what_is_not_observable() {
@@ -92,13 +120,26 @@ mod tests {
             frames_rejected: 3,
             first_rejection: None,
             estimate: Estimate::of(estimate, None),
+            velocity: None,
+            ambiguity: None,
             warnings: Vec::new(),
         };
         let diverged = MotionEstimate::new(MotionModel::Rigid, &[f64::NAN, 0.0, 0.0], None);
-        let results = [result(estimate), result(estimate.with_unobservable(0)), result(diverged)];
+        let velocity = PointVelocity {
+            point: Point2::new(1.5, -2.0),
+            velocity: Vector2::new(0.3, -0.456_78),
+            covariance: Matrix2::new(1e-6, 0.0, 0.0, 4e-6),
+        };
+        let turns = Turns { turn: 50.0, rival_turns: vec![-40.0], parameters: vec!["omega"] };
+        let results = [
+            ObjectResult { velocity: Some(velocity), ..result(estimate) },
+            result(estimate.with_unobservable(0)),
+            ObjectResult { ambiguity: Some(turns), ..result(estimate.with_unobservable(0)) },
+            result(diverged),
+        ];
         let truth = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 }.into();
         let mut text = Vec::new();
-        write_identify_table(&mut text, &results, Some(&truth)).expect("memory");
+        write_identify_table(&mut text, &results, Some(&truth), &MeaningOfB::in_coordinates(None)).expect("memory");
         insta::assert_snapshot!(String::from_utf8(text).expect("UTF-8"));
     }
 }

@@ -15,6 +15,7 @@ mod identify_table;
 mod number;
 mod page;
 mod trajectory_csv;
+mod velocity;
 
 pub(crate) use csv::{TraceWriter, write_parameters};
 pub(crate) use evaluate_csv::write_evaluation_csv;

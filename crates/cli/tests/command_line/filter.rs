@@ -73,6 +73,37 @@ fn the_turn_of_a_circle_is_unobservable_and_that_is_told() {
 }
 
 #[test]
+fn what_a_square_may_have_turned_instead_is_told_and_not_that_it_cannot_be_seen() {
+    let csv = sequence("--shape square --omega 1.5 --seconds 1 --fps 2 --points 400");
+    let output = run("identify - --json", &csv);
+    let document = json(&stdout(&output));
+    let object = first_object(&document);
+    let degrees = |value: &Value| value.as_f64().expect("a number").round();
+    let is_as_it_was_turned = |ambiguity: &Value| {
+        assert_eq!((degrees(&ambiguity["turn"]), degrees(&ambiguity["rival_turns"][0])), (43.0, -47.0), "{ambiguity}");
+        assert_eq!(ambiguity["parameters"][0], "omega");
+    };
+    is_as_it_was_turned(&object["ambiguity"]);
+    assert_eq!((&object["parameters"]["omega"]["observable"], &object["velocity"]), (&false.into(), &Value::Null));
+    let told = warnings(object);
+    assert!(
+        told.len() == 1 && told[0].starts_with("ambiguous") && told[0].contains("-47.1 instead of 42.9"),
+        "{told:?}"
+    );
+    assert!(stderr(&output).contains(told[0]), "{}", stderr(&output));
+    let lines = succeed("track -", &csv);
+    is_as_it_was_turned(&json(lines.lines().last().expect("a line"))["ambiguity"]);
+    assert!(succeed("identify -", &csv).contains(" ambiguous "));
+}
+
+#[test]
+fn the_frames_counted_in_warnings_are_those_of_the_table_where_the_object_was_begun_anew() {
+    let output = run("identify -", &first_one_then_another(40));
+    let [table, told] = [stdout(&output), stderr(&output)];
+    assert!(table.contains("55 frames, 30 rejected") && told.contains("30 of 55 frames rejected"), "{table}{told}");
+}
+
+#[test]
 fn a_frame_that_shows_something_else_is_rejected_with_its_reason() {
     let lines = succeed("track", &first_one_then_another(4));
     let frames: Vec<Value> = lines.lines().map(json).collect();

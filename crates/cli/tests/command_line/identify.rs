@@ -19,7 +19,10 @@ fn the_json_has_the_fields_of_the_contract_and_says_what_b_is_and_what_was_left_
     assert_eq!(keys(&document["left_out"]), ["count", "pictures"]);
     let object = &document["objects"][0];
     let fields = ["frames", "frames_rejected", "generator", "method", "motion", "object", "parameters", "warnings"];
-    assert_eq!(keys(object), fields);
+    let mut with_later_ones = [&["ambiguity", "velocity"][..], &fields].concat();
+    with_later_ones.sort_unstable();
+    assert_eq!(keys(object), with_later_ones);
+    assert_eq!((&object["ambiguity"], keys(&object["velocity"])), (&Value::Null, vec!["point", "std", "value"]));
     assert_eq!((&object["object"], &object["motion"]), (&"0".into(), &"rigid".into()));
     assert_eq!((&object["frames"], &object["frames_rejected"]), (&15.into(), &0.into()));
     assert_eq!(keys(&object["parameters"]), ["b1", "b2", "omega"]);
@@ -93,6 +96,38 @@ fn the_table_shows_the_truth_where_the_file_tells_it() {
     assert!(!succeed("identify -", &without).contains("truth"));
     let given = succeed("identify - --truth -1.5,2,-3", &without);
     assert!(given.contains("-1.50000") && given.contains("truth"), "{given}");
+}
+
+#[test]
+fn a_truth_that_the_motion_model_does_not_hold_is_told_to_be_left_out() {
+    let csv = sequence("--affine 0.1,0,0,0.1,0.2,0 --scale 1");
+    let output = run("identify -", &csv);
+    assert!(!stdout(&output).contains("truth"), "{}", stdout(&output));
+    assert!(stderr(&output).contains("warning: the truth in the file: no rigid motion"), "{}", stderr(&output));
+    let output = run("identify - --motion similarity", &csv);
+    assert!(stdout(&output).contains("truth") && stderr(&output).is_empty(), "{}", stderr(&output));
+}
+
+#[test]
+fn the_middle_of_the_object_moves_as_the_motion_says_and_the_scale_divides_its_velocity() {
+    let csv = sequence("--seconds 1 --points 400 --shape glider");
+    for scale in [1.0, 0.1] {
+        let object = &json(&succeed(&format!("identify - --json --scale {scale}"), &csv))["objects"][0];
+        let number = |value: &Value| value.as_f64().expect("a number");
+        let pair = |name: &str| [0, 1].map(|i| number(&object["velocity"][name][i]));
+        let [[x, y], velocity, deviations] = ["point", "value", "std"].map(pair);
+        assert!(x.hypot(y) < 2.0 / scale && deviations.iter().all(|std| *std > 0.0 && *std < 0.01 / scale));
+        for (row, found) in velocity.into_iter().enumerate() {
+            let [a, b, c] = [0, 1, 2].map(|column| number(&object["generator"][row][column]));
+            assert!((a * x + b * y + c - found).abs() < 1e-9, "{found}");
+        }
+    }
+    let table = succeed("identify - --scale 0.1", &csv);
+    let line = table.lines().last().expect("a line");
+    assert!(line.starts_with("v: velocity of the object's middle, at ("), "{table}");
+    let rows = table.lines().filter(|line| line.starts_with("  v") && line.split_whitespace().count() > 5).count();
+    assert_eq!(rows, 2, "{table}");
+    assert!(!succeed("identify - --method curve", &csv).contains("middle"));
 }
 
 #[test]
@@ -218,4 +253,45 @@ fn objects_are_listed_as_they_first_appear_though_it_be_in_a_frame_that_is_no_ou
     });
     let expected = [("a point at first", 15, 8), ("large", 15, 0), ("a point", 12, 12), ("late", 10, 0)];
     assert_eq!(listed.collect::<Vec<_>>(), expected);
+}
+
+/// The rows of every frame taken in steps of 47 of 120, which are all of them in an order that is not the contour's.
+fn out_of_order(csv: &str) -> String {
+    let (head, rows): (Vec<&str>, Vec<&str>) = csv.lines().partition(|line| line.starts_with(['#', 'f']));
+    let rows = rows.chunks(120).flat_map(|frame| (0..120).map(|index| frame[47 * index % 120]));
+    head.into_iter().chain(rows).map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn rows_that_do_not_follow_the_contour_are_told_once_whatever_the_method() {
+    let in_order = sequence("");
+    let shuffled = out_of_order(&in_order);
+    let told = |command: &str, csv: &str| stderr(&run(command, csv)).matches("do not follow the contour").count();
+    for command in ["identify -", "identify - --method curve", "identify - --method adaptive", "track -"] {
+        assert_eq!(told(command, &shuffled), 1, "{command}");
+        assert_eq!(told(command, &in_order), 0, "{command}");
+    }
+    assert_eq!(told("track - --quiet", &shuffled), 0);
+}
+
+#[test]
+fn outlines_of_pictures_follow_the_contour_however_deep_its_notches_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for spikes in [3.0_f64, 12.0] {
+        let frames: Vec<String> = (0..3_u8)
+            .map(|frame| {
+                let picture = image::GrayImage::from_fn(200, 200, |column, row| {
+                    let (x, y) = (f64::from(column) - 98.0 - f64::from(frame), f64::from(row) - 100.0);
+                    let radius = 90.0 * (0.6 + 0.4 * (spikes * y.atan2(x)).cos() + 0.05 * x / 90.0);
+                    image::Luma([if x.hypot(y) < radius { 255 } else { 0 }])
+                });
+                let path = folder.path().join(format!("{spikes}-{frame}.png"));
+                picture.save(&path).expect("a picture");
+                path.to_str().expect("UTF-8").to_owned()
+            })
+            .collect();
+        let output = run(&format!("identify {}", frames.join(" ")), "");
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(!stderr(&output).contains("contour"), "{}", stderr(&output));
+    }
 }

@@ -125,6 +125,11 @@ fn numbers_and_text(svg: &str) -> (Vec<f64>, String) {
 fn the_pictures_of_the_documents_are_what_the_command_writes() {
     let folder = tempfile::tempdir().expect("a folder");
     succeed(&format!("reproduce --only 1 2 3 4 --out {}", folder.path().display()), "");
+    let (simulated, identified) = ("simulate --seconds 1", "identify - --scale 0.1 --svg");
+    let told = fs::read_to_string(root().join("README.md")).expect("the README");
+    assert!(told.contains(&format!("freeform {simulated} | freeform {identified} motion.svg")));
+    let motion = folder.path().join("motion.svg");
+    succeed(&format!("{identified} {}", motion.display()), &succeed(simulated, ""));
     let pictures = root().join("docs/pictures");
     let names = names_in(&pictures, "svg");
     assert!(!names.is_empty());
@@ -133,7 +138,7 @@ fn the_pictures_of_the_documents_are_what_the_command_writes() {
         let (written, text) = numbers_and_text(&read(folder.path()));
         let (kept, kept_text) = numbers_and_text(&read(&pictures));
         let differs = || written.iter().zip(&kept).any(|(a, b)| (a - b).abs() > 1.0);
-        assert!(text == kept_text && !differs(), "{name}: make it anew as docs/paper.md says");
+        assert!(text == kept_text && !differs(), "{name}: make it anew as docs/paper.md or README.md says");
     }
 }
 

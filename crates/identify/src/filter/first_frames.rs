@@ -6,9 +6,10 @@ use super::{
     acquisition::Landmarks,
     map_recut::{PLENTY, PlacedFrame},
     motion_change::MotionChange,
-    motion_filter::{MotionFilter, Phase},
+    motion_filter::{Known, MotionFilter, Phase, advance},
     outline_map::OutlineMap,
     rivals::Rivals,
+    settings::ProcessNoise,
 };
 
 /// Frames after which the map is cut anew.
@@ -162,11 +163,16 @@ impl MotionFilter {
         Some(cut)
     }
 
+    /// Whether the motion changes, as is seen or as the settings say.
+    fn may_change(&self, change: &MotionChange) -> bool {
+        change.is_seen() || self.settings.process_noise != ProcessNoise::default()
+    }
+
     fn cut(&self, map: &OutlineMap, frames: &[PlacedFrame<'_>]) -> Option<Recut> {
         let mut change = MotionChange::default();
         let mut poses = vec![map.first_pose.pose];
         let map = map.recut(frames, 1, |map, seconds, outline| {
-            let update = self.advance(map, &mut change, seconds, outline, true);
+            let update = advance(&self.settings, map, &mut change, (seconds, outline), Known::ShowsObject);
             poses.push(map.pose);
             update
         })?;

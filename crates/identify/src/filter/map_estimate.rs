@@ -13,7 +13,7 @@ use crate::{
 /// Standard deviation of a displacement, in object sizes, beyond which its cause counts as unknown.
 const WORTHLESS: f64 = 0.25;
 /// Standard deviations that what is held back of a parameter may make; noise asks for some of them.
-const WITHHELD: f64 = 3.0;
+pub(crate) const WITHHELD: f64 = 3.0;
 /// Steps over which a parameter must be known at least, however fast the motion changes.
 const STEPS_KNOWN: f64 = 30.0;
 
@@ -63,8 +63,7 @@ impl OutlineMap {
         let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
         let withheld = self.withheld_motion().map_or([0.0; MAX_PARAMETERS], |withheld| in_image(&withheld));
         let reach = self.radius + self.origin.coords.norm();
-        let floor = self.span.min(STEPS_KNOWN * self.step_seconds);
-        let shortest = self.spans[..k].iter().copied().fold(f64::INFINITY, f64::min);
+        let shortest = self.shortest_span();
         for (j, name) in self.model.parameter_names().iter().enumerate() {
             let (limit, span) = match name.as_bytes()[0] {
                 // The velocity at the origin of the image follows from that of the object and all other parameters.
@@ -72,12 +71,23 @@ impl OutlineMap {
                 b'c' => (1.0 / reach, self.spans[j]),
                 _ => (1.0, self.spans[j]),
             };
-            let known = deviations[j] * span.max(floor) <= WORTHLESS * limit;
+            let known = self.is_worth(deviations[j], span, limit);
             // What is not taken is no error that the deviations know of.
             if !known || blind[j] || withheld[j].abs() > WITHHELD * deviations[j] {
                 estimate = estimate.with_unobservable(j);
             }
         }
         Some(estimate)
+    }
+
+    /// Seconds of the past that what takes part in all parameters is known from.
+    pub(crate) fn shortest_span(&self) -> f64 {
+        self.spans[..self.information.k].iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether the standard deviation of a rate, over the time that it is known from, makes little of a displacement.
+    pub(crate) fn is_worth(&self, deviation: f64, span: f64, displacement: f64) -> bool {
+        let floor = self.span.min(STEPS_KNOWN * self.step_seconds);
+        deviation * span.max(floor) <= WORTHLESS * displacement
     }
 }

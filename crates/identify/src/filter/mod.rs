@@ -1,5 +1,6 @@
 //! The motion filter: where the outline is, how it moves, and how well that is known, frame by frame.
 mod acquisition;
+mod ambiguity;
 mod arrow_information;
 mod cell_scatter;
 mod contour;
@@ -21,13 +22,16 @@ mod outline_map;
 mod pose_search;
 mod prediction;
 mod reading;
+mod rejection;
 mod rivals;
 mod settings;
 mod sides;
 mod state;
 mod unseen_direction;
+mod velocity;
 mod withheld;
 
+pub use ambiguity::Ambiguity;
 pub(crate) use contour::median;
 pub use error::FilterError;
 pub(crate) use map_recut::PLENTY;
@@ -36,4 +40,5 @@ pub(crate) use motion_filter::{FALSE_START, GIVEN_UP};
 pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use outline_map::OutlineMap;
 pub(crate) use pose_search::LARGEST_INNOVATION;
+pub use rejection::Rejection;
 pub use settings::{FilterSettings, ProcessNoise};

@@ -8,8 +8,9 @@ use super::{
     map_update::MapUpdate,
     motion_change::{MotionChange, SUDDEN},
     outline_map::{FEWEST_POINTS, OutlineMap},
+    rejection::Rejection,
     rivals::Rivals,
-    settings::{FilterSettings, ProcessNoise},
+    settings::FilterSettings,
 };
 use crate::estimate::MotionEstimate;
 
@@ -46,6 +47,8 @@ pub struct FilterStep {
     pub accepted: bool,
     /// What it said of the map; `None` where no map or no pose was there to measure it against.
     pub update: Option<MapUpdate>,
+    /// Why it was not used; `None` where it was.
+    pub rejection: Option<Rejection>,
 }
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
@@ -137,7 +140,8 @@ impl MotionFilter {
         }
         if self.map.is_none() {
             self.start(time, outline)?;
-            return Ok(FilterStep { time, phase: self.phase, accepted: true, update: None });
+            self.accepted += 1;
+            return Ok(FilterStep { time, phase: self.phase, accepted: true, update: None, rejection: None });
         }
         self.last_time = time;
         let was_changing = self.change.variances().is_some();
@@ -161,7 +165,8 @@ impl MotionFilter {
             self.rejected_in_a_row += 1;
             self.fall_back(time, outline);
         }
-        Ok(FilterStep { time, phase: self.phase, accepted, update })
+        let rejection = (!accepted).then(|| Rejection::of(update.as_ref(), &self.settings));
+        Ok(FilterStep { time, phase: self.phase, accepted, update, rejection })
     }
 
     /// Builds the map from a first frame.
@@ -172,7 +177,6 @@ impl MotionFilter {
         self.map = Some(map);
         self.rivals = Rivals::default();
         (self.last_time, self.map_time) = (time, time);
-        self.accepted += 1;
         (self.taken_by_map, self.refused_by_map) = (1, 0);
         self.rejected_in_a_row = 0;
         self.phase = Phase::Acquiring;
@@ -199,66 +203,14 @@ impl MotionFilter {
 
     /// Predicts and measures.
     fn track(&mut self, time: f64, outline: &Outline) -> Option<MapUpdate> {
+        let map = self.map.as_mut()?;
         let seconds = time - self.map_time;
         self.map_time = time;
-        let (mut map, mut change) = (self.map.take()?, self.change);
-        let update = self.advance(&mut map, &mut change, seconds, outline, false);
-        self.change = change;
-        self.motion_changed |= change.is_seen();
-        let map = self.map.insert(map);
+        let known = if self.rejected_in_a_row > 0 { Known::OthersRejected } else { Known::Nothing };
+        let update = advance(&self.settings, map, &mut self.change, (seconds, outline), known);
+        self.motion_changed |= self.change.is_seen();
         map.noise_level.take(update.spread / map.radius);
         Some(self.rivals.decide(&self.settings, map, update, seconds, outline))
-    }
-
-    /// Predicts a map and measures a frame, and finds how the motion changes. That a frame shows the object may be known already: the
-    /// noise of the few points on cells seen before tells less.
-    pub(super) fn advance(
-        &self,
-        map: &mut OutlineMap,
-        change: &mut MotionChange,
-        seconds: f64,
-        outline: &Outline,
-        is_known: bool,
-    ) -> MapUpdate {
-        map.predict(seconds);
-        map.add_process_noise(&self.settings.process_noise, seconds);
-        if let Some(variances) = change.variances() {
-            map.add_change(variances);
-        }
-        let parameters = map.information.k;
-        let limit = SUDDEN * parameters as f64;
-        let (smallest, fits) = (self.settings.smallest_agreement, fits(map, self.settings.smallest_agreement));
-        let shows = |update: &MapUpdate| if is_known { update.agreement >= smallest } else { fits(update) };
-        let mut update = map.update(outline, |update| shows(update) && update.innovation <= limit);
-        if !self.is_adaptive() {
-            return update;
-        }
-        let innovation = map.innovation;
-        let is_there = update.agreement >= smallest && (is_known || self.rejected_in_a_row > 0);
-        if !update.accepted && is_there && innovation.fisher[0] > 0.0 {
-            // If the outline is there, but for the second time not where it was going, the motion has changed.
-            let mut changed = map.clone();
-            changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
-            let found = changed.update(outline, shows);
-            if found.accepted {
-                *map = changed;
-                change.was_sudden = true;
-                update = found;
-            }
-        }
-        if update.accepted {
-            change.take(&innovation, parameters);
-        }
-        update
-    }
-
-    /// Whether the motion changes, as is seen or as the settings say.
-    pub(super) fn may_change(&self, change: &MotionChange) -> bool {
-        change.is_seen() || self.settings.process_noise != ProcessNoise::default()
-    }
-
-    fn is_adaptive(&self) -> bool {
-        self.settings.adaptive && self.settings.process_noise == ProcessNoise::default()
     }
 
     pub(super) fn replace(&mut self, map: OutlineMap, time: f64, phase: Phase) {
@@ -314,7 +266,7 @@ impl MotionFilter {
         self.accepted
     }
 
-    /// Frames that did not fit.
+    /// Frames that did not fit, one that a new map was begun from after others among them.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
         self.rejected
@@ -347,6 +299,59 @@ impl MotionFilter {
     pub fn restarts(&self) -> usize {
         self.restarts
     }
+}
+
+/// What is known of a frame before it is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Known {
+    Nothing,
+    /// The one before it has been rejected: the motion may have changed.
+    OthersRejected,
+    /// It has been taken once: the noise of its few points on cells seen before tells less.
+    ShowsObject,
+}
+
+/// Predicts a map over so many seconds, measures the frame, and finds how the motion changes.
+pub(super) fn advance(
+    settings: &FilterSettings,
+    map: &mut OutlineMap,
+    change: &mut MotionChange,
+    (seconds, outline): (f64, &Outline),
+    known: Known,
+) -> MapUpdate {
+    map.predict(seconds);
+    map.add_process_noise(&settings.process_noise, seconds);
+    if let Some(variances) = change.variances() {
+        map.add_change(variances);
+    }
+    let parameters = map.information.k;
+    let limit = SUDDEN * parameters as f64;
+    let (smallest, fits) = (settings.smallest_agreement, fits(map, settings.smallest_agreement));
+    let shows = |update: &MapUpdate| match known {
+        Known::ShowsObject => update.agreement >= smallest,
+        _ => fits(update),
+    };
+    let mut update = map.update(outline, |update| shows(update) && update.innovation <= limit);
+    if !settings.finds_changes() {
+        return update;
+    }
+    let innovation = map.innovation;
+    let may_change = known != Known::Nothing && update.agreement >= smallest && innovation.fisher[0] > 0.0;
+    if !update.accepted && may_change {
+        // If the outline is there, but for the second time not where it was going, the motion has changed.
+        let mut changed = map.clone();
+        changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
+        let found = changed.update(outline, shows);
+        if found.accepted {
+            *map = changed;
+            change.was_sudden = true;
+            update = found;
+        }
+    }
+    if update.accepted {
+        change.take(&innovation, parameters);
+    }
+    update
 }
 
 /// Whether a frame shows the outline that the map knows.

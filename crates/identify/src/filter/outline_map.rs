@@ -69,6 +69,32 @@ pub(crate) struct Cell {
 ///
 /// It needs a prediction that is right to a fraction of the object's features, in the first frames too; [`MotionFilter`](crate::MotionFilter)
 /// provides that.
+///
+/// ```
+/// use freeform_curve_fit::Outline;
+/// use freeform_identify::OutlineMap;
+/// use freeform_riccati::MotionModel;
+/// use nalgebra::{Isometry2, Point2, Vector2};
+///
+/// // An egg that moves so slowly that no guess of its motion is needed.
+/// let seen_at = |time: f64| {
+///     let pose = Isometry2::new(Vector2::new(0.02 * time, 0.0), 0.05 * time);
+///     let egg = (0..300).map(|i| {
+///         let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+///         pose * Point2::new(0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
+///     });
+///     Outline::closed(egg.collect())
+/// };
+/// let mut map = OutlineMap::new(MotionModel::Rigid, &seen_at(0.0)?)?;
+/// for frame in 1..10 {
+///     map.predict(1.0 / 30.0);
+///     let update = map.update(&seen_at(f64::from(frame) / 30.0)?, |update| update.agreement > 0.9);
+///     assert!(update.accepted);
+/// }
+/// let motion = map.estimate().expect("more than one frame");
+/// assert!((motion.values()[1] - 0.02).abs() < 0.002);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct OutlineMap {
     pub(crate) model: MotionModel,

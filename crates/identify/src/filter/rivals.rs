@@ -71,6 +71,15 @@ impl Rivals {
         &self.turns
     }
 
+    pub(crate) fn taken(&self) -> f64 {
+        self.taken
+    }
+
+    /// Turns of those that the smaller turn cannot be taken for granted against.
+    pub(crate) fn doubtful_turns(&self) -> Vec<f64> {
+        (0..self.list.len()).filter(|i| self.is_doubtful(*i)).map(|i| self.turns[i]).collect()
+    }
+
     /// Whether the smaller turn cannot be taken for granted.
     pub(crate) fn are_doubtful(&self) -> bool {
         (0..self.list.len()).any(|i| self.is_doubtful(i))

@@ -21,9 +21,10 @@ pub struct FilterSettings {
     /// Whether changes of a motion without process noise are estimated from the innovations: none until there is evidence. `true` by
     /// default; otherwise it is held for constant.
     pub adaptive: bool,
-    /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken. In (0, 1).
+    /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken, in (0, 1);
+    /// 0.7 by default.
     pub smallest_agreement: f64,
-    /// Frames rejected in a row after which the object is looked for anew, at least 1.
+    /// Frames rejected in a row after which the object is looked for anew, at least 1; 2 by default.
     pub patience: usize,
 }
 
@@ -41,6 +42,11 @@ impl Default for FilterSettings {
 }
 
 impl FilterSettings {
+    /// Whether changes of the motion are estimated.
+    pub(crate) fn finds_changes(&self) -> bool {
+        self.adaptive && self.process_noise == ProcessNoise::default()
+    }
+
     pub(crate) fn check(&self) -> Result<(), FilterError> {
         let fail = |setting, value, range| Err(FilterError::Setting { setting, value, range });
         let noise = self.process_noise;

@@ -1,3 +1,5 @@
+use std::fmt;
+
 use crate::filter::Phase;
 
 /// What became of one frame in a [`WholeCurveFilter`](crate::WholeCurveFilter).
@@ -17,4 +19,43 @@ pub struct CurveStep {
     pub innovation: f64,
     /// Linearisations taken.
     pub iterations: usize,
+    /// Why it was not used; `None` where it was.
+    pub rejection: Option<CurveRejection>,
+}
+
+/// Why a [`WholeCurveFilter`](crate::WholeCurveFilter) has not used a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CurveRejection {
+    /// More of the outline lies off the curve than usual, wherever it is looked for.
+    MisfitTooLarge {
+        /// As in [`CurveStep::misfit`].
+        misfit: f64,
+    },
+    /// Misfit or innovation is too large for a frame that goes on as predicted.
+    NotAsPredicted {
+        /// As in [`CurveStep::misfit`].
+        misfit: f64,
+        /// As in [`CurveStep::innovation`].
+        innovation: f64,
+    },
+}
+
+impl CurveRejection {
+    /// Of a frame that was not accepted.
+    pub(crate) fn of(step: &CurveStep) -> Self {
+        let CurveStep { misfit, innovation, .. } = *step;
+        if innovation > 0.0 { Self::NotAsPredicted { misfit, innovation } } else { Self::MisfitTooLarge { misfit } }
+    }
+}
+
+impl fmt::Display for CurveRejection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MisfitTooLarge { misfit } => write!(f, "does not fit the curve, misfit {misfit:.2}"),
+            Self::NotAsPredicted { misfit, innovation } => write!(
+                f,
+                "does not go on from the frames before it, misfit {misfit:.2}, squared innovation {innovation:.0}"
+            ),
+        }
+    }
 }

@@ -2,7 +2,7 @@ use freeform_curve_fit::{MAX_COEFFICIENTS, Outline};
 use nalgebra::{Matrix3, Point2};
 
 use super::{
-    curve_step::CurveStep,
+    curve_step::{CurveRejection, CurveStep},
     frame_update::{PoseMatrix, Trial},
     level_sums::LevelSums,
     score_covariance::ScoreCovariance,
@@ -135,8 +135,16 @@ impl WholeCurveFilter {
             if found < needed || self.start(time, outline).is_none() {
                 return Err(FilterError::TooFewPoints { found, needed });
             }
-            let misfit = self.usual_misfit;
-            return Ok(CurveStep { time, phase: self.phase, accepted: true, misfit, innovation: 0.0, iterations: 1 });
+            self.accepted += 1;
+            return Ok(CurveStep {
+                time,
+                phase: self.phase,
+                accepted: true,
+                misfit: self.usual_misfit,
+                innovation: 0.0,
+                iterations: 1,
+                rejection: None,
+            });
         }
         self.last_time = time;
         self.sums.load(outline, &self.origin, self.radius);
@@ -153,7 +161,8 @@ impl WholeCurveFilter {
             self.rejected_in_a_row += 1;
             self.fall_back(time, outline);
         }
-        Ok(CurveStep { phase: self.phase, ..step })
+        let rejection = (!step.accepted).then(|| CurveRejection::of(&step));
+        Ok(CurveStep { phase: self.phase, rejection, ..step })
     }
 
     /// Fits the curve to a first frame, again and again without the points that lie far off it.
@@ -201,7 +210,6 @@ impl WholeCurveFilter {
         (self.usual_misfit, self.usual_square) = (self.sums.misfit, self.sums.mean_square);
         (self.last_time, self.state_time, self.span) = (time, time, 0.0);
         (self.frames, self.rejected_in_a_row) = (1, 0);
-        self.accepted += 1;
         self.phase = Phase::Acquiring;
         Some(())
     }
@@ -231,9 +239,10 @@ impl WholeCurveFilter {
     /// Takes a frame in if it goes with the curve and the motion.
     fn judge(&mut self, time: f64, trial: Option<Trial>) -> CurveStep {
         let misfit = self.sums.misfit;
-        let phase = self.phase;
+        let (phase, rejection) = (self.phase, None);
         let Some(trial) = trial else {
-            return CurveStep { time, phase, accepted: false, misfit, innovation: f64::INFINITY, iterations: 0 };
+            let (innovation, iterations) = (f64::INFINITY, 0);
+            return CurveStep { time, phase, accepted: false, misfit, innovation, iterations, rejection };
         };
         let goes_on = trial.innovation <= LARGEST_INNOVATION || trial.surprise <= LARGEST_SURPRISE;
         let accepted = self.fits(misfit) && goes_on;
@@ -241,7 +250,7 @@ impl WholeCurveFilter {
         if accepted {
             self.take(&trial, true);
         }
-        CurveStep { time, phase, accepted, misfit, innovation, iterations }
+        CurveStep { time, phase, accepted, misfit, innovation, iterations, rejection }
     }
 
     fn fits(&self, misfit: f64) -> bool {
@@ -267,6 +276,7 @@ impl WholeCurveFilter {
             misfit: self.sums.misfit,
             innovation: 0.0,
             iterations: 0,
+            rejection: None,
         };
         let Some((found, misfit)) = self.find_pose(outline) else { return lost };
         let lost = CurveStep { misfit, ..lost };

@@ -130,7 +130,7 @@ impl WholeCurveFilter {
         self.accepted
     }
 
-    /// Frames that did not fit.
+    /// Frames that did not fit, one that a new curve was begun from after others among them.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
         self.rejected

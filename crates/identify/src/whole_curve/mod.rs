@@ -9,6 +9,6 @@ mod score_covariance;
 mod settings;
 mod state_information;
 
-pub use curve_step::CurveStep;
+pub use curve_step::{CurveRejection, CurveStep};
 pub use filter::WholeCurveFilter;
 pub use settings::CurveFilterSettings;

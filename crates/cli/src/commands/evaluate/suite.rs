@@ -16,15 +16,20 @@ pub(super) const SHAPES: [BuiltInShape; 6] = [
     BuiltInShape::Hat,
 ];
 
+/// What the names of settings contain, one or another of them in each.
+const WORDS: [&str; 10] =
+    ["rigid", "affine", "clean", "stratified", "arc", "outliers", "noise", "points", "frames/s", "acquisition"];
+
 /// The settings whose names contain a text.
 pub(super) fn containing(text: &str) -> Result<(Vec<Setting>, Vec<AcquisitionSetting>), Failure> {
     let (mut settings, mut acquisitions) = (settings(), acquisitions());
-    let names: Vec<_> = settings.iter().map(|s| &s.name).chain(acquisitions.iter().map(|a| &a.name)).collect();
-    let unknown = format!("no setting of the suite contains {text:?}; they are {names:?}");
     settings.retain(|setting| setting.name.contains(text));
     acquisitions.retain(|setting| setting.name.contains(text));
     if settings.is_empty() && acquisitions.is_empty() {
-        return Err(Failure::unusable(unknown));
+        let words = WORDS.join(", ");
+        return Err(Failure::unusable(format_args!(
+            "no setting of the suite contains {text:?}; there are some for {words} (docs/accuracy.md lists all)"
+        )));
     }
     Ok((settings, acquisitions))
 }
@@ -98,10 +103,14 @@ mod tests {
 
     #[test]
     fn a_part_of_the_suite_is_chosen_by_its_name() {
-        let (settings, acquisitions) = containing("arc missing").expect("some");
-        assert!(settings.iter().all(|s| s.occlusion == 0.2) && settings.len() == 5 && acquisitions.len() == 1);
+        let (missing, acquired) = containing("arc missing").expect("some");
+        assert!(missing.iter().all(|s| s.occlusion == 0.2) && missing.len() == 5 && acquired.len() == 1);
+        let (settings, acquisitions) = containing("").expect("all");
         let Err(failure) = containing("nonsense") else { panic!("there is no such setting") };
-        assert!(failure.text().contains("rigid, clean, 3 frames") && failure.text().contains("acquisition"));
+        assert!(failure.text().len() < 200, "{}", failure.text());
+        WORDS.iter().for_each(|word| assert!(failure.text().contains(word) && containing(word).is_ok(), "{word}"));
+        let names = settings.iter().map(|s| &s.name).chain(acquisitions.iter().map(|a| &a.name));
+        names.for_each(|name| assert!(WORDS.iter().any(|word| name.contains(word)), "{name}"));
     }
 
     #[test]
