@@ -1,6 +1,5 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
-mod batch;
 mod commands;
 mod contour_order;
 mod failure;
@@ -17,11 +16,14 @@ mod overlay;
 mod picture_input;
 mod plot;
 mod progress;
+mod queues;
+mod reader;
 mod stdin;
 mod tracking;
 mod trajectory;
 mod truth;
 mod turns;
+mod window;
 
 use std::process::ExitCode;
 

@@ -1,24 +1,25 @@
 //! What each frame of an object gave, and what was found of it in the end.
 use std::collections::HashMap;
 use std::rc::Rc;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread;
 
 use freeform_motion::curve_fit::Fit;
 use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate, PointVelocity};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use nalgebra::Matrix3;
-use rayon::prelude::*;
 
 use crate::args::{IdentifyMethod, TrackOptions};
-use crate::batch::{BatchReader, Pace, Taken};
 use crate::contour_order::ContourOrder;
 use crate::failure::Failure;
 use crate::frame_ranges::FrameRanges;
 use crate::identifier::{Identifier, Step};
-use crate::input::{Input, SeenIn};
+use crate::input::{Input, Item, SeenIn};
 use crate::left_out::Missing;
+use crate::queues::{Queues, SharedIdentifier};
+use crate::reader::{Pace, Reader};
 use crate::turns::Turns;
+use crate::window::{Pending, Window};
 
 /// Reasons told of frames of an object that were rejected, and of pictures left out.
 pub(crate) const REASONS_KEPT: usize = 10;
@@ -138,7 +139,7 @@ pub(crate) struct Tracking {
 #[derive(Debug)]
 struct Object {
     name: String,
-    identifier: Identifier,
+    identifier: SharedIdentifier,
     contour_order: ContourOrder,
     frames: usize,
     rejected: usize,
@@ -164,58 +165,41 @@ impl Tracking {
         quiet: bool,
         mut observe: impl FnMut(Event<'_>) -> Result<(), Failure>,
     ) -> Result<Option<Failure>, Failure> {
-        let mut reader = BatchReader::new(input, pace, quiet);
+        let mut window = Window::new(pace, input.has_pictures());
+        let mut reader = Reader::new(input, pace, quiet);
         let mut first_missing = None;
-        let mut next = reader.batch(|| false);
-        while !next.is_empty() {
-            let batch = next;
-            let mut steps = self.assign(&batch)?;
-            match pace {
-                Pace::FrameByFrame => {
-                    steps.iter_mut().for_each(ObjectSteps::run);
-                    next = Vec::new();
-                }
-                // The objects side by side, and what comes next is read meanwhile.
-                Pace::Ahead => {
-                    let followed = AtomicBool::new(false);
-                    next = rayon::in_place_scope(|scope| {
-                        scope.spawn(|_| {
-                            steps.par_iter_mut().for_each(ObjectSteps::run);
-                            followed.store(true, Relaxed);
-                        });
-                        reader.batch(|| !followed.load(Relaxed))
-                    });
-                }
-            }
-            let mut results: HashMap<usize, _> =
-                steps.into_iter().map(|object| (object.position, object.results.into_iter())).collect();
-            for item in batch {
-                match item {
-                    Taken::Outline(frame, seen_in) => {
-                        let position = self.position(&frame.object)?;
-                        let Some(step) = results.get_mut(&position).and_then(Iterator::next) else { continue };
-                        let observation = self.observation(position, &frame, step);
-                        observe(Event::Observed {
-                            observation: &observation,
-                            frame: Some(&frame),
-                            seen_in: seen_in.as_ref(),
-                        })?;
+        let queues = Queues::default();
+        thread::scope(|scope| {
+            // However this ends, the threads end.
+            let _closing = queues.closed_at_the_end();
+            let (mut threads, most_threads) = (1, pace.threads());
+            loop {
+                if window.has_room()
+                    && let Some(item) = reader.next()
+                {
+                    window.push(self.enqueue(item, &queues)?);
+                    // This thread and as many as there may be work for.
+                    if threads <= self.objects.len() && threads < most_threads {
+                        scope.spawn(|| queues.follow());
+                        threads += 1;
                     }
-                    Taken::Rejected { object, frame, reason } => {
-                        let observation = self.reject(object, frame, reason)?;
-                        observe(Event::Observed { observation: &observation, frame: None, seen_in: None })?;
+                } else if let Some(Pending::Outline { position, .. }) = window.first() {
+                    if !queues.help(*position) {
+                        return Ok(());
                     }
-                    Taken::Missing(missing) => {
-                        observe(Event::Missing(&missing))?;
+                } else {
+                    return Ok(());
+                }
+                while let Some(first) = window.first()
+                    && self.hand_on(first, &queues, &mut observe)?
+                {
+                    if let Some(Pending::Missing(missing)) = window.pop() {
                         first_missing.get_or_insert(missing);
                     }
+                    reader.progress.advance();
                 }
-                reader.progress.advance();
             }
-            if pace == Pace::FrameByFrame {
-                next = reader.batch(|| false);
-            }
-        }
+        })?;
         // Nothing but pictures without an object: the first says why.
         let nothing = first_missing.filter(|_| self.objects.is_empty()).map(Missing::into_failure);
         Ok(reader.finish().or(nothing))
@@ -224,24 +208,46 @@ impl Tracking {
     /// Takes the next frame of an object.
     pub(crate) fn push(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
         let position = self.position(&frame.object)?;
-        let step = self.objects[position].identifier.push(frame.time, &frame.outline);
+        let step = self.objects[position].identifier.hold().push(frame.time, &frame.outline);
         Ok(self.observation(position, frame, step))
     }
 
-    /// Which object takes which frames of a batch.
-    fn assign<'a>(&'a mut self, batch: &'a [Taken]) -> Result<Vec<ObjectSteps<'a>>, Failure> {
-        let mut frames: HashMap<usize, Vec<&OutlineFrame>> = HashMap::new();
-        for item in batch {
-            if let Taken::Outline(frame, _) = item {
-                frames.entry(self.position(&frame.object)?).or_default().push(frame);
+    /// Hands an outline to its object.
+    fn enqueue(&mut self, item: Item, queues: &Queues) -> Result<Pending, Failure> {
+        Ok(match item {
+            Item::Outline(frame, seen_in) => {
+                let position = self.position(&frame.object)?;
+                let points = frame.outline.point_count();
+                queues.push(position, &self.objects[position].identifier, frame);
+                Pending::Outline { position, points, seen_in }
             }
+            Item::Rejected { object, frame, reason } => {
+                Pending::Rejected { position: self.position(&object)?, object, frame, reason }
+            }
+            Item::Missing(missing) => Pending::Missing(missing),
+        })
+    }
+
+    /// Hands on what was read first, unless that has not been followed yet. Returns whether it did.
+    fn hand_on(
+        &mut self,
+        first: &Pending,
+        queues: &Queues,
+        observe: &mut impl FnMut(Event<'_>) -> Result<(), Failure>,
+    ) -> Result<bool, Failure> {
+        match first {
+            Pending::Outline { position, seen_in, .. } => {
+                let Some((frame, step)) = queues.pop(*position) else { return Ok(false) };
+                let (observation, seen_in) = (self.observation(*position, &frame, step), seen_in.as_ref());
+                observe(Event::Observed { observation: &observation, frame: Some(&frame), seen_in })?;
+            }
+            Pending::Rejected { position, object, frame, reason } => {
+                let observation = self.reject(*position, object, *frame, reason);
+                observe(Event::Observed { observation: &observation, frame: None, seen_in: None })?;
+            }
+            Pending::Missing(missing) => observe(Event::Missing(missing))?,
         }
-        let objects = self.objects.iter_mut().enumerate();
-        let steps = objects.filter_map(|(position, object)| {
-            let frames = frames.remove(&position)?;
-            Some(ObjectSteps { position, identifier: &mut object.identifier, frames, results: Vec::new() })
-        });
-        Ok(steps.collect())
+        Ok(true)
     }
 
     fn observation(&mut self, position: usize, frame: &OutlineFrame, step: Step) -> Observation {
@@ -268,11 +274,10 @@ impl Tracking {
     }
 
     /// Takes note of a frame whose points are no outline.
-    fn reject(&mut self, object: String, frame: u64, reason: String) -> Result<Observation, Failure> {
-        let position = self.position(&object)?;
-        self.objects[position].count(frame, Some(&reason));
-        Ok(Observation {
-            object,
+    fn reject(&mut self, position: usize, object: &str, frame: u64, reason: &str) -> Observation {
+        self.objects[position].count(frame, Some(reason));
+        Observation {
+            object: object.to_owned(),
             frame,
             time: None,
             phase: None,
@@ -282,14 +287,14 @@ impl Tracking {
             residual: None,
             innovation: None,
             ambiguity: None,
-            rejected_because: Some(reason),
+            rejected_because: Some(reason.to_owned()),
             out_of_order: None,
-        })
+        }
     }
 
     /// Whether the motion of any object was seen to change.
     pub(crate) fn motion_changed(&self) -> bool {
-        self.objects.iter().any(|object| object.identifier.motion_changed())
+        self.objects.iter().any(|object| object.identifier.hold().motion_changed())
     }
 
     /// The objects whose points do not follow the contour, and the warning of each.
@@ -303,11 +308,12 @@ impl Tracking {
     }
 
     fn result(&self, object: &Object) -> ObjectResult {
-        let raw = object.identifier.estimate();
+        let identifier = object.identifier.hold();
+        let raw = identifier.estimate();
         let estimate = raw.and_then(|estimate| Estimate::of(estimate, self.options.scale));
         // First, as it is the reason for others.
         let out_of_order = object.contour_order.warning().map(str::to_owned);
-        let mut warnings: Vec<String> = out_of_order.into_iter().chain(object.identifier.warnings()).collect();
+        let mut warnings: Vec<String> = out_of_order.into_iter().chain(identifier.warnings()).collect();
         if raw.is_some() && estimate.is_none() {
             warnings.push("the identifier diverged: its numbers are not finite".to_owned());
         }
@@ -324,8 +330,8 @@ impl Tracking {
             frames_rejected: object.rejected,
             first_rejection: object.reasons.first().cloned(),
             estimate,
-            velocity: object.identifier.velocity().and_then(|velocity| in_space(velocity, self.options.scale)),
-            ambiguity: object.identifier.ambiguity(),
+            velocity: identifier.velocity().and_then(|velocity| in_space(velocity, self.options.scale)),
+            ambiguity: identifier.ambiguity(),
             warnings,
         }
     }
@@ -335,7 +341,7 @@ impl Tracking {
         if let Some(position) = self.positions.get(name) {
             return Ok(*position);
         }
-        let identifier = Identifier::new(&self.options)?;
+        let identifier = SharedIdentifier::new(Identifier::new(&self.options)?);
         let (name, position) = (name.to_owned(), self.objects.len());
         self.positions.insert(name.clone(), position);
         self.objects.push(Object {
@@ -348,21 +354,6 @@ impl Tracking {
             rejected_later: FrameRanges::default(),
         });
         Ok(position)
-    }
-}
-
-/// The frames of one object in a batch.
-struct ObjectSteps<'a> {
-    position: usize,
-    identifier: &'a mut Identifier,
-    frames: Vec<&'a OutlineFrame>,
-    results: Vec<Step>,
-}
-
-impl ObjectSteps<'_> {
-    fn run(&mut self) {
-        let Self { identifier, frames, results, .. } = self;
-        results.extend(frames.iter().map(|frame| identifier.push(frame.time, &frame.outline)));
     }
 }
 

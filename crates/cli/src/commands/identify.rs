@@ -8,7 +8,6 @@ use freeform_motion::riccati::AffineMotion;
 
 use super::command_line;
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
-use crate::batch::Pace;
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
 use crate::identifier::{curve_settings, filter_settings, pipeline_settings, process_noise};
@@ -22,6 +21,7 @@ use crate::output::{
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
+use crate::reader::Pace;
 use crate::tracking::{Event, ObjectResult, Observation, Tracking};
 use crate::trajectory::Trajectory;
 use crate::truth::parameters_in;

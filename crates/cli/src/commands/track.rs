@@ -1,12 +1,12 @@
 use std::io::Write as _;
 
 use crate::args::TrackArgs;
-use crate::batch::Pace;
 use crate::failure::{Failure, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::output::{Sink, refuse_overwriting, track_line};
 use crate::overlay::ObservedOverlay;
+use crate::reader::Pace;
 use crate::tracking::{Event, Tracking};
 
 /// Identifies as a stream.

@@ -191,6 +191,70 @@ fn objects_that_are_followed_side_by_side_are_found_as_each_would_be_alone_in_th
     assert!(frames.iter().enumerate().all(|(line, object)| *object == format!("object {}", line % shapes.len())));
 }
 
+#[test]
+fn what_frames_gave_comes_in_the_order_of_the_input_however_unequal_the_objects_are() {
+    // More points than are read ahead; the first object is most of the work, the last one appears late.
+    let (frames, late) = (150, 100);
+    let sequences = [1600, 60, 60, 200]
+        .map(|points| succeed(&format!("simulate --points {points} --seconds 5 --omega 1 --b 0,0"), ""));
+    let mut csv = String::from("frame,time,x,y,object\n");
+    let mut expected = Vec::new();
+    let mut rows = sequences.each_ref().map(|csv| csv.lines().filter(|row| !row.starts_with(['#', 'f'])).peekable());
+    for frame in 0..frames {
+        for (object, rows) in rows.iter_mut().enumerate() {
+            let is_seen = object < 3 || frame >= late;
+            // Some frames are no outline.
+            let is_point = (frame + object) % 40 == 39;
+            let mut row_count = 0;
+            while let Some(row) = rows.next_if(|row| row.starts_with(&format!("{frame},"))) {
+                if is_seen && (!is_point || row_count == 0) {
+                    csv.push_str(&format!("{row},object {object}\n"));
+                }
+                row_count += 1;
+            }
+            if is_seen {
+                expected.push((format!("object {object}"), frame.to_string(), (!is_point).to_string()));
+            }
+        }
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let trace = folder.path().join("trace.csv");
+    succeed(&format!("identify - --quiet --trace {}", trace.display()), &csv);
+    let trace = std::fs::read_to_string(trace).expect("the trace");
+    let observed: Vec<_> = trace
+        .lines()
+        .skip(1)
+        .map(|row| {
+            let fields: Vec<&str> = row.split(',').collect();
+            (fields[0].to_owned(), fields[1].to_owned(), fields[4].to_owned())
+        })
+        .collect();
+    assert_eq!(observed, expected);
+}
+
+#[test]
+fn objects_are_listed_as_they_first_appear_though_it_be_in_a_frame_that_is_no_outline() {
+    // The first frames of the first object and all of the third one are single points; the second object is most of the work.
+    let objects = [("a point at first", 60, 0), ("large", 1600, 0), ("a point", 60, 3), ("late", 60, 5)];
+    let sequences = objects.map(|(_, points, _)| succeed(&format!("simulate --points {points} --seconds 0.5"), ""));
+    let mut csv = String::from("frame,time,x,y,object\n");
+    for frame in 0..15 {
+        for ((name, _, first), sequence) in objects.iter().zip(&sequences).filter(|((_, _, first), _)| frame >= *first)
+        {
+            let is_point = *name == "a point" || *name == "a point at first" && frame < *first + 8;
+            let rows = sequence.lines().filter(|row| row.starts_with(&format!("{frame},")));
+            rows.take(if is_point { 1 } else { usize::MAX }).for_each(|row| csv.push_str(&format!("{row},{name}\n")));
+        }
+    }
+    let document = json(&succeed("identify - --quiet --format json", &csv));
+    let listed = document["objects"].as_array().expect("a list").iter().map(|object| {
+        let count = |field: &str| object[field].as_u64().expect("a number");
+        (object["object"].as_str().expect("a name"), count("frames"), count("frames_rejected"))
+    });
+    let expected = [("a point at first", 15, 8), ("large", 15, 0), ("a point", 12, 12), ("late", 10, 0)];
+    assert_eq!(listed.collect::<Vec<_>>(), expected);
+}
+
 /// The rows of every frame taken in steps of 47 of 120, which are all of them in an order that is not the contour's.
 fn out_of_order(csv: &str) -> String {
     let (head, rows): (Vec<&str>, Vec<&str>) = csv.lines().partition(|line| line.starts_with(['#', 'f']));

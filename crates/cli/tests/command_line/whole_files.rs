@@ -3,7 +3,7 @@ use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::support::{file, json, run, sequence, stderr, stdout, succeed};
 
@@ -45,6 +45,45 @@ fn a_full_disk_is_told_on_one_line() {
         assert_eq!(output.status.code(), Some(2), "{option}");
         assert!(stderr(&output).contains("/dev/full: No space left on device"), "{option}: {}", stderr(&output));
     }
+}
+
+#[test]
+fn a_disk_that_is_full_before_the_end_ends_identify_while_rows_keep_coming() {
+    if !Path::new("/dev/full").exists() {
+        println!("skipped: no /dev/full here");
+        return;
+    }
+    let csv = succeed("simulate --points 60 --seconds 0.01", "");
+    let points: Vec<String> = csv.lines().filter_map(|row| Some(row.strip_prefix("0,0,")?.to_owned())).collect();
+    assert_eq!(points.len(), 60);
+    let frame = move |number: u64| -> String {
+        let row = |object: u64, point: &String| format!("{number},{number},{point},{object}\n");
+        (0..3).flat_map(|object| points.iter().map(move |point| row(object, point))).collect()
+    };
+    let mut child = command()
+        .args(["identify", "-", "--quiet", "--trace", "/dev/full"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let mut input = child.stdin.take().expect("a pipe");
+    // The input ends no earlier than the process.
+    let rows = std::thread::spawn(move || {
+        input.write_all(b"frame,time,x,y,object\n").expect("the binary reads");
+        (0..).all(|number| input.write_all(frame(number).as_bytes()).is_ok())
+    });
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while child.try_wait().expect("our child").is_none() {
+        if Instant::now() > deadline {
+            child.kill().expect("our child");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(!rows.join().expect("nothing but the pipe breaks"));
+    let output = child.wait_with_output().expect("our child");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert_eq!(stderr(&output), "freeform: /dev/full: No space left on device\n");
 }
 
 #[test]
