@@ -2,7 +2,7 @@ use std::fmt;
 
 use freeform_motion::identify::Ambiguity;
 
-/// Turns per frame that the outlines do not decide between, in degrees, positive where omega is.
+/// Turns from one frame to the next that the outlines do not decide between, in degrees, positive where omega is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct Turns {
     /// The one taken.
@@ -24,6 +24,9 @@ impl fmt::Display for Turns {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rivals: Vec<String> = self.rival_turns.iter().map(|turn| format!("{turn:.1}")).collect();
         let (rivals, turn) = (rivals.join(" or "), self.turn);
-        write!(f, "another turn explains the outlines as well: {rivals} instead of {turn:.1} degrees per frame")
+        write!(
+            f,
+            "another turn explains the outlines as well: {rivals} instead of {turn:.1} degrees from one frame to the next"
+        )
     }
 }

@@ -118,3 +118,27 @@ fn an_object_that_spins_and_travels_keeps_its_pose_where_its_map_is_cut_from_man
         }
     }
 }
+
+#[test]
+fn an_object_that_takes_the_place_of_one_whose_motion_changed_has_not_changed_its_own() {
+    let swinging = |t: f64| AffineMotion::from(RigidMotion { omega: 3.0 * (4.0 * t).sin(), b1: 0.2, b2: -0.1 });
+    // With so many points that no map is ever cut anew.
+    let many = |seed| Settings { points: 1500, ..settings(60, seed) };
+    let mut run = filter(MotionModel::Rigid);
+    for frame in &frames_of(BuiltInShape::Bird, Motion::varying(swinging), many(0)) {
+        run.step(frame.time, &frame.outline).expect("increasing times");
+    }
+    assert!(run.motion_changed());
+    let steady = AffineMotion::from(RigidMotion { omega: 0.5, b1: 0.1, b2: 0.0 });
+    for frame in &frames_of(BuiltInShape::Phone, steady, many(1)) {
+        run.step(10.0 + frame.time, &frame.outline).expect("increasing times");
+    }
+    assert!(run.restarts() > 0 && !run.motion_changed(), "{} restarts", run.restarts());
+    let alone = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Phone, steady, many(1)));
+    let deviation = |run: &MotionFilter| {
+        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega");
+        omega.standard_deviation.expect("known")
+    };
+    // It has half of the frames.
+    assert!(deviation(&run) < 6.0 * deviation(&alone), "{} {}", deviation(&run), deviation(&alone));
+}

@@ -298,3 +298,17 @@ fn recordings_that_show_no_motion_are_refused_with_the_reason() {
     let refused = estimate_batch(MotionModel::Rigid, &few).err();
     assert!(matches!(refused, Some(BatchError::Frame { index: 0, error: FilterError::TooFewPoints { found: 3, .. } })));
 }
+
+#[test]
+fn rejected_frames_at_the_end_of_a_recording_change_nothing_in_the_batch() {
+    let mut frames =
+        record(BuiltInShape::Van, &constant_motion(MotionModel::Rigid, 20), Corruption::default(), NOISE, 3);
+    let alone = estimate_batch(MotionModel::Rigid, &frames).expect("an estimate");
+    for step in 1..3 {
+        let (time, outline) = &frames[frames.len() - 1];
+        let away = outline.points().map(|p| Point2::new(p.x + f64::from(step), p.y)).collect();
+        frames.push((time + SECONDS_PER_FRAME, Outline::closed(away).expect("an outline")));
+    }
+    let with_others = estimate_batch(MotionModel::Rigid, &frames).expect("an estimate");
+    assert_eq!((with_others.frames_used, with_others.motion.values()), (alone.frames_used, alone.motion.values()));
+}

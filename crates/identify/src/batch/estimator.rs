@@ -87,19 +87,24 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
     let smallest = settings.smallest_agreement;
     let mut filter = MotionFilter::new(settings).map_err(|error| BatchError::Frame { index: 0, error })?;
     let mut used = Vec::new();
+    let (mut last_used, mut restarts) = (None, 0);
     for (index, (time, outline)) in frames.iter().enumerate() {
         let step = filter.step(*time, outline).map_err(|error| BatchError::Frame { index, error })?;
-        if step.accepted {
-            // Looked for anew: it has not gone on from the frames before.
+        let is_begun_anew = filter.restarts() > restarts;
+        restarts = filter.restarts();
+        if step.accepted || is_begun_anew {
+            // It has not gone on from the frames before.
             if step.phase == Phase::Acquiring {
                 used.clear();
             }
             used.push((*time, outline));
+            last_used = filter.map().cloned();
         }
     }
     let no_start = BatchError::NoStart { frames: frames.len() };
     let start = filter.estimate().filter(|_| used.len() > 1).ok_or(no_start)?;
-    let map = filter.map().ok_or(no_start)?;
+    // Frames rejected in the end have moved the filter's own map on.
+    let map = last_used.ok_or(no_start)?;
     let points: usize = used.iter().map(|(_, outline)| outline.point_count()).sum();
     let take = |map: &mut OutlineMap, seconds: f64, outline: &Outline| {
         map.predict(seconds);

@@ -13,17 +13,18 @@ pub struct Ambiguity {
 }
 
 impl MotionFilter {
-    /// What the turn taken may have been instead; `None` where [`is_ambiguous`](Self::is_ambiguous) is false.
+    /// What the turn taken may have been instead; `None` where no parameter depends on it or the motion is not known anyway.
     #[must_use]
     pub fn ambiguity(&self) -> Option<Ambiguity> {
         let rival_turns = self.rivals.doubtful_turns();
         if rival_turns.is_empty() {
             return None;
         }
+        self.estimate()?;
         let estimate = self.map()?.estimate()?;
         let doubts = self.rivals.doubts(&estimate);
         let parameters = estimate.parameters().zip(doubts).filter(|(_, doubtful)| *doubtful);
-        let parameters = parameters.map(|(parameter, _)| parameter.name).collect();
-        Some(Ambiguity { turn: self.rivals.taken(), rival_turns, parameters })
+        let parameters: Vec<_> = parameters.map(|(parameter, _)| parameter.name).collect();
+        (!parameters.is_empty()).then(|| Ambiguity { turn: self.rivals.taken(), rival_turns, parameters })
     }
 }

@@ -47,10 +47,12 @@ impl FirstFrames {
         *self = Self { over: true, ..Self::default() };
     }
 
-    /// Begins anew with a frame, unless a map has been cut from enough of them.
+    /// Begins anew with a frame, unless a map has been cut already, which knows more of the outline than frames yet to come.
     pub(crate) fn begin_anew(&mut self, time: f64, outline: &Outline, map: &OutlineMap) {
-        if !self.over {
+        if self.frames.len() < OCCASIONS[0] && !self.over {
             *self = Self::begin(time, outline, map);
+        } else {
+            self.end();
         }
     }
 
@@ -91,7 +93,7 @@ impl FirstFrames {
         placed.map(|((time, outline), pose)| PlacedFrame { time: *time, outline, pose: *pose }).collect()
     }
 
-    /// In the poses that the motion of a map puts them in, if it has never been another.
+    /// In the poses that the motion of a map puts them in: where they were if it has never changed.
     pub(crate) fn by_motion(&self, map: &OutlineMap) -> Vec<PlacedFrame<'_>> {
         map.placed(self.frames.iter().map(|(time, outline)| (*time, outline)))
     }
@@ -123,8 +125,8 @@ impl MotionFilter {
             self.begin_with_turn(outline);
         } else {
             self.recut();
-            self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
         }
+        self.first_frames.end_unless_few(self.map.as_ref().map_or(0, OutlineMap::cell_count));
     }
 
     /// Cuts the map anew from the first frames, until it settles, and looks for changes of the motion once more: what was taken for one may
@@ -192,8 +194,33 @@ impl MotionFilter {
         self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
         self.first_frames = FirstFrames::begin(self.last_time, outline, &new);
         self.rivals = Rivals::default();
-        self.change = MotionChange::default();
+        (self.change, self.motion_changed) = (MotionChange::default(), false);
         (self.taken_by_map, self.refused_by_map) = (1, 0);
         self.replace(new, self.map_time, Phase::Acquiring);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MotionModel;
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::FilterSettings;
+
+    #[test]
+    fn frames_are_not_kept_for_ever_where_the_turn_stays_unknown() {
+        let circle = |i: i32| {
+            let angle = std::f64::consts::TAU * f64::from(i) / 100.0;
+            Point2::new(angle.cos(), angle.sin())
+        };
+        let outline = Outline::closed((0..100).map(circle).collect()).expect("an outline");
+        let mut filter =
+            MotionFilter::new(FilterSettings { model: MotionModel::Rigid, ..Default::default() }).expect("settings");
+        for frame in 0..100 {
+            filter.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
+            assert!(filter.first_frames.frames.len() <= OCCASIONS[2], "frame {frame}");
+        }
+        assert!(filter.map.as_ref().is_some_and(OutlineMap::turn_is_unknown));
     }
 }

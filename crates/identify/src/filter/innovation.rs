@@ -78,7 +78,7 @@ impl OutlineMap {
     /// Motion parameters by the rates and velocities about the object's present centre.
     pub(crate) fn unit_change(&self) -> Option<PoseMatrix> {
         let k = self.information.k;
-        let centre = map_point(&self.pose, &nalgebra::Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)]));
+        let centre = map_point(&self.pose, &self.middle());
         let shift = Matrix3::new(1.0, 0.0, centre.x, 0.0, 1.0, centre.y, 0.0, 0.0, 1.0);
         let change = adjoint(self.model, &shift, &shift.try_inverse()?);
         Some(PoseMatrix::from_fn(|i, j| if i < k && j < k { change[i][j] } else { 0.0 }))

@@ -90,9 +90,9 @@ impl OutlineMap {
         map.first_pose = self.first_pose;
         map.pose = self.first_pose.pose;
         map.cut(contours.collect(), LEAST_NOISE * self.sigma)?;
+        map.noise_level = self.noise_level;
         map.doubt_first_pose();
         map.motion = self.motion;
-        map.noise_level = self.noise_level;
         let mut before = first.time;
         for PlacedFrame { time, outline, .. } in &frames[1..] {
             if !take(&mut map, time - before, outline).accepted {

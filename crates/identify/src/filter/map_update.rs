@@ -129,7 +129,7 @@ impl OutlineMap {
     pub fn update(&mut self, outline: &Outline, accept: impl Fn(&MapUpdate) -> bool) -> MapUpdate {
         self.load(outline);
         let mut scratch = std::mem::take(&mut self.scratch);
-        let update = self.update_loaded(&mut scratch, accept);
+        let update = self.update_loaded(&mut scratch, &accept);
         self.scratch = scratch;
         if update.accepted && update.new_points >= FEWEST_NEW_POINTS {
             self.grow();
@@ -137,7 +137,7 @@ impl OutlineMap {
         update
     }
 
-    fn update_loaded(&mut self, scratch: &mut Scratch, accept: impl Fn(&MapUpdate) -> bool) -> MapUpdate {
+    fn update_loaded(&mut self, scratch: &mut Scratch, accept: &dyn Fn(&MapUpdate) -> bool) -> MapUpdate {
         let k = self.information.k;
         let unseen = self.unseen_in_image(&self.pose);
         let mut hold = self.hold(&unseen);

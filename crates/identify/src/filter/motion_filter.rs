@@ -176,6 +176,7 @@ impl MotionFilter {
         self.first_frames = FirstFrames::begin(time, outline, &map);
         self.map = Some(map);
         self.rivals = Rivals::default();
+        (self.change, self.motion_changed) = (MotionChange::default(), false);
         (self.last_time, self.map_time) = (time, time);
         (self.taken_by_map, self.refused_by_map) = (1, 0);
         self.rejected_in_a_row = 0;
@@ -331,6 +332,9 @@ pub(super) fn advance(
         Known::ShowsObject => update.agreement >= smallest,
         _ => fits(update),
     };
+    if !settings.finds_changes() && known == Known::ShowsObject {
+        return map.update(outline, shows);
+    }
     let mut update = map.update(outline, |update| shows(update) && update.innovation <= limit);
     if !settings.finds_changes() {
         return update;
@@ -338,7 +342,7 @@ pub(super) fn advance(
     let innovation = map.innovation;
     let may_change = known != Known::Nothing && update.agreement >= smallest && innovation.fisher[0] > 0.0;
     if !update.accepted && may_change {
-        // If the outline is there, but for the second time not where it was going, the motion has changed.
+        // If the outline is there, but for the second time (or beyond doubt) not where it was going, the motion has changed.
         let mut changed = map.clone();
         changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
         let found = changed.update(outline, shows);

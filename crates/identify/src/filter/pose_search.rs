@@ -143,8 +143,7 @@ impl OutlineMap {
 
     /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
     fn shows_turn(&mut self, outline: &Outline, pose: &Matrix3<f64>) -> bool {
-        let body_centre = nalgebra::Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)]);
-        let centre = map_point(pose, &body_centre);
+        let centre = map_point(pose, &self.middle());
         let turned = (1..=OTHER_TURNS).map(|i| Rotation2::new(GOLDEN_ANGLE * i as f64));
         let turned = turned.filter(|rotation| rotation.angle().abs() >= NEAR).map(|rotation| {
             let shift = centre - rotation * centre;

@@ -2,12 +2,13 @@ use freeform_riccati::MotionModel;
 
 use super::error::FilterError;
 
-/// How fast the motion itself may change: standard deviations per square root of a second.
+/// How fast the motion itself may change: standard deviations per square root of a second, of the motion about the centre of the first
+/// outline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ProcessNoise {
     /// Of the rates of turning, growth and shear, in 1/s.
     pub rates: f64,
-    /// Of the velocities b1 and b2, image lengths per second.
+    /// Of the velocity of that centre, image lengths per second.
     pub velocities: f64,
 }
 

@@ -23,7 +23,7 @@ impl MotionFilter {
 
 impl OutlineMap {
     /// Centre of the cells in the body frame.
-    fn middle(&self) -> Point2<f64> {
+    pub(super) fn middle(&self) -> Point2<f64> {
         Point2::new(self.body_frame[(0, 2)], self.body_frame[(1, 2)])
     }
 
