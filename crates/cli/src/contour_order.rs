@@ -8,8 +8,8 @@ use crate::output::significant;
 /// Frames of an object that are looked at.
 const FRAMES: usize = 5;
 
-/// A way through the points that is longer than this many perimeters of the box around them may hop about. Deep notches make
-/// a contour about as long as seven.
+/// A way through the points that is longer than this many perimeters of the box around them may hop about: fewer than 40 points in any order
+/// may make a shorter one and pass. Deep notches make a contour about as long as seven.
 const LONG: f64 = 5.0;
 
 /// It does if it also is longer than this many perimeters per point. Points in any order make it 0.1 to 0.16, points in order

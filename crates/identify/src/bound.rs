@@ -82,7 +82,8 @@ pub struct BoundaryPoint {
 /// }
 /// let covariance = bound.covariance()?;
 /// let of_omega = covariance.standard_deviations().next().flatten().expect("an ellipse is not round");
-/// assert!(of_omega > 0.0005 && of_omega < 0.01);
+/// // The noise over the root of the squared levers of a frame, 6.0, times the squared times from their mean, 2.497.
+/// assert!((of_omega - 0.005 / f64::sqrt(6.0 * 2.497)).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]

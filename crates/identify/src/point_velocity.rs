@@ -9,7 +9,7 @@ pub struct PointVelocity {
     pub point: Point2<f64>,
     /// Its velocity, image lengths per second.
     pub velocity: Vector2<f64>,
-    /// Covariance of the velocity.
+    /// Covariance of the velocity, squares of image lengths per second.
     pub covariance: Matrix2<f64>,
 }
 

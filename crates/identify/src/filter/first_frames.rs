@@ -77,7 +77,9 @@ impl FirstFrames {
         let count = self.frames.len().max(1);
         let next = OCCASIONS.into_iter().find(|occasion| *occasion > count);
         let each = self.points / count;
-        if next.is_none_or(|next| next * each > PLENTY) && count > 1 || each as f64 > PLENTY_PER_CELL * cells as f64 {
+        let would_be_plenty = count > 1 && next.is_none_or(|next| next * each > PLENTY);
+        let one_is_plenty = each as f64 > PLENTY_PER_CELL * cells as f64;
+        if would_be_plenty || one_is_plenty {
             self.end();
         }
     }
