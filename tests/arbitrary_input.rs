@@ -109,4 +109,9 @@ fn any_sequence_leaves_the_motion_filter_finite() {
 fn what_the_targets_in_fuzz_have_found_stays_mended() {
     // An arc of two points has no inside; its bounded fit was the polynomial 0.
     fit_and_decomposition(&[48, 255, 2, 1, 1, 0]);
+    // Of an outline that says next to nothing the variances of a projective motion were beyond any number.
+    motion_filter(&[
+        47, 10, 223, 8, 0, 4, 4, 220, 220, 220, 0, 220, 220, 255, 255, 0, 0, 4, 1, 0, 0, 0, 0, 251, 0, 3, 99, 99, 0,
+        99, 99, 99, 32,
+    ]);
 }

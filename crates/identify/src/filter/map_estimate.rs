@@ -28,10 +28,11 @@ impl OutlineMap {
     pub(crate) fn state_covariance(&self, information: &StateMatrix) -> Option<DMatrix<f64>> {
         let k = self.information.k;
         let inverse = scaled_inverse(information, k)? * self.effective_variance();
-        Some(DMatrix::from_fn(2 * k, 2 * k, |i, j| inverse[(i, j)]))
+        inverse.iter().all(|e| e.is_finite()).then(|| DMatrix::from_fn(2 * k, 2 * k, |i, j| inverse[(i, j)]))
     }
 
-    /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed.
+    /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed, or is beyond any
+    /// number.
     #[must_use]
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let k = self.information.k;
@@ -41,7 +42,8 @@ impl OutlineMap {
         let change = DMatrix::from_fn(k, k, |i, j| change[i][j]);
         let covariance = &change * state.view((k, k), (k, k)) * change.transpose();
         // The products round apart where the image origin is far away.
-        Some(0.5 * (&covariance + covariance.transpose()))
+        let symmetric = 0.5 * (&covariance + covariance.transpose());
+        symmetric.iter().all(|e| e.is_finite()).then_some(symmetric)
     }
 
     /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that it is
