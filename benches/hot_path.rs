@@ -8,7 +8,7 @@ use freeform_motion::{
         Degree, FitSettings, Fitter, Method, Moments, NormalRegression, Outline, evaluate_monomials, outward_normals,
     },
     decompose::{Correspondence, Decomposition},
-    identify::{CurveFilterSettings, FilterSettings, MotionFilter, Phase, WholeCurveFilter},
+    identify::{FilterSettings, MotionFilter, Phase},
     outline_io::{
         DEFAULT_OBJECT, GrayImage, OutlineFrame, OutlineReader, OutlineWriter, TraceSettings, WriterOptions, trace_mask,
     },
@@ -179,27 +179,6 @@ fn time_of_steps<F: Clone>(
     spent
 }
 
-/// Beside the QR of the 3L matrix of its degree.
-fn whole_curve_frame(c: &mut Criterion) {
-    let mut group = c.benchmark_group("whole-curve filter");
-    for (points, degree) in
-        [(100, Degree::Quartic), (400, Degree::Quartic), (1600, Degree::Quartic), (400, Degree::Sextic)]
-    {
-        group.throughput(Throughput::Elements(points as u64));
-        let list = frames(points, 240);
-        let settings = CurveFilterSettings { degree, ..CurveFilterSettings::default() };
-        let mut begun = WholeCurveFilter::new(settings).expect("settings");
-        let step = |filter: &mut WholeCurveFilter, time, outline: &_| {
-            filter.step(time, outline).is_ok_and(|step| step.accepted)
-        };
-        assert!(list[..SETTLED].iter().all(|(time, outline)| step(&mut begun, *time, outline)));
-        group.bench_function(BenchmarkId::from_parameter(format!("degree {degree}, {points} points")), |b| {
-            b.iter_custom(|iterations| time_of_steps(&begun, &list, iterations, step));
-        });
-    }
-    group.finish();
-}
-
 fn motion_filter_frame(c: &mut Criterion) {
     let mut group = c.benchmark_group("motion filter");
     for (points, model) in
@@ -242,17 +221,6 @@ fn acquisition(c: &mut Criterion) {
             );
         });
     }
-    let list = frames(400, 2);
-    let mut begun = WholeCurveFilter::new(CurveFilterSettings::default()).expect("settings");
-    begun.step(list[0].0, &list[0].1).expect("a first frame");
-    group.throughput(Throughput::Elements(400));
-    group.bench_function("whole-curve filter, 400 points", |b| {
-        b.iter_batched_ref(
-            || begun.clone(),
-            |filter| assert!(filter.step(list[1].0, black_box(&list[1].1)).is_ok_and(|step| step.accepted)),
-            BatchSize::SmallInput,
-        );
-    });
     group.finish();
 }
 
@@ -308,7 +276,6 @@ criterion_group!(
     baselines,
     stages,
     whole_frame,
-    whole_curve_frame,
     motion_filter_frame,
     acquisition,
     picture,

@@ -2,8 +2,7 @@
 //!
 //! Every frame gives noisy points in their order along the outline of the object, without correspondence to the frame before.
 //! [`identify::MotionFilter`] estimates outline, pose and motion from them, with standard deviations; take it first.
-//! [`identify::WholeCurveFilter`] takes one curve for all frames, [`identify::smooth`] and [`identify::estimate_batch`] are for
-//! recorded frames, and [`identify::CramerRaoBound`] says what can be reached.
+//! [`identify::smooth`] and [`identify::estimate_batch`] are for recorded frames, and [`identify::CramerRaoBound`] says what can be reached.
 //!
 //! A [`Pipeline`] is the way of the paper: it fits an implicit polynomial curve to each outline, takes it apart into complex lines,
 //! matches the lines to those of the frame before, and identifies the motion from their Riccati dynamics (M. Unel, B. K. Ghosh,

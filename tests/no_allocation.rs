@@ -4,9 +4,7 @@ mod common;
 use common::frames;
 use freeform_motion::{
     Pipeline, PipelineSettings,
-    curve_fit::Degree,
-    identify::{AdaptiveLaw, CurveFilterSettings, FilterSettings, MotionFilter, PairChoice, WholeCurveFilter},
-    riccati::MotionModel,
+    identify::{AdaptiveLaw, FilterSettings, MotionFilter, PairChoice},
     sim_camera::{Frame, PaperExperiment, Simulator},
 };
 
@@ -27,24 +25,6 @@ fn the_adaptive_identifier_allocates_in_the_first_frame_alone() {
                 assert!(accepted);
                 assert!(index == 0 || counts.count_total == 0, "frame {index}, {law:?}, {pairs:?}: {counts:?}");
             }
-        }
-    }
-}
-
-#[test]
-fn the_whole_curve_filter_allocates_nothing_once_it_tracks() {
-    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scene");
-    let frames: Vec<Frame> = Simulator::new(scene, frames(40)).expect("a simulation").frames().collect();
-    for (model, degree) in [(MotionModel::Rigid, Degree::Quartic), (MotionModel::Affine, Degree::Octic)] {
-        let settings = CurveFilterSettings { model, degree, ..CurveFilterSettings::default() };
-        let mut filter = WholeCurveFilter::new(settings).expect("settings");
-        for (index, frame) in frames.iter().enumerate() {
-            let mut accepted = false;
-            let counts = allocation_counter::measure(|| {
-                accepted = filter.step(frame.time, &frame.outline).is_ok_and(|step| step.accepted);
-            });
-            assert!(accepted);
-            assert!(index < 2 || counts.count_total == 0, "frame {index}, {model}, degree {degree}: {counts:?}");
         }
     }
 }

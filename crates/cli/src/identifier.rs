@@ -1,8 +1,7 @@
 //! The identifier of one object, whichever method it is.
 use freeform_motion::curve_fit::{Fit, Outline};
 use freeform_motion::identify::{
-    CurveFilterSettings, FilterSettings, MotionEstimate, MotionFilter, MotionState, Phase, PointVelocity, ProcessNoise,
-    WholeCurveFilter,
+    FilterSettings, MotionEstimate, MotionFilter, MotionState, Phase, PointVelocity,
 };
 use freeform_motion::{Pipeline, PipelineSettings};
 
@@ -20,15 +19,13 @@ pub(crate) enum Identifier {
     /// The paper's identifier on the lines of fitted curves.
     Adaptive(Box<Pipeline>),
     /// The motion filter on the points of the outlines.
-    Filter(Box<TrackedObject<MotionFilter>>),
-    /// One curve for all outlines.
-    Curve(Box<TrackedObject<WholeCurveFilter>>),
+    Filter(Box<TrackedObject>),
 }
 
 /// A filter, and what it knew before it began to look for the object again.
 #[derive(Debug)]
-pub(crate) struct TrackedObject<F> {
-    filter: F,
+pub(crate) struct TrackedObject {
+    filter: MotionFilter,
     /// Time in seconds and motion when it was last known.
     last_known: Option<(f64, MotionEstimate)>,
 }
@@ -63,10 +60,6 @@ impl Identifier {
                 let filter = MotionFilter::new(filter_settings(options)).map_err(Failure::unusable)?;
                 Self::Filter(Box::new(TrackedObject { filter, last_known: None }))
             }
-            IdentifyMethod::Curve => {
-                let filter = WholeCurveFilter::new(curve_settings(options)).map_err(Failure::unusable)?;
-                Self::Curve(Box::new(TrackedObject { filter, last_known: None }))
-            }
         })
     }
 
@@ -95,16 +88,6 @@ impl Identifier {
                 }
                 Err(error) => Step::refused(&error),
             },
-            Self::Curve(object) => match object.filter.step(time, outline) {
-                Ok(step) => {
-                    let estimate = object.filter.estimate();
-                    object.last_known = estimate.map(|estimate| (time, estimate)).or(object.last_known);
-                    let rejected_because = step.rejection.map(|rejection| rejection.to_string());
-                    let (phase, state) = (Some(phase_name(step.phase)), object.filter.state());
-                    Step { phase, estimate, state, rejected_because, ..Step::EMPTY }
-                }
-                Err(error) => Step::refused(&error),
-            },
         }
     }
 
@@ -113,7 +96,6 @@ impl Identifier {
         match self {
             Self::Adaptive(pipeline) => pipeline.estimate(),
             Self::Filter(object) => object.last_known.map(|(_, estimate)| estimate),
-            Self::Curve(object) => object.last_known.map(|(_, estimate)| estimate),
         }
     }
 
@@ -121,7 +103,7 @@ impl Identifier {
     pub(crate) fn velocity(&self) -> Option<PointVelocity> {
         match self {
             Self::Filter(object) => object.filter.velocity(),
-            Self::Adaptive(_) | Self::Curve(_) => None,
+            Self::Adaptive(_) => None,
         }
     }
 
@@ -129,7 +111,7 @@ impl Identifier {
     pub(crate) fn ambiguity(&self) -> Option<Turns> {
         match self {
             Self::Filter(object) => object.filter.ambiguity().map(Turns::from),
-            Self::Adaptive(_) | Self::Curve(_) => None,
+            Self::Adaptive(_) => None,
         }
     }
 
@@ -156,11 +138,6 @@ impl Identifier {
                     warnings.push("the motion changed on the way: these are its values at the end".to_owned());
                 }
                 warnings
-            }
-            Self::Curve(object) => {
-                let filter = &object.filter;
-                let frames = (filter.frames_accepted(), filter.frames_rejected());
-                filter_warnings(object.last_known.as_ref(), &[], filter.phase(), filter.restarts(), frames)
             }
         }
     }
@@ -231,20 +208,6 @@ pub(crate) fn pipeline_settings(options: &TrackOptions) -> PipelineSettings {
 /// What the options ask of the filter.
 pub(crate) fn filter_settings(options: &TrackOptions) -> FilterSettings {
     FilterSettings { model: options.motion.model(), ..FilterSettings::default() }
-}
-
-/// What the options ask of the whole-curve filter.
-pub(crate) fn curve_settings(options: &TrackOptions) -> CurveFilterSettings {
-    let settings = CurveFilterSettings { model: options.motion.model(), ..CurveFilterSettings::default() };
-    CurveFilterSettings { degree: options.degree.unwrap_or(settings.degree), ..settings }
-}
-
-/// How fast the motion may change by the options.
-pub(crate) fn process_noise(options: &TrackOptions) -> ProcessNoise {
-    match options.method {
-        IdentifyMethod::Curve => curve_settings(options).process_noise,
-        _ => filter_settings(options).process_noise,
-    }
 }
 
 fn phase_name(phase: Phase) -> &'static str {

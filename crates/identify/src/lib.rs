@@ -1,8 +1,7 @@
-//! Identifies how a planar curve moves, from its outlines or from its moving lines, in four ways:
+//! Identifies how a planar curve moves, from its outlines or from its moving lines, in three ways:
 //!
 //! - [`MotionFilter`]: outline, pose and motion together, frame by frame, with standard deviations, near the Cramer-Rao bound from the
 //!   third frame on and robust to hidden arcs, outliers and wrong frames. Take it first.
-//! - [`WholeCurveFilter`]: one implicit polynomial that all frames share, estimated with the motion; no pairing of points or lines.
 //! - [`AdaptiveIdentifier`]: the adaptive law of M. Unel and B. K. Ghosh, *Motion identification of planar free-form objects*
 //!   (equations 19 to 22), or others ([`AdaptiveLaw`]), on complex lines `x + l y + k`. A closed curve given by an implicit polynomial
 //!   is a sum of products of such lines, and under a motion of the plane every line follows a Riccati equation in which the motion
@@ -45,10 +44,8 @@ mod group_logarithm;
 mod information;
 mod motion_algebra;
 mod motion_state;
-mod observability;
 mod point_velocity;
 mod smoother;
-mod whole_curve;
 
 pub use adaptive::{
     AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice, Regressor, quadratic_terms, solve_lyapunov,
@@ -64,7 +61,6 @@ pub use filter::{
 pub use motion_state::{MotionState, PoseParameter};
 pub use point_velocity::PointVelocity;
 pub use smoother::{SmootherError, smooth};
-pub use whole_curve::{CurveFilterSettings, CurveRejection, CurveStep, WholeCurveFilter};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,6 +1,9 @@
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, Args, Command, ValueEnum};
 use freeform_motion::curve_fit::Degree;
 use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 
@@ -93,7 +96,7 @@ Examples:
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
 Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
-generator and reason (why the frame was not accepted, else null). Phases of filter and curve: acquiring, \
+generator and reason (why the frame was not accepted, else null). Phases of the filter: acquiring, \
 tracking, lost; of the adaptive method: start, adapt.
 
 A line is written and flushed as soon as its frame is complete. At the end of the input the command ends with status 0, \
@@ -137,10 +140,10 @@ pub(crate) struct TrackOptions {
     pub(crate) motion: MotionChoice,
 
     /// How the motion is identified
-    #[arg(long, value_enum, default_value_t = IdentifyMethod::Filter)]
+    #[arg(long, value_parser = MethodParser, default_value = "filter")]
     pub(crate) method: IdentifyMethod,
 
-    /// Degree of the fitted polynomial: 2, 4, 6 or 8; the filter fits none [default: 4, with curve 6]
+    /// Degree of the fitted polynomial: 2, 4, 6 or 8; the filter fits none [default: 4]
     #[arg(long, value_name = "N", value_parser = degree)]
     pub(crate) degree: Option<Degree>,
 
@@ -175,8 +178,6 @@ pub(crate) enum IdentifyMethod {
     Filter,
     /// The paper's adaptive identifier on the lines of the fitted curve
     Adaptive,
-    /// One curve for all frames, estimated together with the motion, with standard deviations
-    Curve,
 }
 
 impl IdentifyMethod {
@@ -184,8 +185,28 @@ impl IdentifyMethod {
         match self {
             Self::Filter => "filter",
             Self::Adaptive => "adaptive",
-            Self::Curve => "curve",
         }
+    }
+}
+
+/// Reads a method, and says of the one that was retired what takes its place.
+#[derive(Debug, Clone)]
+struct MethodParser;
+
+impl TypedValueParser for MethodParser {
+    type Value = IdentifyMethod;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<IdentifyMethod, clap::Error> {
+        if value == "curve" {
+            let text = "--method curve: the whole-curve filter was retired; take --method filter (the default), which \
+                        is nearer to the bound in every setting\n";
+            return Err(clap::Error::raw(ErrorKind::InvalidValue, text));
+        }
+        EnumValueParser::new().parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(IdentifyMethod::value_variants().iter().filter_map(ValueEnum::to_possible_value)))
     }
 }
 

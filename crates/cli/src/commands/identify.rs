@@ -2,7 +2,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use freeform_motion::curve_fit::{FitSettings, Method};
-use freeform_motion::identify::{CurveFilterSettings, FilterSettings};
+use freeform_motion::identify::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
 
@@ -10,7 +10,7 @@ use super::command_line;
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
-use crate::identifier::{curve_settings, filter_settings, pipeline_settings, process_noise};
+use crate::identifier::{filter_settings, pipeline_settings};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::LeftOut;
@@ -111,7 +111,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     refuse_overwriting(&args.inputs, &outputs)?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
         return Err(Failure::unusable(
-            "--trajectory: the adaptive method tells no poses, use --method filter or curve",
+            "--trajectory: the adaptive method tells no poses, use --method filter",
         ));
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
@@ -188,7 +188,7 @@ impl<'a> Files<'a> {
                     "--smooth: the motion changed on the way, which the smoother takes for constant; the poses are as filtered",
                 );
             } else if args.smooth {
-                trajectory.smooth(&process_noise(&args.options)).map_err(Failure::unusable)?;
+                trajectory.smooth(&filter_settings(&args.options).process_noise).map_err(Failure::unusable)?;
             }
             let written = write_trajectory(&mut file, &trajectory, model, args.options.scale);
             written.map_err(|error| file_failure(path, &error))?;
@@ -260,12 +260,6 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
             listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
             listed.push(("Searched for anew", format!("after {patience} rejected frames")));
             listed.push(("Degree of the curve drawn", pipeline_settings(options).fit.degree.to_string()));
-        }
-        IdentifyMethod::Curve => {
-            let CurveFilterSettings { degree, offset, patience, .. } = curve_settings(options);
-            listed.push(("Degree of the curve", degree.to_string()));
-            listed.push(("Level-set offset", format!("{offset} RMS radii")));
-            listed.push(("Searched for anew", format!("after {patience} rejected frames")));
         }
         IdentifyMethod::Adaptive => listed.extend(fit_settings(&pipeline_settings(options).fit)),
     }

@@ -127,7 +127,7 @@ fn the_middle_of_the_object_moves_as_the_motion_says_and_the_scale_divides_its_v
     assert!(line.starts_with("v: velocity of the object's middle, at ("), "{table}");
     let rows = table.lines().filter(|line| line.starts_with("  v") && line.split_whitespace().count() > 5).count();
     assert_eq!(rows, 2, "{table}");
-    assert!(!succeed("identify - --method curve", &csv).contains("middle"));
+    assert!(!succeed("identify - --method adaptive", &csv).contains("middle"));
 }
 
 #[test]
@@ -267,7 +267,7 @@ fn rows_that_do_not_follow_the_contour_are_told_once_whatever_the_method() {
     let in_order = sequence("");
     let shuffled = out_of_order(&in_order);
     let told = |command: &str, csv: &str| stderr(&run(command, csv)).matches("do not follow the contour").count();
-    for command in ["identify -", "identify - --method curve", "identify - --method adaptive", "track -"] {
+    for command in ["identify -", "identify - --method adaptive", "track -"] {
         assert_eq!(told(command, &shuffled), 1, "{command}");
         assert_eq!(told(command, &in_order), 0, "{command}");
     }
@@ -293,5 +293,14 @@ fn outlines_of_pictures_follow_the_contour_however_deep_its_notches_are() {
         let output = run(&format!("identify {}", frames.join(" ")), "");
         assert!(output.status.success(), "{}", stderr(&output));
         assert!(!stderr(&output).contains("contour"), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn the_method_that_was_retired_is_wrong_usage_with_a_word_on_what_to_take() {
+    for command in ["identify", "track"] {
+        let output = run(&format!("{command} - --method curve"), &sequence(""));
+        assert_eq!(output.status.code(), Some(2), "{command}");
+        assert!(stderr(&output).contains("take --method filter"), "{}", stderr(&output));
     }
 }

@@ -256,7 +256,7 @@ fn a_report_has_the_settings_that_were_used_and_marks_rejected_frames() {
     assert!(html.contains("<p>Rejected frames: 8</p>"), "{rejected:?}");
     // One line in each of the two panels and one in each of their legends, and no cross on the lower edge.
     assert_eq!((html.matches("class=\"s s1\"").count(), html.matches("rejected frames</text>").count()), (4, 2));
-    let html = report("--method curve --degree 4 --pixel-aspect 1.1");
+    let html = report("--method adaptive --degree 4 --pixel-aspect 1.1");
     for (name, value) in [
         ("Degree of the curve", "4"),
         ("Frames per second", "30, as none is given"),

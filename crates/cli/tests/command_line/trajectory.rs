@@ -64,12 +64,11 @@ fn angles_go_on_beyond_half_a_turn_and_positions_are_told_in_space() {
 }
 
 #[test]
-fn other_models_and_the_curve_method_have_trajectories_too() {
+fn other_models_have_trajectories_too() {
     let csv = sequence("");
     for (options, pose) in [
         ("--motion similarity", "scale,scale_std,angle,angle_std,x,x_std,y,y_std,sigma,"),
         ("--motion affine", "m11,m11_std,m12,m12_std,m21,m21_std,m22,m22_std,x,x_std,y,y_std,a1,"),
-        ("--method curve --smooth", "angle,angle_std,x,x_std,y,y_std,omega,"),
     ] {
         let rows = trajectory(options, &csv);
         assert!(rows[0].join(",").contains(&format!("accepted,{pose}")), "{options}: {:?}", rows[0]);
@@ -100,18 +99,5 @@ fn what_cannot_be_had_is_wrong_usage() {
         let output = run(&format!("identify - {options}"), &sequence(""));
         assert_eq!(output.status.code(), Some(2), "{options}");
         assert!(stderr(&output).contains(reason), "{}", stderr(&output));
-    }
-}
-
-#[test]
-fn the_curve_method_finds_the_motion_with_a_degree_of_choice() {
-    for degree in ["", "--degree 4", "--degree 8"] {
-        let document = json(&succeed(&format!("identify - --method curve {degree} --format json"), &sequence("")));
-        let object = &document["objects"][0];
-        assert_eq!((&object["method"], &object["frames_rejected"]), (&"curve".into(), &0.into()));
-        let omega = &object["parameters"]["omega"];
-        let (value, std) = (omega["value"].as_f64().expect("a number"), omega["std"].as_f64().expect("a number"));
-        let error = value - std::f64::consts::FRAC_PI_2;
-        assert!(std > 0.0 && std < 0.1 && error.abs() < 5.0 * std, "{degree}: {value} +- {std}");
     }
 }

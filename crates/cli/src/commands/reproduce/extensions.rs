@@ -81,7 +81,6 @@ pub(crate) fn affine(run: &Run) -> Result<Section, Failure> {
         ("36 numbers as printed", law(AdaptiveLaw::Printed, PairChoice::All)),
         ("structured law", law(AdaptiveLaw::Structured, PairChoice::All)),
         ("fast law", law(AdaptiveLaw::FilteredLeastSquares, PairChoice::All)),
-        ("whole-curve filter", Method::whole_curve(MotionModel::Affine)),
         ("motion filter", Method::filter(MotionModel::Affine)),
     ];
     let tracks = tracks(run, &methods, &sequence)?;
@@ -97,7 +96,7 @@ pub(crate) fn affine(run: &Run) -> Result<Section, Failure> {
             ..Panel::default()
         }
     };
-    let shown = [1, 4];
+    let shown = [1, 3];
     let panels = shown
         .into_iter()
         .flat_map(|method| [panel(method, 0..4, "a1, a2, a3, a4 (1/s)"), panel(method, 4..6, "b1, b2 (lengths/s)")]);

@@ -1,7 +1,7 @@
 //! How a motion is identified, and from which initial values.
 use freeform_motion::PipelineSettings;
 use freeform_motion::curve_fit::{FitSettings, Method as FitMethod};
-use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, CurveFilterSettings, FilterSettings, PairChoice};
+use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, FilterSettings, PairChoice};
 use freeform_motion::riccati::MotionModel;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -14,7 +14,6 @@ pub(crate) const START_RANGE: [f64; 3] = [3.0, 5.0, 5.0];
 pub(crate) enum Method {
     Adaptive(Box<PipelineSettings>),
     Filter(FilterSettings),
-    Curve(CurveFilterSettings),
 }
 
 impl Method {
@@ -27,11 +26,6 @@ impl Method {
     /// The motion filter as it is by default.
     pub(crate) fn filter(model: MotionModel) -> Self {
         Self::Filter(FilterSettings { model, ..FilterSettings::default() })
-    }
-
-    /// The whole-curve filter as it is by default.
-    pub(crate) fn whole_curve(model: MotionModel) -> Self {
-        Self::Curve(CurveFilterSettings { model, ..CurveFilterSettings::default() })
     }
 }
 

@@ -1,5 +1,5 @@
 //! Figs. 4, 6 and 8: estimated parameters against time, and the same experiments by other laws.
-use freeform_motion::identify::{AdaptiveLaw, CurveFilterSettings, PairChoice};
+use freeform_motion::identify::{AdaptiveLaw, PairChoice};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::PaperExperiment;
 
@@ -45,7 +45,6 @@ fn add_experiment(run: &Run, figure: &PaperFigure, section: &mut Section) -> Res
         ("structured law, one pair", law(AdaptiveLaw::Structured, pair)),
         ("structured law, all pairs", law(AdaptiveLaw::Structured, PairChoice::All)),
         ("fast law, all pairs", law(AdaptiveLaw::FilteredLeastSquares, PairChoice::All)),
-        ("whole-curve filter", Method::whole_curve(MotionModel::Rigid)),
         ("motion filter", Method::filter(MotionModel::Rigid)),
     ];
     let mut tracks = Vec::new();
@@ -113,12 +112,10 @@ fn laws_caption(figure: &PaperFigure, tracks: &[(&str, Track)], sequence: &Seque
     format!(
         "Beside Fig. {}, {}: relative errors of the same experiment, from the same outlines and initial values, on a \
          logarithmic axis. The estimator (21) as printed, with all 36 entries of A, B and C; the structured law over one \
-         pair and over all; least squares on the filtered equations (fast law); and two filters that need no lines and no \
-         initial values: that of one whole curve of degree {} that all frames share, and the motion filter. Final errors: \
-         {}. {}",
+         pair and over all; least squares on the filtered equations (fast law); and the motion \
+         filter, which needs no lines and no initial values. Final errors: {}. {}",
         figure.number(),
         figure.experiment.title,
-        CurveFilterSettings::default().degree,
         outcomes_in_words(tracks, sequence),
         smoothing_in_words(ERROR_LIMITS)
     )

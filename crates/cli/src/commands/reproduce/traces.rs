@@ -130,7 +130,6 @@ pub(crate) fn look_of(method: &str) -> Look {
         ("motion filter, held constant", Look::Dashed(4)),
         ("motion filter, changes told", Look::Dashed(5)),
         ("motion filter", Look::Series(4)),
-        ("whole-curve filter", Look::Series(5)),
     ];
     looks.iter().find(|(beginning, _)| method.starts_with(beginning)).map_or(Look::Line, |(_, look)| *look)
 }
@@ -227,7 +226,6 @@ mod tests {
         let beside_the_paper =
             ["36 numbers as printed, one pair", "structured law, one pair", "structured law, all pairs"];
         let others = [
-            "whole-curve filter",
             "fast law",
             "motion filter, changes told",
             "motion filter",

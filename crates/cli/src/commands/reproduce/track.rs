@@ -1,7 +1,7 @@
 //! What a method found, frame by frame.
 use freeform_motion::Pipeline;
 use freeform_motion::curve_fit::Outline;
-use freeform_motion::identify::{MotionEstimate, MotionFilter, WholeCurveFilter};
+use freeform_motion::identify::{MotionEstimate, MotionFilter};
 use freeform_motion::riccati::{AffineMotion, CameraScale};
 use freeform_motion::sim_camera::Motion;
 
@@ -46,12 +46,6 @@ impl Track {
             }
             Method::Filter(settings) => {
                 let mut filter = MotionFilter::new(*settings).map_err(Failure::unusable)?;
-                track.follow(sequence, |time, outline| {
-                    (filter.step(time, outline).is_ok_and(|step| step.accepted), filter.estimate())
-                });
-            }
-            Method::Curve(settings) => {
-                let mut filter = WholeCurveFilter::new(*settings).map_err(Failure::unusable)?;
                 track.follow(sequence, |time, outline| {
                     (filter.step(time, outline).is_ok_and(|step| step.accepted), filter.estimate())
                 });
