@@ -8,7 +8,7 @@ use freeform_motion::{
         Degree, FitSettings, Fitter, Method, Moments, NormalRegression, Outline, evaluate_monomials, outward_normals,
     },
     decompose::{Correspondence, Decomposition},
-    identify::{FilterSettings, MotionFilter, Phase},
+    outline_filter::{FilterSettings, MotionFilter, Phase},
     outline_io::{
         DEFAULT_OBJECT, GrayImage, OutlineFrame, OutlineReader, OutlineWriter, TraceSettings, WriterOptions, trace_mask,
     },
@@ -271,14 +271,5 @@ fn csv_rows(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(
-    hot_path,
-    baselines,
-    stages,
-    whole_frame,
-    motion_filter_frame,
-    acquisition,
-    picture,
-    csv_rows
-);
+criterion_group!(hot_path, baselines, stages, whole_frame, motion_filter_frame, acquisition, picture, csv_rows);
 criterion_main!(hot_path);

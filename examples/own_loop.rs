@@ -1,6 +1,6 @@
 //! The motion filter in a loop of one's own: `cargo run --release --example own_loop`.
 use freeform_motion::curve_fit::Outline;
-use freeform_motion::identify::{FilterSettings, MotionFilter};
+use freeform_motion::outline_filter::{FilterSettings, MotionFilter};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

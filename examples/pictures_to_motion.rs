@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::PathBuf;
 
-use freeform_motion::identify::{FilterSettings, MotionEstimate, MotionFilter};
+use freeform_motion::estimate::MotionEstimate;
+use freeform_motion::outline_filter::{FilterSettings, MotionFilter};
 use freeform_motion::outline_io::{
     Clipping, PictureOutlines, PictureSequence, PictureSettings, Selection, SequenceSettings, TraceSettings,
 };

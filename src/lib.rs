@@ -1,8 +1,8 @@
 //! Finds how a flat free-form object moves from nothing but its outlines.
 //!
 //! Every frame gives noisy points in their order along the outline of the object, without correspondence to the frame before.
-//! [`identify::MotionFilter`] estimates outline, pose and motion from them, with standard deviations; take it first.
-//! [`identify::smooth`] and [`identify::estimate_batch`] are for recorded frames, and [`identify::CramerRaoBound`] says what can be reached.
+//! [`outline_filter::MotionFilter`] estimates outline, pose and motion from them, with standard deviations; take it first.
+//! [`estimate::smooth`] and [`outline_filter::estimate_batch`] are for recorded frames, and [`estimate::CramerRaoBound`] says what can be reached.
 //!
 //! A [`Pipeline`] is the way of the paper: it fits an implicit polynomial curve to each outline, takes it apart into complex lines,
 //! matches the lines to those of the frame before, and identifies the motion from their Riccati dynamics (M. Unel, B. K. Ghosh,
@@ -31,7 +31,9 @@ mod warning;
 
 pub use freeform_curve_fit as curve_fit;
 pub use freeform_decompose as decompose;
+pub use freeform_estimate as estimate;
 pub use freeform_identify as identify;
+pub use freeform_outline_filter as outline_filter;
 pub use freeform_outline_io as outline_io;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;

@@ -2,7 +2,8 @@ use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisati
 use freeform_decompose::{
     Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
 };
-use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError, MotionEstimate};
+use freeform_estimate::MotionEstimate;
+use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError};
 use freeform_riccati::MotionModel;
 use nalgebra::{Affine2, Point2, Translation2};
 

@@ -1,4 +1,4 @@
-use freeform_identify::MotionEstimate;
+use freeform_estimate::MotionEstimate;
 use nalgebra::DVector;
 
 /// Seconds that the adaptive laws take at least, with the paper's gains.

@@ -5,7 +5,8 @@ use checks::{assert_covariance, assert_finite};
 use freeform_motion::{
     Pipeline, PipelineError, PipelineSettings,
     curve_fit::{FitError, Outline},
-    identify::{FilterError, FilterSettings, MotionEstimate, MotionFilter},
+    estimate::MotionEstimate,
+    outline_filter::{FilterError, FilterSettings, MotionFilter},
     riccati::RigidMotion,
     sim_camera::{BuiltInShape, Shape},
 };

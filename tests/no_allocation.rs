@@ -4,7 +4,8 @@ mod common;
 use common::frames;
 use freeform_motion::{
     Pipeline, PipelineSettings,
-    identify::{AdaptiveLaw, FilterSettings, MotionFilter, PairChoice},
+    identify::{AdaptiveLaw, PairChoice},
+    outline_filter::{FilterSettings, MotionFilter},
     sim_camera::{Frame, PaperExperiment, Simulator},
 };
 

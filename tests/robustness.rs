@@ -4,6 +4,7 @@ mod common;
 use common::{frames, identified, rigid_errors, seconds};
 use freeform_motion::{
     Pipeline, PipelineSettings,
+    estimate::TimeNotIncreasing,
     identify::IdentifyError,
     outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineReader, OutlineWriter, WriterOptions},
     riccati::{AffineMotion, RigidMotion},
@@ -74,7 +75,8 @@ fn a_frame_out_of_time_is_rejected_and_changes_nothing() {
         if frame.index == 10 {
             without = Some(with.clone());
             let error = with.push(frame.time, &frame.outline).expect_err("the same time again");
-            let expected = IdentifyError::TimeNotIncreasing { time: frame.time, previous: frame.time };
+            let expected =
+                IdentifyError::TimeNotIncreasing(TimeNotIncreasing { time: frame.time, previous: frame.time });
             assert_eq!(error, expected.into());
         } else if let Some(other) = &mut without {
             other.push(frame.time, &frame.outline).expect("a good frame");

@@ -6,7 +6,7 @@ mod checks;
 use checks::{assert_covariance, assert_finite};
 use freeform_motion::{
     curve_fit::{OpenArc, OpenOutline, Outline},
-    identify::{FilterSettings, MotionFilter, Phase},
+    outline_filter::{FilterSettings, MotionFilter, Phase},
     riccati::RigidMotion,
     sim_camera::{BuiltInShape, Shape},
 };

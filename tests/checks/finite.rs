@@ -1,6 +1,7 @@
 //! What holds of every result.
 use freeform_motion::{
-    identify::{MotionEstimate, MotionFilter, OutlineMap},
+    estimate::MotionEstimate,
+    outline_filter::{MotionFilter, OutlineMap},
     riccati::MotionModel,
 };
 

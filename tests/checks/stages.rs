@@ -3,7 +3,9 @@ use freeform_motion::{
     Pipeline, PipelineSettings,
     curve_fit::{Degree, FitSettings, Fitter, Method},
     decompose::{AffineInvariants, Correspondence, Decomposition, RelatedPoints},
-    identify::{AdaptiveLaw, AdaptiveSettings, FilterSettings, MotionFilter, PairChoice, ProcessNoise},
+    estimate::ProcessNoise,
+    identify::{AdaptiveLaw, AdaptiveSettings, PairChoice},
+    outline_filter::{FilterSettings, MotionFilter},
     riccati::MotionModel,
 };
 

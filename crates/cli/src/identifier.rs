@@ -1,8 +1,7 @@
 //! The identifier of one object, whichever method it is.
 use freeform_motion::curve_fit::{Fit, Outline};
-use freeform_motion::identify::{
-    FilterSettings, MotionEstimate, MotionFilter, MotionState, Phase, PointVelocity,
-};
+use freeform_motion::estimate::{MotionEstimate, MotionState, PointVelocity};
+use freeform_motion::outline_filter::{FilterSettings, MotionFilter, Phase};
 use freeform_motion::{Pipeline, PipelineSettings};
 
 use crate::args::{IdentifyMethod, TrackOptions};

@@ -4,7 +4,7 @@ use std::rc::Rc;
 use std::thread;
 
 use freeform_motion::curve_fit::Fit;
-use freeform_motion::identify::{MotionEstimate, MotionState, ParameterEstimate, PointVelocity};
+use freeform_motion::estimate::{MotionEstimate, MotionState, ParameterEstimate, PointVelocity};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use nalgebra::Matrix3;

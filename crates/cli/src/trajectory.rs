@@ -1,5 +1,5 @@
 //! Where every object was in every frame.
-use freeform_motion::identify::{MotionState, ProcessNoise, SmootherError, smooth};
+use freeform_motion::estimate::{MotionState, ProcessNoise, SmootherError, smooth};
 
 use crate::tracking::Observation;
 

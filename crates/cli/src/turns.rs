@@ -1,6 +1,6 @@
 use std::fmt;
 
-use freeform_motion::identify::Ambiguity;
+use freeform_motion::outline_filter::Ambiguity;
 
 /// Turns from one frame to the next that the outlines do not decide between, in degrees, positive where omega is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]

@@ -1,3 +1,4 @@
+use freeform_estimate::TimeNotIncreasing;
 use freeform_riccati::MotionModel;
 use thiserror::Error;
 
@@ -72,12 +73,7 @@ pub enum IdentifyError {
         /// Time since the frame before.
         seconds: f64,
     },
-    /// Time did not advance, or is not a finite number.
-    #[error("time {time} does not come after {previous}")]
-    TimeNotIncreasing {
-        /// Time of the frame, in seconds.
-        time: f64,
-        /// Time of the frame before it, minus infinity at the first.
-        previous: f64,
-    },
+    /// Times must be finite and increase.
+    #[error(transparent)]
+    TimeNotIncreasing(#[from] TimeNotIncreasing),
 }

@@ -2,6 +2,7 @@
 mod adaptive_support;
 
 use adaptive_support::{RIGID, even_times, run, starting_lines};
+use freeform_estimate::TimeNotIncreasing;
 use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, PairChoice};
 use freeform_riccati::MotionModel;
 use nalgebra::Matrix4;
@@ -30,12 +31,12 @@ fn bad_frames_are_refused_with_the_reason_and_change_nothing() {
     let lines = starting_lines();
     let mut identifier = AdaptiveIdentifier::new(AdaptiveSettings::default()).expect("settings");
     assert_eq!(identifier.step(0.0, &[]), Err(IdentifyError::NoSuchPair { index: 0, count: 0 }));
-    assert!(matches!(identifier.step(f64::NAN, &lines), Err(IdentifyError::TimeNotIncreasing { .. })));
+    assert!(matches!(identifier.step(f64::NAN, &lines), Err(IdentifyError::TimeNotIncreasing(_))));
     assert_eq!((identifier.pair_count(), identifier.estimate()), (0, None));
     run(&mut identifier, &lines, &RIGID, &even_times(1.0, 30.0), 0.0);
     let before = identifier.estimate();
     let error = identifier.step(1.0, &lines);
-    assert_eq!(error, Err(IdentifyError::TimeNotIncreasing { time: 1.0, previous: 1.0 }));
+    assert_eq!(error, Err(IdentifyError::TimeNotIncreasing(TimeNotIncreasing { time: 1.0, previous: 1.0 })));
     assert!(identifier.step(f64::NAN, &lines).is_err());
     assert!(identifier.step(f64::INFINITY, &lines).is_err());
     assert_eq!(identifier.step(2.0, &lines[..1]), Err(IdentifyError::PairCountChanged { expected: 2, found: 1 }));

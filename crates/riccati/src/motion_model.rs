@@ -2,6 +2,20 @@ use nalgebra::{Matrix3, Projective2};
 
 use crate::{exponential::exponential, motion::SimilarityMotion};
 
+/// Largest number of parameters of any model, that of a projective motion.
+pub const MAX_PARAMETERS: usize = 8;
+
+/// What a parameter of a motion model is, and with it how it changes with the unit of length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParameterKind {
+    /// Rate of growth, turning or shear, per second: `sigma`, `omega`, `a1` to `a4`. The unit of length does not matter.
+    Rate,
+    /// Velocity at the origin, lengths per second: `b1`, `b2`.
+    Velocity,
+    /// Rate of perspective, per length and second: `c1`, `c2`.
+    Perspective,
+}
+
 /// Family of motions of the plane, and with it the meaning of a parameter vector theta: `A = sum theta_j E_j`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MotionModel {
@@ -42,7 +56,7 @@ impl MotionModel {
     pub const ALL: [Self; 4] = [Self::Rigid, Self::Similarity, Self::Affine, Self::Projective];
 
     /// Largest number of parameters of any model.
-    pub const MAX_PARAMETERS: usize = 8;
+    pub const MAX_PARAMETERS: usize = MAX_PARAMETERS;
 
     /// Number of parameters: 3, 4, 6 or 8.
     #[must_use]
@@ -58,6 +72,18 @@ impl MotionModel {
             Self::Similarity => &["sigma", "omega", "b1", "b2"],
             Self::Affine => &["a1", "a2", "a3", "a4", "b1", "b2"],
             Self::Projective => &["a1", "a2", "a3", "a4", "b1", "b2", "c1", "c2"],
+        }
+    }
+
+    /// What each parameter is, in order.
+    #[must_use]
+    pub const fn parameter_kinds(self) -> &'static [ParameterKind] {
+        use ParameterKind::{Perspective, Rate, Velocity};
+        match self {
+            Self::Rigid => &[Rate, Velocity, Velocity],
+            Self::Similarity => &[Rate, Rate, Velocity, Velocity],
+            Self::Affine => &[Rate, Rate, Rate, Rate, Velocity, Velocity],
+            Self::Projective => &[Rate, Rate, Rate, Rate, Velocity, Velocity, Perspective, Perspective],
         }
     }
 
@@ -92,18 +118,6 @@ impl MotionModel {
         let basis = self.basis();
         assert_eq!(parameters.len(), basis.len(), "number of parameters of a {self} motion");
         parameters.iter().zip(basis).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta)
-    }
-
-    /// The parameters of the motion in this model that is nearest to a generator in its entries: the inverse of
-    /// [`generator`](Self::generator) for one of this model. As many as `parameter_count` in front, 0 behind.
-    #[must_use]
-    pub fn parameters_of(self, generator: &Matrix3<f64>) -> [f64; Self::MAX_PARAMETERS] {
-        let mut parameters = [0.0; Self::MAX_PARAMETERS];
-        // The basis matrices of each model are orthogonal to each other.
-        for (theta, e) in parameters.iter_mut().zip(self.basis()) {
-            *theta = e.dot(generator) / e.norm_squared();
-        }
-        parameters
     }
 
     /// The map of the plane that the motion makes in `seconds`: in closed form for rigid and similarity motion, `expm(A

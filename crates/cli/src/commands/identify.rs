@@ -2,7 +2,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use freeform_motion::curve_fit::{FitSettings, Method};
-use freeform_motion::identify::FilterSettings;
+use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
 
@@ -110,9 +110,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
-        return Err(Failure::unusable(
-            "--trajectory: the adaptive method tells no poses, use --method filter",
-        ));
+        return Err(Failure::unusable("--trajectory: the adaptive method tells no poses, use --method filter"));
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
         warn("--degree: the motion filter fits no polynomial, the degree is only that of the curve drawn");

@@ -1,5 +1,5 @@
 use freeform_motion::curve_fit::Outline;
-use freeform_motion::identify::ParameterEstimate;
+use freeform_motion::estimate::ParameterEstimate;
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
 
@@ -176,7 +176,7 @@ impl History {
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::identify::MotionEstimate;
+    use freeform_motion::estimate::MotionEstimate;
 
     use super::*;
 

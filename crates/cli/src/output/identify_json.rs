@@ -151,7 +151,7 @@ fn generator_rows(estimate: &Estimate) -> Option<[[f64; 3]; 3]> {
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::identify::MotionEstimate;
+    use freeform_motion::estimate::MotionEstimate;
     use freeform_motion::riccati::{CameraScale, MotionModel};
     use serde_json::{Value, json};
 

@@ -100,7 +100,7 @@ pub(crate) fn write_identify_table(
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::identify::{MotionEstimate, PointVelocity};
+    use freeform_motion::estimate::{MotionEstimate, PointVelocity};
     use freeform_motion::riccati::{MotionModel, RigidMotion};
     use nalgebra::{Matrix2, Point2, Vector2};
 

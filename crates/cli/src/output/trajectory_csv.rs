@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 use std::io::{self, Write};
 
-use freeform_motion::identify::{MotionState, PoseParameter};
+use freeform_motion::estimate::{MotionState, PoseParameter};
 use freeform_motion::riccati::{CameraScale, MotionModel};
 
 use crate::trajectory::Trajectory;

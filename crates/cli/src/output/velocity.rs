@@ -1,4 +1,4 @@
-use freeform_motion::identify::PointVelocity;
+use freeform_motion::estimate::PointVelocity;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use super::number::significant;

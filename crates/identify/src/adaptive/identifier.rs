@@ -1,4 +1,5 @@
 use freeform_decompose::{Line, MAX_PAIRS};
+use freeform_estimate::{MotionEstimate, TimeNotIncreasing};
 use freeform_riccati::MotionModel;
 use nalgebra::{Const, DimMin, Vector2};
 
@@ -9,7 +10,7 @@ use super::{
     running_law::{Frame, Last, RunningLaw},
     settings::{AdaptiveSettings, PairChoice},
 };
-use crate::{error::IdentifyError, estimate::MotionEstimate};
+use crate::error::IdentifyError;
 
 /// An origin that moves faster than this, in lengths per second, lets the structured law take the linear part of the
 /// motion from the slopes alone. Objects are about of size 1, and the gains of the paper of rate 1 per second.
@@ -136,9 +137,7 @@ impl AdaptiveIdentifier {
             return Err(IdentifyError::NoSuchPair { index, count });
         }
         let previous = self.last.map_or(f64::NEG_INFINITY, |last| last.time);
-        if !time.is_finite() || time <= previous {
-            return Err(IdentifyError::TimeNotIncreasing { time, previous });
-        }
+        TimeNotIncreasing::check(previous, time)?;
         let mut padded = [lines[0]; MAX_PAIRS];
         padded[..count].copy_from_slice(&lines[..count]);
         if let Some(last) = self.last.filter(|last| last.count != count) {

@@ -1,6 +1,6 @@
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-use freeform_motion::identify::MotionEstimate;
+use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_motion::sim_camera::{Sampling, Shape};
 use nalgebra::{Matrix2, Vector2};

@@ -1,6 +1,6 @@
+use freeform_experiments::baseline::{AreaMomentEstimator, RegistrationEstimator};
 use freeform_motion::curve_fit::Outline;
-use freeform_motion::identify::MotionEstimate;
-use freeform_motion::identify::baseline::{AreaMomentEstimator, RegistrationEstimator};
+use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::riccati::MotionModel;
 
 use crate::args::{EvaluatedMethod, IdentifyMethod, MotionChoice, TrackOptions};

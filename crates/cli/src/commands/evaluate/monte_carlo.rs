@@ -1,6 +1,6 @@
 use std::time::Instant;
 
-use freeform_motion::identify::MotionEstimate;
+use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::sim_camera::Shape;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;

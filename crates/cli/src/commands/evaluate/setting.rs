@@ -1,4 +1,4 @@
-use freeform_motion::identify::{BoundaryPoint, CramerRaoBound};
+use freeform_motion::estimate::{BoundaryPoint, CramerRaoBound};
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use freeform_motion::sim_camera::{Camera, Occlusion, Sampling, Scene, SequenceLength, Settings, Shape, Simulator};
 use nalgebra::Vector2;

@@ -1,7 +1,9 @@
 //! Beyond the paper: affine motion, which it announces, and motion that changes slowly.
 use std::f64::consts::TAU;
 
-use freeform_motion::identify::{AdaptiveLaw, FilterSettings, PairChoice, ProcessNoise};
+use freeform_motion::estimate::ProcessNoise;
+use freeform_motion::identify::{AdaptiveLaw, PairChoice};
+use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_motion::sim_camera::{BuiltInShape, Camera, Motion, PaperExperiment, Scene};
 

@@ -1,7 +1,8 @@
 //! How a motion is identified, and from which initial values.
 use freeform_motion::PipelineSettings;
 use freeform_motion::curve_fit::{FitSettings, Method as FitMethod};
-use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, FilterSettings, PairChoice};
+use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, PairChoice};
+use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::riccati::MotionModel;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;

@@ -225,12 +225,7 @@ mod tests {
     fn every_method_of_a_figure_has_a_look_of_its_own() {
         let beside_the_paper =
             ["36 numbers as printed, one pair", "structured law, one pair", "structured law, all pairs"];
-        let others = [
-            "fast law",
-            "motion filter, changes told",
-            "motion filter",
-            "motion filter, held constant",
-        ];
+        let others = ["fast law", "motion filter, changes told", "motion filter", "motion filter, held constant"];
         let looks: Vec<_> = beside_the_paper.iter().chain(&others).map(|method| look_of(method)).collect();
         assert!((0..looks.len()).all(|k| !looks[k + 1..].contains(&looks[k])), "{looks:?}");
         assert_eq!(look_of("structured law"), look_of("structured law, all pairs"));

@@ -1,7 +1,8 @@
 //! What a method found, frame by frame.
 use freeform_motion::Pipeline;
 use freeform_motion::curve_fit::Outline;
-use freeform_motion::identify::{MotionEstimate, MotionFilter};
+use freeform_motion::estimate::MotionEstimate;
+use freeform_motion::outline_filter::MotionFilter;
 use freeform_motion::riccati::{AffineMotion, CameraScale};
 use freeform_motion::sim_camera::Motion;
 

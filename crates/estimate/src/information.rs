@@ -1,0 +1,59 @@
+use nalgebra::{DMatrix, DVector};
+
+/// Below this fraction of the largest eigenvalue of the information, scaled to unit diagonal, nothing is known.
+const RANK_TOLERANCE: f64 = 1e-10;
+/// Share of a parameter in a direction without information from which on the parameter counts as unknown.
+const TOUCHED: f64 = 1e-4;
+
+/// What is left of an information matrix when it is inverted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InverseInformation {
+    /// The covariance, as if directions without information were known.
+    pub covariance: DMatrix<f64>,
+    /// Whether each parameter is observable: no direction without information touches it.
+    pub observable: Vec<bool>,
+    /// Number of directions that carry information.
+    pub rank: usize,
+}
+
+/// Inverts a symmetric positive semidefinite matrix, whose entries must be finite. Scaled to unit diagonal first, so that the units
+/// of the parameters do not matter.
+#[must_use]
+pub fn invert_information(information: &DMatrix<f64>) -> InverseInformation {
+    let size = information.nrows();
+    let scale = unit_scale(information);
+    let scaled = DMatrix::from_fn(size, size, |i, j| information[(i, j)] * scale[i] * scale[j]);
+    let eigen = scaled.symmetric_eigen();
+    let smallest = RANK_TOLERANCE * eigen.eigenvalues.amax().max(f64::MIN_POSITIVE);
+    let mut inverse = DMatrix::zeros(size, size);
+    let mut observable = vec![true; size];
+    let mut rank = 0;
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > smallest {
+            rank += 1;
+            inverse.ger(1.0 / value, &vector, &vector, 1.0);
+        } else {
+            (0..size).filter(|i| vector[*i].abs() > TOUCHED).for_each(|i| observable[i] = false);
+        }
+    }
+    let covariance = DMatrix::from_fn(size, size, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
+    InverseInformation { covariance, observable, rank }
+}
+
+/// Inverse of a positive definite information matrix, scaled to unit diagonal on the way, so that entries of different units, or
+/// known to very different precision, do no harm.
+#[must_use]
+pub fn invert_positive_definite(information: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let size = information.nrows();
+    let scale = unit_scale(information);
+    let scaled = DMatrix::from_fn(size, size, |i, j| information[(i, j)] * scale[i] * scale[j]);
+    // Directions that nothing is known of may come out a rounding below zero.
+    let inverse = (scaled + DMatrix::identity(size, size) * 1e-14).cholesky()?.inverse();
+    Some(DMatrix::from_fn(size, size, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+}
+
+/// What brings the diagonal of a matrix to 1, from both sides.
+fn unit_scale(information: &DMatrix<f64>) -> DVector<f64> {
+    let inverse_root = |value: f64| if value > 0.0 { value.sqrt().recip() } else { 1.0 };
+    information.diagonal().map(inverse_root)
+}

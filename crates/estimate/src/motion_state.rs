@@ -1,0 +1,216 @@
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use nalgebra::{DMatrix, DVector, Matrix3, Point2, Projective2};
+
+use crate::{motion_estimate::MotionEstimate, process_noise::ProcessNoise};
+
+/// Where an object is at one time and how it moves, with the joint covariance of both.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionState {
+    pub(crate) model: MotionModel,
+    pub(crate) time: f64,
+    /// Centre and RMS radius of the first outline, which all below is normalised by.
+    pub(crate) origin: Point2<f64>,
+    pub(crate) radius: f64,
+    pub(crate) pose: Matrix3<f64>,
+    pub(crate) motion: ParameterVector,
+    /// Of the pose error xi, `g = exp(xi) g_hat`, then the motion.
+    pub(crate) covariance: DMatrix<f64>,
+    /// The same where the outline is given.
+    pub(crate) within: DMatrix<f64>,
+    pub(crate) observable: [bool; MAX_PARAMETERS],
+}
+
+/// One number of a pose, and how well it is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseParameter {
+    /// Name: see [`MotionState::pose_parameters`].
+    pub name: &'static str,
+    /// Value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub standard_deviation: f64,
+}
+
+/// How errors of pose and motion go on over a step.
+pub(crate) struct Transition {
+    pub(crate) flow: Matrix3<f64>,
+    /// `F = [[Ad, V], [0, I]]`.
+    pub(crate) matrix: DMatrix<f64>,
+    pub(crate) inverse: DMatrix<f64>,
+    /// Covariance that is added.
+    pub(crate) noise: DMatrix<f64>,
+}
+
+/// What a [`MotionState`] is made of, in coordinates that are centred on the first outline and divided by its radius.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormalisedState {
+    /// The motion model, of k parameters.
+    pub model: MotionModel,
+    /// Time in seconds.
+    pub time: f64,
+    /// Centre of the first outline, image coordinates.
+    pub origin: Point2<f64>,
+    /// RMS radius of the first outline, image lengths.
+    pub radius: f64,
+    /// Map of the plane that has moved the first outline to where it is.
+    pub pose: Matrix3<f64>,
+    /// Motion parameters, zeros behind the first k.
+    pub motion: ParameterVector,
+    /// Covariance of the pose error xi, `g = exp(xi) g_hat`, then the motion: 2 k by 2 k.
+    pub covariance: DMatrix<f64>,
+    /// The same where the outline is given.
+    pub covariance_given_outline: DMatrix<f64>,
+    /// Which parameters of the motion something is known of.
+    pub observable: [bool; MAX_PARAMETERS],
+}
+
+impl From<NormalisedState> for MotionState {
+    fn from(state: NormalisedState) -> Self {
+        let NormalisedState { model, time, origin, radius, pose, motion, covariance, .. } = state;
+        let (within, observable) = (state.covariance_given_outline, state.observable);
+        Self { model, time, origin, radius, pose, motion, covariance, within, observable }
+    }
+}
+
+impl MotionState {
+    /// The motion model.
+    #[must_use]
+    pub fn model(&self) -> MotionModel {
+        self.model
+    }
+
+    /// Time in seconds.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The map of the image that has moved the first outline to where it is now.
+    #[must_use]
+    pub fn pose(&self) -> Projective2<f64> {
+        let to_image = self.to_image();
+        let from_image = to_image.try_inverse().unwrap_or_else(Matrix3::identity);
+        Projective2::from_matrix_unchecked(to_image * self.pose * from_image)
+    }
+
+    /// The motion at that time, image units, with standard deviations.
+    #[must_use]
+    pub fn motion(&self) -> MotionEstimate {
+        let k = self.model.parameter_count();
+        let to_image = self.to_image();
+        let from_image = to_image.try_inverse().unwrap_or_else(Matrix3::identity);
+        let generator = to_image * self.model.generator(&self.motion[..k]) * from_image;
+        let values = self.model.parameters_of(&generator);
+        let covariance = self.covariance();
+        let deviations: Vec<f64> = (k..2 * k).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect();
+        let estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
+        (0..k).filter(|j| !self.observable[*j]).fold(estimate, MotionEstimate::with_unobservable)
+    }
+
+    /// Covariance of the pose error xi and the motion, each in the order of the parameters, image units. The error of the pose is on
+    /// the left: with the generator X of the parameters xi, the true pose is `expm(X)` after the estimated one.
+    #[must_use]
+    pub fn covariance(&self) -> DMatrix<f64> {
+        let k = self.model.parameter_count();
+        let to_image = self.to_image();
+        let from_image = to_image.try_inverse().unwrap_or_else(Matrix3::identity);
+        let change = self.model.adjoint(&to_image, &from_image);
+        let change = DMatrix::from_fn(2 * k, 2 * k, |i, j| if (i < k) == (j < k) { change[i % k][j % k] } else { 0.0 });
+        &change * &self.covariance * change.transpose()
+    }
+
+    /// The pose as numbers. First its linear part, rigid: `angle`; similarity: `scale`, `angle`; affine and projective: `m11`, `m12`,
+    /// `m21`, `m22`; then `x` and `y`, where the centre of the first outline (the mean of its points) is now, image lengths;
+    /// projective also `m31`, `m32` per length, at m33 = 1 and with that centre for origin. The angle is the turn since the first frame in rad
+    /// between -pi and pi, positive where omega is.
+    #[must_use]
+    pub fn pose_parameters(&self) -> Vec<PoseParameter> {
+        let k = self.model.parameter_count();
+        let g = self.pose / self.pose[(2, 2)];
+        // Derivatives of the entries by the pose error.
+        let basis = self.model.basis();
+        let rates: Vec<Matrix3<f64>> = basis
+            .iter()
+            .map(|e| {
+                let d = e * g;
+                d - g * d[(2, 2)]
+            })
+            .collect();
+        let covariance = self.covariance.view((0, 0), (k, k));
+        let parameter = |name, value: f64, by_entry: &dyn Fn(&Matrix3<f64>) -> f64| {
+            let slope = DVector::from_iterator(k, rates.iter().map(by_entry));
+            let variance = (slope.transpose() * covariance * &slope)[(0, 0)];
+            PoseParameter { name, value, standard_deviation: variance.max(0.0).sqrt() }
+        };
+        let entry = |name, i, j, unit: f64| parameter(name, g[(i, j)] * unit, &|d| d[(i, j)] * unit);
+        let (c, s) = (0.5 * (g[(0, 0)] + g[(1, 1)]), 0.5 * (g[(0, 1)] - g[(1, 0)]));
+        let turned = |d: &Matrix3<f64>| (0.5 * (d[(0, 0)] + d[(1, 1)]), 0.5 * (d[(0, 1)] - d[(1, 0)]));
+        let scale = c.hypot(s);
+        let angle = || {
+            parameter("angle", s.atan2(c), &|d| {
+                let (dc, ds) = turned(d);
+                (c * ds - s * dc) / (scale * scale)
+            })
+        };
+        let mut list = match self.model {
+            MotionModel::Rigid => vec![angle()],
+            MotionModel::Similarity => {
+                let growth = |d: &Matrix3<f64>| {
+                    let (dc, ds) = turned(d);
+                    (c * dc + s * ds) / scale
+                };
+                vec![parameter("scale", scale, &growth), angle()]
+            }
+            _ => [("m11", 0, 0), ("m12", 0, 1), ("m21", 1, 0), ("m22", 1, 1)]
+                .map(|(name, i, j)| entry(name, i, j, 1.0))
+                .to_vec(),
+        };
+        for (name, row, start) in [("x", 0, self.origin.x), ("y", 1, self.origin.y)] {
+            let mut at = entry(name, row, 2, self.radius);
+            at.value += start;
+            list.push(at);
+        }
+        if self.model == MotionModel::Projective {
+            list.extend([("m31", 0), ("m32", 1)].map(|(name, j)| entry(name, 2, j, 1.0 / self.radius)));
+        }
+        list
+    }
+
+    /// The state at another time, in seconds, if the motion goes on; it may have changed at random meanwhile.
+    #[must_use]
+    pub fn predicted(&self, time: f64, noise: &ProcessNoise) -> Self {
+        let Transition { flow, matrix, noise, .. } = self.transition(time - self.time, noise);
+        let later = |p: &DMatrix<f64>| &matrix * p * matrix.transpose() + &noise;
+        let (covariance, within) = (later(&self.covariance), later(&self.within));
+        Self { time, pose: flow * self.pose, covariance, within, ..self.clone() }
+    }
+
+    pub(crate) fn transition(&self, seconds: f64, noise: &ProcessNoise) -> Transition {
+        let (model, k) = (self.model, self.model.parameter_count());
+        let theta = &self.motion[..k];
+        let flow = model.flow(theta, seconds).into_inner();
+        let back = model.flow(theta, -seconds).into_inner();
+        let by_motion = model.parameter_columns(model.flow_sensitivities(theta, seconds).into_iter());
+        let (ad, ad_back) = (model.adjoint(&flow, &back), model.adjoint(&back, &flow));
+        let mut matrix = DMatrix::identity(2 * k, 2 * k);
+        let mut inverse = DMatrix::identity(2 * k, 2 * k);
+        for i in 0..k {
+            for j in 0..k {
+                matrix[(i, j)] = ad[i][j];
+                matrix[(i, k + j)] = by_motion[i][j];
+                inverse[(i, j)] = ad_back[i][j];
+                inverse[(i, k + j)] = -(0..k).map(|m| ad_back[i][m] * by_motion[m][j]).sum::<f64>();
+            }
+        }
+        let mut added = DMatrix::zeros(2 * k, 2 * k);
+        for (j, variance) in noise.variances(model, self.radius).into_iter().enumerate().take(k) {
+            added[(k + j, k + j)] = variance * seconds.abs();
+        }
+        Transition { flow, matrix, inverse, noise: added }
+    }
+
+    fn to_image(&self) -> Matrix3<f64> {
+        let (r, o) = (self.radius, self.origin);
+        Matrix3::new(r, 0.0, o.x, 0.0, r, o.y, 0.0, 0.0, 1.0)
+    }
+}

@@ -1,0 +1,61 @@
+use freeform_riccati::map_point;
+use nalgebra::{Matrix2, Matrix2xX, Matrix3, Point2, Vector2, Vector3};
+
+use crate::motion_state::MotionState;
+
+/// How fast a point of the object moves at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointVelocity {
+    /// Where it is then, image coordinates.
+    pub point: Point2<f64>,
+    /// Its velocity, image lengths per second.
+    pub velocity: Vector2<f64>,
+    /// Covariance of the velocity, squares of image lengths per second.
+    pub covariance: Matrix2<f64>,
+}
+
+impl PointVelocity {
+    /// Standard deviations of both components.
+    #[must_use]
+    pub fn standard_deviations(&self) -> Vector2<f64> {
+        self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt())
+    }
+}
+
+impl MotionState {
+    /// Velocity of the point of the object that was at `first` in the image of the first frame, with the errors of motion and pose that
+    /// go into it. Unobservable parameters are taken as they stand.
+    #[must_use]
+    pub fn velocity_of(&self, first: &Point2<f64>) -> PointVelocity {
+        let k = self.model.parameter_count();
+        let point = map_point(&self.pose, &Point2::from((first - self.origin) / self.radius));
+        let generator = self.model.generator(&self.motion[..k]);
+        let velocity = velocity_at(&generator, &point);
+        let basis = self.model.basis();
+        let derivatives: Vec<Vector2<f64>> = basis
+            .iter()
+            .map(|e| {
+                // The generator takes an error of the pose along.
+                let shift = velocity_at(e, &point);
+                let carried = generator * Vector3::new(shift.x, shift.y, 0.0);
+                let along = generator.row(2).transpose().dot(&point.to_homogeneous());
+                carried.xy() - carried.z * point.coords - along * shift
+            })
+            .chain(basis.iter().map(|e| velocity_at(e, &point)))
+            .collect();
+        let derivatives = Matrix2xX::from_columns(&derivatives);
+        let covariance = &derivatives * &self.covariance * derivatives.transpose();
+        PointVelocity {
+            point: self.origin + self.radius * point.coords,
+            velocity: self.radius * velocity,
+            covariance: self.radius * self.radius * covariance,
+        }
+    }
+}
+
+/// Velocity that a generator gives a point.
+#[must_use]
+pub fn velocity_at(generator: &Matrix3<f64>, point: &Point2<f64>) -> Vector2<f64> {
+    let velocity = generator * point.to_homogeneous();
+    velocity.xy() - velocity.z * point.coords
+}

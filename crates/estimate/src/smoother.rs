@@ -1,0 +1,123 @@
+use freeform_riccati::{MAX_PARAMETERS, logarithm};
+use nalgebra::DVector;
+
+use crate::{
+    information::invert_positive_definite,
+    motion_state::{MotionState, Transition},
+    process_noise::ProcessNoise,
+};
+
+/// Why states cannot be smoothed together.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SmootherError {
+    /// Times must increase.
+    #[error("state {index} at {time} s after one at {previous} s")]
+    TimeNotIncreasing {
+        /// Position of the state, counted from 0.
+        index: usize,
+        /// Time of the state before, in seconds.
+        previous: f64,
+        /// Its time.
+        time: f64,
+    },
+    /// The states are not of one run of a filter: another model, or another first outline.
+    #[error("state {index} is of another run than the ones before it")]
+    AnotherRun {
+        /// Position of the state, counted from 0.
+        index: usize,
+    },
+}
+
+/// What every state is known to be once all frames have been seen: fixed-interval smoothing (Rauch, Tung, Striebel 1965) of the
+/// states that a filter was in after each frame, with the process noise that it was run with. Pose errors are taken on the group,
+/// on the left.
+///
+/// With the process noise Q and the covariance p of pose and motion where the outline is given, the gain is `F^-1 (I - Q (F p F' +
+/// Q)^-1)`: of an outline that is estimated along, this is the share of pose and motion in the gain of the whole, and what later frames
+/// have changed in the outline is left out. Without process noise every smoothed state is the last one taken back along the motion.
+///
+/// ```
+/// use freeform_estimate::{NormalisedState, ProcessNoise, smooth};
+/// use freeform_riccati::MotionModel;
+/// use nalgebra::{DMatrix, Matrix3, Point2};
+///
+/// // Two states of an object whose second frame tells much more than its first.
+/// let state = |time: f64, omega: f64, variance: f64| NormalisedState {
+///     model: MotionModel::Rigid,
+///     time,
+///     origin: Point2::origin(),
+///     radius: 1.0,
+///     pose: MotionModel::Rigid.flow(&[omega * time, 0.0, 0.0], 1.0).into_inner(),
+///     motion: [omega, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+///     covariance: variance * DMatrix::identity(6, 6),
+///     covariance_given_outline: variance * DMatrix::identity(6, 6),
+///     observable: [true; 8],
+/// };
+/// let states = [state(0.1, 1.4, 1e-2).into(), state(0.2, 1.5, 1e-6).into()];
+/// let smoothed = smooth(&states, &ProcessNoise::default())?;
+/// // Without process noise the motion was the same all the time.
+/// assert_eq!(smoothed[0].motion().values()[0], 1.5);
+/// assert!((smoothed[0].pose_parameters()[0].value - 0.15).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Times that do not increase; states of different runs. A run ends where the filter finds the object anew: its states before and after
+/// that are smoothed apart.
+pub fn smooth(states: &[MotionState], noise: &ProcessNoise) -> Result<Vec<MotionState>, SmootherError> {
+    for (i, pair) in states.windows(2).enumerate() {
+        let [a, b] = pair else { continue };
+        let index = i + 1;
+        if a.time.is_nan() || b.time.is_nan() || b.time <= a.time {
+            return Err(SmootherError::TimeNotIncreasing { index, previous: a.time, time: b.time });
+        }
+        if (a.model, a.origin, a.radius) != (b.model, b.origin, b.radius) {
+            return Err(SmootherError::AnotherRun { index });
+        }
+    }
+    let mut smoothed = states.to_vec();
+    for t in (1..states.len()).rev() {
+        let (before, after) = smoothed.split_at_mut(t);
+        if let (Some(state), Some(next)) = (before.last_mut(), after.first()) {
+            take_back(state, next, noise);
+        }
+    }
+    Ok(smoothed)
+}
+
+/// Corrects a filtered state by the smoothed one after it. Where numbers do not allow it the state stays as it was filtered.
+fn take_back(state: &mut MotionState, next: &MotionState, process_noise: &ProcessNoise) {
+    let k = state.model.parameter_count();
+    // Linearised at the smoothed motion, so that without process noise the path is met exactly.
+    let Transition { flow, matrix, inverse: back, noise } = next.transition(next.time - state.time, process_noise);
+    let Some(pose) = flow.try_inverse().map(|inverse| inverse * next.pose) else { return };
+    let mut gain = back.clone();
+    let mut correction = DVector::zeros(2 * k);
+    if noise.iter().any(|q| *q > 0.0) {
+        let within = &matrix * &state.within * matrix.transpose() + &noise;
+        let Some(information) = invert_positive_definite(&within) else { return };
+        let drifted = &back * &noise * information;
+        gain -= &drifted;
+        let Some(difference) = state.pose.try_inverse().and_then(|inverse| logarithm(&(pose * inverse))) else {
+            return;
+        };
+        let difference = state.model.parameters_of(&difference);
+        let difference =
+            DVector::from_fn(
+                2 * k,
+                |i, _| {
+                    if i < k { difference[i] } else { next.motion[i - k] - state.motion[i - k] }
+                },
+            );
+        correction = -(drifted * &matrix * difference);
+    }
+    let predicted = &matrix * &state.covariance * matrix.transpose() + &noise;
+    let covariance = &state.covariance + &gain * (&next.covariance - predicted) * gain.transpose();
+    if !(correction.iter().all(|e| e.is_finite()) && covariance.iter().all(|e| e.is_finite())) {
+        return;
+    }
+    state.pose = state.model.flow(&correction.as_slice()[..k], 1.0).into_inner() * pose;
+    (0..k).for_each(|j| state.motion[j] = next.motion[j] + correction[k + j]);
+    state.covariance = 0.5 * (&covariance + covariance.transpose());
+    (0..MAX_PARAMETERS).for_each(|j| state.observable[j] |= next.observable[j]);
+}

@@ -1,0 +1,155 @@
+use freeform_curve_fit::Outline;
+use freeform_estimate::MotionEstimate;
+use freeform_riccati::{MotionModel, ParameterVector};
+use nalgebra::DMatrix;
+
+use crate::filter::{FilterError, FilterSettings, MotionFilter, OutlineMap, PLENTY, Phase};
+
+/// Times that the outline is cut anew at most.
+const MOST_ROUNDS: usize = 8;
+/// A round that changes no parameter of the mean of all by so many standard deviations is the last.
+const SETTLED: f64 = 0.1;
+
+/// Why a recording gives no motion.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BatchError {
+    /// A frame that cannot be used at all.
+    #[error("frame {index} cannot be used: {error}")]
+    Frame {
+        /// Its position, counted from 0.
+        index: usize,
+        /// What is wrong with it.
+        error: FilterError,
+    },
+    /// The motion filter, which gives the start, found the object in fewer than two frames.
+    #[error("the object was found in fewer than two of {frames} frames")]
+    NoStart {
+        /// Frames given.
+        frames: usize,
+    },
+}
+
+/// The constant motion that all frames of a recording agree on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BatchEstimate {
+    /// The motion in image units, with standard deviations.
+    pub motion: MotionEstimate,
+    /// Covariance of its parameters, in their order.
+    pub covariance: DMatrix<f64>,
+    /// Standard deviation of the noise on the points, image lengths.
+    pub noise: f64,
+    /// Frames used, and not taken for wrong by the filter that gave the start.
+    pub frames_used: usize,
+    /// Pieces that the outline was taken as, each with an offset of its own.
+    pub outline_pieces: usize,
+    /// Times that the outline was cut anew from all frames; 0 where that cannot be, as for a turn that is not seen, frames sampled alike or
+    /// an object found anew on the way: the motion is then that of the filter.
+    pub rounds: usize,
+    /// Whether the last of them changed the mean of their motions, which is the estimate, by little against the standard deviations.
+    pub converged: bool,
+}
+
+/// Estimates a constant motion from all frames at once.
+///
+/// The motion filter gives the start, and tells which frames show something else. Its outline is then cut anew from frames over the
+/// whole recording, aligned by the motion, and all frames are measured against that, until the mean of what this gives settles: points are
+/// given to pieces of an outline that all frames have made, and every frame is linearised at the motion of all. Work is linear in the points,
+/// and repeated for every round: this is the reference for recorded data, [`MotionFilter`] the way to keep up with a camera.
+///
+/// ```
+/// use freeform_curve_fit::Outline;
+/// use freeform_outline_filter::estimate_batch;
+/// use freeform_riccati::MotionModel;
+/// use nalgebra::{Isometry2, Point2, Vector2};
+///
+/// let egg = |i: i32| {
+///     let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+///     Point2::new(0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
+/// };
+/// let mut frames = Vec::new();
+/// for frame in 0..10 {
+///     let time = f64::from(frame) / 30.0;
+///     let pose = Isometry2::new(Vector2::new(0.2 * time, 0.0), 0.5 * time);
+///     frames.push((time, Outline::closed((0..300).map(|i| pose * egg(i)).collect())?));
+/// }
+/// let found = estimate_batch(MotionModel::Rigid, &frames)?;
+/// assert!((found.motion.values()[0] + 0.5).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Times that do not increase, a first outline of fewer than 8 points, an object that is found in fewer than two frames.
+pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<BatchEstimate, BatchError> {
+    let settings = FilterSettings { model, ..FilterSettings::default() };
+    let smallest = settings.smallest_agreement;
+    let mut filter = MotionFilter::new(settings).map_err(|error| BatchError::Frame { index: 0, error })?;
+    let mut used = Vec::new();
+    let (mut last_used, mut restarts) = (None, 0);
+    for (index, (time, outline)) in frames.iter().enumerate() {
+        let step = filter.step(*time, outline).map_err(|error| BatchError::Frame { index, error })?;
+        let is_begun_anew = filter.restarts() > restarts;
+        restarts = filter.restarts();
+        if step.accepted || is_begun_anew {
+            // It has not gone on from the frames before.
+            if step.phase == Phase::Acquiring {
+                used.clear();
+            }
+            used.push((*time, outline));
+            last_used = filter.map().cloned();
+        }
+    }
+    let no_start = BatchError::NoStart { frames: frames.len() };
+    let start = filter.estimate().filter(|_| used.len() > 1).ok_or(no_start)?;
+    // Frames rejected in the end have moved the filter's own map on.
+    let map = last_used.ok_or(no_start)?;
+    let points: usize = used.iter().map(|(_, outline)| outline.point_count()).sum();
+    let take = |map: &mut OutlineMap, seconds: f64, outline: &Outline| {
+        map.predict(seconds);
+        map.update(outline, |update| update.agreement >= smallest)
+    };
+    let mut best = map.clone();
+    let mut mean = best.motion;
+    let (mut rounds, mut converged) = (0, false);
+    // Nothing to cut from where the filter has begun with another frame.
+    while rounds < MOST_ROUNDS && !converged && map.is_begun_with(used[0].1) {
+        let Some(new) = best.recut(&best.placed(used.iter().copied()), points.div_ceil(PLENTY).max(1), take) else {
+            break;
+        };
+        best = new;
+        rounds += 1;
+        let before = mean;
+        mean.iter_mut().zip(&best.motion).for_each(|(mean, new)| *mean += (new - *mean) / rounds as f64);
+        let moved = best.in_deviations(&before, &mean).ok_or(no_start)?;
+        converged = rounds > 1 && moved < SETTLED;
+    }
+    // Where points fall on the pieces differs from cut to cut, and so does the motion, by a part of its deviation.
+    best.motion = mean;
+    let covariance = best.covariance().ok_or(no_start)?;
+    let motion = best.estimate().ok_or(no_start)?;
+    // What the filter has not seen is not there to be seen.
+    let unseen = start.parameters().enumerate().filter(|(_, p)| p.value.is_none()).map(|(j, _)| j);
+    Ok(BatchEstimate {
+        motion: unseen.fold(motion, MotionEstimate::with_unobservable),
+        covariance,
+        noise: best.noise(),
+        frames_used: used.len(),
+        outline_pieces: best.cell_count(),
+        rounds,
+        converged,
+    })
+}
+
+impl OutlineMap {
+    /// Whether the map was begun with an outline.
+    fn is_begun_with(&self, outline: &Outline) -> bool {
+        self.origin == outline.centroid() && self.radius == outline.rms_radius()
+    }
+
+    /// The largest difference of a parameter of two motions, in standard deviations.
+    fn in_deviations(&self, a: &ParameterVector, b: &ParameterVector) -> Option<f64> {
+        let k = self.model.parameter_count();
+        let covariance = self.state_covariance(&self.marginal)?;
+        let differences = (0..k).map(|j| (a[j] - b[j]).abs() / covariance[(k + j, k + j)].sqrt());
+        Some(differences.fold(0.0, f64::max))
+    }
+}

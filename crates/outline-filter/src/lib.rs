@@ -1,0 +1,37 @@
+//! The motion filter: outline, pose and motion of a flat object estimated together from its outlines, frame by frame, near the Cramer-Rao
+//! bound from the third frame on, with standard deviations, and robust to hidden arcs, outliers and wrong frames.
+//!
+//! [`MotionFilter`] keeps up with a camera; [`estimate_batch`] finds a constant motion from all frames of a recording at once.
+//!
+//! ```
+//! use freeform_curve_fit::Outline;
+//! use freeform_outline_filter::{FilterSettings, MotionFilter};
+//! use nalgebra::{Point2, Rotation2};
+//!
+//! let mut filter = MotionFilter::new(FilterSettings::default())?;
+//! for frame in 0..30 {
+//!     let time = f64::from(frame) / 30.0;
+//!     // Points in their order along an egg that goes round the origin, clockwise by 1.5 rad/s.
+//!     let egg = (0..300).map(|i| {
+//!         let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+//!         Rotation2::new(-1.5 * time) * Point2::new(1.0 + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
+//!     });
+//!     filter.step(time, &Outline::closed(egg.collect())?)?;
+//! }
+//! let estimate = filter.estimate().expect("more than one frame");
+//! let omega = estimate.parameters().next().expect("omega, b1 and b2");
+//! println!("{} = {:?} +- {:?} {}", omega.name, omega.value, omega.standard_deviation, omega.unit);
+//! assert!(omega.value.is_some_and(|value| (value - 1.5).abs() < 0.01));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+mod batch;
+mod filter;
+
+pub use batch::{BatchError, BatchEstimate, estimate_batch};
+pub use filter::{
+    Ambiguity, FilterError, FilterSettings, FilterStep, MapUpdate, MotionFilter, OutlineMap, Phase, Rejection,
+};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,0 +1,73 @@
+//! Generators of a motion model as parameter vectors: their velocity fields, and how they change with the frame.
+use nalgebra::{Matrix3, Point2, Vector2};
+
+use crate::motion_model::{MAX_PARAMETERS, MotionModel};
+
+/// One value per parameter of a model, zeros behind.
+pub type ParameterVector = [f64; MAX_PARAMETERS];
+
+/// Square matrix over the parameters of a model, zeros behind; `m[row][column]`.
+pub type ParameterMatrix = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
+
+/// Angular velocity omega of a generator in rad/s, clockwise where y points up.
+#[inline]
+#[must_use]
+pub fn turn_rate(generator: &Matrix3<f64>) -> f64 {
+    0.5 * (generator[(0, 1)] - generator[(1, 0)])
+}
+
+impl MotionModel {
+    /// Parameters of the motion in this model that is nearest to a generator in its entries: the inverse of
+    /// [`generator`](Self::generator) for one of this model. A multiple of the identity, which moves nothing, is taken off
+    /// first. As many as `parameter_count` in front, 0 behind.
+    #[must_use]
+    pub fn parameters_of(self, generator: &Matrix3<f64>) -> ParameterVector {
+        let g = generator - Matrix3::identity() * generator[(2, 2)];
+        let (b1, b2) = (g[(0, 2)], g[(1, 2)]);
+        let sigma = 0.5 * (g[(0, 0)] + g[(1, 1)]);
+        let omega = turn_rate(&g);
+        let full = [g[(0, 0)], g[(0, 1)], g[(1, 0)], g[(1, 1)], b1, b2, g[(2, 0)], g[(2, 1)]];
+        let mut result = [0.0; MAX_PARAMETERS];
+        match self {
+            Self::Rigid => result[..3].copy_from_slice(&[omega, b1, b2]),
+            Self::Similarity => result[..4].copy_from_slice(&[sigma, omega, b1, b2]),
+            Self::Affine => result[..6].copy_from_slice(&full[..6]),
+            Self::Projective => result = full,
+        }
+        result
+    }
+
+    /// Normal component of the velocity that each basis generator gives a point: entry j is `normal . (E_j p)`.
+    #[inline]
+    #[must_use]
+    pub fn normal_velocities(self, p: &Point2<f64>, normal: &Vector2<f64>) -> ParameterVector {
+        let (x, y, u, v) = (p.x, p.y, normal.x, normal.y);
+        match self {
+            Self::Rigid => [u * y - v * x, u, v, 0.0, 0.0, 0.0, 0.0, 0.0],
+            Self::Similarity => [u * x + v * y, u * y - v * x, u, v, 0.0, 0.0, 0.0, 0.0],
+            Self::Affine => [u * x, u * y, v * x, v * y, u, v, 0.0, 0.0],
+            Self::Projective => {
+                let along = -(u * x + v * y);
+                [u * x, u * y, v * x, v * y, u, v, along * x, along * y]
+            }
+        }
+    }
+
+    /// Matrix of `E -> T E T^-1` on parameters, for a map T of the model's own group or a similarity, and its inverse.
+    #[must_use]
+    pub fn adjoint(self, map: &Matrix3<f64>, inverse: &Matrix3<f64>) -> ParameterMatrix {
+        self.parameter_columns(self.basis().iter().map(|e| map * e * inverse))
+    }
+
+    /// Matrix whose columns are the parameters of the given generators, one for each parameter of the model.
+    #[must_use]
+    pub fn parameter_columns(self, generators: impl Iterator<Item = Matrix3<f64>>) -> ParameterMatrix {
+        let mut result = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+        for (column, generator) in generators.take(self.parameter_count()).enumerate() {
+            for (row, value) in self.parameters_of(&generator).into_iter().enumerate() {
+                result[row][column] = value;
+            }
+        }
+        result
+    }
+}
