@@ -134,23 +134,6 @@ pub(crate) fn moved_marginal(
     padded(&moved.dense, 2 * k)
 }
 
-/// A gradient by the state moved on by the same step.
-pub(crate) fn moved_gradient(
-    gradient: &StateVector,
-    k: usize,
-    inverse: &ParameterMatrix,
-    product: &ParameterMatrix,
-) -> StateVector {
-    let mut moved = (*gradient).into();
-    match k {
-        3 => transform::<3>(&mut moved, inverse, product),
-        4 => transform::<4>(&mut moved, inverse, product),
-        6 => transform::<6>(&mut moved, inverse, product),
-        _ => transform::<8>(&mut moved, inverse, product),
-    }
-    StateVector::from(moved)
-}
-
 /// `v <- F^-T v`.
 fn transform<const K: usize>(v: &mut [f64; STATE], inverse: &ParameterMatrix, product: &ParameterMatrix) {
     let mut moved = [0.0; STATE];

@@ -122,7 +122,7 @@ impl MotionFilter {
         if !is_due && !changes || !self.first_frames.are_several() {
             return;
         }
-        if map.turn_is_unknown() {
+        if map.turn_is_unseen() {
             self.begin_with_turn(outline);
         } else {
             self.recut();
@@ -222,6 +222,6 @@ mod tests {
             filter.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
             assert!(filter.first_frames.frames.len() <= OCCASIONS[2], "frame {frame}");
         }
-        assert!(filter.map.as_ref().is_some_and(OutlineMap::turn_is_unknown));
+        assert!(filter.map.as_ref().is_some_and(OutlineMap::turn_is_unseen));
     }
 }

@@ -1,6 +1,6 @@
 //! What the map says of the motion.
 use freeform_estimate::{MotionEstimate, is_worth};
-use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector};
+use freeform_riccati::ParameterKind;
 use nalgebra::DMatrix;
 
 use super::{
@@ -8,8 +8,6 @@ use super::{
     outline_map::OutlineMap,
 };
 
-/// Standard deviations that what is held back of a parameter may make; noise asks for some of them.
-pub(crate) const WITHHELD: f64 = 3.0;
 /// Steps over which a parameter must be known at least, however fast the motion changes.
 const STEPS_KNOWN: f64 = 30.0;
 
@@ -52,14 +50,11 @@ impl OutlineMap {
         let k = self.information.k;
         let to_image = self.to_image();
         let from_image = to_image.try_inverse()?;
-        let in_image = |motion: &ParameterVector| {
-            self.model.parameters_of(&(to_image * self.model.generator(&motion[..k]) * from_image))
-        };
-        let values = in_image(&self.motion);
+        let generator = to_image * self.model.generator(&self.motion[..k]) * from_image;
+        let values = self.model.parameters_of(&generator);
         let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
         let mut estimate = MotionEstimate::new(self.model, &values[..k], Some(&deviations));
-        let blind = self.blind_parameters().unwrap_or([false; MAX_PARAMETERS]);
-        let withheld = self.withheld_motion().map_or([0.0; MAX_PARAMETERS], |withheld| in_image(&withheld));
+        let blind = self.blind_parameters();
         let reach = self.radius + self.origin.coords.norm();
         let shortest = self.shortest_span();
         for (j, kind) in self.model.parameter_kinds().iter().enumerate() {
@@ -70,8 +65,7 @@ impl OutlineMap {
                 ParameterKind::Rate => (1.0, self.spans[j]),
             };
             let known = self.is_worth(deviations[j], span, limit);
-            // What is not taken is no error that the deviations know of.
-            if !known || blind[j] || withheld[j].abs() > WITHHELD * deviations[j] {
+            if !known || blind[j] {
                 estimate = estimate.with_unobservable(j);
             }
         }

@@ -79,10 +79,8 @@ impl OutlineMap {
         let (unseen, turn_was_unseen) = (self.unseen_in_image(&self.pose), self.turn_is_unseen());
         self.find_unseen_directions();
         if !unseen.is_empty() {
-            if !self.withheld.is_given_by_path {
-                self.forget(&unseen);
-                self.forget(&self.unseen_in_image(&self.pose));
-            }
+            self.forget(&unseen);
+            self.forget(&self.unseen_in_image(&self.pose));
             self.shows_turn_at_last = turn_was_unseen && !self.turn_is_unseen();
         }
         let mut scratch = std::mem::take(&mut self.scratch);

@@ -59,7 +59,7 @@ impl OutlineMap {
         mut take: impl FnMut(&mut Self, f64, &Outline) -> MapUpdate,
     ) -> Option<Self> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
-        if self.withheld.is_forgotten || self.turn_is_unknown() {
+        if self.is_forgotten || self.turn_is_unseen() {
             return None;
         }
         let first = frames.first()?;

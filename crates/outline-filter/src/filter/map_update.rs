@@ -64,8 +64,6 @@ pub(crate) struct Scratch {
 pub(crate) struct Solution {
     /// Step from what was predicted.
     pub(crate) state: StateVector,
-    /// The same where nothing is held.
-    pub(crate) released: Option<StateVector>,
     pub(crate) pose: Matrix3<f64>,
     /// Directions that the outline does not show.
     unseen: Vec<Unseen>,
@@ -140,22 +138,14 @@ impl OutlineMap {
     fn update_loaded(&mut self, scratch: &mut Scratch, accept: &dyn Fn(&MapUpdate) -> bool) -> MapUpdate {
         let k = self.information.k;
         let unseen = self.unseen_in_image(&self.pose);
-        let mut hold = self.hold(&unseen);
-        let mut solution = match self.solve(scratch, &unseen, hold.as_ref()) {
+        let hold = self.hold(&unseen);
+        let solution = match self.solve(scratch, &unseen, hold.as_ref()) {
             Ok(solution) => solution,
             Err(iterations) => return self.rejected(iterations),
         };
         let variance = self.comparable_noise().powi(2) * self.noise_level.correlation();
         self.innovation = self.solution_innovation(&solution, hold.as_ref(), variance);
-        if hold.is_some() && self.tells_path(&solution, variance) {
-            hold = None;
-            solution = match self.solve(scratch, &unseen, None) {
-                Ok(solution) => solution,
-                Err(iterations) => return self.rejected(iterations),
-            };
-            self.innovation = self.solution_innovation(&solution, None, variance);
-        }
-        let Solution { state, pose, unseen, dense, marginal, iterations, .. } = solution;
+        let Solution { state, pose, dense, marginal, iterations, .. } = solution;
         if self.is_compared {
             self.last_misfit = self.misfit(scratch);
             self.last_misfit.squares += self.innovation.squared;
@@ -170,7 +160,6 @@ impl OutlineMap {
             self.pose = pose;
             (0..k).for_each(|i| self.motion[i] += state[k + i]);
             self.cells.iter_mut().zip(&scratch.shifts).for_each(|(cell, shift)| cell.offset += shift);
-            self.withhold(&unseen, hold.as_ref(), &state);
             // The buffer holds the cells as they were.
             self.compare_innovations(&scratch.shifts, &scratch.cells);
             let units = 1.0 / (self.sigma * self.sigma);
@@ -197,7 +186,6 @@ impl OutlineMap {
         scratch.shifts.resize(self.cells.len(), 0.0);
         let mut solution = Solution {
             state: StateVector::zeros(),
-            released: None,
             pose: self.pose,
             unseen: unseen.to_vec(),
             dense: self.information.dense,
@@ -217,7 +205,7 @@ impl OutlineMap {
             work.dense = self.information.dense;
             let right = self.accumulate(scratch, &mut work, &solution.state);
             let marginal = work.marginal();
-            let reduced = reduce(&work, &scratch.right, right + self.withheld.gradient);
+            let reduced = reduce(&work, &scratch.right, right);
             let held = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
             let next = held.filter(|next| next.iter().all(|e| e.is_finite()));
             if let Some(next) = next {
@@ -230,10 +218,9 @@ impl OutlineMap {
             if !pose.iter().all(|e| e.is_finite()) || pose.determinant().abs() < 1e-12 {
                 return Err(solution.iterations);
             }
-            let released = hold.and_then(|_| scaled_solution(&marginal, &reduced, k));
             let iterations = solution.iterations + 1;
             let unseen = solution.unseen;
-            solution = Solution { state: next, released, pose, unseen, dense: work.dense, marginal, iterations };
+            solution = Solution { state: next, pose, unseen, dense: work.dense, marginal, iterations };
             settled = step < SETTLED * self.sigma;
         }
         Ok(solution)

@@ -14,7 +14,6 @@ use super::{
     nearest_field::NearestField,
     noise_level::NoiseLevel,
     outline_drift::OutlineDrift,
-    withheld::Withheld,
 };
 
 /// Fewest points that a map is started from.
@@ -115,8 +114,8 @@ pub struct OutlineMap {
     pub(crate) half_window: usize,
     /// In the body frame.
     pub(crate) unseen_in_body: Vec<ParameterVector>,
-    /// What is known of it all the same, and not taken.
-    pub(crate) withheld: Withheld,
+    /// Whether something of it has been forgotten as the map grew: earlier poses are off by what nobody knows.
+    pub(crate) is_forgotten: bool,
     /// Whether frames have not shown the turn, whatever the normals promise.
     pub(crate) turn_is_hidden: bool,
     /// Whether what a frame has shown for the first time shows the turn.
@@ -179,7 +178,7 @@ impl OutlineMap {
             sigma_floor: SMALLEST_NOISE,
             half_window: 2,
             unseen_in_body: Vec::new(),
-            withheld: Withheld::default(),
+            is_forgotten: false,
             turn_is_hidden: false,
             shows_turn_at_last: false,
             turn_is_new: false,

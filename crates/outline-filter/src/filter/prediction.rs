@@ -7,7 +7,6 @@ use super::{
     arrow_information::{ArrowInformation, CellInformation, StateMatrix, StateVector, moved_marginal, scaled_inverse},
     innovation::{ByKind, kind_index},
     outline_map::{MOTION_PRIOR, OutlineMap},
-    withheld::Withheld,
 };
 
 impl OutlineMap {
@@ -28,7 +27,6 @@ impl OutlineMap {
         self.pose = flow * self.pose;
         self.information.predict(&ad_inverse, &product);
         self.marginal = moved_marginal(&self.marginal, k, &ad_inverse, &product);
-        self.withheld.predict(k, &ad_inverse, &product);
         self.let_outline_drift();
         self.span += seconds;
         self.spans.iter_mut().for_each(|span| *span += seconds);
@@ -98,7 +96,6 @@ impl OutlineMap {
             (0..2 * k).for_each(|j| row[j] = dense[(i, j)]);
         }
         self.marginal = after;
-        self.withheld.gradient = gain.transpose() * self.withheld.gradient;
     }
 
     /// Puts the object into a new pose and forgets motion and pose, keeping the outline.
@@ -114,7 +111,7 @@ impl OutlineMap {
             *cell = CellInformation { own: cell.own, ..CellInformation::NOTHING };
         }
         self.marginal = self.information.marginal();
-        self.withheld = Withheld::default();
+        self.is_forgotten = false;
         self.span = 0.0;
         self.spans = [0.0; MAX_PARAMETERS];
     }

@@ -1,8 +1,8 @@
 //! Directions of the pose that an outline does not show, such as the turning of a circle about its centre.
-use freeform_riccati::{MAX_PARAMETERS, ParameterVector, turn_rate};
+use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, turn_rate};
 use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::{acquisition::motion_between, arrow_information::scaled_inverse, outline_map::OutlineMap};
+use super::{acquisition::motion_between, outline_map::OutlineMap};
 
 /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
 const DEGENERATE: f64 = 0.003;
@@ -18,8 +18,8 @@ const ANY_DIRECTION: f64 = 0.5;
 const QUADRATIC: f64 = 2.25;
 /// Steps to the least of the motions that look alike.
 const LEAST_STEPS: usize = 3;
-/// Share of the usual information that must have come from the object's path on a motion that its outline does not show.
-const SEEN_BY_PATH: f64 = 0.02;
+/// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.
+const TAKES_PART: f64 = 0.01;
 
 /// Turn, in rad, of a unit step in a direction that counts as turning.
 const HOLDS_TURN: f64 = 0.3;
@@ -182,31 +182,28 @@ impl OutlineMap {
         pose
     }
 
-    /// Parameters that take part in a motion which the outline does not show, and which the path of the object has not shown either.
-    pub(crate) fn blind_parameters(&self) -> Option<[bool; MAX_PARAMETERS]> {
+    /// Parameters, in image units, that take part in a motion which the outline does not show. The velocity at the origin of the image is
+    /// one of them wherever the middle of a turn that is not seen is not there.
+    pub(crate) fn blind_parameters(&self) -> [bool; MAX_PARAMETERS] {
         let mut blind = [false; MAX_PARAMETERS];
-        if self.unseen_in_body.is_empty() {
-            return Some(blind);
-        }
+        let to_image = self.to_image();
+        let Some(inverse) = to_image.try_inverse() else { return blind };
         let k = self.information.k;
-        let covariance = scaled_inverse(&self.marginal, k)?;
-        let covariance = nalgebra::DMatrix::from_fn(k, k, |i, j| covariance[(k + i, k + j)]);
-        let frame = self.pose * self.body_frame;
-        let from_centred = self.model.adjoint(&frame, &frame.try_inverse()?);
-        let from_centred = nalgebra::DMatrix::from_fn(k, k, |i, j| from_centred[i][j]);
-        let to_centred = from_centred.clone().try_inverse()?;
-        let covariance = &to_centred * covariance * to_centred.transpose();
-        let information = covariance.try_inverse()?;
-        let typical = information.trace() / k as f64;
         for unseen in self.unseen_in_image(&self.pose) {
-            let direction = nalgebra::DVector::from_column_slice(&unseen.direction[..k]);
-            let centred = &to_centred * &direction;
-            let seen = (centred.transpose() * &information * &centred)[(0, 0)] / centred.norm_squared();
-            if seen < SEEN_BY_PATH * typical || !self.withheld.is_given_by_path {
-                let largest = direction.amax();
-                (0..k).filter(|j| direction[*j].abs() > 0.1 * largest).for_each(|j| blind[j] = true);
+            let generator = to_image * self.model.generator(&unseen.direction[..k]) * inverse;
+            let direction = self.model.parameters_of(&generator);
+            // In units of the object, so that lengths and angles compare.
+            let sizes = direction.iter().zip(self.model.parameter_kinds()).map(|(entry, kind)| match kind {
+                ParameterKind::Rate => entry.abs(),
+                ParameterKind::Velocity => entry.abs() / self.radius,
+                ParameterKind::Perspective => entry.abs() * self.radius,
+            });
+            let sizes: Vec<f64> = sizes.collect();
+            let largest = sizes.iter().copied().fold(0.0, f64::max);
+            for (blind, size) in blind.iter_mut().zip(sizes) {
+                *blind |= size > TAKES_PART * largest;
             }
         }
-        Some(blind)
+        blind
     }
 }

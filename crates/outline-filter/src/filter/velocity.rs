@@ -1,8 +1,7 @@
-use freeform_estimate::{PointVelocity, velocity_at};
-use freeform_riccati::map_point;
-use nalgebra::{Point2, Vector2};
+use freeform_estimate::PointVelocity;
+use nalgebra::Point2;
 
-use super::{map_estimate::WITHHELD, motion_filter::MotionFilter, outline_map::OutlineMap};
+use super::{motion_filter::MotionFilter, outline_map::OutlineMap};
 
 impl MotionFilter {
     /// Velocity of the object's middle, the centre of its outline as far as that is known, at the time of [`state`](Self::state). It may be
@@ -28,11 +27,7 @@ impl OutlineMap {
     /// Whether a velocity of the middle is known by the measure of the parameters.
     fn tells(&self, velocity: &PointVelocity) -> bool {
         let deviations = velocity.standard_deviations();
-        let withheld = self.withheld_motion().map_or_else(Vector2::zeros, |motion| {
-            let generator = self.model.generator(&motion[..self.information.k]);
-            self.radius * velocity_at(&generator, &map_point(&self.pose, &self.middle()))
-        });
         let worth = |deviation: &f64| self.is_worth(*deviation, self.shortest_span(), self.radius);
-        deviations.iter().all(worth) && withheld.iter().zip(&deviations).all(|(w, std)| w.abs() <= WITHHELD * std)
+        deviations.iter().all(worth)
     }
 }
