@@ -189,7 +189,7 @@ fn motion_filter_frame(c: &mut Criterion) {
         let settings = FilterSettings { model, ..FilterSettings::default() };
         let mut begun = MotionFilter::new(settings).expect("settings");
         for (time, outline) in &list[..SETTLED] {
-            assert!(begun.step(*time, outline).expect("increasing times").accepted);
+            assert!(begun.step(*time, outline).expect("increasing times").is_accepted());
         }
         group.bench_function(BenchmarkId::from_parameter(format!("{model}, {points} points")), |b| {
             // Single frames may be rejected, as the noise is not kept from it.
@@ -215,7 +215,7 @@ fn acquisition(c: &mut Criterion) {
                 || begun.clone(),
                 |filter| {
                     let step = filter.step(list[1].0, black_box(&list[1].1)).expect("increasing times");
-                    assert_eq!((step.phase, step.accepted), (Phase::Tracking, true));
+                    assert_eq!((step.phase, step.is_accepted()), (Phase::Tracking, true));
                 },
                 BatchSize::SmallInput,
             );

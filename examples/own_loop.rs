@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let outline = outline_at(time)?;
         let step = filter.step(time, &outline)?;
         if let Some(estimate) = filter.estimate().filter(|_| frame % 10 == 9) {
-            println!("{time:.2} s, {:?}, accepted: {}", step.phase, step.accepted);
+            println!("{time:.2} s, {:?}, accepted: {}", step.phase, step.is_accepted());
             for parameter in estimate.parameters() {
                 match (parameter.value, parameter.standard_deviation) {
                     (Some(value), Some(std)) => println!("  {} = {value:.5} +- {std:.5}", parameter.name),

@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                         Entry::Vacant(entry) => entry.insert(MotionFilter::new(FilterSettings::default())?),
                     };
                     let step = filter.step(time, &object.outline)?;
-                    let used = if step.accepted { "used" } else { "rejected" };
+                    let used = if step.is_accepted() { "used" } else { "rejected" };
                     println!("{time:.3} s, object {name}, {used}: {}", in_words(filter.estimate()));
                 }
             }

@@ -79,8 +79,8 @@ impl Identifier {
                     let estimate = object.filter.estimate();
                     object.last_known = estimate.map(|estimate| (time, estimate)).or(object.last_known);
                     let rejected_because = step.rejection.map(|rejection| rejection.to_string());
-                    let residual = step.update.and_then(|update| update.noise);
-                    let innovation = step.update.map(|update| update.innovation);
+                    let residual = step.measurement.and_then(|measurement| measurement.noise);
+                    let innovation = step.measurement.map(|measurement| measurement.innovation);
                     let (phase, state) = (Some(phase_name(step.phase)), object.filter.state());
                     let ambiguity = object.filter.ambiguity().map(Turns::from);
                     Step { phase, estimate, residual, innovation, state, ambiguity, rejected_because, ..Step::EMPTY }

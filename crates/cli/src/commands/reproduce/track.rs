@@ -48,7 +48,7 @@ impl Track {
             Method::Filter(settings) => {
                 let mut filter = MotionFilter::new(*settings).map_err(Failure::unusable)?;
                 track.follow(sequence, |time, outline| {
-                    (filter.step(time, outline).is_ok_and(|step| step.accepted), filter.estimate())
+                    (filter.step(time, outline).is_ok_and(|step| step.is_accepted()), filter.estimate())
                 });
             }
         }
