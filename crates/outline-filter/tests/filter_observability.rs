@@ -165,13 +165,13 @@ fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_d
     // It moves along an arc, which no other turn would.
     let three = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0, 2.0]);
     let stated = omega(&three).value.expect("decided");
-    assert!(!three.ambiguity().is_some() && (stated - turn).abs() < 0.02, "{stated}");
+    assert!(three.ambiguity().is_none() && (stated - turn).abs() < 0.02, "{stated}");
     assert!(three.ambiguity().is_none() && three.velocity().is_some());
     // Nothing tells how often a square that stays in its place has turned, unless it is little.
     let in_place = seen_at(BuiltInShape::Square, turn, 0.0, &[0.0, 1.0, 2.0]);
     assert!(in_place.ambiguity().is_some() && omega(&in_place).value.is_none(), "{:?}", in_place.rival_turns());
     let little = seen_at(BuiltInShape::Square, 0.4 * turn, 0.0, &[0.0, 1.0, 2.0]);
-    assert!(!little.ambiguity().is_some() && (omega(&little).value.expect("stated") - 0.4 * turn).abs() < 0.02);
+    assert!(little.ambiguity().is_none() && (omega(&little).value.expect("stated") - 0.4 * turn).abs() < 0.02);
 }
 
 #[test]

@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 use freeform_riccati::MotionModel;
 use nalgebra::{Matrix3, Point2, Vector2};
 
-use super::super::Track;
+use super::Track;
 use crate::measurement::{Frame, Pass};
 
 /// A strip of length 1 and thickness 0.04, anticlockwise; a tenth of its upper side is `dip` lower.
