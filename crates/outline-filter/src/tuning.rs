@@ -77,8 +77,9 @@ pub(crate) mod null_space {
     pub(crate) const HOLDS_TURN: f64 = 0.3;
     /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.
     pub(crate) const TAKES_PART: f64 = 0.01;
-    /// Information that holds a direction, in units of the noise: it moves by a thousandth of it.
-    pub(crate) const HOLDING: f64 = 1e6;
+    /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
+    /// over the frames of a recording, and leaves seven digits to the solution.
+    pub(crate) const HOLDING: f64 = 1e9;
 }
 
 /// Points of a frame against the map.

