@@ -1,3 +1,4 @@
+use freeform_experiments::figure::{Curve, Look, Panel};
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::ParameterEstimate;
 use freeform_motion::riccati::{AffineMotion, MotionModel};
@@ -6,9 +7,8 @@ use nalgebra::Point2;
 use super::number::short;
 use crate::commands::FittedOutline;
 use crate::history::History;
-use crate::plot::{Curve, Look, Panel, stacked_svg};
+use crate::plot::stacked_svg;
 use crate::tracking::Estimate;
-use crate::truth::parameters_in;
 
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
@@ -84,7 +84,7 @@ pub(crate) fn parameter_panels(
     model: MotionModel,
     truth: Option<&AffineMotion>,
 ) -> Vec<Panel> {
-    let truth = truth.and_then(|motion| parameters_in(model, motion));
+    let truth = truth.and_then(|motion| model.parameters_of_motion(motion));
     let names = model.parameter_names().iter().zip(model.units()).enumerate();
     names
         .map(|(index, (name, unit))| {
