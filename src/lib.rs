@@ -25,6 +25,7 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod number;
 mod pipeline;
 mod settling;
 mod warning;
@@ -37,6 +38,7 @@ pub use freeform_outline_filter as outline_filter;
 pub use freeform_outline_io as outline_io;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
+pub use number::significant;
 pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};
 
 #[cfg(doctest)]

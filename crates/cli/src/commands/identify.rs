@@ -24,7 +24,6 @@ use crate::picture_input::PictureInput;
 use crate::reader::Pace;
 use crate::tracking::{Event, ObjectResult, Observation, Tracking};
 use crate::trajectory::Trajectory;
-use crate::truth::parameters_in;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
@@ -34,7 +33,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = input.name.clone();
     let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
     let model = args.options.motion.model();
-    if !args.quiet && truth.is_some_and(|truth| parameters_in(model, &truth).is_none()) {
+    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
         warn(&format!("{origin}: no {model} motion, nothing is compared with it"));
     }

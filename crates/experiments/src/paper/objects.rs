@@ -1,23 +1,22 @@
 //! Fig. 1: the ten objects and their quartics.
-use freeform_motion::curve_fit::FitSettings;
-use freeform_motion::riccati::AffineMotion;
-use freeform_motion::sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings};
-use nalgebra::{Point2, Vector2};
+use freeform_curve_fit::{FitSettings, Rectangle};
+use freeform_riccati::AffineMotion;
+use freeform_sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings};
+use nalgebra::Vector2;
 
 use super::Run;
 use super::curves::{FAR_OVALS, closed_quartic, curve, curve_near, data_of, image_panel, points_of};
 use super::document::{Drawing, Section, Table};
 use super::method::fit_in_words;
 use super::sequence::{POINTS, Sequence, paper_settings};
-use crate::failure::Failure;
-use crate::level_set::Area;
-use crate::output::significant;
-use crate::plot::{Figure, Look, Panel};
+use crate::ExperimentError;
+use crate::figure::{Figure, Look, Panel};
+use freeform_motion::significant;
 
 /// Half the side of each picture in image lengths; the objects are of size 1.
 const HALF_VIEW: f64 = 0.55;
 
-pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
+pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
     let (mut panels, mut with_far_ovals) = (Vec::new(), Vec::new());
     let mut distances = Table {
         name: "fig1-fits".to_owned(),
@@ -33,7 +32,7 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
     };
     let fit_settings = FitSettings::default();
     for shape in BuiltInShape::FIGURE_1 {
-        let camera = Camera::new(PaperExperiment::SCALE).map_err(Failure::unusable)?;
+        let camera = Camera::new(PaperExperiment::SCALE)?;
         let settings = Settings { length: SequenceLength::Frames(1), ..paper_settings(1.0, run.seed) };
         let sequence = Sequence::simulate(Scene::new(shape, AffineMotion::default(), camera), settings)?;
         let Some((_, outline)) = sequence.frames.first() else { continue };
@@ -43,10 +42,9 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
             with_far_ovals.push(title(shape).to_lowercase());
         }
         // All objects to the same scale.
-        let around = Area::around(outline.points()).unwrap_or(Area { low: Point2::origin(), high: Point2::origin() });
-        let middle = nalgebra::center(&around.low, &around.high);
+        let middle = outline.bounding_box().centre();
         let half = Vector2::repeat(HALF_VIEW);
-        let view = Area { low: middle - half, high: middle + half };
+        let view = Rectangle { low: middle - half, high: middle + half };
         let curves =
             vec![curve("points", Look::FineDots, vec![points_of(outline)]), curve("quartic", Look::Line, drawn.runs)];
         panels.push(Panel { is_bare: true, ..image_panel(title(shape), &view, curves) });

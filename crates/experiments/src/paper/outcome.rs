@@ -1,9 +1,9 @@
 //! How far a method is from the truth, and from when on it is near.
-use freeform_motion::riccati::AffineMotion;
+use freeform_riccati::AffineMotion;
 
 use super::sequence::Sequence;
 use super::track::Track;
-use crate::output::significant;
+use freeform_motion::significant;
 
 /// A motion has settled once the error of its rates (omega, or the matrix a) stays below this share of them...
 const SETTLED_RATES: f64 = 0.05;
@@ -15,15 +15,15 @@ const FINAL_SHARE: f64 = 0.1;
 
 /// How far an estimate is from the truth.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct RelativeError {
+pub(super) struct RelativeError {
     /// Norm of the error of the matrix (a1, a2; a3, a4) over its norm: for rigid motion that of omega over omega.
-    pub(crate) rates: f64,
+    pub(super) rates: f64,
     /// Length of the error of b over the length of b.
-    pub(crate) velocity: f64,
+    pub(super) velocity: f64,
 }
 
 impl RelativeError {
-    pub(crate) fn of(found: &AffineMotion, truth: &AffineMotion) -> Self {
+    pub(super) fn of(found: &AffineMotion, truth: &AffineMotion) -> Self {
         let rates = |m: &AffineMotion| nalgebra::Vector4::new(m.a1, m.a2, m.a3, m.a4);
         let velocity = |m: &AffineMotion| nalgebra::Vector2::new(m.b1, m.b2);
         Self {
@@ -39,20 +39,20 @@ impl RelativeError {
 
 /// What a run comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Outcome {
+pub(super) struct Outcome {
     /// Root mean square relative error of the rates over the end of the run; infinite, as unknown, where a frame there
     /// has no estimate.
-    pub(crate) rates: f64,
+    pub(super) rates: f64,
     /// The same of the velocity.
-    pub(crate) velocity: f64,
+    pub(super) velocity: f64,
     /// Time in seconds from which on every frame has an estimate that is settled; infinite where there is none.
-    pub(crate) settled: f64,
+    pub(super) settled: f64,
     /// Share of frames rejected.
-    pub(crate) rejected: f64,
+    pub(super) rejected: f64,
 }
 
 impl Outcome {
-    pub(crate) fn of(track: &Track, sequence: &Sequence) -> Self {
+    pub(super) fn of(track: &Track, sequence: &Sequence) -> Self {
         let errors = track.errors(&sequence.truth);
         let tail_start = (1.0 - FINAL_SHARE) * sequence.end();
         let timed = || track.moments.iter().map(|moment| moment.time).zip(&errors);
@@ -75,7 +75,7 @@ impl Outcome {
     }
 
     /// Entry by entry: the quantile of several outcomes, 0.5 for the median and 1 for the worst.
-    pub(crate) fn quantile(outcomes: &[Self], share: f64) -> Self {
+    pub(super) fn quantile(outcomes: &[Self], share: f64) -> Self {
         let entry = |value: fn(&Self) -> f64| {
             let mut values: Vec<f64> = outcomes.iter().map(value).collect();
             values.sort_by(f64::total_cmp);
@@ -93,13 +93,13 @@ impl Outcome {
     }
 
     /// As a table shows it: errors in percent and the settling time in seconds.
-    pub(crate) fn cells(&self) -> [String; 3] {
+    pub(super) fn cells(&self) -> [String; 3] {
         let settled = if self.settled.is_finite() { seconds(self.settled) } else { "-".to_owned() };
         [percent(self.rates), percent(self.velocity), settled]
     }
 
     /// As a caption tells it; `rates` is what the rates of its motion are called, and `end` when the run ended.
-    pub(crate) fn in_words(&self, rates: &str, end: f64) -> String {
+    pub(super) fn in_words(&self, rates: &str, end: f64) -> String {
         let settled = match self.settled {
             never if never.is_infinite() => format!("not settled within {end:.0} s"),
             time => format!("settled after {} s", seconds(time)),
@@ -112,7 +112,7 @@ impl Outcome {
 }
 
 /// What each of several methods comes to, as a caption of errors tells it.
-pub(crate) fn outcomes_in_words(tracks: &[(&str, Track)], sequence: &Sequence) -> String {
+pub(super) fn outcomes_in_words(tracks: &[(&str, Track)], sequence: &Sequence) -> String {
     let outcome = |(name, track): &(&str, Track)| match Outcome::of(track, sequence).cells() {
         [rates, ..] if rates == "-" => format!("{name}: unknown"),
         [rates, velocity, _] => format!("{name}: {rates} and {velocity} %"),
@@ -121,7 +121,7 @@ pub(crate) fn outcomes_in_words(tracks: &[(&str, Track)], sequence: &Sequence) -
 }
 
 /// What the errors and the settling time of a table are; `rates` is what the rates of its motion are called.
-pub(crate) fn rules(rates: &str) -> String {
+pub(super) fn rules(rates: &str) -> String {
     let (rates_limit, velocity_limit) = (100.0 * SETTLED_RATES, 100.0 * SETTLED_VELOCITY);
     format!(
         "Errors are relative root mean squares over the last {:.0} % of the run (- where a frame there has no estimate). \
@@ -136,7 +136,7 @@ fn seconds(time: f64) -> String {
 }
 
 /// A share in percent with two digits.
-pub(crate) fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     match 100.0 * share {
         value if !value.is_finite() => "-".to_owned(),
         // Beyond a factor of ten the digits say nothing, and nobody needs to know so little.
@@ -148,8 +148,8 @@ pub(crate) fn percent(share: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::curve_fit::Outline;
-    use freeform_motion::riccati::CameraScale;
+    use freeform_curve_fit::Outline;
+    use freeform_riccati::CameraScale;
 
     use super::super::track::Moment;
     use super::*;

@@ -28,30 +28,40 @@ pub(super) struct Cell {
 
 /// What all runs of one or several shapes say together. `None` where they say nothing.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Statistics {
-    pub(crate) runs: usize,
-    pub(crate) lost: usize,
+pub struct Statistics {
+    /// Runs in all.
+    pub runs: usize,
+    /// Runs without an estimate, or with one that leads the outline astray; they count in no error below.
+    pub lost: usize,
     /// Share of all frames.
-    pub(crate) frames_rejected: Option<f64>,
-    pub(crate) microseconds_per_frame: Option<f64>,
+    pub frames_rejected: Option<f64>,
+    /// Mean time of a frame on one core; the only number that differs from run to run.
+    pub microseconds_per_frame: Option<f64>,
     /// Root mean square of error over bound, all parameters together.
-    pub(crate) ratio: Option<f64>,
-    pub(crate) coverage: Option<f64>,
+    pub ratio: Option<f64>,
+    /// Share of all 95 % intervals that held the truth.
+    pub coverage: Option<f64>,
     /// Root mean square of bias over its standard error, over shapes and parameters: 1 is expected without bias.
-    pub(crate) bias_in_errors: Option<f64>,
-    pub(crate) parameters: Vec<ParameterStatistics>,
+    pub bias_in_errors: Option<f64>,
+    /// Each parameter by itself, in the order of the model.
+    pub parameters: Vec<ParameterStatistics>,
 }
 
-/// The same for one parameter.
+/// What all runs say of one parameter, in its unit. `None` where they say nothing.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct ParameterStatistics {
-    pub(crate) rmse: Option<f64>,
-    /// Root mean square over the shapes.
-    pub(crate) bound: Option<f64>,
-    pub(crate) ratio: Option<f64>,
-    pub(crate) bias: Option<f64>,
-    pub(crate) bias_standard_error: Option<f64>,
-    pub(crate) coverage: Option<f64>,
+pub struct ParameterStatistics {
+    /// Root mean square error.
+    pub rmse: Option<f64>,
+    /// The Cramer-Rao bound, root mean square over the shapes.
+    pub bound: Option<f64>,
+    /// Root mean square of error over bound.
+    pub ratio: Option<f64>,
+    /// Mean error.
+    pub bias: Option<f64>,
+    /// Standard error of `bias`.
+    pub bias_standard_error: Option<f64>,
+    /// Share of the 95 % intervals (1.96 standard deviations either side) that held the truth.
+    pub coverage: Option<f64>,
 }
 
 /// Half of a 95 % interval in standard deviations.

@@ -1,9 +1,9 @@
 //! What the paper leaves open, answered by measurement: tables of final errors and settling times.
+use freeform_curve_fit::{FitSettings, Method as FitMethod};
+use freeform_identify::{AdaptiveLaw, AdaptiveSettings, PairChoice};
 use freeform_motion::PipelineSettings;
-use freeform_motion::curve_fit::{FitSettings, Method as FitMethod};
-use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, PairChoice};
-use freeform_motion::riccati::MotionModel;
-use freeform_motion::sim_camera::{Camera, PaperExperiment, Scene, Settings};
+use freeform_riccati::MotionModel;
+use freeform_sim_camera::{Camera, PaperExperiment, Scene, Settings};
 use nalgebra::{Affine2, Matrix3};
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use super::method::{Method, random_start, start_range_in_words};
 use super::outcome::{Outcome, percent, rules};
 use super::sequence::{Sequence, paper_settings};
 use super::track::Track;
-use crate::failure::Failure;
+use crate::ExperimentError;
 
 const EXPERIMENTS: [PaperExperiment; 3] =
     [PaperExperiment::FLIGHT_BIRD, PaperExperiment::GLIDER_OF_TEXT, PaperExperiment::CELLULAR_PHONE];
@@ -54,8 +54,8 @@ impl Condition {
         }
     }
 
-    fn sequence(&self, experiment: &PaperExperiment, seconds: f64, seed: u64) -> Result<Sequence, Failure> {
-        let camera = Camera::new(self.scale).map_err(Failure::unusable)?;
+    fn sequence(&self, experiment: &PaperExperiment, seconds: f64, seed: u64) -> Result<Sequence, ExperimentError> {
+        let camera = Camera::new(self.scale)?;
         let pose = Affine2::from_matrix_unchecked(Matrix3::new_scaling(self.size));
         let scene = Scene::new(experiment.shape, experiment.motion, camera).with_initial_pose(pose);
         Sequence::simulate(scene, Settings { fps: self.fps, noise: self.noise, ..paper_settings(seconds, seed) })
@@ -223,13 +223,13 @@ const STARTED: [(&str, AdaptiveLaw, PairChoice); 4] = [
 ];
 
 /// Sequences identified for all tables.
-pub(crate) fn run_count(starts: u32, repeats: u32) -> u64 {
+pub(super) fn run_count(starts: u32, repeats: u32) -> u64 {
     let cells: usize = questions().iter().map(|question| question.conditions.len() * question.methods.len()).sum();
     let (cells, started) = (cells as u64 * u64::from(repeats), STARTED.len() as u64 * u64::from(starts));
     EXPERIMENTS.len() as u64 * (cells + started)
 }
 
-pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
+pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
     let questions = questions();
     let mut tables: Vec<_> = questions.par_iter().map(|question| question.table(run)).collect::<Result<_, _>>()?;
     tables.push(initial_values(run)?);
@@ -259,7 +259,7 @@ fn heads(first: &str, counts_rejected: bool) -> Vec<String> {
 }
 
 impl Question {
-    fn table(&self, run: &Run) -> Result<Table, Failure> {
+    fn table(&self, run: &Run) -> Result<Table, ExperimentError> {
         let mut table = Table {
             name: self.name.to_owned(),
             title: self.title.to_owned(),
@@ -284,7 +284,12 @@ impl Question {
     }
 
     /// What each method comes to in one condition.
-    fn medians(&self, run: &Run, condition: &Condition, experiment: &PaperExperiment) -> Result<Vec<Outcome>, Failure> {
+    fn medians(
+        &self,
+        run: &Run,
+        condition: &Condition,
+        experiment: &PaperExperiment,
+    ) -> Result<Vec<Outcome>, ExperimentError> {
         let repeats = (0..u64::from(run.repeats)).into_par_iter().map(|repeat| {
             let sequence = condition.sequence(experiment, run.seconds, run.seed + repeat)?;
             let outcomes = self.methods.par_iter().map(|(_, method)| {
@@ -292,7 +297,7 @@ impl Question {
                 run.advance();
                 Ok(outcome)
             });
-            outcomes.collect::<Result<Vec<_>, Failure>>()
+            outcomes.collect::<Result<Vec<_>, ExperimentError>>()
         });
         let repeats: Vec<Vec<Outcome>> = repeats.collect::<Result<_, _>>()?;
         let of_method = |index: usize| repeats.iter().map(|outcomes| outcomes[index]).collect::<Vec<_>>();
@@ -301,7 +306,7 @@ impl Question {
 }
 
 /// Median and worst over random initial values.
-fn initial_values(run: &Run) -> Result<Table, Failure> {
+fn initial_values(run: &Run) -> Result<Table, ExperimentError> {
     let columns = EXPERIMENTS.par_iter().map(|experiment| {
         let sequence = Sequence::of_paper(experiment, run.seconds, run.seed)?;
         let of_law = STARTED.par_iter().map(|(_, kind, pairs)| {
@@ -311,9 +316,9 @@ fn initial_values(run: &Run) -> Result<Table, Failure> {
                 run.advance();
                 Ok(outcome)
             });
-            outcomes.collect::<Result<Vec<_>, Failure>>()
+            outcomes.collect::<Result<Vec<_>, ExperimentError>>()
         });
-        of_law.collect::<Result<Vec<_>, Failure>>()
+        of_law.collect::<Result<Vec<_>, ExperimentError>>()
     });
     let columns: Vec<Vec<Vec<Outcome>>> = columns.collect::<Result<_, _>>()?;
     let mut table = Table {

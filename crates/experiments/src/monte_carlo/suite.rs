@@ -1,13 +1,13 @@
 //! The settings of docs/accuracy.md.
-use freeform_motion::riccati::{AffineMotion, MotionModel, RigidMotion};
-use freeform_motion::sim_camera::{BuiltInShape, Sampling};
+use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Sampling};
 
 use super::acquisition::AcquisitionSetting;
 use super::setting::Setting;
-use crate::failure::Failure;
+use crate::ExperimentError;
 
-/// The built-in shapes of the suite.
-pub(super) const SHAPES: [BuiltInShape; 6] = [
+/// The built-in shapes that every setting is evaluated on.
+pub const SHAPES: [BuiltInShape; 6] = [
     BuiltInShape::Bird,
     BuiltInShape::Glider,
     BuiltInShape::Phone,
@@ -17,22 +17,25 @@ pub(super) const SHAPES: [BuiltInShape; 6] = [
 ];
 
 /// What the names of settings contain, one or another of them in each.
-const WORDS: [&str; 10] =
+pub const WORDS: [&str; 10] =
     ["rigid", "affine", "clean", "stratified", "arc", "outliers", "noise", "points", "frames/s", "acquisition"];
 
-/// The settings whose names contain a text.
-pub(super) fn containing(text: &str) -> Result<(Vec<Setting>, Vec<AcquisitionSetting>), Failure> {
+/// The settings whose names contain a text, all for an empty one.
+///
+/// # Errors
+/// There is none.
+pub fn containing(text: &str) -> Result<(Vec<Setting>, Vec<AcquisitionSetting>), ExperimentError> {
     let (mut settings, mut acquisitions) = (settings(), acquisitions());
     settings.retain(|setting| setting.name.contains(text));
     acquisitions.retain(|setting| setting.name.contains(text));
     if settings.is_empty() && acquisitions.is_empty() {
-        let words = WORDS.join(", ");
-        return Err(Failure::unusable(format_args!(
-            "no setting of the suite contains {text:?}; there are some for {words} (docs/accuracy.md lists all)"
-        )));
+        return Err(ExperimentError::NoSuchSetting { text: text.to_owned() });
     }
     Ok((settings, acquisitions))
 }
+
+/// How many times more runs the suite makes of an acquisition than of a motion: shares near 1 need many.
+pub const ACQUISITION_RUNS: usize = 10;
 
 fn settings() -> Vec<Setting> {
     let rigid = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -0.3, b2: 0.4 };
@@ -106,9 +109,9 @@ mod tests {
         let (missing, acquired) = containing("arc missing").expect("some");
         assert!(missing.iter().all(|s| s.occlusion == 0.2) && missing.len() == 5 && acquired.len() == 1);
         let (settings, acquisitions) = containing("").expect("all");
-        let Err(failure) = containing("nonsense") else { panic!("there is no such setting") };
-        assert!(failure.text().len() < 200, "{}", failure.text());
-        WORDS.iter().for_each(|word| assert!(failure.text().contains(word) && containing(word).is_ok(), "{word}"));
+        let message = containing("nonsense").expect_err("there is no such setting").to_string();
+        assert!(message.len() < 200, "{message}");
+        WORDS.iter().for_each(|word| assert!(message.contains(word) && containing(word).is_ok(), "{word}"));
         let names = settings.iter().map(|s| &s.name).chain(acquisitions.iter().map(|a| &a.name));
         names.for_each(|name| assert!(WORDS.iter().any(|word| name.contains(word)), "{name}"));
     }

@@ -1,52 +1,52 @@
 //! What a method found, frame by frame.
+use freeform_curve_fit::Outline;
+use freeform_estimate::MotionEstimate;
 use freeform_motion::Pipeline;
-use freeform_motion::curve_fit::Outline;
-use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::outline_filter::MotionFilter;
-use freeform_motion::riccati::{AffineMotion, CameraScale};
-use freeform_motion::sim_camera::Motion;
+use freeform_outline_filter::MotionFilter;
+use freeform_riccati::{AffineMotion, CameraScale, ParameterKind};
+use freeform_sim_camera::Motion;
 
 use super::method::Method;
 use super::outcome::RelativeError;
 use super::sequence::Sequence;
-use crate::failure::Failure;
+use crate::ExperimentError;
 
 /// What a method holds after each frame of a sequence.
 #[derive(Debug, Default)]
-pub(crate) struct Track {
+pub(super) struct Track {
     /// One for each frame, also where it was rejected.
-    pub(crate) moments: Vec<Moment>,
-    pub(crate) frames_rejected: usize,
+    pub(super) moments: Vec<Moment>,
+    pub(super) frames_rejected: usize,
     /// The line pair that the estimate comes from; `None` if from all, or from none.
-    pub(crate) pair: Option<usize>,
+    pub(super) pair: Option<usize>,
 }
 
 /// What a method holds after one frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Moment {
+pub(super) struct Moment {
     /// In seconds.
-    pub(crate) time: f64,
+    pub(super) time: f64,
     /// The motion in space; `None` where the method gives none, or not all of its parameters.
-    pub(crate) motion: Option<AffineMotion>,
+    pub(super) motion: Option<AffineMotion>,
 }
 
 impl Track {
-    pub(crate) fn by(method: &Method, sequence: &Sequence) -> Result<Self, Failure> {
+    pub(super) fn by(method: &Method, sequence: &Sequence) -> Result<Self, ExperimentError> {
         let mut track = Self::default();
         match method {
             Method::Adaptive(settings) => {
                 // Initial values are told in space and known to the pipeline in the image.
                 let mut settings = settings.as_ref().clone();
-                let names = settings.identify.model.parameter_names();
-                for (value, name) in settings.identify.initial_values.iter_mut().zip(names) {
-                    *value *= if name.starts_with('b') { sequence.scale.value() } else { 1.0 };
+                let kinds = settings.identify.model.parameter_kinds();
+                for (value, kind) in settings.identify.initial_values.iter_mut().zip(kinds) {
+                    *value *= if *kind == ParameterKind::Velocity { sequence.scale.value() } else { 1.0 };
                 }
-                let mut pipeline = Pipeline::new(settings).map_err(Failure::unusable)?;
+                let mut pipeline = Pipeline::new(settings)?;
                 track.follow(sequence, |time, outline| (pipeline.push(time, outline).is_ok(), pipeline.estimate()));
                 track.pair = pipeline.identifier().chosen_pair();
             }
             Method::Filter(settings) => {
-                let mut filter = MotionFilter::new(*settings).map_err(Failure::unusable)?;
+                let mut filter = MotionFilter::new(*settings)?;
                 track.follow(sequence, |time, outline| {
                     (filter.step(time, outline).is_ok_and(|step| step.is_accepted()), filter.estimate())
                 });
@@ -75,19 +75,19 @@ impl Track {
     }
 
     /// How far each moment is from the truth; `None` where there is no estimate.
-    pub(crate) fn errors(&self, truth: &Motion) -> Vec<Option<RelativeError>> {
+    pub(super) fn errors(&self, truth: &Motion) -> Vec<Option<RelativeError>> {
         let error = |moment: &Moment| Some(RelativeError::of(&moment.motion?, &truth.at(moment.time)));
         self.moments.iter().map(error).collect()
     }
 
     /// Frames from the first estimate on that have none.
-    pub(crate) fn frames_lost(&self) -> usize {
+    pub(super) fn frames_lost(&self) -> usize {
         let from_first = self.moments.iter().skip_while(|moment| moment.motion.is_none());
         from_first.filter(|moment| moment.motion.is_none()).count()
     }
 
     /// Share of frames rejected.
-    pub(crate) fn share_rejected(&self) -> f64 {
+    pub(super) fn share_rejected(&self) -> f64 {
         self.frames_rejected as f64 / self.moments.len().max(1) as f64
     }
 }

@@ -1,11 +1,11 @@
 //! Beyond the paper: affine motion, which it announces, and motion that changes slowly.
 use std::f64::consts::TAU;
 
-use freeform_motion::estimate::ProcessNoise;
-use freeform_motion::identify::{AdaptiveLaw, PairChoice};
-use freeform_motion::outline_filter::FilterSettings;
-use freeform_motion::riccati::{AffineMotion, MotionModel, RigidMotion};
-use freeform_motion::sim_camera::{BuiltInShape, Camera, Motion, PaperExperiment, Scene};
+use freeform_estimate::ProcessNoise;
+use freeform_identify::{AdaptiveLaw, PairChoice};
+use freeform_outline_filter::FilterSettings;
+use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Camera, Motion, PaperExperiment, Scene};
 
 use super::Run;
 use super::curves::curve;
@@ -18,14 +18,14 @@ use super::traces::{
     times, true_values, values,
 };
 use super::track::Track;
-use crate::failure::Failure;
-use crate::plot::{Figure, Look, Panel};
+use crate::ExperimentError;
+use crate::figure::{Figure, Look, Panel};
 
 /// Runs of the experiment with affine motion.
-pub(crate) const AFFINE_RUNS: u64 = 5;
+pub(super) const AFFINE_RUNS: u64 = 5;
 
 /// Runs of the experiment with changing motion.
-pub(crate) const CHANGING_RUNS: u64 = 5;
+pub(super) const CHANGING_RUNS: u64 = 5;
 
 /// A turn that is faster one way round, with a slow growth and a slow shrinking; b as the flight bird's. In space.
 const AFFINE: AffineMotion = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -3.0, b2: 4.0 };
@@ -45,12 +45,16 @@ const B_SWING: f64 = 1.0;
 /// Process noise that lets the filter follow: per square root of a second.
 const PROCESS_NOISE: ProcessNoise = ProcessNoise { rates: 0.2, velocities: 0.05 };
 
-fn bird(run: &Run, motion: Motion) -> Result<Sequence, Failure> {
-    let camera = Camera::new(PaperExperiment::SCALE).map_err(Failure::unusable)?;
+fn bird(run: &Run, motion: Motion) -> Result<Sequence, ExperimentError> {
+    let camera = Camera::new(PaperExperiment::SCALE)?;
     Sequence::simulate(Scene::new(BuiltInShape::Bird, motion, camera), paper_settings(run.seconds, run.seed))
 }
 
-fn tracks<'a>(run: &Run, methods: &[(&'a str, Method)], sequence: &Sequence) -> Result<Vec<(&'a str, Track)>, Failure> {
+fn tracks<'a>(
+    run: &Run,
+    methods: &[(&'a str, Method)],
+    sequence: &Sequence,
+) -> Result<Vec<(&'a str, Track)>, ExperimentError> {
     let track = |(name, method): &(&'a str, Method)| {
         let track = Track::by(method, sequence)?;
         run.advance();
@@ -76,7 +80,7 @@ fn outcomes(name: &str, title: &str, caption: String, tracks: &[(&str, Track)], 
 /// What the last column of the tables counts.
 const LOST: &str = "Without estimate: frames after the first estimate in which the method gives none, or reports a parameter as unobservable.";
 
-pub(crate) fn affine(run: &Run) -> Result<Section, Failure> {
+pub(super) fn affine(run: &Run) -> Result<Section, ExperimentError> {
     let sequence = bird(run, AFFINE.into())?;
     let law = |law, pairs| Method::law(MotionModel::Affine, law, pairs, &[]);
     let methods = [
@@ -155,7 +159,7 @@ fn swinging(time: f64) -> AffineMotion {
     .into()
 }
 
-pub(crate) fn changing(run: &Run) -> Result<Section, Failure> {
+pub(super) fn changing(run: &Run) -> Result<Section, ExperimentError> {
     let model = MotionModel::Rigid;
     let sequence = bird(run, Motion::varying(swinging))?;
     let constant = FilterSettings { model, adaptive: false, ..FilterSettings::default() };

@@ -1,17 +1,16 @@
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::riccati::{AffineMotion, MotionModel, RigidMotion};
-use freeform_motion::sim_camera::{Sampling, Shape};
+use freeform_estimate::MotionEstimate;
+use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_sim_camera::{Sampling, Shape};
 use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-use super::estimator::Estimator;
-use super::monte_carlo::Effort;
+use super::estimator::{Estimator, Method};
+use super::evaluation::{Effort, MethodResult};
 use super::setting::Setting;
-use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluatedMethod, MotionChoice};
-use crate::failure::Failure;
+use crate::ExperimentError;
 
 /// Largest turn between the two frames, rad.
 const LARGEST_TURN: f64 = FRAC_PI_3;
@@ -24,61 +23,59 @@ const SHIFT_TOLERANCE: f64 = 0.1;
 /// Stream of random numbers for the pose, which the simulator does not use.
 const POSE_STREAM: u64 = u64::MAX;
 
-/// Two frames far apart, and how they are seen.
+/// Two frames a second apart and far from each other, and how they are seen.
 #[derive(Debug, Clone)]
-pub(crate) struct AcquisitionSetting {
-    pub(crate) name: String,
-    pub(crate) model: MotionModel,
-    pub(crate) points: usize,
-    pub(crate) noise: f64,
-    pub(crate) occlusion: f64,
-    pub(crate) outliers: f64,
-    pub(crate) sampling: Sampling,
+pub struct AcquisitionSetting {
+    /// What reports call it.
+    pub name: String,
+    /// Family of motions that is identified.
+    pub model: MotionModel,
+    /// Points on the whole outline.
+    pub points: usize,
+    /// Standard deviation of the noise on each coordinate, image lengths.
+    pub noise: f64,
+    /// Share of the outline that is missing at a random place in either frame, in `[0, 1)`.
+    pub occlusion: f64,
+    /// Share of the points that are wrong, in `[0, 1)`.
+    pub outliers: f64,
+    /// How the points are spread along the outline.
+    pub sampling: Sampling,
 }
 
 /// What was found of the poses in one setting.
 #[derive(Debug)]
-pub(crate) struct Acquisition {
-    pub(crate) setting: AcquisitionSetting,
-    /// For every method, in the order of the shapes.
-    pub(crate) methods: Vec<(EvaluatedMethod, Vec<Found>)>,
+pub struct Acquisition {
+    /// Where the runs were made.
+    pub setting: AcquisitionSetting,
+    /// What each method found.
+    pub methods: Vec<MethodResult<Found>>,
 }
 
-/// How often the pose was found.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
-    pub(crate) found: usize,
-    pub(crate) runs: usize,
+/// How often the second pose was found: the turn to 6 degrees and the centre to a tenth of the diameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Found {
+    /// Runs in which it was.
+    pub found: usize,
+    /// Runs in all.
+    pub runs: usize,
 }
 
 impl Found {
     /// Of several shapes together.
-    pub(crate) fn pooled(list: &[Self]) -> Self {
+    fn pooled(list: &[Self]) -> Self {
         Self { found: list.iter().map(|f| f.found).sum(), runs: list.iter().map(|f| f.runs).sum() }
     }
 
-    /// As a fraction.
-    pub(crate) fn share(self) -> f64 {
+    /// As a fraction of all runs.
+    #[must_use]
+    pub fn share(self) -> f64 {
         self.found as f64 / self.runs as f64
     }
 }
 
 impl AcquisitionSetting {
-    pub(super) fn from_args(args: &EvaluateArgs) -> Self {
-        let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
-        Self {
-            name: "acquisition".to_owned(),
-            model: args.motion.unwrap_or(MotionChoice::Rigid).model(),
-            points: args.points,
-            noise,
-            occlusion,
-            outliers,
-            sampling: args.sampling.sampling(),
-        }
-    }
-
     /// Whether it can be simulated.
-    pub(super) fn check(&self, shape: &Shape) -> Result<(), Failure> {
+    pub(super) fn check(&self, shape: &Shape) -> Result<(), ExperimentError> {
         self.sequence(AffineMotion::default()).simulator(shape, 0).map(drop)
     }
 
@@ -101,15 +98,15 @@ impl AcquisitionSetting {
 }
 
 /// All runs of one setting.
-pub(super) fn evaluate(setting: &AcquisitionSetting, effort: &Effort<'_>) -> Result<Acquisition, Failure> {
+pub(super) fn evaluate(setting: &AcquisitionSetting, effort: &Effort<'_>) -> Result<Acquisition, ExperimentError> {
     let found = effort.run_all(|index, seed| run(setting, effort.methods, &effort.shapes[index], seed))?;
     let of_shape = |runs: &Vec<Vec<bool>>, index: usize| Found {
         found: runs.iter().filter(|methods| methods[index]).count(),
         runs: runs.len(),
     };
     let methods = effort.methods.iter().enumerate().map(|(index, &method)| {
-        let shapes = found.iter().map(|runs| of_shape(runs, index)).collect();
-        (method, shapes)
+        let shapes: Vec<Found> = found.iter().map(|runs| of_shape(runs, index)).collect();
+        MethodResult { method, pooled: Found::pooled(&shapes), shapes }
     });
     Ok(Acquisition { setting: setting.clone(), methods: methods.collect() })
 }
@@ -117,10 +114,10 @@ pub(super) fn evaluate(setting: &AcquisitionSetting, effort: &Effort<'_>) -> Res
 /// One pair of frames, seen by every method.
 fn run(
     setting: &AcquisitionSetting,
-    methods: &[EvaluatedMethod],
+    methods: &[Method],
     shape: &Shape,
     seed: u64,
-) -> Result<Vec<bool>, Failure> {
+) -> Result<Vec<bool>, ExperimentError> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(POSE_STREAM);
     let turn = LARGEST_TURN * rng.random_range(-1.0..=1.0);
@@ -161,7 +158,7 @@ fn is_found(estimate: &MotionEstimate, motion: &AffineMotion, shape: &Shape) -> 
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::sim_camera::BuiltInShape;
+    use freeform_sim_camera::BuiltInShape;
 
     use super::*;
 

@@ -1,24 +1,23 @@
 //! What was found over time, as curves of a panel and as rows of a table.
 use std::ops::Range;
 
-use freeform_motion::riccati::{AffineMotion, MotionModel};
+use freeform_riccati::{AffineMotion, MotionModel};
 
 use super::curves::curve;
 use super::document::Table;
 use super::outcome::RelativeError;
 use super::sequence::Sequence;
 use super::track::Track;
-use crate::plot::{Curve, Figure, Look, Panel};
-use crate::truth::parameters_in;
+use crate::figure::{Curve, Figure, Look, Panel};
 
 /// Ends of the axis of relative errors, in percent, where the motion is constant.
-pub(crate) const ERROR_LIMITS: [f64; 2] = [1e-4, 1e3];
+pub(super) const ERROR_LIMITS: [f64; 2] = [1e-4, 1e3];
 
 /// Half the time in seconds that an error is averaged over for drawing.
 const HALF_WINDOW: f64 = 0.25;
 
 /// Some parameters of a track, each in a colour of its own, with their true values dashed.
-pub(crate) fn parameter_curves(
+pub(super) fn parameter_curves(
     model: MotionModel,
     parameters: Range<usize>,
     track: &Track,
@@ -32,28 +31,28 @@ pub(crate) fn parameter_curves(
 }
 
 /// The true value of a parameter over the whole run.
-pub(crate) fn true_values(model: MotionModel, sequence: &Sequence, index: usize) -> Vec<[f64; 2]> {
+pub(super) fn true_values(model: MotionModel, sequence: &Sequence, index: usize) -> Vec<[f64; 2]> {
     let times = sequence.frames.iter().map(|(time, _)| *time);
     times.filter_map(|time| Some([time, parameter(model, &sequence.truth.at(time), index)?])).collect()
 }
 
 /// One parameter of a track at each of its moments; `None` where there is no estimate.
-pub(crate) fn values(model: MotionModel, track: &Track, index: usize) -> Vec<Option<f64>> {
+pub(super) fn values(model: MotionModel, track: &Track, index: usize) -> Vec<Option<f64>> {
     track.moments.iter().map(|moment| parameter(model, &moment.motion?, index)).collect()
 }
 
 /// The times of all moments.
-pub(crate) fn times(track: &Track) -> Vec<f64> {
+pub(super) fn times(track: &Track) -> Vec<f64> {
     track.moments.iter().map(|moment| moment.time).collect()
 }
 
 /// One parameter of a motion; `None` where the model does not hold it.
 fn parameter(model: MotionModel, motion: &AffineMotion, index: usize) -> Option<f64> {
-    parameters_in(model, motion).map(|values| values[index])
+    model.parameters_of_motion(motion).map(|values| values[index])
 }
 
 /// The values that there are, in runs that are broken where there is none.
-pub(crate) fn stretches(times: &[f64], values: &[Option<f64>]) -> Vec<Vec<[f64; 2]>> {
+pub(super) fn stretches(times: &[f64], values: &[Option<f64>]) -> Vec<Vec<[f64; 2]>> {
     let points: Vec<_> = times.iter().zip(values).map(|(time, value)| value.map(|value| [*time, value])).collect();
     let runs = points.split(Option::is_none).filter(|run| !run.is_empty());
     runs.map(|run| run.iter().copied().flatten().collect()).collect()
@@ -79,7 +78,7 @@ impl Errors {
 }
 
 /// Relative errors of rates and velocity against time, on logarithmic axes.
-pub(crate) fn error_figure(
+pub(super) fn error_figure(
     what: &str,
     labels: [&str; 2],
     limits: [f64; 2],
@@ -112,7 +111,7 @@ pub(crate) fn error_figure(
 }
 
 /// What the captions of errors say of how they are drawn.
-pub(crate) fn smoothing_in_words([low, high]: [f64; 2]) -> String {
+pub(super) fn smoothing_in_words([low, high]: [f64; 2]) -> String {
     format!(
         "Each point is the root mean square over {} s about it, so that an error that passes through zero shows no dip; \
          a curve is broken where the method gives no estimate, and cut off beyond {high} % and below {low} %.",
@@ -121,7 +120,7 @@ pub(crate) fn smoothing_in_words([low, high]: [f64; 2]) -> String {
 }
 
 /// What a method looks like, the same in all figures.
-pub(crate) fn look_of(method: &str) -> Look {
+pub(super) fn look_of(method: &str) -> Look {
     let looks = [
         ("36 numbers", Look::Series(0)),
         ("structured law, one pair", Look::Series(1)),
@@ -154,7 +153,7 @@ fn smoothed(times: &[f64], values: &[Option<f64>]) -> Vec<Option<f64>> {
 }
 
 /// Every estimate, as it is drawn; empty where there is none.
-pub(crate) fn estimates_data<'a>(
+pub(super) fn estimates_data<'a>(
     model: MotionModel,
     tracks: impl IntoIterator<Item = &'a (&'a str, Track)>,
     sequence: &Sequence,
@@ -166,9 +165,9 @@ pub(crate) fn estimates_data<'a>(
     let mut data = Table { heads, ..Table::default() };
     for (name, track) in tracks {
         for moment in &track.moments {
-            let found = moment.motion.and_then(|motion| parameters_in(model, &motion));
+            let found = moment.motion.and_then(|motion| model.parameters_of_motion(&motion));
             let found = found.map_or_else(|| vec![None; names.len()], |values| values.into_iter().map(Some).collect());
-            let truth = parameters_in(model, &sequence.truth.at(moment.time)).unwrap_or_default();
+            let truth = model.parameters_of_motion(&sequence.truth.at(moment.time)).unwrap_or_default();
             let numbers: Vec<_> =
                 std::iter::once(Some(moment.time)).chain(found).chain(truth.into_iter().map(Some)).collect();
             data.push_known(&[name], &numbers);
@@ -178,7 +177,7 @@ pub(crate) fn estimates_data<'a>(
 }
 
 /// Every error, as it is and as it is drawn; empty where there is no estimate.
-pub(crate) fn errors_data(tracks: &[(&str, Track)], sequence: &Sequence) -> Table {
+pub(super) fn errors_data(tracks: &[(&str, Track)], sequence: &Sequence) -> Table {
     let mut data = Table::of_data(&[
         "method",
         "time",

@@ -1,37 +1,37 @@
 //! How a motion is identified, and from which initial values.
+use freeform_curve_fit::{FitSettings, Method as FitMethod};
+use freeform_identify::{AdaptiveLaw, AdaptiveSettings, PairChoice};
 use freeform_motion::PipelineSettings;
-use freeform_motion::curve_fit::{FitSettings, Method as FitMethod};
-use freeform_motion::identify::{AdaptiveLaw, AdaptiveSettings, PairChoice};
-use freeform_motion::outline_filter::FilterSettings;
-use freeform_motion::riccati::MotionModel;
+use freeform_outline_filter::FilterSettings;
+use freeform_riccati::MotionModel;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 /// Random initial values are drawn evenly between these and their negatives: rad/s, and space lengths per second.
-pub(crate) const START_RANGE: [f64; 3] = [3.0, 5.0, 5.0];
+pub(super) const START_RANGE: [f64; 3] = [3.0, 5.0, 5.0];
 
 /// How a motion is identified.
 #[derive(Debug, Clone)]
-pub(crate) enum Method {
+pub(super) enum Method {
     Adaptive(Box<PipelineSettings>),
     Filter(FilterSettings),
 }
 
 impl Method {
-    pub(crate) fn law(model: MotionModel, law: AdaptiveLaw, pairs: PairChoice, start: &[f64]) -> Self {
+    pub(super) fn law(model: MotionModel, law: AdaptiveLaw, pairs: PairChoice, start: &[f64]) -> Self {
         let identify =
             AdaptiveSettings { model, law, pairs, initial_values: start.to_vec(), ..AdaptiveSettings::default() };
         Self::Adaptive(Box::new(PipelineSettings { identify, ..PipelineSettings::default() }))
     }
 
     /// The motion filter as it is by default.
-    pub(crate) fn filter(model: MotionModel) -> Self {
+    pub(super) fn filter(model: MotionModel) -> Self {
         Self::Filter(FilterSettings { model, ..FilterSettings::default() })
     }
 }
 
 /// A fit in words.
-pub(crate) fn fit_in_words(settings: &FitSettings) -> String {
+pub(super) fn fit_in_words(settings: &FitSettings) -> String {
     let method = match settings.method {
         FitMethod::ThreeLevel => "3L".to_owned(),
         FitMethod::GloballyStabilised { ridge_weight } => format!("GS3L with ridge {ridge_weight}"),
@@ -44,14 +44,14 @@ pub(crate) fn fit_in_words(settings: &FitSettings) -> String {
 }
 
 /// Initial values number `index` of a rigid motion, in space.
-pub(crate) fn random_start(seed: u64, index: u64) -> Vec<f64> {
+pub(super) fn random_start(seed: u64, index: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index);
     START_RANGE.iter().map(|limit| rng.random_range(-limit..=*limit)).collect()
 }
 
 /// How initial values are drawn.
-pub(crate) fn start_range_in_words() -> String {
+pub(super) fn start_range_in_words() -> String {
     let [omega, b1, b2] = START_RANGE;
     format!("evenly, omega within {omega} rad/s, b1 within {b1} and b2 within {b2} lengths/s in space")
 }

@@ -1,29 +1,30 @@
 //! Figs. 4, 6 and 8: estimated parameters against time, and the same experiments by other laws.
-use freeform_motion::identify::{AdaptiveLaw, PairChoice};
-use freeform_motion::riccati::MotionModel;
-use freeform_motion::sim_camera::PaperExperiment;
+use freeform_identify::{AdaptiveLaw, PairChoice};
+use freeform_riccati::MotionModel;
+use freeform_sim_camera::PaperExperiment;
 
+use super::Run;
 use super::document::{Drawing, Section, Table};
 use super::method::{Method, random_start};
 use super::outcome::{Outcome, outcomes_in_words, rules};
+use super::paper_figure::PaperFigure;
 use super::sequence::{FPS, POINTS, Sequence};
 use super::traces::{ERROR_LIMITS, error_figure, errors_data, estimates_data, parameter_curves, smoothing_in_words};
 use super::track::Track;
-use super::{PaperFigure, Run};
-use crate::failure::Failure;
-use crate::plot::{Figure, Panel};
+use crate::ExperimentError;
+use crate::figure::{Figure, Panel};
 
 /// Heads of the table of final errors.
-pub(crate) const FINDINGS: [&str; 8] =
+pub(super) const FINDINGS: [&str; 8] =
     ["experiment", "method", "omega", "b1", "b2", "omega error %", "b error %", "settled s"];
 
 /// Share of the run after which a motion that has not settled is not identified quickly.
 const QUICK_SHARE: f64 = 0.5;
 
 /// Runs of one experiment: the first of which only chooses the pair.
-pub(crate) const RUNS: u64 = 7;
+pub(super) const RUNS: u64 = 7;
 
-pub(crate) fn section(run: &Run, figures: &[PaperFigure]) -> Result<Section, Failure> {
+pub(super) fn section(run: &Run, figures: &[PaperFigure]) -> Result<Section, ExperimentError> {
     let heading = figures.first().map_or("", |figure| figure.parameters_heading).to_owned();
     let mut section = Section { heading, ..Section::default() };
     for figure in figures {
@@ -32,7 +33,7 @@ pub(crate) fn section(run: &Run, figures: &[PaperFigure]) -> Result<Section, Fai
     Ok(section)
 }
 
-fn add_experiment(run: &Run, figure: &PaperFigure, section: &mut Section) -> Result<(), Failure> {
+fn add_experiment(run: &Run, figure: &PaperFigure, section: &mut Section) -> Result<(), ExperimentError> {
     let PaperFigure { parameters: name, experiment, stream, .. } = figure;
     let sequence = Sequence::of_paper(experiment, run.seconds, run.seed)?;
     let start = random_start(run.seed, *stream);
@@ -133,7 +134,7 @@ fn finding(experiment: &PaperExperiment, method: &str, track: &Track, sequence: 
 }
 
 /// What the table of final errors says.
-pub(crate) fn findings_table(rows: Vec<Vec<String>>) -> Table {
+pub(super) fn findings_table(rows: Vec<Vec<String>>) -> Table {
     Table {
         name: "final-errors".to_owned(),
         title: "Final errors".to_owned(),

@@ -1,19 +1,19 @@
 //! Figs. 3, 5 and 7: the objects along their motion.
 use std::fmt::Write as _;
 
+use freeform_curve_fit::{FitSettings, Fitter, Rectangle};
 use freeform_motion::PipelineSettings;
-use freeform_motion::curve_fit::{FitSettings, Fitter};
-use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+use freeform_sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 use nalgebra::Point2;
 
+use super::Run;
 use super::curves::{FAR_OVALS, closed_quartic, curve, curve_near, data_of, image_panel, points_of, xy};
 use super::document::{Drawing, Section};
 use super::method::fit_in_words;
+use super::paper_figure::PaperFigure;
 use super::sequence::{POINTS, paper_settings};
-use super::{PaperFigure, Run};
-use crate::failure::Failure;
-use crate::level_set::Area;
-use crate::plot::{Figure, Look};
+use crate::ExperimentError;
+use crate::figure::{Figure, Look};
 
 /// Moments shown of one turn.
 const MOMENTS: usize = 6;
@@ -21,15 +21,15 @@ const MOMENTS: usize = 6;
 /// Points of the path of the object's centre.
 const PATH_POINTS: usize = 120;
 
-pub(crate) fn section(run: &Run, figures: &[PaperFigure]) -> Result<Section, Failure> {
+pub(super) fn section(run: &Run, figures: &[PaperFigure]) -> Result<Section, ExperimentError> {
     let drawings = figures.iter().map(|figure| drawing(run, figure)).collect::<Result<Vec<_>, _>>()?;
     let heading = figures.first().map_or("", |figure| figure.poses_heading);
     Ok(Section { heading: heading.to_owned(), drawings, ..Section::default() })
 }
 
-fn drawing(run: &Run, figure: &PaperFigure) -> Result<Drawing, Failure> {
+fn drawing(run: &Run, figure: &PaperFigure) -> Result<Drawing, ExperimentError> {
     let PaperFigure { poses, experiment, .. } = figure;
-    let scene = experiment.scene(PaperExperiment::SCALE).map_err(Failure::unusable)?;
+    let scene = experiment.scene(PaperExperiment::SCALE)?;
     let turn = std::f64::consts::TAU / experiment.motion.omega.abs();
     let settings = Settings {
         fps: MOMENTS as f64 / turn,
@@ -40,17 +40,18 @@ fn drawing(run: &Run, figure: &PaperFigure) -> Result<Drawing, Failure> {
     let path: Vec<_> = (0..=PATH_POINTS).map(|k| xy(&centre(k))).collect();
     let start: Vec<_> = scene.true_outline(0.0, POINTS);
     let start_run = start.iter().chain(start.first()).map(xy).collect::<Vec<_>>();
-    let frames: Vec<_> = Simulator::new(scene, settings).map_err(Failure::unusable)?.frames().collect();
+    let frames: Vec<_> = Simulator::new(scene, settings)?.frames().collect();
     let all = frames.iter().flat_map(|frame| frame.outline.points());
-    let whole = Area::around(all.chain(&start)).unwrap_or(Area { low: Point2::origin(), high: Point2::origin() });
+    let origin = Rectangle { low: Point2::origin(), high: Point2::origin() };
+    let whole = Rectangle::around(all.chain(&start)).unwrap_or(origin);
     let view = whole.widened(0.05).square();
 
     // The curves that the motion is identified from.
-    let mut fitter = Fitter::new(PipelineSettings::default().fit).map_err(Failure::unusable)?;
+    let mut fitter = Fitter::new(PipelineSettings::default().fit)?;
     let (mut panels, mut with_far_ovals) = (Vec::new(), 0);
     for frame in &frames {
         let fit = closed_quartic(&frame.outline)?;
-        let rounder = fitter.fit(&frame.outline).map_err(Failure::no_result)?;
+        let rounder = fitter.fit(&frame.outline)?;
         let drawn = curve_near(&fit, &frame.outline);
         with_far_ovals += usize::from(drawn.has_far_ovals);
         let curves = vec![

@@ -1,8 +1,8 @@
 //! Fig. 2: a boomerang, its line factors and its related points.
-use freeform_motion::curve_fit::{Fit, FitSettings, ImplicitPolynomial, Outline};
-use freeform_motion::decompose::{Decomposition, Line, RelatedPoint, RelatedPoints};
-use freeform_motion::riccati::AffineMotion;
-use freeform_motion::sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings};
+use freeform_curve_fit::{Fit, FitSettings, ImplicitPolynomial, Outline};
+use freeform_decompose::{Decomposition, Line, RelatedPoint, RelatedPoints};
+use freeform_riccati::AffineMotion;
+use freeform_sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings};
 use nalgebra::{Point2, Rotation2, Vector2};
 
 use super::Run;
@@ -10,10 +10,9 @@ use super::curves::{closed_quartic, curve, curve_near, data_of, image_panel, poi
 use super::document::{Drawing, Section, Table};
 use super::method::fit_in_words;
 use super::sequence::{Sequence, paper_settings};
-use crate::failure::Failure;
-use crate::level_set::Area;
-use crate::output::significant;
-use crate::plot::{Figure, Look};
+use crate::ExperimentError;
+use crate::figure::{Figure, Look};
+use freeform_motion::significant;
 
 /// The boomerang is turned by this angle in radians, so that its axis of symmetry is not one of the axes.
 const TURN: f64 = 0.4;
@@ -33,24 +32,24 @@ struct Boomerang {
 }
 
 impl Boomerang {
-    fn seen(seed: u64) -> Result<Self, Failure> {
-        let camera = Camera::new(PaperExperiment::SCALE).map_err(Failure::unusable)?;
+    fn seen(seed: u64) -> Result<Self, ExperimentError> {
+        let camera = Camera::new(PaperExperiment::SCALE)?;
         let settings = Settings { length: SequenceLength::Frames(1), ..paper_settings(1.0, seed) };
         let scene = Scene::new(BuiltInShape::Boomerang, AffineMotion::default(), camera)
             .with_initial_pose(nalgebra::convert(Rotation2::new(TURN)));
         let frame = Sequence::simulate(scene, settings)?.frames.pop();
-        let (_, outline) = frame.ok_or_else(|| Failure::no_result("the boomerang has no outline"))?;
+        let (_, outline) = frame.ok_or_else(|| ExperimentError::NoOutline { object: "boomerang" })?;
         let fit = closed_quartic(&outline)?;
         let image_from_working = fit.normalisation().image_from_working();
-        let working = Decomposition::of(fit.working()).map_err(Failure::no_result)?;
-        let decomposition = working.moved(&image_from_working).map_err(Failure::no_result)?;
+        let working = Decomposition::of(fit.working())?;
+        let decomposition = working.moved(&image_from_working)?;
         let factor = working.coefficient(4) / decomposition.coefficient(4);
         let related = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
         Ok(Self { outline, fit, decomposition, related })
     }
 }
 
-pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
+pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
     let Boomerang { outline, fit, decomposition, related } = Boomerang::seen(run.seed)?;
     let mut curves = vec![
         curve("outline", Look::Dots, vec![points_of(&outline)]),
@@ -62,10 +61,10 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
         curves.push(curve(&pair.name(), Look::Dashed(2 + index), drawn.iter().map(real_part).collect()));
         marked.extend(pair.related(&related).map(|d| d.point));
     }
-    let around = Area::around(outline.points()).unwrap_or(Area { low: Point2::origin(), high: Point2::origin() });
+    let around = outline.bounding_box();
     let near = around.widened(VIEW);
     marked.retain(|d| near.contains(d));
-    let view = Area::around(outline.points().chain(&marked)).unwrap_or(around).widened(0.12).square();
+    let view = around.extended(&marked).widened(0.12).square();
     curves.push(curve("related points", Look::Crosses, vec![marked.iter().map(xy).collect()]));
     run.advance();
     let panels = vec![image_panel("A boomerang, its quartic and its line factors".to_owned(), &view, curves)];

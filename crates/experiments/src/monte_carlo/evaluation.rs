@@ -1,17 +1,15 @@
 use std::time::Instant;
 
-use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::sim_camera::Shape;
+use freeform_estimate::MotionEstimate;
+use freeform_sim_camera::Shape;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::estimator::Estimator;
+use super::estimator::{Estimator, Method};
 use super::setting::Setting;
 use super::statistics::{Cell, Outcome, ParameterError, Statistics};
-use crate::args::EvaluatedMethod;
-use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::ExperimentError;
 
 /// Where an estimate takes the outline further astray than this share of its root mean square radius, the run is lost.
 const ASTRAY: f64 = 0.25;
@@ -21,10 +19,11 @@ const PLACES: usize = 64;
 /// How much is to be done for one setting.
 pub(super) struct Effort<'a> {
     pub(super) shapes: &'a [Shape],
-    pub(super) methods: &'a [EvaluatedMethod],
+    pub(super) methods: &'a [Method],
     pub(super) runs: usize,
     pub(super) seed: u64,
-    pub(super) progress: &'a Progress,
+    /// Called after every run.
+    pub(super) progress: &'a (dyn Fn() + Sync),
 }
 
 impl Effort<'_> {
@@ -32,39 +31,50 @@ impl Effort<'_> {
     /// whatever the number of threads.
     pub(super) fn run_all<T: Send>(
         &self,
-        run: impl Fn(usize, u64) -> Result<T, Failure> + Sync,
-    ) -> Result<Vec<Vec<T>>, Failure> {
+        run: impl Fn(usize, u64) -> Result<T, ExperimentError> + Sync,
+    ) -> Result<Vec<Vec<T>>, ExperimentError> {
         let jobs = self.shapes.len() * self.runs;
         let results = (0..jobs).into_par_iter().map(|job| {
             let (shape, number) = (job / self.runs, job % self.runs);
             let result = run(shape, seed_of_run(self.seed, shape, number));
-            self.progress.advance();
+            (self.progress)();
             result
         });
-        let mut results = results.collect::<Result<Vec<T>, Failure>>()?.into_iter();
+        let mut results = results.collect::<Result<Vec<T>, ExperimentError>>()?.into_iter();
         Ok(self.shapes.iter().map(|_| results.by_ref().take(self.runs).collect()).collect())
     }
 }
 
 /// What was found in one setting.
 #[derive(Debug)]
-pub(crate) struct Evaluation {
-    pub(crate) setting: Setting,
-    pub(crate) methods: Vec<MethodResult>,
+pub struct Evaluation {
+    /// Where the runs were made.
+    pub setting: Setting,
+    /// What each method found.
+    pub methods: Vec<MethodResult<Statistics>>,
 }
 
 /// What one method found.
 #[derive(Debug)]
-pub(crate) struct MethodResult {
-    pub(crate) method: EvaluatedMethod,
-    /// In the order of the shapes.
-    pub(crate) shapes: Vec<Statistics>,
+pub struct MethodResult<T> {
+    /// The method.
+    pub method: Method,
+    /// For each shape, in the order of the study.
+    pub shapes: Vec<T>,
     /// Over all shapes.
-    pub(crate) pooled: Statistics,
+    pub pooled: T,
+}
+
+impl<T> MethodResult<T> {
+    /// What was found of each shape under its name, then of all together under `pooled`, where there are several.
+    pub fn by_shape<'a>(&'a self, names: &'a [String], pooled: &'a str) -> impl Iterator<Item = (&'a str, &'a T)> {
+        let all = (names.len() > 1).then_some((pooled, &self.pooled));
+        names.iter().map(String::as_str).zip(&self.shapes).chain(all)
+    }
 }
 
 /// All runs of one setting.
-pub(super) fn evaluate(setting: &Setting, effort: &Effort<'_>) -> Result<Evaluation, Failure> {
+pub(super) fn evaluate(setting: &Setting, effort: &Effort<'_>) -> Result<Evaluation, ExperimentError> {
     let bounds: Vec<Vec<Option<f64>>> =
         effort.shapes.par_iter().map(|shape| setting.bound(shape)).collect::<Result<_, _>>()?;
     let outcomes = effort.run_all(|index, seed| {
@@ -87,11 +97,11 @@ pub(super) fn evaluate(setting: &Setting, effort: &Effort<'_>) -> Result<Evaluat
 /// One sequence, seen by every method. Where a parameter cannot be observed no estimate is astray: nothing says where it should go.
 fn run(
     setting: &Setting,
-    methods: &[EvaluatedMethod],
+    methods: &[Method],
     shape: &Shape,
     observable: bool,
     seed: u64,
-) -> Result<Vec<Outcome>, Failure> {
+) -> Result<Vec<Outcome>, ExperimentError> {
     let simulator = setting.simulator(shape, seed)?;
     let started: Vec<Estimator> =
         methods.iter().map(|method| Estimator::new(*method, setting.model)).collect::<Result<_, _>>()?;
