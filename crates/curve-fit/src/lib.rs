@@ -34,6 +34,7 @@ mod error;
 mod fit;
 mod fitter;
 mod interior_point;
+pub mod isoline;
 mod leading_form;
 mod least_squares;
 mod level_set_moments;
@@ -44,9 +45,11 @@ mod normalisation;
 mod normals;
 mod outline;
 mod polynomial;
+mod rectangle;
 mod residuals;
 mod ridge;
 mod settings;
+mod stray_parts;
 mod vectors;
 mod windows;
 
@@ -62,9 +65,11 @@ pub use normalisation::Normalisation;
 pub use normals::{NormalRegression, outward_normals};
 pub use outline::{ClosedOutline, OpenArc, OpenOutline, Outline, Piece};
 pub use polynomial::ImplicitPolynomial;
+pub use rectangle::Rectangle;
 pub use residuals::Residuals;
 pub use ridge::rotation_invariant_ridge;
 pub use settings::{FitSettings, Method};
+pub use stray_parts::stray_parts;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
