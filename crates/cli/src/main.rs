@@ -9,7 +9,6 @@ mod identifier;
 mod input;
 mod interrupt;
 mod left_out;
-mod level_set;
 mod meaning_of_b;
 mod output;
 mod overlay;

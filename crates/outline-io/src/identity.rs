@@ -196,10 +196,8 @@ impl Identities {
         let unseen: Vec<Point2<f64>> = self.known.iter().filter(apart).map(|known| known.expected(frame)).collect();
         let mut touching = None;
         traced.retain(|traced| {
-            let points = || traced.outline.points();
-            let low = points().fold(Point2::from([f64::INFINITY; 2]), |low, p| low.inf(p));
-            let high = points().fold(Point2::from([f64::NEG_INFINITY; 2]), |high, p| high.sup(p));
-            let count = unseen.iter().filter(|place| **place >= low && **place <= high).count();
+            let around = traced.outline.bounding_box();
+            let count = unseen.iter().filter(|place| around.contains(place)).count();
             touching = touching.or((count > 1).then_some(count));
             count < 2
         });

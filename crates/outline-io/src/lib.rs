@@ -35,7 +35,6 @@ mod field;
 mod frame;
 mod gif_interval;
 mod identity;
-mod isoline;
 mod jpeg_end;
 mod morphology;
 mod natural_order;

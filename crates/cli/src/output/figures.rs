@@ -1,4 +1,4 @@
-use freeform_motion::curve_fit::Outline;
+use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::ParameterEstimate;
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
@@ -6,7 +6,6 @@ use nalgebra::Point2;
 use super::number::short;
 use crate::commands::FittedOutline;
 use crate::history::History;
-use crate::level_set::{Area, curve_of, stray};
 use crate::plot::{Curve, Look, Panel, stacked_svg};
 use crate::tracking::Estimate;
 use crate::truth::parameters_in;
@@ -30,14 +29,14 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
     let xy = |p: &Point2<f64>| [p.x, p.y];
     let (mut points, mut curves, mut beside, mut related) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut outside = 0;
-    let whole = Area::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
+    let whole = Rectangle::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
     let view = whole.map(|area| area.widened(SURROUNDINGS).square());
     for (fitted, outline) in drawn {
         points.push(outline.points().map(xy).collect());
         let Some(area) = view else { continue };
         // Beyond what is seen, so that a curve that leaves it goes on to the frame.
-        let traced = curve_of(&fitted.fit, &area.widened(SURROUNDINGS));
-        for (run, stray) in traced.iter().zip(stray(&traced, outline)) {
+        let traced = fitted.fit.curve_within(&area.widened(SURROUNDINGS));
+        for (run, stray) in traced.iter().zip(stray_parts(&traced, outline)) {
             let runs = if stray { &mut beside } else { &mut curves };
             runs.push(run.iter().map(xy).collect());
         }

@@ -1,10 +1,9 @@
 //! Outlines, their quartics and paths as curves of a panel.
-use freeform_motion::curve_fit::{Fit, FitSettings, Fitter, Outline};
+use freeform_motion::curve_fit::{Fit, FitSettings, Fitter, Outline, Rectangle};
 use nalgebra::Point2;
 
 use super::document::Table;
 use crate::failure::Failure;
-use crate::level_set::{Area, curve_of};
 use crate::plot::{Curve, Look, Panel};
 
 /// What is looked through for a curve around its points, as a share of their extent.
@@ -28,13 +27,11 @@ pub(crate) struct DrawnCurve {
 
 /// The ovals of a fit that the points lie along.
 pub(crate) fn curve_near(fit: &Fit, outline: &Outline) -> DrawnCurve {
-    let Some(area) = Area::around(outline.points()) else {
-        return DrawnCurve { runs: Vec::new(), has_far_ovals: false };
-    };
-    let near = NEAR * (area.high - area.low).max();
+    let area = outline.bounding_box();
+    let near = NEAR * area.size().max();
     let is_near = |p: &Point2<f64>| outline.points().any(|q| (p - q).norm() < near);
     let (near, far): (Vec<_>, Vec<_>) =
-        curve_of(fit, &area.widened(SURROUNDINGS)).into_iter().partition(|run| run.iter().any(is_near));
+        fit.curve_within(&area.widened(SURROUNDINGS)).into_iter().partition(|run| run.iter().any(is_near));
     DrawnCurve { runs: near.iter().map(|run| run.iter().map(xy).collect()).collect(), has_far_ovals: !far.is_empty() }
 }
 
@@ -56,7 +53,7 @@ pub(crate) fn curve(name: &str, look: Look, runs: Vec<Vec<[f64; 2]>>) -> Curve {
 }
 
 /// A panel of the image plane.
-pub(crate) fn image_panel(title: String, view: &Area, curves: Vec<Curve>) -> Panel {
+pub(crate) fn image_panel(title: String, view: &Rectangle, curves: Vec<Curve>) -> Panel {
     Panel {
         title,
         x_label: "x (image lengths)".to_owned(),

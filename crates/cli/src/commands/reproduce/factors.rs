@@ -11,7 +11,6 @@ use super::document::{Drawing, Section, Table};
 use super::method::fit_in_words;
 use super::sequence::{Sequence, paper_settings};
 use crate::failure::Failure;
-use crate::level_set::Area;
 use crate::output::significant;
 use crate::plot::{Figure, Look};
 
@@ -62,10 +61,10 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
         curves.push(curve(&pair.name(), Look::Dashed(2 + index), drawn.iter().map(real_part).collect()));
         marked.extend(pair.related(&related).map(|d| d.point));
     }
-    let around = Area::around(outline.points()).unwrap_or(Area { low: Point2::origin(), high: Point2::origin() });
+    let around = outline.bounding_box();
     let near = around.widened(VIEW);
     marked.retain(|d| near.contains(d));
-    let view = Area::around(outline.points().chain(&marked)).unwrap_or(around).widened(0.12).square();
+    let view = around.extended(&marked).widened(0.12).square();
     curves.push(curve("related points", Look::Crosses, vec![marked.iter().map(xy).collect()]));
     run.advance();
     let panels = vec![image_panel("A boomerang, its quartic and its line factors".to_owned(), &view, curves)];

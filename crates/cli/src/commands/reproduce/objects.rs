@@ -1,8 +1,8 @@
 //! Fig. 1: the ten objects and their quartics.
-use freeform_motion::curve_fit::FitSettings;
+use freeform_motion::curve_fit::{FitSettings, Rectangle};
 use freeform_motion::riccati::AffineMotion;
 use freeform_motion::sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings};
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 
 use super::Run;
 use super::curves::{FAR_OVALS, closed_quartic, curve, curve_near, data_of, image_panel, points_of};
@@ -10,7 +10,6 @@ use super::document::{Drawing, Section, Table};
 use super::method::fit_in_words;
 use super::sequence::{POINTS, Sequence, paper_settings};
 use crate::failure::Failure;
-use crate::level_set::Area;
 use crate::output::significant;
 use crate::plot::{Figure, Look, Panel};
 
@@ -43,10 +42,9 @@ pub(crate) fn section(run: &Run) -> Result<Section, Failure> {
             with_far_ovals.push(title(shape).to_lowercase());
         }
         // All objects to the same scale.
-        let around = Area::around(outline.points()).unwrap_or(Area { low: Point2::origin(), high: Point2::origin() });
-        let middle = nalgebra::center(&around.low, &around.high);
+        let middle = outline.bounding_box().centre();
         let half = Vector2::repeat(HALF_VIEW);
-        let view = Area { low: middle - half, high: middle + half };
+        let view = Rectangle { low: middle - half, high: middle + half };
         let curves =
             vec![curve("points", Look::FineDots, vec![points_of(outline)]), curve("quartic", Look::Line, drawn.runs)];
         panels.push(Panel { is_bare: true, ..image_panel(title(shape), &view, curves) });

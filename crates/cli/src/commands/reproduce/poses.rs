@@ -2,7 +2,7 @@
 use std::fmt::Write as _;
 
 use freeform_motion::PipelineSettings;
-use freeform_motion::curve_fit::{FitSettings, Fitter};
+use freeform_motion::curve_fit::{FitSettings, Fitter, Rectangle};
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 use nalgebra::Point2;
 
@@ -12,7 +12,6 @@ use super::method::fit_in_words;
 use super::sequence::{POINTS, paper_settings};
 use super::{PaperFigure, Run};
 use crate::failure::Failure;
-use crate::level_set::Area;
 use crate::plot::{Figure, Look};
 
 /// Moments shown of one turn.
@@ -42,7 +41,8 @@ fn drawing(run: &Run, figure: &PaperFigure) -> Result<Drawing, Failure> {
     let start_run = start.iter().chain(start.first()).map(xy).collect::<Vec<_>>();
     let frames: Vec<_> = Simulator::new(scene, settings).map_err(Failure::unusable)?.frames().collect();
     let all = frames.iter().flat_map(|frame| frame.outline.points());
-    let whole = Area::around(all.chain(&start)).unwrap_or(Area { low: Point2::origin(), high: Point2::origin() });
+    let origin = Rectangle { low: Point2::origin(), high: Point2::origin() };
+    let whole = Rectangle::around(all.chain(&start)).unwrap_or(origin);
     let view = whole.widened(0.05).square();
 
     // The curves that the motion is identified from.
