@@ -20,6 +20,7 @@
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`read_shape`] reads one closed outline from either.
 mod affine_moment_invariants;
+mod assignment;
 mod background;
 mod basins;
 mod channel;
