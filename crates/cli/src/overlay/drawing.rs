@@ -1,7 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use freeform_motion::curve_fit::{Fit, Outline, Rectangle};
-use freeform_motion::outline_io::PixelGrid;
+use freeform_motion::curve_fit::{Fit, Outline, PixelGrid, Rectangle};
 use image::Rgb;
 use nalgebra::{Matrix3, Point2};
 
