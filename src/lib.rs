@@ -25,8 +25,10 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod number;
 mod pipeline;
 mod settling;
+pub mod tracker;
 mod warning;
 
 pub use freeform_curve_fit as curve_fit;
@@ -37,7 +39,10 @@ pub use freeform_outline_filter as outline_filter;
 pub use freeform_outline_io as outline_io;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
+pub use number::significant;
 pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};
+pub use tracker::{Tracker, TrackerSettings};
+pub use warning::Warning;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
