@@ -158,7 +158,9 @@ mod tests {
         };
         let mut order = ContourOrder::default();
         assert_eq!(order.look_at(&frame(0, &in_order)), None);
-        assert!(order.look_at(&frame(7, &shuffled)).is_some_and(|warning| warning.to_string().starts_with("frame 7: ")));
+        assert!(
+            order.look_at(&frame(7, &shuffled)).is_some_and(|warning| warning.to_string().starts_with("frame 7: "))
+        );
         assert_eq!(order.look_at(&frame(8, &shuffled)), None);
         assert!(order.warning().is_some_and(|warning| warning.to_string().starts_with("frame 7: ")));
 

@@ -107,6 +107,11 @@ impl Tracker {
         self.objects.list.iter().map(|object| object.result(&self.settings)).collect()
     }
 
+    /// Names of the objects so far, in the order in which they first appeared.
+    pub fn objects(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.objects.list.iter().map(TrackedObject::name)
+    }
+
     /// Whether the motion of any object was seen to change.
     #[must_use]
     pub fn motion_changed(&self) -> bool {

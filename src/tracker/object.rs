@@ -47,6 +47,11 @@ impl TrackedObject {
         }
     }
 
+    /// Its name.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Takes its next outline.
     pub(super) fn push(&mut self, frame: &OutlineFrame) -> Observation {
         let step = self.identifier.push(frame.time, &frame.outline);

@@ -59,7 +59,8 @@ pub struct ReadAhead {
 
 impl ReadAhead {
     /// Every frame is handed on before the next one is read, on one thread.
-    pub const FRAME_BY_FRAME: Self = Self { threads: NonZero::<usize>::MIN, outlines: NonZero::<usize>::MIN, points: 1 };
+    pub const FRAME_BY_FRAME: Self =
+        Self { threads: NonZero::<usize>::MIN, outlines: NonZero::<usize>::MIN, points: 1 };
 }
 
 impl Default for ReadAhead {

@@ -13,7 +13,6 @@ mod track;
 use std::path::{Path, PathBuf};
 
 pub(crate) use evaluate::{Acquisition, Evaluation, Found, MethodResult, Report, Setting, Statistics};
-pub(crate) use fit::{FittedOutline, Parts};
 pub(crate) use reproduce::{Drawing, Section, Table};
 
 use crate::args::{Cli, Command, takes_next};
