@@ -8,7 +8,7 @@ use super::{
     rejection::RejectionCause,
     settings::{MethodSettings, TrackerError},
 };
-use crate::{Pipeline, Warning, warning::MANY_REJECTED};
+use crate::{Pipeline, PipelineSettings, Warning, warning::MANY_REJECTED};
 
 /// What is known of one object.
 #[derive(Debug, Clone)]
@@ -44,7 +44,9 @@ impl Identifier {
     /// One that has seen nothing yet.
     pub(super) fn new(settings: &MethodSettings) -> Result<Self, TrackerError> {
         Ok(match settings {
-            MethodSettings::Adaptive(settings) => Self::Adaptive(Box::new(Pipeline::new(settings.clone())?)),
+            MethodSettings::Adaptive(settings) => {
+                Self::Adaptive(Box::new(Pipeline::new(PipelineSettings::clone(settings))?))
+            }
             MethodSettings::Filter(settings) => {
                 Self::Filter(Box::new(FilteredObject { filter: MotionFilter::new(*settings)?, last_known: None }))
             }

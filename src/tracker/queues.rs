@@ -86,7 +86,13 @@ impl Queues {
     /// Adds a thread that follows objects until the queues are dropped.
     pub(super) fn add_thread<'scope>(&self, scope: &'scope Scope<'scope, '_>) {
         let (jobs, done) = (self.jobs_to_take.clone(), self.done_by_others.clone());
-        scope.spawn(move || jobs.into_iter().map(Job::run).try_for_each(|result| done.send(result)));
+        scope.spawn(move || {
+            for job in jobs {
+                if done.send(job.run()).is_err() {
+                    break;
+                }
+            }
+        });
     }
 
     /// Takes the next frame of the object at a position.
@@ -176,5 +182,33 @@ fn follow(object: &mut TrackedObject, frame: NextFrame) -> FollowedFrame {
     match frame {
         NextFrame::Outline(frame) => (object.push(&frame), Some(frame)),
         NextFrame::NoOutline { frame, reason } => (object.reject(frame, reason), None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{panic, thread};
+
+    use super::*;
+    use crate::{Tracker, TrackerSettings};
+
+    #[test]
+    fn nobody_waits_for_a_thread_that_broke_off() {
+        let tracker = Tracker::new(TrackerSettings::default()).expect("default settings");
+        let broken = panic::catch_unwind(|| {
+            thread::scope(|scope| {
+                let mut queues = Queues::new(vec![tracker.new_object("0")]);
+                queues.push(0, NextFrame::NoOutline { frame: 0, reason: "torn".to_owned() });
+                // In place of a thread that takes the object and breaks off.
+                queues.send(0);
+                queues.jobs_to_take.recv().expect("a job");
+                queues.done_by_others.send(Err(Box::new("on purpose"))).expect("the queues are there");
+                // Threads that are free end with the queues.
+                queues.add_thread(scope);
+                queues.help();
+            });
+        });
+        let payload = broken.expect_err("the panic goes on in the reading thread");
+        assert_eq!(payload.downcast_ref(), Some(&"on purpose"));
     }
 }

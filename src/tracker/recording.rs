@@ -39,6 +39,7 @@ pub enum Recorded<P, G> {
 
 /// What a recording gave next, in its order.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "hardly any item is a gap, and items are not stored")]
 pub enum Followed<P, G> {
     /// A frame of an object, with its outline and what went with that, where it has one.
     Object(Observation, Option<(OutlineFrame, P)>),

@@ -20,7 +20,7 @@ pub enum MethodSettings {
     /// The motion filter.
     Filter(FilterSettings),
     /// The paper's adaptive identifier.
-    Adaptive(PipelineSettings),
+    Adaptive(Box<PipelineSettings>),
 }
 
 /// How motions are identified.
@@ -52,7 +52,7 @@ impl TrackerSettings {
             Method::Adaptive => {
                 let mut settings = PipelineSettings::default();
                 settings.identify.model = motion;
-                MethodSettings::Adaptive(settings)
+                MethodSettings::Adaptive(Box::new(settings))
             }
         };
         Self { method, scale: None }

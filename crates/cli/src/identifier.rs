@@ -26,7 +26,7 @@ impl Identifier {
     pub(crate) fn new(options: &TrackOptions) -> Result<Self, Failure> {
         Ok(match options.tracker_settings().method {
             MethodSettings::Adaptive(settings) => {
-                Self::Adaptive(Box::new(Pipeline::new(settings).map_err(Failure::unusable)?))
+                Self::Adaptive(Box::new(Pipeline::new(*settings).map_err(Failure::unusable)?))
             }
             MethodSettings::Filter(settings) => {
                 Self::Filter(Box::new(MotionFilter::new(settings).map_err(Failure::unusable)?), None)
