@@ -7,10 +7,11 @@ use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, Ident
 use freeform_riccati::MotionModel;
 use nalgebra::{Affine2, Point2, Translation2};
 
-use crate::{settling::Settling, warning::Warning};
+use crate::{
+    settling::Settling,
+    warning::{MANY_REJECTED, Warning},
+};
 
-/// Share of rejected frames that is worth a warning.
-const MANY_REJECTED: f64 = 0.05;
 /// A match by continuity is ambiguous where the second best pairing is less than twice as far away (costs are squares).
 const AMBIGUOUS_COST_RATIO: f64 = 4.0;
 /// Share of ambiguous matches that is worth a warning.
@@ -256,15 +257,15 @@ impl Pipeline {
         self.frames_rejected
     }
 
-    /// What a user should know of the result, one line each.
+    /// What a user should know of the result.
     #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let unobservable: Vec<_> = self.estimate().map_or(Vec::new(), |estimate| {
             estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect()
         });
         if !unobservable.is_empty() {
-            warnings.push(Warning::NotObservable { parameters: unobservable });
+            warnings.push(Warning::RotationNotObservable { parameters: unobservable });
         }
         let (rejected, frames) = (self.frames_rejected, self.frames);
         if rejected as f64 > MANY_REJECTED * frames as f64 {
@@ -288,7 +289,7 @@ impl Pipeline {
         if self.settings.identify.model == MotionModel::Affine && self.identifier.intervals_followed() > 0 {
             warnings.push(Warning::AffineBias);
         }
-        warnings.iter().map(ToString::to_string).collect()
+        warnings
     }
 }
 

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use freeform_motion::curve_fit::PixelGrid;
-use freeform_motion::outline_io::{GrayImage, OutlineFrame, OutlineReader, PictureSequence, ReadError, ReadErrorKind};
+use freeform_motion::outline_io::{GrayImage, OutlineReader, PictureSequence, ReadError, ReadErrorKind};
+use freeform_motion::tracker::Recorded;
 
 use crate::args::PictureOptions;
 use crate::failure::{Failure, plain};
@@ -25,16 +26,9 @@ pub(crate) struct SeenIn {
     pub(crate) grid: PixelGrid,
 }
 
-/// The next thing in an input.
-#[derive(Debug)]
-pub(crate) enum Item {
-    /// An outline, and the picture that it was seen in, if it was.
-    Outline(OutlineFrame, Option<Rc<SeenIn>>),
-    /// An outline that is none, with the reason.
-    Rejected { object: String, frame: u64, reason: String },
-    /// A picture without an object, or one that cannot be read.
-    Missing(Missing),
-}
+/// The next thing in an input: an outline, with the picture that it was seen in, if it was; or a picture without an object, or one that
+/// cannot be read.
+pub(crate) type Item = Recorded<Option<Rc<SeenIn>>, Missing>;
 
 /// A sequence of outlines, open for reading.
 pub(crate) struct Input {
@@ -145,7 +139,7 @@ impl Iterator for Input {
 fn rejected(error: ReadError) -> Result<Item, Failure> {
     let reason = error.to_string();
     match error.kind {
-        ReadErrorKind::Degenerate { object, frame, .. } => Ok(Item::Rejected { object, frame, reason }),
+        ReadErrorKind::Degenerate { object, frame, .. } => Ok(Item::NoOutline { object, frame, reason }),
         _ => Err(Failure::unusable(reason)),
     }
 }

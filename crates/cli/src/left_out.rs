@@ -3,9 +3,9 @@ use std::mem::{Discriminant, discriminant};
 use std::rc::Rc;
 
 use freeform_motion::outline_io::{PictureErrorKind, TraceError};
+use freeform_motion::tracker::FrameRanges;
 
 use crate::failure::Failure;
-use crate::frame_ranges::FrameRanges;
 use crate::input::SeenIn;
 
 /// Pictures kept with their reasons.

@@ -144,7 +144,7 @@ impl PictureInput {
         match traced {
             Err(error) => {
                 let (reason, kind) = (described(&error, &self.inputs), MissingKind::from(&error.kind));
-                self.waiting.push_back(Item::Missing(Missing { frame, reason, hint: None, kind, seen_in: None }));
+                self.waiting.push_back(Item::Gap(Missing { frame, reason, hint: None, kind, seen_in: None }));
             }
             Ok(traced) => {
                 self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
@@ -155,7 +155,7 @@ impl PictureInput {
                         let reason = format!("{file}: frame {frame}: {error}");
                         let (hint, kind) = (hint(&error, &self.options), MissingKind::from(&error));
                         let seen_in = Some(seen_in);
-                        self.waiting.push_back(Item::Missing(Missing { frame, reason, hint, kind, seen_in }));
+                        self.waiting.push_back(Item::Gap(Missing { frame, reason, hint, kind, seen_in }));
                     }
                     Ok(objects) => self.waiting.extend(objects.into_iter().map(|(name, traced)| {
                         let outline = traced.outline;

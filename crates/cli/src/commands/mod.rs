@@ -12,8 +12,6 @@ mod track;
 
 use std::path::{Path, PathBuf};
 
-pub(crate) use fit::{FittedOutline, Parts};
-
 use crate::args::{Cli, Command, takes_next};
 use crate::failure::Failure;
 use crate::interrupt;

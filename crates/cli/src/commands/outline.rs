@@ -75,8 +75,8 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
                 }
             }
             // Pictures give no such item.
-            Item::Rejected { .. } => {}
-            Item::Missing(missing) => {
+            Item::NoOutline { .. } => {}
+            Item::Gap(missing) => {
                 // The reason of a single picture is told in the end.
                 if let Some(warning) = warnings.take(&missing).filter(|_| !args.quiet && !single) {
                     progress.pause(|| warn(&warning));

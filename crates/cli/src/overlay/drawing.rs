@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Point2};
 use super::canvas::Canvas;
 use super::lettering::write_words;
 use super::target::Target;
-use crate::commands::Parts;
 use crate::failure::Failure;
+use crate::fitted_outline::Parts;
 use crate::input::SeenIn;
 use crate::output::refuse_drawing_beside;
 
