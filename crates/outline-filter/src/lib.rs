@@ -15,6 +15,8 @@
 //! | `belief` | pose, motion, offsets, arrowhead information matrix |
 //! | `tuning` | every constant once, with its reason |
 //!
+//! `docs/motion-filter.md` of the repository derives the equations, each with its code and test.
+//!
 //! [`MotionFilter`] keeps up with a camera; [`estimate_batch`] finds a constant motion from all frames of a recording at once.
 //!
 //! ```

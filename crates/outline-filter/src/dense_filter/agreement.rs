@@ -1,11 +1,17 @@
 //! Prediction and process noise against the reference. The update is compared in `update::solve`, growth in `track::growth` and shape
 //! process noise in `prediction::shape_noise`, beside what they test.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::DMatrix;
+use freeform_estimate::ProcessNoise;
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point};
+use nalgebra::{DMatrix, Point2, Vector2};
 use proptest::prelude::*;
 
 use super::{AGREES, DenseFilter, Problem, random_measurements, transition};
-use crate::{belief::StateVector, measurement::Frame, update::accumulate};
+use crate::{
+    belief::{Belief, CellInformation, StateMatrix, StateVector},
+    measurement::{Frame, Measurement},
+    tuning::update::GAUGE_WEIGHT,
+    update::accumulate,
+};
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
@@ -127,4 +133,65 @@ fn a_new_pose_keeps_what_each_offset_is_known_to_where_the_pose_is_given() {
             assert!((dense.covariance[(at, at)] * own - 1.0).abs() < AGREES);
         }
     }
+}
+
+/// A turning egg of 16 cells, seen by 200 points in every frame, whose motion changes by so much in a second: deviations of pose and motion by the arrowhead filter over those of the dense one, after so many frames.
+fn deviations_over_those_of_the_dense_filter(frames: usize, changes: f64) -> Vec<f64> {
+    let (cells, points, sigma, seconds) = (16, 12.5, 0.005, 1.0 / 30.0);
+    let model = MotionModel::Rigid;
+    let mut belief = Belief::new(model);
+    belief.motion[..3].copy_from_slice(&[1.0, 0.2, -0.1]);
+    let gauge = GAUGE_WEIGHT * points * cells as f64;
+    (0..3).for_each(|i| (belief.information.dense[i][i], belief.information.dense[3 + i][3 + i]) = (gauge, 1e-2));
+    belief.information.cells = vec![CellInformation { own: 1e-3, ..CellInformation::NOTHING }; cells];
+    belief.marginal = belief.information.marginal();
+    let noise = ProcessNoise { rates: changes, velocities: changes };
+    let mut added = StateMatrix::zeros();
+    for (j, per_second) in noise.variances(model, 1.0).into_iter().enumerate().take(3) {
+        added[(3 + j, 3 + j)] = per_second * seconds / (sigma * sigma);
+    }
+    let mut dense = DenseFilter::of(&belief.information);
+    for frame in 0..frames {
+        if frame > 0 {
+            dense.predict(&transition(model, &belief.motion[..3], seconds));
+            assert!(belief.predict(seconds));
+            dense.add_covariance(&added);
+            belief.add_process_noise(&noise, seconds, 1.0, sigma * sigma);
+        }
+        let of_cell = |cell: usize| {
+            let t = std::f64::consts::TAU * cell as f64 / cells as f64;
+            let normal = belief.pose.fixed_view::<2, 2>(0, 0) * Vector2::new(0.6 * t.cos(), t.sin()).normalize();
+            let at = map_point(&belief.pose, &Point2::new(t.cos() + 0.1 * (2.0 * t).cos(), 0.6 * t.sin()));
+            let jacobian = model.normal_velocities(&at, &normal);
+            Measurement { cell, residual: 0.0, by_offset: 1.0, jacobian, weight: points }
+        };
+        let measurements: Vec<_> = (0..cells).map(of_cell).collect();
+        measurements.iter().for_each(|m| dense.measure(m));
+        let mut frame = Frame { measurements, ..Frame::default() };
+        frame.clear_shifts(cells);
+        accumulate(&mut frame, &mut belief.information, &StateVector::zeros());
+        belief.marginal = belief.information.marginal();
+    }
+    let covariance = belief.covariance_of(&belief.marginal, 1.0).expect("a covariance");
+    (0..6).map(|i| (covariance[(i, i)] / dense.covariance[(i, i)]).sqrt()).collect()
+}
+
+/// What is dropped says how well the outline as a whole is known in the body frame, in which the pose is told: the deviations of the pose
+/// are too small, those of the motion, for which the body frame does not matter, hardly. docs/motion-filter.md tells these figures.
+#[test]
+fn what_process_noise_drops_is_missing_in_the_deviations_of_the_pose_and_hardly_in_those_of_the_motion() {
+    let still = deviations_over_those_of_the_dense_filter(100, 0.0);
+    assert!(still.iter().all(|ratio| (ratio - 1.0).abs() < 1e-6), "{still:?}");
+    let mut least = 1.0;
+    for changes in [0.001, 0.01, 0.1, 1.0] {
+        for frames in [3, 30, 100, 300] {
+            let ratios = deviations_over_those_of_the_dense_filter(frames, changes);
+            eprintln!("RATIO {changes} {frames}: {ratios:.3?}");
+            let (pose, motion) = ratios.split_at(3);
+            assert!(motion.iter().all(|ratio| (0.96..1.001).contains(ratio)), "{changes} {frames}: {motion:?}");
+            assert!(pose.iter().all(|ratio| (0.6..1.001).contains(ratio)), "{changes} {frames}: {pose:?}");
+            least = pose.iter().fold(least, |least: f64, ratio| least.min(*ratio));
+        }
+    }
+    assert!((0.6..0.7).contains(&least), "the figure of the documents is another: {least}");
 }

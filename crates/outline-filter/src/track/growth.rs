@@ -82,25 +82,29 @@ mod tests {
         tuning::map::MOST_TIMES_SEEN,
     };
 
-    /// Half of an egg, and all of it in the same body frame.
-    fn half_and_whole() -> [Outline; 2] {
+    /// Three quarters of an outline that shows every model of motion, and all of it, in the same body frame.
+    fn part_and_whole() -> [Outline; 2] {
         let point = |i: i32| {
-            let t = std::f64::consts::TAU * f64::from(i) / 240.0;
-            // A little off, so that residuals are none of zero.
-            let off = 1.0 + 0.003 * (17.0 * t).sin();
-            Point2::new(off * (0.5 * t.cos() + 0.05 * (2.0 * t).cos()), off * 0.35 * t.sin())
+            let t = std::f64::consts::TAU * f64::from(i) / 320.0;
+            // The last term keeps residuals from being zero.
+            let r = 0.5
+                + 0.12 * (3.0 * t).cos()
+                + 0.08 * (2.0 * t).sin()
+                + 0.05 * (5.0 * t).cos()
+                + 0.002 * (31.0 * t).sin();
+            Point2::new(r * t.cos(), r * t.sin())
         };
-        let arc = OpenArc::new((0..120).map(point).collect()).expect("an arc");
-        let half = Outline::Open(OpenOutline::new(vec![arc]).expect("an outline"));
-        [half, Outline::closed((0..240).map(point).collect()).expect("an outline")]
+        let arc = OpenArc::new((0..240).map(point).collect()).expect("an arc");
+        let part = Outline::Open(OpenOutline::new(vec![arc]).expect("an outline"));
+        [part, Outline::closed((0..320).map(point).collect()).expect("an outline")]
     }
 
     #[test]
     fn new_cells_are_begun_as_the_dense_filter_begins_them_with_pose_and_motion_held() {
-        let [half, whole] = half_and_whole();
+        let [part, whole] = part_and_whole();
         for model in MotionModel::ALL {
             let mut frame = Frame::default();
-            let mut track = Track::begin(model, &half, &mut frame).expect("a track");
+            let mut track = Track::begin(model, &part, &mut frame).expect("a track");
             // Well known, so that the reference loses no digits.
             let k = track.belief.parameter_count();
             (0..k).for_each(|i| track.belief.information.dense[k + i][k + i] = 100.0);
@@ -108,6 +112,8 @@ mod tests {
             track.belief.information.cells.iter_mut().for_each(|cell| cell.own = cell.own.max(1.0));
             track.belief.marginal = track.belief.information.marginal();
             let mut dense = DenseFilter::of(&track.belief.information);
+            // Otherwise something would be forgotten.
+            assert!(track.map.null_directions(model, &track.belief.pose).is_empty(), "{model:?}");
             let first_new = track.map.cells().len();
             frame.load(&whole, track.reference);
             track.grow_along(frame.contours(&track.belief.pose), &mut frame);
