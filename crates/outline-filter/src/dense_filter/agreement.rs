@@ -135,7 +135,8 @@ fn a_new_pose_keeps_what_each_offset_is_known_to_where_the_pose_is_given() {
     }
 }
 
-/// A turning egg of 16 cells, seen by 200 points in every frame, whose motion changes by so much in a second: deviations of pose and motion by the arrowhead filter over those of the dense one, after so many frames.
+/// A turning egg of 16 cells, seen by 200 points in every frame, whose motion changes by so much in a second: deviations of pose and
+/// motion by the arrowhead filter over those of the dense one, after so many frames.
 fn deviations_over_those_of_the_dense_filter(frames: usize, changes: f64) -> Vec<f64> {
     let (cells, points, sigma, seconds) = (16, 12.5, 0.005, 1.0 / 30.0);
     let model = MotionModel::Rigid;
@@ -186,7 +187,6 @@ fn what_process_noise_drops_is_missing_in_the_deviations_of_the_pose_and_hardly_
     for changes in [0.001, 0.01, 0.1, 1.0] {
         for frames in [3, 30, 100, 300] {
             let ratios = deviations_over_those_of_the_dense_filter(frames, changes);
-            eprintln!("RATIO {changes} {frames}: {ratios:.3?}");
             let (pose, motion) = ratios.split_at(3);
             assert!(motion.iter().all(|ratio| (0.96..1.001).contains(ratio)), "{changes} {frames}: {motion:?}");
             assert!(pose.iter().all(|ratio| (0.6..1.001).contains(ratio)), "{changes} {frames}: {pose:?}");

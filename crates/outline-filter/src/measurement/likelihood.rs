@@ -101,7 +101,8 @@ mod tests {
         let (points, runs) = (50, 2000);
         let (mut sum, mut worse) = (0.0, 0);
         for _ in 0..runs {
-            let mut poses = [NegativeLogLikelihood { squares: 0.0, points: points as f64, weighted: points as f64 }; 2];
+            let mut poses =
+                [NegativeLogLikelihood { squares: 0.0, points: f64::from(points), weighted: f64::from(points) }; 2];
             for _ in 0..points {
                 let shared = normal();
                 poses.iter_mut().for_each(|pose| pose.squares += 0.5 * (shared + normal()).powi(2));
@@ -109,7 +110,7 @@ mod tests {
             sum += (poses[0].squares - poses[1].squares).powi(2);
             worse += usize::from(poses[0].is_worse_than(&poses[1]));
         }
-        let variance = sum / (runs * points) as f64;
+        let variance = sum / f64::from(runs * points);
         assert!((variance / tuning::VARIANCE - 1.0).abs() < 0.1, "{variance}");
         assert_eq!(worse, 0);
     }
