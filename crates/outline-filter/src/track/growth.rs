@@ -133,6 +133,9 @@ mod tests {
             assert!(difference < AGREES, "{model:?}: {difference}");
             let difference = dense.difference_of_marginal(&track.belief.marginal);
             assert!(difference < AGREES, "{model:?}: marginal {difference}");
+            // What is left out is next to nothing.
+            let step = |i: usize| dense.mean[i].abs() / (dense.covariance[(i, i)].sqrt() * track.noise.sigma);
+            assert!((0..2 * k).map(step).all(|step| step < 1e-3), "{model:?}");
             let expected = dense.offsets_where_state_is_zero(first_new);
             let size = expected.iter().fold(0.0, |size, offset| f64::max(size, offset.abs()));
             for (found, expected) in track.belief.offsets[first_new..].iter().zip(expected) {
