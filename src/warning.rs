@@ -2,10 +2,7 @@ use std::fmt;
 
 use freeform_outline_filter::Ambiguity;
 
-use crate::{
-    number::significant,
-    tracker::{FrameRanges, FrameRejection},
-};
+use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
 
 /// Share of rejected frames that is worth a warning.
 pub(crate) const MANY_REJECTED: f64 = 0.05;

@@ -6,10 +6,11 @@ use freeform_motion::tracker::FrameRanges;
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
 use crate::fitted_outline::FittedOutline;
-use crate::input::{Input, Item};
-use crate::left_out::{Missing, MissingWarnings};
+use crate::input::Input;
+use crate::left_out::MissingWarnings;
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
+use crate::seen::{Item, Missing};
 
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
