@@ -73,7 +73,7 @@ fn an_affine_motion_is_found_roughly() {
     let error: f64 = found.iter().zip(truth).map(|(value, true_value)| (value - true_value).powi(2)).sum();
     let size: f64 = truth.iter().map(|value| value * value).sum();
     assert!(error < 0.2 * size, "{found:?}");
-    assert!(pipeline.warnings().iter().any(|warning| *warning == Warning::AffineBias), "{:?}", pipeline.warnings());
+    assert!(pipeline.warnings().contains(&Warning::AffineBias), "{:?}", pipeline.warnings());
     let turn = 0.5 * (found[1] - found[2]);
     assert!((turn / 1.45 - 1.0).abs() < 0.15, "mean turn {turn}");
 }
