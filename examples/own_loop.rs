@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let outline = outline_at(time)?;
         let step = filter.step(time, &outline)?;
         if let Some(state) = filter.state().filter(|_| frame % 10 == 9) {
-            println!("{time:.2} s, {:?}, accepted: {}", step.phase, step.accepted);
+            println!("{time:.2} s, {:?}, accepted: {}", step.phase, step.is_accepted());
             for number in state.pose_parameters() {
                 println!("  {} = {:.5} +- {:.5}", number.name, number.value, number.standard_deviation);
             }

@@ -47,11 +47,7 @@ impl ContourOrder {
 /// Length of the way through the points over the perimeter of the box around them, where they hop about.
 fn hops(outline: &Outline) -> Option<f64> {
     let length: f64 = outline.pieces().map(|piece| way_through(&piece)).sum();
-    let (mut low, mut high) = (Point2::new(f64::INFINITY, f64::INFINITY), Point2::new(-f64::INFINITY, -f64::INFINITY));
-    for point in outline.points() {
-        (low, high) = (low.inf(point), high.sup(point));
-    }
-    let times = length / (2.0 * (high - low).sum());
+    let times = length / (2.0 * outline.bounding_box().size().sum());
     let limit = LONG.max(LONG_PER_POINT * outline.point_count() as f64);
     let is_sorted = || outline.pieces().all(|piece| piece.closed && is_sorted(piece.points));
     (times > limit || times > LONG_IF_SORTED && is_sorted()).then_some(times)

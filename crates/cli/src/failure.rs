@@ -2,6 +2,8 @@ use std::fmt::Display;
 use std::io::{self, Write as _};
 use std::process::ExitCode;
 
+use freeform_experiments::ExperimentError;
+
 /// Why a command ends before its time; decides the exit status.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -20,6 +22,16 @@ impl Failure {
 
     pub(crate) fn unusable(reason: impl Display) -> Self {
         Self::Unusable(reason.to_string())
+    }
+
+    /// An experiment that cannot be made, or that was made and gives nothing.
+    pub(crate) fn of_experiment(error: ExperimentError) -> Self {
+        match error {
+            ExperimentError::Fit(_) | ExperimentError::Decomposition(_) | ExperimentError::NoOutline { .. } => {
+                Self::no_result(error)
+            }
+            _ => Self::unusable(error),
+        }
     }
 
     /// An error of standard output: a closed pipe means that the reader has seen enough.

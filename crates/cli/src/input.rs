@@ -4,7 +4,8 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use freeform_motion::outline_io::{GrayImage, OutlineReader, PictureSequence, PixelGrid, ReadError, ReadErrorKind};
+use freeform_motion::curve_fit::PixelGrid;
+use freeform_motion::outline_io::{GrayImage, OutlineReader, PictureSequence, ReadError, ReadErrorKind};
 use freeform_motion::tracker::Recorded;
 
 use crate::args::PictureOptions;

@@ -44,23 +44,11 @@ impl fmt::Display for SimulatedMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let AffineMotion { a1, a2, a3, a4, b1, b2 } = self.motion;
         f.write_str(MARK)?;
-        match parameters_in(MotionModel::Rigid, &self.motion) {
+        match MotionModel::Rigid.parameters_of_motion(&self.motion) {
             Some(_) => write!(f, "omega={a2}")?,
             None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
         }
         write!(f, " b1={b1} b2={b2} scale={}", self.scale)
-    }
-}
-
-/// The parameters of a motion in a model, `None` where the model does not hold it.
-pub(crate) fn parameters_in(model: MotionModel, motion: &AffineMotion) -> Option<Vec<f64>> {
-    let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
-    let is_similarity = a1 == a4 && a2 == -a3;
-    match model {
-        MotionModel::Rigid => (is_similarity && a1 == 0.0).then(|| vec![a2, b1, b2]),
-        MotionModel::Similarity => is_similarity.then(|| vec![a1, a2, b1, b2]),
-        MotionModel::Affine => Some(vec![a1, a2, a3, a4, b1, b2]),
-        MotionModel::Projective => Some(vec![a1, a2, a3, a4, b1, b2, 0.0, 0.0]),
     }
 }
 

@@ -34,6 +34,7 @@ mod error;
 mod fit;
 mod fitter;
 mod interior_point;
+pub mod isoline;
 mod leading_form;
 mod least_squares;
 mod level_set_moments;
@@ -43,10 +44,13 @@ mod monomials;
 mod normalisation;
 mod normals;
 mod outline;
+mod pixel_grid;
 mod polynomial;
+mod rectangle;
 mod residuals;
 mod ridge;
 mod settings;
+mod stray_parts;
 mod vectors;
 mod windows;
 
@@ -61,10 +65,13 @@ pub use monomials::{evaluate_monomials, exponents, monomial_index};
 pub use normalisation::Normalisation;
 pub use normals::{NormalRegression, outward_normals};
 pub use outline::{ClosedOutline, OpenArc, OpenOutline, Outline, Piece};
+pub use pixel_grid::PixelGrid;
 pub use polynomial::ImplicitPolynomial;
+pub use rectangle::Rectangle;
 pub use residuals::Residuals;
 pub use ridge::rotation_invariant_ridge;
 pub use settings::{FitSettings, Method};
+pub use stray_parts::stray_parts;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,6 +1,7 @@
 use nalgebra::{Affine2, Matrix2, Point2, Vector2};
 
 use crate::error::OutlineError;
+use crate::rectangle::Rectangle;
 
 /// Largest absolute coordinate accepted, so that squares never overflow.
 pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
@@ -158,6 +159,13 @@ impl Outline {
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         signed_area(self.points())
+    }
+
+    /// The smallest rectangle that holds all points.
+    #[must_use]
+    pub fn bounding_box(&self) -> Rectangle {
+        let first = self.points().next().copied().unwrap_or_else(Point2::origin);
+        Rectangle { low: first, high: first }.extended(self.points())
     }
 
     /// Mean of the points.

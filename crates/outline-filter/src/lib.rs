@@ -1,6 +1,20 @@
 //! The motion filter: outline, pose and motion of a flat object estimated together from its outlines, frame by frame, near the Cramer-Rao
 //! bound from the third frame on, with standard deviations, and robust to hidden arcs, outliers and wrong frames.
 //!
+//! The layers, from the top down; each sees only those below it:
+//!
+//! | layer | holds |
+//! |---|---|
+//! | `supervisor` | phases, restarts, hypotheses, changes of the motion: the only state machine |
+//! | `search` | global registration: related points, turns |
+//! | `track` | one object: a frame goes through it once, one way; growth and remapping of its map |
+//! | `update` | solve for a `Proposal`, judge it at the `Gate`, commit it |
+//! | `measurement` | frame, association, point-to-line residuals and Jacobians, noise |
+//! | `prediction` | step, process noise, shape process noise |
+//! | `map` | cells, contour, nearest-cell field, null directions |
+//! | `belief` | pose, motion, offsets, arrowhead information matrix |
+//! | `tuning` | every constant once, with its reason |
+//!
 //! [`MotionFilter`] keeps up with a camera; [`estimate_batch`] finds a constant motion from all frames of a recording at once.
 //!
 //! ```
@@ -25,12 +39,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod batch;
-mod filter;
+mod belief;
+mod map;
+mod measurement;
+mod prediction;
+mod search;
+mod supervisor;
+mod track;
+mod tuning;
+mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
-pub use filter::{
-    Ambiguity, FilterError, FilterSettings, FilterStep, MapUpdate, MotionFilter, OutlineMap, Phase, Rejection,
-};
+pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase};
+pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

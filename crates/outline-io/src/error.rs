@@ -277,7 +277,7 @@ pub enum WriteError {
 
 /// Why a file gave no shape.
 #[derive(Debug, Error)]
-pub enum ShapeError {
+pub enum ReadShapeError {
     /// The CSV file could not be read.
     #[error(transparent)]
     Read(#[from] ReadError),

@@ -20,6 +20,7 @@
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`read_shape`] reads one closed outline from either.
 mod affine_moment_invariants;
+mod assignment;
 mod background;
 mod basins;
 mod channel;
@@ -35,7 +36,6 @@ mod field;
 mod frame;
 mod gif_interval;
 mod identity;
-mod isoline;
 mod jpeg_end;
 mod morphology;
 mod natural_order;
@@ -59,7 +59,7 @@ pub use channel::Channel;
 pub use csv_columns::Column;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
-pub use error::{Place, ReadError, ReadErrorKind, ShapeError, WriteError};
+pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, WriteError};
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
 pub use identity::Selection;
 pub use image::GrayImage;
@@ -70,7 +70,7 @@ pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings, has_
 pub use ring::Ring;
 pub use shape::read_shape;
 pub use trace::{TracedOutline, trace_mask, trace_objects};
-pub use trace_settings::{Clipping, Contrast, PixelGrid, Smoothing, Threshold, TraceSettings};
+pub use trace_settings::{Clipping, Contrast, Smoothing, Threshold, TraceSettings};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,4 +1,5 @@
-use nalgebra::Point2;
+use freeform_curve_fit::PixelGrid;
+use nalgebra::{Point2, Vector2};
 
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
@@ -126,32 +127,8 @@ impl TraceSettings {
     /// How the pixels of a picture of this height lie in the plane of its outlines.
     #[must_use]
     pub fn pixel_grid(&self, height: u32) -> PixelGrid {
-        PixelGrid { height, y_up: self.y_up, pixel_size: self.pixel_size, pixel_aspect: self.pixel_aspect }
-    }
-}
-
-/// How the pixels of a picture lie in the plane of its outlines.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PixelGrid {
-    height: u32,
-    y_up: bool,
-    pixel_size: f64,
-    pixel_aspect: f64,
-}
-
-impl PixelGrid {
-    /// From columns and rows, pixel centres at half numbers, to the plane.
-    #[must_use]
-    pub fn to_plane(&self, column: f64, row: f64) -> Point2<f64> {
-        let y = if self.y_up { f64::from(self.height) - row } else { row };
-        Point2::new(self.pixel_size * self.pixel_aspect * column, self.pixel_size * y)
-    }
-
-    /// From the plane to columns and rows, pixel centres at half numbers.
-    #[must_use]
-    pub fn to_pixels(&self, point: &Point2<f64>) -> [f64; 2] {
-        let y = point.y / self.pixel_size;
-        let row = if self.y_up { f64::from(self.height) - y } else { y };
-        [point.x / (self.pixel_size * self.pixel_aspect), row]
+        let (width, size) = (self.pixel_size * self.pixel_aspect, self.pixel_size);
+        let (row_of_zero, pitch) = if self.y_up { (f64::from(height), -size) } else { (0.0, size) };
+        PixelGrid::new([0.0, row_of_zero], Point2::origin(), Vector2::new(width, pitch))
     }
 }

@@ -1,6 +1,9 @@
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
+use freeform_experiments::monte_carlo::Method;
+use freeform_motion::sim_camera::Sampling;
 
 use super::identify::MotionChoice;
 use super::simulated::{DisturbanceArgs, TrueMotionArgs};
@@ -86,8 +89,8 @@ pub(crate) struct EvaluateArgs {
     pub(crate) seed: u64,
 
     /// The methods that are evaluated
-    #[arg(long, value_enum, value_delimiter = ',', default_values = ["filter", "moments", "icp"])]
-    pub(crate) method: Vec<EvaluatedMethod>,
+    #[arg(long, value_parser = methods(), value_delimiter = ',', default_values = ["filter", "moments", "icp"])]
+    pub(crate) method: Vec<Method>,
 
     /// Evaluate the start in place of the motion: two frames, a turn uniform within 60 degrees and a shift uniform up to
     /// half the object's size between them
@@ -130,27 +133,21 @@ pub(crate) enum SamplingChoice {
     Stratified,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EvaluatedMethod {
-    /// The motion filter
-    Filter,
-    /// The paper's adaptive identifier, which takes 10 to 20 s to settle
-    Adaptive,
-    /// Baseline: area moments, then least squares on the exact flow
-    Moments,
-    /// Baseline: iterated closest points to the first frame, then least squares on the exact flow
-    Icp,
-}
-
-impl EvaluatedMethod {
-    pub(crate) const fn name(self) -> &'static str {
+impl SamplingChoice {
+    /// As the simulator knows it.
+    pub(crate) fn sampling(self) -> Sampling {
         match self {
-            Self::Filter => "filter",
-            Self::Adaptive => "adaptive",
-            Self::Moments => "moments",
-            Self::Icp => "icp",
+            Self::Independent => Sampling::Independent,
+            Self::Stratified => Sampling::default(),
         }
     }
+}
+
+/// Methods by their names.
+fn methods() -> impl TypedValueParser<Value = Method> {
+    let names = Method::ALL.map(|method| PossibleValue::new(method.name()).help(method.description()));
+    PossibleValuesParser::new(names)
+        .try_map(|name| Method::ALL.into_iter().find(|method| method.name() == name).ok_or("there is no such method"))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -13,12 +13,12 @@ use std::path::PathBuf;
 
 use clap::{Args, CommandFactory, FromArgMatches as _, Parser, Subcommand, error::ErrorKind};
 
-pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat, EvaluatedMethod, SamplingChoice};
+pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat};
 pub(crate) use fit::{FitArgs, FitFormat};
 pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{PictureOptions, through_ffmpeg};
-pub(crate) use reproduce::{Part, ReproduceArgs};
+pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
 

@@ -1,6 +1,8 @@
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use freeform_experiments::paper::Part;
 
 use super::values::run_length;
 
@@ -29,7 +31,7 @@ pub(crate) struct ReproduceArgs {
     pub(crate) out: PathBuf,
 
     /// Only these figures or tables
-    #[arg(long, value_name = "FIGURE", value_enum, num_args = 1.., value_delimiter = ',')]
+    #[arg(long, value_name = "FIGURE", value_parser = parts(), num_args = 1.., value_delimiter = ',')]
     pub(crate) only: Vec<Part>,
 
     /// Length of each experiment in seconds, at least 1
@@ -49,40 +51,17 @@ pub(crate) struct ReproduceArgs {
     pub(crate) seed: u64,
 }
 
-/// A figure of the paper, or what goes beyond it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
-pub(crate) enum Part {
-    /// The ten objects and their quartics
-    #[value(name = "1", alias = "fig1")]
-    Objects,
-    /// The boomerang and its line factors
-    #[value(name = "2", alias = "fig2")]
-    Factors,
-    /// The flight bird along its motion
-    #[value(name = "3", alias = "fig3")]
-    BirdPoses,
-    /// The flight bird's estimated parameters
-    #[value(name = "4", alias = "fig4")]
-    BirdParameters,
-    /// The glider along its motion, by text and by caption
-    #[value(name = "5", alias = "fig5")]
-    GliderPoses,
-    /// The glider's estimated parameters, by text and by caption
-    #[value(name = "6", alias = "fig6")]
-    GliderParameters,
-    /// The cellular phone along its motion
-    #[value(name = "7", alias = "fig7")]
-    PhonePoses,
-    /// The cellular phone's estimated parameters
-    #[value(name = "8", alias = "fig8")]
-    PhoneParameters,
-    /// Tables of what the paper leaves open
-    #[value(name = "open")]
-    OpenQuestions,
-    /// Affine motion, six parameters
-    #[value(name = "affine")]
-    Affine,
-    /// A motion that changes slowly
-    #[value(name = "changing")]
-    Changing,
+/// What the figures of the paper may be called besides their numbers.
+const FIGURES: [&str; 8] = ["fig1", "fig2", "fig3", "fig4", "fig5", "fig6", "fig7", "fig8"];
+
+/// Figures and tables by their names.
+fn parts() -> impl TypedValueParser<Value = Part> {
+    let names = Part::ALL.map(|part| {
+        let aliases = FIGURES.into_iter().filter(|alias| alias.strip_prefix("fig") == Some(part.name()));
+        PossibleValue::new(part.name()).help(part.description()).aliases(aliases)
+    });
+    PossibleValuesParser::new(names).try_map(|name| {
+        let name = name.trim_start_matches("fig");
+        Part::ALL.into_iter().find(|part| part.name() == name).ok_or("there is no such figure")
+    })
 }

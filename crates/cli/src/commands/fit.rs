@@ -8,7 +8,6 @@ use crate::failure::{Failure, warn};
 use crate::fitted_outline::FittedOutline;
 use crate::input::{Input, Item};
 use crate::left_out::{Missing, MissingWarnings};
-use crate::level_set::stray_parts;
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
 
@@ -58,7 +57,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
                 reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
             }
             Ok(fit) => {
-                let stray_parts = stray_parts(&fit, &frame.outline);
+                let stray_parts = fit.stray_places(&frame.outline);
                 let fitted = FittedOutline { stray_parts, ..FittedOutline::new(&frame, fit) };
                 collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;
             }

@@ -23,7 +23,6 @@ use crate::output::{
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
 use crate::reader::{Event, Pace, follow};
-use crate::truth::parameters_in;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
@@ -33,7 +32,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let name = input.name.clone();
     let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
     let model = args.options.motion.model();
-    if !args.quiet && truth.is_some_and(|truth| parameters_in(model, &truth).is_none()) {
+    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
         warn(&format!("{origin}: no {model} motion, nothing is compared with it"));
     }

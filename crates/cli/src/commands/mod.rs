@@ -12,9 +12,6 @@ mod track;
 
 use std::path::{Path, PathBuf};
 
-pub(crate) use evaluate::{Acquisition, Evaluation, Found, MethodResult, Report, Setting, Statistics};
-pub(crate) use reproduce::{Drawing, Section, Table};
-
 use crate::args::{Cli, Command, takes_next};
 use crate::failure::Failure;
 use crate::interrupt;

@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use freeform_motion::riccati::AffineMotion;
+use freeform_motion::riccati::{AffineMotion, ParameterKind};
 use freeform_motion::significant;
 use freeform_motion::tracker::ObjectResult;
 
@@ -8,7 +8,6 @@ use super::aligned::write_aligned;
 use super::number::with_deviation;
 use super::velocity::{VELOCITY_NAMES, meaning_of_v};
 use crate::meaning_of_b::MeaningOfB;
-use crate::truth::parameters_in;
 
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
@@ -16,21 +15,21 @@ pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "tru
 /// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
 pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>, b: &MeaningOfB) -> Vec<Vec<String>> {
     let model = result.motion;
-    let truth = truth.and_then(|motion| Some((motion, parameters_in(model, motion)?)));
+    let truth = truth.and_then(|motion| Some((motion, model.parameters_of_motion(motion)?)));
     let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
     let is_ambiguous = |name| result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name));
     let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
-    let names = model.parameter_names().iter().zip(model.units());
+    let names = model.parameter_names().iter().zip(model.units()).zip(model.parameter_kinds());
     let mut rows: Vec<Vec<String>> = names
         .enumerate()
-        .map(|(index, (name, unit))| {
+        .map(|(index, ((name, unit), kind))| {
             let parameter = found.get(index);
             let unknown = match parameter {
                 Some(_) if is_ambiguous(name) => "ambiguous",
                 Some(_) => "unobservable",
                 None => "-",
             };
-            let unit = if name.starts_with('b') { unit_of_b(unit) } else { unit };
+            let unit = if *kind == ParameterKind::Velocity { unit_of_b(unit) } else { unit };
             let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
             row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
         })

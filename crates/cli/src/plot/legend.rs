@@ -1,15 +1,17 @@
 use std::fmt::Write as _;
 
-use super::panel::{Curve, Look, Panel, crosses, dots, marks};
+use freeform_experiments::figure::{Curve, Look, Panel};
+
+use super::panel::{PanelSvg, class, crosses, dots, marks};
 use super::style::{escape, text_width};
 
 /// Height of a row of the legend, in pixels.
 pub(super) const LEGEND_ROW: f64 = 20.0;
 
 /// One legend for several panels, at a place of some width, and its height. What has one name is one entry.
-pub(crate) fn shared_legend(panels: &[Panel], left: f64, top: f64, width: f64) -> (String, f64) {
+pub(super) fn shared_legend(panels: &[Panel], left: f64, top: f64, width: f64) -> (String, f64) {
     let mut entries: Vec<&Curve> = Vec::new();
-    for curve in panels.iter().flat_map(Panel::legend) {
+    for curve in panels.iter().map(PanelSvg).flat_map(PanelSvg::legend) {
         if entries.iter().all(|entry| entry.name != curve.name) {
             entries.push(curve);
         }
@@ -48,7 +50,7 @@ fn legend_width(curve: &Curve) -> f64 {
 
 pub(super) fn draw_legend_row(svg: &mut String, curves: &[&Curve], mut left: f64, middle: f64) {
     for curve in curves {
-        let (class, right) = (curve.look.class(), left + 22.0);
+        let (class, right) = (class(curve.look), left + 22.0);
         let _ = match curve.look {
             Look::Band => {
                 let top = middle - 4.0;

@@ -4,5 +4,4 @@ mod panel;
 mod style;
 mod ticks;
 
-pub(crate) use panel::{Curve, Look, Panel};
-pub(crate) use style::{Figure, escape, panel_svg, stacked_svg};
+pub(crate) use style::{Svg, escape, panel_svg, stacked_svg};
