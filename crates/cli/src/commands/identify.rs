@@ -8,8 +8,8 @@ use freeform_motion::riccati::AffineMotion;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
-use super::command_line;
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
 use crate::input::Input;
