@@ -17,14 +17,14 @@ pub(crate) struct Missing {
     /// Its number in the sequence.
     pub(crate) frame: u64,
     pub(crate) reason: String,
-    /// What may help, where it is known.
+    /// Advice, if there is any.
     pub(crate) hint: Option<&'static str>,
     pub(crate) kind: MissingKind,
     /// The picture, if it could be read.
     pub(crate) seen_in: Option<Rc<SeenIn>>,
 }
 
-/// What kind of reason it is, whatever the numbers in it.
+/// The kind of reason, without its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum MissingKind {
     Unreadable(Discriminant<PictureErrorKind>),
@@ -44,12 +44,12 @@ impl From<&TraceError> for MissingKind {
 }
 
 impl Missing {
-    /// The reason, and what may help.
+    /// The reason, with advice.
     fn advice(&self) -> String {
         self.hint.map_or_else(|| self.reason.clone(), |hint| format!("{}; {hint}", self.reason))
     }
 
-    /// Why nothing was found, where this is all there is.
+    /// The failure if no other picture gave an outline.
     pub(crate) fn into_failure(self) -> Failure {
         match self.seen_in {
             Some(_) => Failure::no_result(self.advice()),
@@ -87,7 +87,7 @@ pub(crate) struct MissingWarnings {
 #[derive(Debug)]
 struct SameKind {
     kind: MissingKind,
-    /// Reason of the second, which is told as it is where there is no third.
+    /// Reason of the second picture, printed in full if there is no third.
     second: Option<String>,
     count: u64,
     /// All but the first.
@@ -95,7 +95,7 @@ struct SameKind {
 }
 
 impl MissingWarnings {
-    /// Takes a picture; returns what is to be said of it now.
+    /// Takes a picture. Returns the warning to print now, if any.
     pub(crate) fn take(&mut self, missing: &Missing) -> Option<String> {
         let Some(same) = self.kinds.iter_mut().find(|same| same.kind == missing.kind) else {
             let (kind, others) = (missing.kind, FrameRanges::default());
@@ -108,7 +108,7 @@ impl MissingWarnings {
         None
     }
 
-    /// What is to be said in the end.
+    /// The warnings to print at the end.
     pub(crate) fn finish(self) -> impl Iterator<Item = String> {
         self.kinds.into_iter().filter_map(|same| match same.count {
             0 | 1 => None,
