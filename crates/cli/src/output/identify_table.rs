@@ -46,7 +46,8 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>
         let turn_is_known = kinds.zip(&found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
         rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
             let known = Some((velocity.velocity[i], Some(deviations[i])));
-            let mut row = row([name, "-", unit_of_b("1/s")], known, truth.filter(|_| turn_is_known).map(|truth| truth[i]));
+            let mut row =
+                row([name, "-", unit_of_b("1/s")], known, truth.filter(|_| turn_is_known).map(|truth| truth[i]));
             if truth.is_some() && !turn_is_known {
                 row.extend(["-", "-"].map(str::to_owned));
             }
