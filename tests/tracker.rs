@@ -273,7 +273,7 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
     assert_eq!(codes.len(), warnings.len());
     assert!(codes.iter().all(|code| code.chars().all(|c| c.is_ascii_lowercase() || c == '_')), "{codes:?}");
     assert!(warnings.iter().all(|warning| !warning.to_string().is_empty() && !warning.to_string().contains('\n')));
-    let ambiguous = "ambiguous: another turn explains the outlines as well: -14.3 or -57.3 instead of 28.6 degrees from one \
+    let ambiguous = "ambiguous: another turn explains the outlines equally well: -14.3 or -57.3 instead of 28.6 degrees from one \
                      frame to the next";
     assert_eq!(warnings[7].to_string(), ambiguous);
 }

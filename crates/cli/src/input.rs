@@ -75,7 +75,7 @@ impl Input {
         }
         if let given @ [_, ..] = &options.given()[..] {
             let options = given.join(", ");
-            return Err(Failure::unusable(format_args!("{options}: for pictures, but {name} is none (read as CSV)")));
+            return Err(Failure::unusable(format_args!("{options}: only for pictures, but {name} was read as CSV")));
         }
         let head = comment_lines(&mut source).map_err(failed)?;
         let truth = String::from_utf8_lossy(&head)

@@ -35,7 +35,7 @@ pub(crate) struct MissingWarnings {
 #[derive(Debug)]
 struct SameKind {
     kind: MissingKind,
-    /// Reason of the second, which is told as it is where there is no third.
+    /// Reason of the second picture, printed in full if there is no third.
     second: Option<String>,
     count: u64,
     /// All but the first.
@@ -43,7 +43,7 @@ struct SameKind {
 }
 
 impl MissingWarnings {
-    /// Takes a picture; returns what is to be said of it now.
+    /// Takes a picture. Returns the warning to print now, if any.
     pub(crate) fn take(&mut self, missing: &Missing) -> Option<String> {
         let Some(same) = self.kinds.iter_mut().find(|same| same.kind == missing.kind) else {
             let (kind, others) = (missing.kind, FrameRanges::default());
@@ -56,7 +56,7 @@ impl MissingWarnings {
         None
     }
 
-    /// What is to be said in the end.
+    /// The warnings to print at the end.
     pub(crate) fn finish(self) -> impl Iterator<Item = String> {
         self.kinds.into_iter().filter_map(|same| match same.count {
             0 | 1 => None,

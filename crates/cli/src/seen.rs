@@ -26,14 +26,14 @@ pub(crate) struct Missing {
     /// Its number in the sequence.
     pub(crate) frame: u64,
     pub(crate) reason: String,
-    /// What may help, where it is known.
+    /// Advice, if there is any.
     pub(crate) hint: Option<&'static str>,
     pub(crate) kind: MissingKind,
     /// The picture, if it could be read.
     pub(crate) seen_in: Option<Rc<SeenIn>>,
 }
 
-/// What kind of reason it is, whatever the numbers in it.
+/// The kind of reason, without its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum MissingKind {
     Unreadable(Discriminant<PictureErrorKind>),
@@ -53,12 +53,12 @@ impl From<&TraceError> for MissingKind {
 }
 
 impl Missing {
-    /// The reason, and what may help.
+    /// The reason, with advice.
     pub(crate) fn advice(&self) -> String {
         self.hint.map_or_else(|| self.reason.clone(), |hint| format!("{}; {hint}", self.reason))
     }
 
-    /// Why nothing was found, where this is all there is.
+    /// The failure if no other picture gave an outline.
     pub(crate) fn into_failure(self) -> Failure {
         match self.seen_in {
             Some(_) => Failure::no_result(self.advice()),

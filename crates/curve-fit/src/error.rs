@@ -111,7 +111,7 @@ pub enum FitError {
     },
     /// The outline does not tell its inside from its outside: it runs as much one way round as the other, as a line there
     /// and back or an even figure of eight does, or its normals cancel.
-    #[error("the outline has no inside: it runs as much one way round as the other")]
+    #[error("the outline has no inside: its signed area is zero")]
     NoInside,
     /// The leading form of the bounded fit could not be brought above its margin.
     #[error("the bounded fit did not converge in {iterations} iterations")]

@@ -82,7 +82,9 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     reasons.extend(warnings.finish());
     reasons.iter().for_each(|reason| warn(reason));
     if let Collected { with_stray_parts: with @ 1.., count, .. } = collected {
-        warn(&format!("{with} of {count} curve(s) have a part beside the outline, where the polynomial is zero too"));
+        warn(&format!(
+            "{with} of {count} curve(s) have a stray part away from the outline, where the polynomial is zero too"
+        ));
     }
     if args.format == FitFormat::Json {
         write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;
