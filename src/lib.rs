@@ -27,8 +27,11 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod frame_ranges;
 mod number;
 mod pipeline;
+mod pipeline_error;
+mod rejection;
 mod settling;
 pub mod tracker;
 mod warning;
@@ -42,7 +45,8 @@ pub use freeform_outline_io as outline_io;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use number::significant;
-pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};
+pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
+pub use pipeline_error::PipelineError;
 pub use tracker::{Tracker, TrackerSettings};
 pub use warning::Warning;
 

@@ -5,10 +5,11 @@ use freeform_outline_filter::{Ambiguity, MotionFilter, Phase};
 
 use super::{
     observation::ObjectPhase,
-    rejection::RejectionCause,
     settings::{MethodSettings, TrackerError},
 };
-use crate::{Pipeline, PipelineSettings, Warning, warning::MANY_REJECTED};
+use crate::pipeline::{Pipeline, PipelineSettings};
+use crate::rejection::RejectionCause;
+use crate::warning::{MANY_REJECTED, Warning};
 
 /// What is known of one object.
 #[derive(Debug, Clone)]

@@ -5,13 +5,11 @@
 //! frame of each object and an [`ObjectResult`] for each object, with what a user should know as [`Warning`](crate::Warning)s; a [`Trajectory`]
 //! keeps where the objects were.
 mod contour_order;
-mod frame_ranges;
 mod identifier;
 mod object;
 mod observation;
 mod queues;
 mod recording;
-mod rejection;
 mod result;
 mod settings;
 mod trajectory;
@@ -23,13 +21,15 @@ use freeform_outline_io::OutlineFrame;
 use self::{identifier::Identifier, object::TrackedObject};
 
 pub use self::{
-    frame_ranges::FrameRanges,
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
-    rejection::{FrameRejection, RejectionCause},
     result::ObjectResult,
     settings::{Method, MethodSettings, TrackerError, TrackerSettings},
     trajectory::{PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
+};
+pub use crate::{
+    frame_ranges::FrameRanges,
+    rejection::{FrameRejection, RejectionCause},
 };
 
 /// Finds how each of many objects moves, from outlines with their names. Memory does not grow with the number of frames.

@@ -4,8 +4,8 @@ use freeform_curve_fit::Fit;
 use freeform_estimate::{MotionEstimate, MotionState};
 use freeform_outline_filter::{Ambiguity, Phase};
 
-use super::rejection::FrameRejection;
 use crate::Warning;
+use crate::rejection::FrameRejection;
 
 /// What one frame of one object gave.
 #[derive(Debug, Clone, PartialEq)]

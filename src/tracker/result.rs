@@ -2,8 +2,9 @@ use freeform_estimate::{MotionEstimate, PointVelocity};
 use freeform_outline_filter::Ambiguity;
 use freeform_riccati::MotionModel;
 
-use super::{rejection::FrameRejection, settings::Method};
+use super::settings::Method;
 use crate::Warning;
+use crate::rejection::FrameRejection;
 
 /// What is known of an object after all its frames so far.
 #[derive(Debug, Clone, PartialEq)]

@@ -28,7 +28,7 @@ mod smoother;
 mod time;
 
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
-pub use information::{InverseInformation, invert_information, invert_positive_definite};
+pub use information::{InverseInformation, invert_information, scaled_inverse, scaled_solution};
 pub use motion_estimate::{MotionEstimate, ParameterEstimate};
 pub use motion_state::{MotionState, NormalisedState, PoseParameter};
 pub use observability::is_worth;

@@ -8,10 +8,10 @@ use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Sim
 use freeform_motion::tracker::{Method, ObjectResult, Observation};
 use freeform_motion::{PipelineSettings, Tracker};
 
-use super::command_line;
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::fitted_outline::FittedOutline;
 use crate::history::History;

@@ -2,7 +2,7 @@ use std::{error::Error, fmt};
 
 use freeform_outline_filter::{FilterError, Rejection};
 
-use crate::PipelineError;
+use crate::pipeline_error::PipelineError;
 
 /// Why a frame of an object was not used.
 #[derive(Debug, Clone, PartialEq)]
