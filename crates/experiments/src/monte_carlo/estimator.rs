@@ -82,7 +82,7 @@ impl Estimator {
     pub(super) fn push(&mut self, time: f64, outline: &Outline) -> bool {
         match self {
             Self::Filter { filter, last_known } => {
-                let accepted = filter.step(time, outline).is_ok_and(|step| step.accepted);
+                let accepted = filter.step(time, outline).is_ok_and(|step| step.is_accepted());
                 *last_known = filter.estimate().or(*last_known);
                 accepted
             }

@@ -38,7 +38,7 @@ impl Boomerang {
         let scene = Scene::new(BuiltInShape::Boomerang, AffineMotion::default(), camera)
             .with_initial_pose(nalgebra::convert(Rotation2::new(TURN)));
         let frame = Sequence::simulate(scene, settings)?.frames.pop();
-        let (_, outline) = frame.ok_or_else(|| ExperimentError::NoOutline { object: "boomerang" })?;
+        let (_, outline) = frame.ok_or(ExperimentError::NoOutline { object: "boomerang" })?;
         let fit = closed_quartic(&outline)?;
         let image_from_working = fit.normalisation().image_from_working();
         let working = Decomposition::of(fit.working())?;
