@@ -2,6 +2,8 @@
 //!
 //! Every frame gives noisy points in their order along the outline of the object, without correspondence to the frame before.
 //! [`outline_filter::MotionFilter`] estimates outline, pose and motion from them, with standard deviations; take it first.
+//! Where an object is and how it moves, with the joint covariance of both, is its [`state`](outline_filter::MotionFilter::state).
+//! A [`Tracker`] follows many objects by their names, and has an observation for each frame and a result for each object.
 //! [`estimate::smooth`] and [`outline_filter::estimate_batch`] are for recorded frames, and [`estimate::CramerRaoBound`] says what can be reached.
 //!
 //! A [`Pipeline`] is the way of the paper: it fits an implicit polynomial curve to each outline, takes it apart into complex lines,
@@ -25,9 +27,13 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod frame_ranges;
 mod number;
 mod pipeline;
+mod pipeline_error;
+mod rejection;
 mod settling;
+pub mod tracker;
 mod warning;
 
 pub use freeform_curve_fit as curve_fit;
@@ -39,8 +45,15 @@ pub use freeform_outline_io as outline_io;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use number::significant;
-pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};
+pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
+pub use pipeline_error::PipelineError;
+pub use tracker::{Tracker, TrackerSettings};
+pub use warning::Warning;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeDoctests;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/reading-uncertainties.md")]
+struct GuideDoctests;

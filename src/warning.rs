@@ -1,29 +1,142 @@
 use std::fmt;
 
-/// What a user should know of an identified motion.
+use freeform_outline_filter::Ambiguity;
+
+use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
+
+/// Share of rejected frames that is worth a warning.
+pub(crate) const MANY_REJECTED: f64 = 0.05;
+
+/// What a user should know of an identified motion: a [`code`](Self::code) for programs, a message for people.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Warning {
-    /// The outlines tell nothing of these parameters.
-    NotObservable { parameters: Vec<&'static str> },
-    /// Many frames gave nothing.
-    FramesRejected { rejected: usize, frames: usize },
-    /// The pairs of lines could not be matched for certain in many frames.
-    AmbiguousCorrespondence { ambiguous: usize, matched: usize },
+pub enum Warning {
+    /// The points of an outline hop about instead of following the contour.
+    PointsOutOfOrder {
+        /// The first frame that shows it.
+        frame: u64,
+        /// Length of the way through the points over the perimeter of the box around them.
+        perimeters: f64,
+    },
+    /// The outlines tell nothing of these parameters (motion filter).
+    NotObservable {
+        /// Their names.
+        parameters: Vec<&'static str>,
+    },
+    /// The outlines tell nothing of these parameters, as lines of a round outline do not turn with it (adaptive method).
+    RotationNotObservable {
+        /// Their names.
+        parameters: Vec<&'static str>,
+    },
+    /// The object was not seen in the last frames.
+    Lost,
+    /// The object was searched for again in the last frames, and its motion is an earlier one.
+    Reacquiring {
+        /// Time in seconds when the motion was last known.
+        last_known: f64,
+    },
+    /// What was known of the object was given up, and it was begun with anew.
+    Restarted {
+        /// How often.
+        times: usize,
+    },
+    /// Many frames were not used.
+    FramesRejected {
+        /// How many.
+        rejected: usize,
+        /// Of so many.
+        frames: usize,
+    },
+    /// Another turn from one frame to the next explains the outlines as well.
+    Ambiguous(Ambiguity),
+    /// The motion changed on the way, so that the estimate is that at the end.
+    MotionChanged,
+    /// The method diverged, and its numbers are not finite.
+    Diverged,
+    /// One of the first frames that were not used.
+    FrameRejected(FrameRejection),
+    /// Frames that were not used after those that are named with their reasons.
+    MoreFramesRejected {
+        /// How many.
+        count: usize,
+        /// Their numbers.
+        frames: FrameRanges,
+    },
+    /// The pairs of lines could not be matched for certain in many frames (adaptive method).
+    AmbiguousCorrespondence {
+        /// How many.
+        ambiguous: usize,
+        /// Of so many.
+        matched: usize,
+    },
     /// The run is shorter than the adaptive law needs, or its parameters still drift.
-    MayNotHaveSettled { seconds: f64 },
-    /// The outline turned too far from frame to frame.
-    LinesNotFollowed { skipped: usize, intervals: usize },
-    /// The parameters of an affine motion are biased.
+    MayNotHaveSettled {
+        /// Length of the run in seconds.
+        seconds: f64,
+    },
+    /// The outline turned too far from frame to frame (adaptive method).
+    LinesNotFollowed {
+        /// Over so many intervals between frames.
+        skipped: usize,
+        /// Of so many.
+        intervals: usize,
+    },
+    /// The parameters of an affine motion are biased (adaptive method).
     AffineBias,
+}
+
+impl Warning {
+    /// A name that stays the same from version to version.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::PointsOutOfOrder { .. } => "points_out_of_order",
+            Self::NotObservable { .. } => "not_observable",
+            Self::RotationNotObservable { .. } => "rotation_not_observable",
+            Self::Lost => "lost",
+            Self::Reacquiring { .. } => "reacquiring",
+            Self::Restarted { .. } => "restarted",
+            Self::FramesRejected { .. } => "frames_rejected",
+            Self::Ambiguous(_) => "ambiguous",
+            Self::MotionChanged => "motion_changed",
+            Self::Diverged => "diverged",
+            Self::FrameRejected(_) => "frame_rejected",
+            Self::MoreFramesRejected { .. } => "more_frames_rejected",
+            Self::AmbiguousCorrespondence { .. } => "ambiguous_correspondence",
+            Self::MayNotHaveSettled { .. } => "may_not_have_settled",
+            Self::LinesNotFollowed { .. } => "lines_not_followed",
+            Self::AffineBias => "affine_bias",
+        }
+    }
 }
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::PointsOutOfOrder { frame, perimeters } => write!(
+                f,
+                "frame {frame}: the points do not follow the contour (joined in the order of the rows they make a line {} \
+                 times as long as the edge of the box around them): rows must be in the order of the contour",
+                significant(*perimeters, 2)
+            ),
             Self::NotObservable { parameters } => {
+                write!(f, "not observable from these outlines: {}", parameters.join(", "))
+            }
+            Self::RotationNotObservable { parameters } => {
                 write!(f, "rotation is not observable from these outlines; unknown: {}", parameters.join(", "))
             }
+            Self::Lost => f.write_str("the object was lost at the end"),
+            Self::Reacquiring { last_known } => write!(
+                f,
+                "the object was looked for again at the end; this is its motion at {} s",
+                significant(*last_known, 4)
+            ),
+            Self::Restarted { times } => write!(f, "given up and begun anew {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
+            Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
+            Self::MotionChanged => f.write_str("the motion changed on the way: these are its values at the end"),
+            Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
+            Self::FrameRejected(rejection) => write!(f, "rejected: {rejection}"),
+            Self::MoreFramesRejected { count, frames } => write!(f, "rejected: {count} more frame(s), {frames}"),
             Self::AmbiguousCorrespondence { ambiguous, matched } => write!(
                 f,
                 "lines matched ambiguously in {ambiguous} of {matched} frames: \
@@ -43,4 +156,16 @@ impl fmt::Display for Warning {
             ),
         }
     }
+}
+
+/// In degrees, positive where omega is.
+fn write_ambiguity(f: &mut fmt::Formatter<'_>, ambiguity: &Ambiguity) -> fmt::Result {
+    let as_omega = |anticlockwise: f64| -anticlockwise.to_degrees();
+    let rivals: Vec<String> = ambiguity.rival_turns.iter().map(|turn| format!("{:.1}", as_omega(*turn))).collect();
+    write!(
+        f,
+        "ambiguous: another turn explains the outlines as well: {} instead of {:.1} degrees from one frame to the next",
+        rivals.join(" or "),
+        as_omega(ambiguity.turn)
+    )
 }

@@ -3,7 +3,7 @@ mod common;
 
 use common::{identified, rigid_errors, seconds};
 use freeform_motion::{
-    Pipeline, PipelineSettings,
+    Pipeline, PipelineSettings, Warning,
     identify::AdaptiveSettings,
     outline_io::read_shape,
     riccati::{AffineMotion, MotionModel, RigidMotion},
@@ -22,7 +22,7 @@ fn the_motions_of_the_paper_are_found_within_three_percent_of_omega_and_five_of_
         println!("{}: omega {:.2} %, b {:.2} %", experiment.title, 100.0 * omega, 100.0 * b);
         assert!(omega < LIMITS.0 && b < LIMITS.1, "{}: omega {omega}, b {b}", experiment.title);
         assert_eq!(pipeline.frames_rejected(), 0);
-        assert_eq!(pipeline.warnings(), Vec::<String>::new());
+        assert_eq!(pipeline.warnings(), []);
     }
 }
 
@@ -73,7 +73,7 @@ fn an_affine_motion_is_found_roughly() {
     let error: f64 = found.iter().zip(truth).map(|(value, true_value)| (value - true_value).powi(2)).sum();
     let size: f64 = truth.iter().map(|value| value * value).sum();
     assert!(error < 0.2 * size, "{found:?}");
-    assert!(pipeline.warnings().iter().any(|warning| warning.contains("biased")), "{:?}", pipeline.warnings());
+    assert!(pipeline.warnings().contains(&Warning::AffineBias), "{:?}", pipeline.warnings());
     let turn = 0.5 * (found[1] - found[2]);
     assert!((turn / 1.45 - 1.0).abs() < 0.15, "mean turn {turn}");
 }

@@ -1,62 +1,10 @@
 //! Pictures that gave no outline.
-use std::mem::{Discriminant, discriminant};
-use std::rc::Rc;
+use freeform_motion::tracker::FrameRanges;
 
-use freeform_motion::outline_io::{PictureErrorKind, TraceError};
-
-use crate::failure::Failure;
-use crate::frame_ranges::FrameRanges;
-use crate::input::SeenIn;
+use crate::seen::{Missing, MissingKind};
 
 /// Pictures kept with their reasons.
 const PICTURES_KEPT: usize = 1000;
-
-/// A picture without an outline.
-#[derive(Debug)]
-pub(crate) struct Missing {
-    /// Its number in the sequence.
-    pub(crate) frame: u64,
-    pub(crate) reason: String,
-    /// What may help, where it is known.
-    pub(crate) hint: Option<&'static str>,
-    pub(crate) kind: MissingKind,
-    /// The picture, if it could be read.
-    pub(crate) seen_in: Option<Rc<SeenIn>>,
-}
-
-/// What kind of reason it is, whatever the numbers in it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum MissingKind {
-    Unreadable(Discriminant<PictureErrorKind>),
-    NothingFound(Discriminant<TraceError>),
-}
-
-impl From<&PictureErrorKind> for MissingKind {
-    fn from(kind: &PictureErrorKind) -> Self {
-        Self::Unreadable(discriminant(kind))
-    }
-}
-
-impl From<&TraceError> for MissingKind {
-    fn from(error: &TraceError) -> Self {
-        Self::NothingFound(discriminant(error))
-    }
-}
-
-impl Missing {
-    /// The reason, and what may help.
-    fn advice(&self) -> String {
-        self.hint.map_or_else(|| self.reason.clone(), |hint| format!("{}; {hint}", self.reason))
-    }
-
-    /// Why nothing was found, where this is all there is.
-    pub(crate) fn into_failure(self) -> Failure {
-        match self.seen_in {
-            Some(_) => Failure::no_result(self.advice()),
-            None => Failure::unusable(self.reason),
-        }
-    }
-}
 
 /// The pictures left out so far, with their reasons.
 #[derive(Debug, Default)]
@@ -120,6 +68,8 @@ impl MissingWarnings {
 
 #[cfg(test)]
 mod tests {
+    use freeform_motion::outline_io::TraceError;
+
     use super::*;
 
     fn missing(frame: u64, error: TraceError) -> Missing {

@@ -2,6 +2,9 @@ use thiserror::Error;
 
 use crate::degree::Degree;
 
+/// Largest absolute coordinate accepted, so that squares never overflow.
+pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
+
 /// Why a list of points is not an outline.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum OutlineError {
@@ -20,7 +23,7 @@ pub enum OutlineError {
         index: usize,
     },
     /// A coordinate is so large that its square would overflow.
-    #[error("point {index} has the coordinate {value:e}, beyond {limit:e}", limit = crate::outline::COORDINATE_LIMIT)]
+    #[error("point {index} has the coordinate {value:e}, beyond {limit:e}", limit = COORDINATE_LIMIT)]
     TooLarge {
         /// Position of the point in the list, counted from 0.
         index: usize,

@@ -1,10 +1,7 @@
 use nalgebra::{Affine2, Matrix2, Point2, Vector2};
 
-use crate::error::OutlineError;
+use crate::error::{COORDINATE_LIMIT, OutlineError};
 use crate::rectangle::Rectangle;
-
-/// Largest absolute coordinate accepted, so that squares never overflow.
-pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
 
 /// Two principal radii whose ratio is at most this are taken for points on one line.
 const COLLINEAR_RATIO: f64 = 1e-9;

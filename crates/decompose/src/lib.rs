@@ -43,7 +43,6 @@ mod related_point;
 mod roots;
 mod rotation_chart;
 
-pub use companion::companion_roots;
 pub use condition::Condition;
 pub use correspondence::{Correspondence, Criterion, MAX_PAIRS, ORDERING_MARGIN};
 pub use decomposition::Decomposition;
@@ -51,7 +50,7 @@ pub use error::{CorrespondenceError, DecompositionError, RootError};
 pub use invariants::AffineInvariants;
 pub use line::Line;
 pub use related_point::{RelatedPoint, RelatedPoints};
-pub use roots::{Roots, binary_form_roots};
+pub use roots::{Roots, binary_form_roots, companion_roots};
 pub use rotation_chart::{from_rotation_chart, rotation_chart};
 
 #[cfg(doctest)]

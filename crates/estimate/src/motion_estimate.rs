@@ -87,6 +87,21 @@ impl MotionEstimate {
         self.model.generator(self.values())
     }
 
+    /// Whether every number that is stated is finite: not where an estimator has diverged.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let is_finite = |number: Option<f64>| number.is_none_or(f64::is_finite);
+        self.parameters().all(|p| is_finite(p.value) && is_finite(p.standard_deviation))
+    }
+
+    /// The generator A where all of it is known; `None` where a parameter is unobservable or an entry not finite.
+    #[must_use]
+    pub fn known_generator(&self) -> Option<Matrix3<f64>> {
+        let generator = self.generator();
+        let is_known = self.parameters().all(|p| p.value.is_some()) && generator.iter().all(|a| a.is_finite());
+        is_known.then_some(generator)
+    }
+
     /// The same motion in other coordinates: those that `map`, a scaling and a shift, takes the present ones to.
     ///
     /// # Panics

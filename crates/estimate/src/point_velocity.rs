@@ -1,4 +1,4 @@
-use freeform_riccati::map_point;
+use freeform_riccati::{CameraScale, map_point};
 use nalgebra::{Matrix2, Matrix2xX, Matrix3, Point2, Vector2, Vector3};
 
 use crate::motion_state::MotionState;
@@ -19,6 +19,23 @@ impl PointVelocity {
     #[must_use]
     pub fn standard_deviations(&self) -> Vector2<f64> {
         self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt())
+    }
+
+    /// As it is in space, seen by a scaled orthographic camera: point and velocity divided by f/Z0.
+    #[must_use]
+    pub fn in_space(self, camera: CameraScale) -> Self {
+        let per_length = 1.0 / camera.value();
+        Self {
+            point: self.point * per_length,
+            velocity: self.velocity * per_length,
+            covariance: self.covariance * (per_length * per_length),
+        }
+    }
+
+    /// Whether every number is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.point.iter().chain(&self.velocity).chain(&self.covariance).copied().all(f64::is_finite)
     }
 }
 

@@ -40,6 +40,8 @@
 //! ```
 mod batch;
 mod belief;
+#[cfg(test)]
+mod dense_filter;
 mod map;
 mod measurement;
 mod prediction;

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use nalgebra::Point2;
 
-use crate::csv_columns::{Column, Columns, Role};
+use crate::column::Column;
+use crate::csv_columns::{Columns, Role};
 use crate::csv_field::{frame_number, number, text};
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind};

@@ -4,7 +4,8 @@ use std::io;
 use freeform_curve_fit::OutlineError;
 use thiserror::Error;
 
-use crate::csv_columns::Column;
+use crate::column::Column;
+use crate::file_name::write_name;
 use crate::picture_error::{PictureError, TraceError};
 
 /// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40` or `name`.
@@ -31,14 +32,6 @@ impl fmt::Display for Place {
             None => Ok(()),
         }
     }
-}
-
-/// Writes a file's name. It may hold line breaks; a message must stay one line.
-pub(crate) fn write_name(f: &mut fmt::Formatter<'_>, name: &str) -> fmt::Result {
-    name.chars().try_for_each(|character| match character.is_control() {
-        true => write!(f, "{}", character.escape_default()),
-        false => write!(f, "{character}"),
-    })
 }
 
 /// Outlines could not be read: where and why. Displays as one line.

@@ -5,7 +5,7 @@ use freeform_curve_fit::OutlineError;
 use image::ImageError;
 use thiserror::Error;
 
-use crate::error::write_name;
+use crate::file_name::write_name;
 
 /// A picture could not be read. Displays as one line: file, frame where the file has several, and reason.
 #[derive(Debug, Error)]

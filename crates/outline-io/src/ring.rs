@@ -1,12 +1,11 @@
 use image::GrayImage;
 
 use crate::basins::{Basin, basins};
+use crate::contrast::{Contrast, signal};
 use crate::field::Field;
 use crate::morphology::{dilated, eroded};
 use crate::object_mask::fill_holes;
 use crate::picture_error::TraceError;
-use crate::threshold::signal;
-use crate::trace_settings::Contrast;
 
 /// Widest ring expected where none is given, as a share of the shorter side of the picture.
 const WIDTH_SHARE: f64 = 1.0 / 60.0;

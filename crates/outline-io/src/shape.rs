@@ -5,7 +5,8 @@ use std::path::Path;
 use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
-use crate::csv_columns::{Column, Columns, require};
+use crate::column::Column;
+use crate::csv_columns::{Columns, require};
 use crate::csv_field::number;
 use crate::csv_reader::OutlineReader;
 use crate::csv_rows::Rows;

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Args, Command, ValueEnum};
-use freeform_motion::curve_fit::Degree;
+use freeform_motion::TrackerSettings;
+use freeform_motion::curve_fit::{Degree, FitSettings};
 use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
+use freeform_motion::tracker::{Method, MethodSettings};
 
 use super::pictures::{PictureOptions, picture_inputs};
 use super::values::{camera_scale, degree, motion};
@@ -152,6 +154,26 @@ pub(crate) struct TrackOptions {
     pub(crate) scale: Option<CameraScale>,
 }
 
+impl TrackOptions {
+    /// What they ask of a tracker.
+    pub(crate) fn tracker_settings(&self) -> TrackerSettings {
+        let settings = TrackerSettings::new(self.method.into(), self.motion.model());
+        let method = match (settings.method, self.degree) {
+            (MethodSettings::Adaptive(mut settings), Some(degree)) => {
+                settings.fit.degree = degree;
+                MethodSettings::Adaptive(settings)
+            }
+            (method, _) => method,
+        };
+        TrackerSettings { method, scale: self.scale }
+    }
+
+    /// Degree of the curve that is drawn where the method fits none.
+    pub(crate) fn degree_drawn(&self) -> Degree {
+        self.degree.unwrap_or(FitSettings::default().degree)
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MotionChoice {
     /// omega, b1, b2
@@ -180,11 +202,11 @@ pub(crate) enum IdentifyMethod {
     Adaptive,
 }
 
-impl IdentifyMethod {
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Filter => "filter",
-            Self::Adaptive => "adaptive",
+impl From<IdentifyMethod> for Method {
+    fn from(method: IdentifyMethod) -> Self {
+        match method {
+            IdentifyMethod::Filter => Self::Filter,
+            IdentifyMethod::Adaptive => Self::Adaptive,
         }
     }
 }

@@ -1,55 +1,16 @@
 use std::io;
 
-use freeform_motion::curve_fit::{Fit, Fitter, Outline};
-use freeform_motion::decompose::{AffineInvariants, Decomposition, DecompositionError, RelatedPoints};
-use freeform_motion::outline_io::OutlineFrame;
-use nalgebra::Point2;
+use freeform_motion::curve_fit::{Fitter, Outline};
+use freeform_motion::tracker::FrameRanges;
 
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
-use crate::frame_ranges::FrameRanges;
-use crate::input::{Input, Item};
-use crate::left_out::{Missing, MissingWarnings};
+use crate::fitted_outline::FittedOutline;
+use crate::input::Input;
+use crate::left_out::MissingWarnings;
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
-
-/// A curve fitted to one outline, and what it is made of.
-#[derive(Debug, Clone)]
-pub(crate) struct FittedOutline {
-    pub(crate) object: String,
-    pub(crate) frame: u64,
-    pub(crate) time: f64,
-    pub(crate) fit: Fit,
-    /// In image coordinates.
-    pub(crate) parts: Result<Parts, DecompositionError>,
-    /// Middles of the parts of the curve that lie beside the outline, where they have been looked for.
-    pub(crate) stray_parts: Vec<Point2<f64>>,
-}
-
-/// What a decomposition gives.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Parts {
-    pub(crate) decomposition: Decomposition,
-    /// With the values of the monic polynomial in image coordinates.
-    pub(crate) related_points: RelatedPoints,
-    pub(crate) invariants: Option<AffineInvariants>,
-}
-
-impl FittedOutline {
-    /// The curve of one frame of one object.
-    pub(crate) fn new(frame: &OutlineFrame, fit: Fit) -> Self {
-        // In working coordinates, where nothing is lost to rounding, and then moved.
-        let parts = Decomposition::of(fit.working()).and_then(|working| {
-            let image_from_working = fit.normalisation().image_from_working();
-            let decomposition = working.moved(&image_from_working)?;
-            let n = working.degree().value();
-            let factor = working.coefficient(n) / decomposition.coefficient(n);
-            let related_points = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
-            Ok(Parts { decomposition, related_points, invariants: AffineInvariants::of(&working) })
-        });
-        Self { object: frame.object.clone(), frame: frame.frame, time: frame.time, fit, parts, stray_parts: Vec::new() }
-    }
-}
+use crate::seen::{Item, Missing};
 
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
@@ -71,11 +32,11 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         progress.advance();
         let frame = match item {
             Ok(Item::Outline(frame, _)) => frame,
-            Ok(Item::Rejected { reason, frame, .. }) => {
+            Ok(Item::NoOutline { reason, frame, .. }) => {
                 reasons.extend(Some(reason).filter(|_| is_wanted(frame)));
                 continue;
             }
-            Ok(Item::Missing(missing)) => {
+            Ok(Item::Gap(missing)) => {
                 if is_wanted(missing.frame) {
                     reasons.extend(warnings.take(&missing));
                     first_missing.get_or_insert(missing);

@@ -5,12 +5,13 @@ use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
+use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
+use freeform_motion::{Tracker, Warning};
 
-use super::command_line;
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
-use crate::identifier::{filter_settings, pipeline_settings};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::LeftOut;
@@ -21,14 +22,12 @@ use crate::output::{
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
-use crate::reader::Pace;
-use crate::tracking::{Event, ObjectResult, Observation, Tracking};
-use crate::trajectory::Trajectory;
+use crate::reader::{Event, Pace, follow};
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
-    let mut tracking = Tracking::new(&args.options)?;
+    let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
     let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
@@ -43,13 +42,13 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let mut left_out = LeftOut::default();
-    let failure = tracking.read(&mut input, Pace::Ahead, args.quiet, |event| {
+    let failure = follow(&mut tracker, &mut input, Pace::Ahead, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
-            overlay.take(&event)?;
+            overlay.take(event)?;
         }
         match event {
-            Event::Observed { observation, frame, .. } => files.take(observation, frame),
-            Event::Missing(missing) => {
+            Event::Object(observation, seen) => files.take(observation, seen.as_ref().map(|(frame, _)| frame)),
+            Event::Gap(missing) => {
                 left_out.take(missing);
                 Ok(())
             }
@@ -59,7 +58,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if let Some(overlay) = overlay {
         overlay.finish()?;
     }
-    let results = tracking.results();
+    let results = tracker.results();
     let is_found = results.iter().any(|result| result.estimate.is_some());
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
     let b = match input.pictures() {
@@ -92,12 +91,13 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
     } else {
         // The failure has the other reasons.
-        for (object, warning) in tracking.out_of_order().filter(|_| !args.quiet) {
-            warn(&format!("object {object}: {warning}"));
+        for result in results.iter().filter(|_| !args.quiet) {
+            let order = result.warnings.iter().filter(|warning| matches!(warning, Warning::PointsOutOfOrder { .. }));
+            order.for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
         Ok(())
     };
-    files.finish(&tracking, truth.as_ref(), &results)?;
+    files.finish(&tracker, truth.as_ref(), &results)?;
     printed?;
     reported?;
     failure.map_or(Ok(()), Err)
@@ -156,12 +156,7 @@ impl<'a> Files<'a> {
     }
 
     /// Puts the files in their places; those that there is nothing to put into are not written.
-    fn finish(
-        self,
-        tracking: &Tracking,
-        truth: Option<&AffineMotion>,
-        results: &[ObjectResult],
-    ) -> Result<(), Failure> {
+    fn finish(self, tracker: &Tracker, truth: Option<&AffineMotion>, results: &[ObjectResult]) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
         let not_written = |options: &[(&str, bool)], reason: &str| {
@@ -180,12 +175,13 @@ impl<'a> Files<'a> {
             trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
         }
         if let Some((path, mut file, mut trajectory)) = trajectory {
-            if args.smooth && tracking.motion_changed() {
-                warn(
-                    "--smooth: the motion changed on the way, which the smoother takes for constant; the poses are as filtered",
-                );
-            } else if args.smooth {
-                trajectory.smooth(&filter_settings(&args.options).process_noise).map_err(Failure::unusable)?;
+            if args.smooth {
+                match trajectory.smooth(tracker) {
+                    Err(changed @ SmoothingError::MotionChanged) => {
+                        warn(&format!("--smooth: {changed}; the poses are as filtered"));
+                    }
+                    smoothed => smoothed.map_err(Failure::unusable)?,
+                }
             }
             let written = write_trajectory(&mut file, &trajectory, model, args.options.scale);
             written.map_err(|error| file_failure(path, &error))?;
@@ -233,7 +229,8 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
             "{name}: no motion of object {object:?}: {used} frame(s), at least 2 are needed"
         ));
     }
-    match first.first_rejection.as_ref().or(first.warnings.first()) {
+    let rejection = first.first_rejection.as_ref().map(ToString::to_string);
+    match rejection.or_else(|| first.warnings.first().map(ToString::to_string)) {
         Some(reason) => Failure::no_result(format_args!(
             "{name}: no motion of object {object:?}: {frames_rejected} of {frames} frame(s) rejected, {reason}"
         )),
@@ -246,19 +243,16 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
 /// The settings as a report lists them.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
     let scale = options.scale.map_or_else(|| "none: b in the image".to_owned(), |scale| scale.to_string());
-    let mut listed = vec![
-        ("Input", input.to_owned()),
-        ("Motion model", options.motion.model().to_string()),
-        ("Method", options.method.name().to_owned()),
-    ];
-    match options.method {
-        IdentifyMethod::Filter => {
-            let FilterSettings { smallest_agreement, patience, .. } = filter_settings(options);
+    let mut listed = vec![("Input", input.to_owned()), ("Motion model", options.motion.model().to_string())];
+    let settings = options.tracker_settings();
+    listed.push(("Method", settings.method().to_string()));
+    match settings.method {
+        MethodSettings::Filter(FilterSettings { smallest_agreement, patience, .. }) => {
             listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
             listed.push(("Searched for anew", format!("after {patience} rejected frames")));
-            listed.push(("Degree of the curve drawn", pipeline_settings(options).fit.degree.to_string()));
+            listed.push(("Degree of the curve drawn", options.degree_drawn().to_string()));
         }
-        IdentifyMethod::Adaptive => listed.extend(fit_settings(&pipeline_settings(options).fit)),
+        MethodSettings::Adaptive(settings) => listed.extend(fit_settings(&settings.fit)),
     }
     listed.push(("Camera scale f/Z0", scale));
     listed

@@ -1,14 +1,13 @@
 use freeform_experiments::figure::{Curve, Look, Panel};
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
-use freeform_motion::estimate::ParameterEstimate;
+use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
 
 use super::number::short;
-use crate::commands::FittedOutline;
+use crate::fitted_outline::FittedOutline;
 use crate::history::History;
 use crate::plot::stacked_svg;
-use crate::tracking::Estimate;
 
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
@@ -149,7 +148,7 @@ impl History {
 
     /// What was identified of a parameter, with a band where its standard deviation is known; both with gaps where it was not.
     fn curves(&self, parameter: usize) -> Vec<Curve> {
-        let found = |estimate: &Estimate| estimate.parameters().nth(parameter).and_then(|p| p.value.map(|_| p));
+        let found = |estimate: &MotionEstimate| estimate.parameters().nth(parameter).and_then(|p| p.value.map(|_| p));
         let estimates = self.estimates.iter().map(|(time, estimate)| (*time, estimate.as_ref().and_then(found)));
         let estimates: Vec<_> = estimates.collect();
         let (mut runs, mut band) = (Vec::new(), Vec::new());
@@ -175,8 +174,6 @@ impl History {
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::estimate::MotionEstimate;
-
     use super::*;
 
     #[test]
@@ -186,7 +183,7 @@ mod tests {
             let found = if frame == 2 { estimate.with_unobservable(0) } else { estimate };
             // Nothing at all in the first frame of all, and while the object is lost.
             let is_lost = frame == 0 || frame == 5;
-            (f64::from(frame), Estimate::of(found, None).filter(|_| !is_lost))
+            (f64::from(frame), (!is_lost).then_some(found))
         });
         let mut history = History::of("0".to_owned());
         history.estimates = estimates.collect();

@@ -1,12 +1,13 @@
 use std::io::{self, Write};
 
 use freeform_motion::riccati::{AffineMotion, ParameterKind};
+use freeform_motion::significant;
+use freeform_motion::tracker::ObjectResult;
 
 use super::aligned::write_aligned;
-use super::number::{significant, with_deviation};
+use super::number::with_deviation;
 use super::velocity::{VELOCITY_NAMES, meaning_of_v};
 use crate::meaning_of_b::MeaningOfB;
-use crate::tracking::ObjectResult;
 
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
@@ -100,41 +101,39 @@ pub(crate) fn write_identify_table(
 #[cfg(test)]
 mod tests {
     use freeform_motion::estimate::{MotionEstimate, PointVelocity};
+    use freeform_motion::outline_filter::Ambiguity;
     use freeform_motion::riccati::{MotionModel, RigidMotion};
+    use freeform_motion::tracker::Method;
     use nalgebra::{Matrix2, Point2, Vector2};
 
     use super::*;
-    use crate::args::IdentifyMethod;
-    use crate::tracking::Estimate;
-    use crate::turns::Turns;
 
     #[test]
     fn the_table_has_a_line_per_parameter_and_says_what_is_not_observable() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.31, 0.4], Some(&[0.001, 0.0123, 0.01]));
-        let result = |estimate: MotionEstimate| ObjectResult {
+        let result = |estimate: Option<MotionEstimate>| ObjectResult {
             object: "0".to_owned(),
-            method: IdentifyMethod::Adaptive,
+            method: Method::Adaptive,
             motion: MotionModel::Rigid,
             frames: 120,
             frames_rejected: 3,
             first_rejection: None,
-            estimate: Estimate::of(estimate, None),
+            estimate,
             velocity: None,
             ambiguity: None,
             warnings: Vec::new(),
         };
-        let diverged = MotionEstimate::new(MotionModel::Rigid, &[f64::NAN, 0.0, 0.0], None);
         let velocity = PointVelocity {
             point: Point2::new(1.5, -2.0),
             velocity: Vector2::new(0.3, -0.456_78),
             covariance: Matrix2::new(1e-6, 0.0, 0.0, 4e-6),
         };
-        let turns = Turns { turn: 50.0, rival_turns: vec![-40.0], parameters: vec!["omega"] };
+        let ambiguity = Ambiguity { turn: -0.9, rival_turns: vec![0.7], parameters: vec!["omega"] };
         let results = [
-            ObjectResult { velocity: Some(velocity), ..result(estimate) },
-            result(estimate.with_unobservable(0)),
-            ObjectResult { ambiguity: Some(turns), ..result(estimate.with_unobservable(0)) },
-            result(diverged),
+            ObjectResult { velocity: Some(velocity), ..result(Some(estimate)) },
+            result(Some(estimate.with_unobservable(0))),
+            ObjectResult { ambiguity: Some(ambiguity), ..result(Some(estimate.with_unobservable(0))) },
+            result(None),
         ];
         let truth = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 }.into();
         let mut text = Vec::new();

@@ -30,6 +30,6 @@ pub(crate) use fit_table::write_fit_table;
 pub(crate) use html::{Findings, Report, write_report};
 pub(crate) use identify_json::{track_line, write_identify_json};
 pub(crate) use identify_table::write_identify_table;
-pub(crate) use number::{short, significant};
+pub(crate) use number::short;
 pub(crate) use page::{write_page, write_section_files};
 pub(crate) use trajectory_csv::write_trajectory;

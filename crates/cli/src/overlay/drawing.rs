@@ -7,10 +7,10 @@ use nalgebra::{Matrix3, Point2};
 use super::canvas::Canvas;
 use super::lettering::write_words;
 use super::target::Target;
-use crate::commands::Parts;
 use crate::failure::Failure;
-use crate::input::SeenIn;
+use crate::fitted_outline::Parts;
 use crate::output::refuse_drawing_beside;
+use crate::seen::SeenIn;
 
 const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
 const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);

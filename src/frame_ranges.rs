@@ -4,15 +4,22 @@ use std::fmt;
 /// Runs kept; what comes after them is only counted, so that an endless stream takes no more memory.
 const RUNS_KEPT: usize = 100;
 
-/// Numbers in rising order, as `1, 5-7`.
+/// Numbers of frames in rising order, written as `1, 5-7`.
+///
+/// ```
+/// use freeform_motion::tracker::FrameRanges;
+///
+/// assert_eq!(FrameRanges::from_iter([1, 5, 6, 7]).to_string(), "1, 5-7");
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct FrameRanges {
+pub struct FrameRanges {
     runs: Vec<(u64, u64)>,
     beyond: u64,
 }
 
 impl FrameRanges {
-    pub(crate) fn add(&mut self, number: u64) {
+    /// Adds a number that is not less than those before it.
+    pub fn add(&mut self, number: u64) {
         let is_full = self.runs.len() == RUNS_KEPT;
         match self.runs.last_mut() {
             Some((_, last)) if self.beyond == 0 && *last == number => {}
@@ -22,7 +29,9 @@ impl FrameRanges {
         }
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
+    /// Whether there is no number.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.runs.is_empty()
     }
 }

@@ -1,9 +1,9 @@
 //! Whether the points of an outline follow each other along the contour.
-use freeform_motion::curve_fit::{Outline, Piece};
-use freeform_motion::outline_io::OutlineFrame;
+use freeform_curve_fit::{Outline, Piece};
+use freeform_outline_io::OutlineFrame;
 use nalgebra::{Point2, distance};
 
-use crate::output::significant;
+use crate::Warning;
 
 /// Frames of an object that are looked at.
 const FRAMES: usize = 5;
@@ -20,32 +20,27 @@ const LONG_PER_POINT: f64 = 0.08;
 const LONG_IF_SORTED: f64 = 2.0;
 
 /// Looks at the first frames of an object, whose rows should be in the order of the contour.
-#[derive(Debug, Default)]
-pub(crate) struct ContourOrder {
+#[derive(Debug, Clone, Default)]
+pub(super) struct ContourOrder {
     seen: usize,
-    warning: Option<String>,
+    warning: Option<Warning>,
 }
 
 impl ContourOrder {
     /// Looks at a frame; returns the warning with the frame that first gives reason for it.
-    pub(crate) fn look_at(&mut self, frame: &OutlineFrame) -> Option<&str> {
+    pub(super) fn look_at(&mut self, frame: &OutlineFrame) -> Option<&Warning> {
         if self.warning.is_some() || self.seen == FRAMES {
             return None;
         }
         self.seen += 1;
-        let times = hops(&frame.outline)?;
-        let number = frame.frame;
-        self.warning = Some(format!(
-            "frame {number}: the points do not follow the contour (joined in the order of the rows they make a line {} times \
-             as long as the edge of the box around them): rows must be in the order of the contour",
-            significant(times, 2)
-        ));
+        let perimeters = hops(&frame.outline)?;
+        self.warning = Some(Warning::PointsOutOfOrder { frame: frame.frame, perimeters });
         self.warning()
     }
 
     /// What a user should know of the order, if anything.
-    pub(crate) fn warning(&self) -> Option<&str> {
-        self.warning.as_deref()
+    pub(super) fn warning(&self) -> Option<&Warning> {
+        self.warning.as_ref()
     }
 }
 
@@ -73,9 +68,9 @@ fn is_sorted(points: &[Point2<f64>]) -> bool {
 mod tests {
     use std::f64::consts::PI;
 
-    use freeform_motion::outline_io::DEFAULT_OBJECT;
-    use freeform_motion::riccati::RigidMotion;
-    use freeform_motion::sim_camera::{BuiltInShape, Camera, Occlusion, Scene, SequenceLength, Settings, Simulator};
+    use freeform_outline_io::DEFAULT_OBJECT;
+    use freeform_riccati::RigidMotion;
+    use freeform_sim_camera::{BuiltInShape, Camera, Occlusion, Scene, SequenceLength, Settings, Simulator};
     use rand::SeedableRng as _;
     use rand::seq::SliceRandom as _;
     use rand_chacha::ChaCha8Rng;
@@ -159,9 +154,11 @@ mod tests {
         };
         let mut order = ContourOrder::default();
         assert_eq!(order.look_at(&frame(0, &in_order)), None);
-        assert!(order.look_at(&frame(7, &shuffled)).is_some_and(|warning| warning.starts_with("frame 7: ")));
+        assert!(
+            order.look_at(&frame(7, &shuffled)).is_some_and(|warning| warning.to_string().starts_with("frame 7: "))
+        );
         assert_eq!(order.look_at(&frame(8, &shuffled)), None);
-        assert!(order.warning().is_some_and(|warning| warning.starts_with("frame 7: ")));
+        assert!(order.warning().is_some_and(|warning| warning.to_string().starts_with("frame 7: ")));
 
         let mut order = ContourOrder::default();
         (0..FRAMES as u64).for_each(|k| assert_eq!(order.look_at(&frame(k, &in_order)), None));

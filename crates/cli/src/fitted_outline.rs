@@ -1,0 +1,43 @@
+//! A curve fitted to one outline, and what it is made of.
+use freeform_motion::curve_fit::Fit;
+use freeform_motion::decompose::{AffineInvariants, Decomposition, DecompositionError, RelatedPoints};
+use freeform_motion::outline_io::OutlineFrame;
+use nalgebra::Point2;
+
+/// A curve fitted to one outline, and what it is made of.
+#[derive(Debug, Clone)]
+pub(crate) struct FittedOutline {
+    pub(crate) object: String,
+    pub(crate) frame: u64,
+    pub(crate) time: f64,
+    pub(crate) fit: Fit,
+    /// In image coordinates.
+    pub(crate) parts: Result<Parts, DecompositionError>,
+    /// Middles of the parts of the curve that lie beside the outline, where they have been looked for.
+    pub(crate) stray_parts: Vec<Point2<f64>>,
+}
+
+/// What a decomposition gives.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Parts {
+    pub(crate) decomposition: Decomposition,
+    /// With the values of the monic polynomial in image coordinates.
+    pub(crate) related_points: RelatedPoints,
+    pub(crate) invariants: Option<AffineInvariants>,
+}
+
+impl FittedOutline {
+    /// The curve of one frame of one object.
+    pub(crate) fn new(frame: &OutlineFrame, fit: Fit) -> Self {
+        // In working coordinates, where nothing is lost to rounding, and then moved.
+        let parts = Decomposition::of(fit.working()).and_then(|working| {
+            let image_from_working = fit.normalisation().image_from_working();
+            let decomposition = working.moved(&image_from_working)?;
+            let n = working.degree().value();
+            let factor = working.coefficient(n) / decomposition.coefficient(n);
+            let related_points = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
+            Ok(Parts { decomposition, related_points, invariants: AffineInvariants::of(&working) })
+        });
+        Self { object: frame.object.clone(), frame: frame.frame, time: frame.time, fit, parts, stray_parts: Vec::new() }
+    }
+}
