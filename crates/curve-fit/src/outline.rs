@@ -180,7 +180,7 @@ impl Outline {
         Spread::of(self.points()).scatter.trace().sqrt()
     }
 
-    /// The same outline with every point moved by an affine map of the plane.
+    /// This outline with every point moved by an affine map of the plane.
     ///
     /// # Errors
     /// The map sends the points onto one line, to one point, or beyond the accepted range.

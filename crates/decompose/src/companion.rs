@@ -4,9 +4,9 @@ use nalgebra::Complex;
 use crate::roots::{MAX_DEGREE, ScaledForm, check_form};
 use crate::{error::RootError, roots::Roots};
 
-/// The same roots as [`binary_form_roots`](crate::binary_form_roots), as eigenvalues of the companion matrix of the scaled
-/// polynomial. Slower, on the heap, and independent of the iteration: the reference that it is tested against, and what
-/// it falls back on.
+/// Roots of a binary form as eigenvalues of the companion matrix of the scaled polynomial. The result agrees with
+/// [`binary_form_roots`](crate::binary_form_roots), which is tested against this function and falls back on it. This function
+/// is slower and allocates.
 ///
 /// # Errors
 /// As [`binary_form_roots`](crate::binary_form_roots).

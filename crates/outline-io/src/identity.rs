@@ -61,7 +61,7 @@ struct Known {
 struct Difference {
     /// From the place expected, in diameters.
     distance: f64,
-    /// The same over the farthest accepted.
+    /// `distance` over the largest accepted distance.
     place: f64,
     /// Logarithm of the ratio of areas; `None` where one of them is clipped.
     growth: Option<f64>,

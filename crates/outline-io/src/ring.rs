@@ -11,7 +11,7 @@ use crate::trace_settings::Contrast;
 /// Widest ring expected where none is given, as a share of the shorter side of the picture.
 const WIDTH_SHARE: f64 = 1.0 / 60.0;
 
-/// The same, at least, in pixels.
+/// Smallest value of that width, in pixels.
 const LEAST_WIDTH: f64 = 4.0;
 
 /// Standard deviation of the smoothing before rings are looked for, in pixels.

@@ -8,7 +8,7 @@ use crate::threshold::Levels;
 /// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
 const MASK_SIGMA: f64 = 1.0;
 
-/// The same for pictures of more grey values, in pixels.
+/// Standard deviation of the smoothing of pictures with more grey values, in pixels.
 const GREY_SIGMA: f64 = 0.5;
 
 /// Largest standard deviation of the smoothing, in pixels.

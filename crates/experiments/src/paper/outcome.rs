@@ -43,7 +43,7 @@ pub(super) struct Outcome {
     /// Root mean square relative error of the rates over the end of the run; infinite, as unknown, where a frame there
     /// has no estimate.
     pub(super) rates: f64,
-    /// The same of the velocity.
+    /// As `rates`, for the velocity.
     pub(super) velocity: f64,
     /// Time in seconds from which on every frame has an estimate that is settled; infinite where there is none.
     pub(super) settled: f64,
