@@ -44,7 +44,7 @@ impl ContourOrder {
     }
 }
 
-/// Length of the way through the points over the perimeter of the box around them, where they hop about.
+/// Length of the line through the points over the perimeter of their bounding box; `None` if they follow the contour.
 fn hops(outline: &Outline) -> Option<f64> {
     let length: f64 = outline.pieces().map(|piece| way_through(&piece)).sum();
     let times = length / (2.0 * outline.bounding_box().size().sum());

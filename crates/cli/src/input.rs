@@ -32,7 +32,7 @@ pub(crate) type Item = Recorded<Option<Rc<SeenIn>>, Missing>;
 
 /// A sequence of outlines, open for reading.
 pub(crate) struct Input {
-    /// The file's name as it stands in messages.
+    /// The name of the file in messages.
     pub(crate) name: String,
     /// The motion that the head of the file says it was simulated with.
     pub(crate) truth: Option<SimulatedMotion>,
@@ -135,7 +135,7 @@ impl Iterator for Input {
     }
 }
 
-/// An outline that is none lets the reading go on, any other error ends it.
+/// Points that are not an outline are an item; any other error ends the reading.
 fn rejected(error: ReadError) -> Result<Item, Failure> {
     let reason = error.to_string();
     match error.kind {

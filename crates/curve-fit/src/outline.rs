@@ -155,7 +155,7 @@ impl Outline {
     }
 
     /// Area of the polygon through all points in order, gaps closed by straight lines: positive where they run
-    /// counter-clockwise in a y-up frame. Its sign tells on which side of an arc the inside lies.
+    /// counter-clockwise in a y-up frame. Its sign gives the side of an arc on which the inside lies.
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         signed_area(self.points())

@@ -1,6 +1,6 @@
 use nalgebra::{DMatrix, DVector};
 
-/// Below this fraction of the largest eigenvalue of the information, scaled to unit diagonal, nothing is known.
+/// Eigenvalues of the information, scaled to unit diagonal, below this fraction of the largest count as no information.
 const RANK_TOLERANCE: f64 = 1e-10;
 /// Share of a parameter in a direction without information from which on the parameter counts as unknown.
 const TOUCHED: f64 = 1e-4;

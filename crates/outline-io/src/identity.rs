@@ -34,7 +34,7 @@ pub enum Selection {
     Nearest,
     /// All, each with a name that it keeps: its place, predicted from its velocity, its area and the affine moment
     /// invariants of its shape tell it in the next frame, so that all objects together fit best. Where objects touch and are one in the picture, that one is left
-    /// out; after more than 15 frames they are forgotten and it is an object of its own.
+    /// out; after more than 15 frames they are forgotten, and the joint object counts as a new one.
     All,
 }
 

@@ -27,7 +27,7 @@ const CLEAR_SHARE: f64 = 0.5;
 /// object cuts off has more.
 const EDGE_SHARE: f64 = 0.6;
 
-/// An object that is told from the ground by a line around it only.
+/// A line around an object that otherwise looks like the background.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring {
     /// Whether the line is lighter or darker than the ground and the object.

@@ -71,7 +71,7 @@ pub struct TraceSettings {
     pub clipping: Clipping,
     /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
     pub y_up: bool,
-    /// A line around the object by whose outer edge it is told, in place of contrast, threshold and smoothing.
+    /// A line around the object, whose outer edge is traced. Replaces contrast, threshold and smoothing.
     pub ring: Option<Ring>,
     /// Height of a pixel in the length unit of the outline.
     pub pixel_size: f64,

@@ -98,7 +98,7 @@ impl Outcome {
         [percent(self.rates), percent(self.velocity), settled]
     }
 
-    /// As a caption tells it; `rates` is what the rates of its motion are called, and `end` when the run ended.
+    /// The text for a caption; `rates` is the name of the rates of the motion, `end` the time of the end of the run.
     pub(super) fn in_words(&self, rates: &str, end: f64) -> String {
         let settled = match self.settled {
             never if never.is_infinite() => format!("not settled within {end:.0} s"),
@@ -111,7 +111,7 @@ impl Outcome {
     }
 }
 
-/// What each of several methods comes to, as a caption of errors tells it.
+/// The outcomes of several methods as text, for the caption of a figure of errors.
 pub(super) fn outcomes_in_words(tracks: &[(&str, Track)], sequence: &Sequence) -> String {
     let outcome = |(name, track): &(&str, Track)| match Outcome::of(track, sequence).cells() {
         [rates, ..] if rates == "-" => format!("{name}: unknown"),
