@@ -214,7 +214,7 @@ impl Pipeline {
         Some((0..count).fold(estimate, MotionEstimate::with_unobservable))
     }
 
-    /// The identifier, for what it says beside the estimate. Its own estimate is in its own coordinates.
+    /// The identifier, for its diagnostics. Its estimate is in its own coordinates, not in those of the image.
     #[must_use]
     pub fn identifier(&self) -> &AdaptiveIdentifier {
         &self.identifier

@@ -78,7 +78,7 @@ impl Identifier {
         }
     }
 
-    /// Velocity of the middle of the object at the end, where the method tells it and it is known.
+    /// Velocity of the middle of the object at the end, if the method estimates it and it is known.
     pub(super) fn velocity(&self) -> Option<PointVelocity> {
         match self {
             Self::Filter(object) => object.filter.velocity(),

@@ -30,7 +30,7 @@ pub(super) struct TrackedObject {
 }
 
 impl TrackedObject {
-    /// One that nothing has been seen of.
+    /// A new object without frames.
     pub(super) fn new(name: String, identifier: Identifier, scale: Option<CameraScale>) -> Self {
         Self {
             name,

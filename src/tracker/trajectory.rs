@@ -1,4 +1,4 @@
-//! Where every object was in every frame.
+//! The pose of every object in every frame.
 use std::collections::HashMap;
 
 use freeform_estimate::{MotionEstimate, MotionState, PoseParameter, ProcessNoise, SmootherError, smooth};
@@ -6,7 +6,7 @@ use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{MethodSettings, Tracker, observation::Observation};
 
-/// Where every object was in every frame: one row per observation, in their order. It needs the motion filter: the adaptive method gives no poses.
+/// The pose of every object in every frame: one row per observation, in their order. It needs the motion filter: the adaptive method gives no poses.
 ///
 /// ```
 /// use freeform_motion::{Tracker, TrackerSettings};
@@ -49,7 +49,8 @@ pub struct TrajectoryRow {
 /// Pose and motion of an object in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseAndMotion {
-    /// The pose as [`MotionState::pose_parameters`] has it, but angles go on beyond half a turn from row to row of an object.
+    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are continuous from row to row of an object and may
+    /// exceed half a turn.
     pub pose: Vec<PoseParameter>,
     /// The motion.
     pub motion: MotionEstimate,
@@ -61,7 +62,7 @@ pub enum SmoothingError {
     /// The motion of an object changed.
     #[error("the motion changed, and the smoother assumes a constant one")]
     MotionChanged,
-    /// The states do not go on from each other.
+    /// The states do not form one sequence.
     #[error(transparent)]
     States(#[from] SmootherError),
 }
@@ -77,7 +78,7 @@ impl TrajectoryRow {
 }
 
 impl Trajectory {
-    /// Adds what a frame of an object gave.
+    /// Adds the observation of a frame.
     pub fn take(&mut self, observation: &Observation) {
         self.rows.push(TrajectoryRow {
             object: observation.object.clone(),

@@ -17,7 +17,7 @@ const HEAD_LIMIT: u64 = 1 << 16;
 
 /// A sequence of outlines, open for reading.
 pub(crate) struct Input {
-    /// The file's name as it stands in messages.
+    /// The name of the file in messages.
     pub(crate) name: String,
     /// The motion that the head of the file says it was simulated with.
     pub(crate) truth: Option<SimulatedMotion>,
@@ -120,7 +120,7 @@ impl Iterator for Input {
     }
 }
 
-/// An outline that is none lets the reading go on, any other error ends it.
+/// Points that are not an outline are an item; any other error ends the reading.
 fn rejected(error: ReadError) -> Result<Item, Failure> {
     let reason = error.to_string();
     match error.kind {

@@ -152,7 +152,7 @@ impl Outline {
     }
 
     /// Area of the polygon through all points in order, gaps closed by straight lines: positive where they run
-    /// counter-clockwise in a y-up frame. Its sign tells on which side of an arc the inside lies.
+    /// counter-clockwise in a y-up frame. Its sign gives the side of an arc on which the inside lies.
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         signed_area(self.points())
@@ -177,7 +177,7 @@ impl Outline {
         Spread::of(self.points()).scatter.trace().sqrt()
     }
 
-    /// The same outline with every point moved by an affine map of the plane.
+    /// This outline with every point moved by an affine map of the plane.
     ///
     /// # Errors
     /// The map sends the points onto one line, to one point, or beyond the accepted range.

@@ -100,9 +100,8 @@ pub fn binary_form_roots(coefficients: &[f64]) -> Result<Roots, RootError> {
     Ok(Roots::paired(&form, approximate))
 }
 
-/// The roots of [`binary_form_roots`] as eigenvalues of the companion matrix of the scaled
-/// polynomial. Slower, on the heap, and independent of the iteration: the reference that it is tested against, and what
-/// it falls back on.
+/// Roots of a binary form as eigenvalues of the companion matrix of the scaled polynomial. The result agrees with
+/// [`binary_form_roots`], which is tested against this function and falls back on it. This function is slower and allocates.
 ///
 /// # Errors
 /// Those of [`binary_form_roots`].

@@ -1,6 +1,6 @@
 use nalgebra::{Cholesky, Const, DMatrix, DVector, DefaultAllocator, Dim, OMatrix, OVector, allocator::Allocator};
 
-/// Below this fraction of the largest eigenvalue of the information, scaled to unit diagonal, nothing is known.
+/// Eigenvalues of the information, scaled to unit diagonal, below this fraction of the largest count as no information.
 const RANK_TOLERANCE: f64 = 1e-10;
 /// Added to a unit diagonal before it is factored.
 const ROUNDING: f64 = 1e-14;

@@ -41,7 +41,7 @@ pub enum SmootherError {
 /// use freeform_riccati::MotionModel;
 /// use nalgebra::{DMatrix, Matrix3, Point2};
 ///
-/// // Two states of an object whose second frame tells much more than its first.
+/// // Two states of an object; the second frame contains much more information than the first.
 /// let state = |time: f64, omega: f64, variance: f64| NormalisedState {
 ///     model: MotionModel::Rigid,
 ///     time,

@@ -46,7 +46,7 @@ pub struct ReadError {
 }
 
 impl ReadError {
-    /// Whether reading goes on after this error. True for an outline that is no outline (one point, all points on one
+    /// Whether reading can continue after this error. True for an outline that is no outline (one point, all points on one
     /// line): the next call returns the next outline. False for a file that does not follow the format or cannot be
     /// read: nothing after this place can be trusted, and the reader has ended.
     #[must_use]

@@ -28,7 +28,7 @@ pub struct PictureSettings {
 pub struct TracedFrame {
     /// The picture as it was read.
     pub frame: PictureFrame,
-    /// The names of the objects and their outlines, or why there are none.
+    /// The names of the objects and their outlines, or the reason for their absence.
     pub objects: Result<Vec<(u64, TracedOutline)>, TraceError>,
 }
 

@@ -17,7 +17,7 @@ use crate::picture::read_picture;
 use crate::trace::trace_mask;
 use crate::trace_settings::TraceSettings;
 
-/// Longest beginning of a file that tells a picture format.
+/// Number of bytes at the beginning of a file that identify a picture format.
 const MAGIC_LENGTH: u64 = 16;
 
 /// Reads one closed outline to use as a shape: from a picture, the outer outline of its largest object with the default

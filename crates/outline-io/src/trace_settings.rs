@@ -9,7 +9,7 @@ use crate::threshold::{Levels, Threshold};
 /// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
 const MASK_SIGMA: f64 = 1.0;
 
-/// The same for pictures of more grey values, in pixels.
+/// Standard deviation of the smoothing of pictures with more grey values, in pixels.
 const GREY_SIGMA: f64 = 0.5;
 
 /// Largest standard deviation of the smoothing, in pixels.
@@ -51,7 +51,7 @@ pub struct TraceSettings {
     pub clipping: Clipping,
     /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
     pub y_up: bool,
-    /// A line around the object by whose outer edge it is told, in place of contrast, threshold and smoothing.
+    /// A line around the object, whose outer edge is traced. Replaces contrast, threshold and smoothing.
     pub ring: Option<Ring>,
     /// Height of a pixel in the length unit of the outline.
     pub pixel_size: f64,

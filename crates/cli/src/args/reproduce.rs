@@ -51,7 +51,7 @@ pub(crate) struct ReproduceArgs {
     pub(crate) seed: u64,
 }
 
-/// What the figures of the paper may be called besides their numbers.
+/// Alternative names of the figures of the paper.
 const FIGURES: [&str; 8] = ["fig1", "fig2", "fig3", "fig4", "fig5", "fig6", "fig7", "fig8"];
 
 /// Figures and tables by their names.

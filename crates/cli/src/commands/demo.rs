@@ -148,7 +148,7 @@ impl Identification {
         Ok(observation)
     }
 
-    /// Writes the trace and the figure, and tells what a user should know.
+    /// Writes the trace and the figure, and prints the warnings.
     fn finish(self, figure: &Path, truth: &AffineMotion) -> Result<Found, Failure> {
         let Self { options, tracker, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;

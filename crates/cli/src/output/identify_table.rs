@@ -57,7 +57,7 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>
     rows
 }
 
-/// One row: a value with its standard deviation, or why there is none, and beside it the truth where that is known.
+/// One row: a value with its standard deviation, or why there is none, and the truth if it is known.
 fn row([name, unknown, unit]: [&str; 3], known: Option<(f64, Option<f64>)>, truth: Option<f64>) -> Vec<String> {
     let none = || "-".to_owned();
     let [value, deviation] = match known {

@@ -13,7 +13,7 @@ pub(super) struct Outcome {
     /// Root mean square relative error of the rates over the end of the run; infinite, as unknown, where a frame there
     /// has no estimate.
     pub(super) rates: f64,
-    /// The same of the velocity.
+    /// As `rates`, for the velocity.
     pub(super) velocity: f64,
     /// Time in seconds from which on every frame has an estimate that is settled; infinite where there is none.
     pub(super) settled: f64,
@@ -68,7 +68,7 @@ impl Outcome {
         [percent(self.rates), percent(self.velocity), settled]
     }
 
-    /// As a caption tells it; `rates` is what the rates of its motion are called, and `end` when the run ended.
+    /// The text for a caption; `rates` is the name of the rates of the motion, `end` the time of the end of the run.
     pub(super) fn in_words(&self, rates: &str, end: f64) -> String {
         let settled = match self.settled {
             never if never.is_infinite() => format!("not settled within {end:.0} s"),
@@ -81,7 +81,7 @@ impl Outcome {
     }
 }
 
-/// What each of several methods comes to, as a caption of errors tells it.
+/// The outcomes of several methods as text, for the caption of a figure of errors.
 pub(super) fn outcomes_in_words(tracks: &[(&str, Track)], sequence: &Sequence) -> String {
     let outcome = |(name, track): &(&str, Track)| match Outcome::of(track, sequence).cells() {
         [rates, ..] if rates == "-" => format!("{name}: unknown"),

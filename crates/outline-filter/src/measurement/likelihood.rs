@@ -12,7 +12,7 @@ use crate::{
 pub(crate) struct NegativeLogLikelihood {
     pub(crate) squares: f64,
     points: f64,
-    /// The same, those with correlated errors counting for more.
+    /// Number of points, with a larger weight for points with correlated errors.
     weighted: f64,
 }
 

@@ -21,7 +21,7 @@ pub(crate) struct Proposal {
     pub(crate) pose: Matrix3<f64>,
     /// Information on pose and motion with the frame, the outline given.
     pub(crate) dense: [[f64; STATE]; STATE],
-    /// The same with the offsets eliminated.
+    /// Information on pose and motion with the frame, the offsets eliminated.
     pub(crate) marginal: StateMatrix,
     /// Linearisations taken.
     pub(crate) iterations: usize,
