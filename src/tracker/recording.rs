@@ -86,8 +86,8 @@ impl Tracker {
     /// let motion = RigidMotion { omega: 1.0, b1: 0.5, b2: 0.0 };
     /// let scene = Scene::new(BuiltInShape::Bird, motion, Camera::default());
     /// let settings = Settings { length: SequenceLength::Frames(20), ..Settings::default() };
-    /// let frames = Simulator::new(scene, settings)?.frames();
-    /// let outlines = frames.zip(0..).flat_map(|(seen, frame)| {
+    /// let simulator = Simulator::new(scene, settings)?;
+    /// let outlines = simulator.frames().zip(0..).flat_map(|(seen, frame)| {
     ///     // The same bird under two names.
     ///     ["left", "right"].map(|object| OutlineFrame { frame, time: seen.time, object: object.into(), outline: seen.outline.clone() })
     /// });
