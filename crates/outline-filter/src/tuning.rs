@@ -309,3 +309,57 @@ pub(crate) mod batch {
     /// Deviations by which the mean of the rounds may still change where it has settled.
     pub(crate) const SETTLED: f64 = 0.1;
 }
+
+/// Hypotheses of dynamics.
+pub(crate) mod dynamics {
+    /// Probability of each change from one hypothesis to another in a frame.
+    pub(crate) const TRANSITION: f64 = 0.001;
+    /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.9;
+    pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.07;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.01;
+    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
+    /// twenty frames, six, two, and none.
+    pub(crate) const LEVELS: [f64; 4] = [1e-6, 1e-3, 1.0, 1e3];
+    /// Probability that an interval of 95 % leaves out.
+    pub(crate) const LEFT_OUT: f64 = 0.05;
+    /// Deviations of a pose that an acceleration which begins moves the object by in a step.
+    pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
+    /// Share of a hypothesis below which it counts for nothing.
+    pub(crate) const LEAST_SHARE: f64 = 1e-6;
+    /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
+    pub(crate) const LEAST_VARIANCE: f64 = 1e-18;
+    pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
+    /// Share by which a frame corrects the variance of a pose.
+    pub(crate) const VARIANCE_GAIN: f64 = 0.1;
+    /// What makes a measurement of the pose solvable along what it says nothing of.
+    pub(crate) const SINGULAR: f64 = 1e-9;
+    /// A hypothesis more probable than all others together.
+    pub(crate) const LIKELY: f64 = 0.5;
+    /// The object is expected where all hypotheses take it as soon as a constant generator is less probable than this...
+    pub(crate) const LEADS_FROM: f64 = 0.1;
+    /// ...until it is as probable as this.
+    pub(crate) const LEADS_UNTIL: f64 = 0.9;
+}
+
+/// Series of innovations, and what they say of deviations.
+pub(crate) mod innovations {
+    /// Innovations, in deviations, that count at most: they may be what the gate has let through.
+    pub(crate) const CLIPPED: f64 = 8.0;
+    /// Blocks that the series is kept in.
+    pub(crate) const BLOCKS: usize = 64;
+    /// Cosines that the long-run variance is told from.
+    pub(crate) const COSINES: usize = 8;
+    /// Half width of a 95 % interval of Student's distribution for eight degrees of freedom over that of a normal one, 2.306 / 1.960.
+    pub(crate) const STUDENT: f64 = 1.177;
+    /// Fewest frames that say something of dependence.
+    pub(crate) const FEWEST_FRAMES: usize = 5;
+    /// Frames that the assumption of unit variance is worth.
+    pub(crate) const PRIOR_FRAMES: f64 = 8.0;
+    /// Deviations of its estimate beyond which a correlation of neighbours is one.
+    pub(crate) const CORRELATED: f64 = 2.5;
+    /// Fewest frames that say something of that.
+    pub(crate) const FEWEST_CORRELATED: usize = 10;
+    /// Correlation of neighbours that is reckoned with at most.
+    pub(crate) const LARGEST_CORRELATION: f64 = 0.98;
+}

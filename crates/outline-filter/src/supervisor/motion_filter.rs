@@ -6,12 +6,13 @@ use nalgebra::{DMatrix, Point2, Projective2};
 use super::{
     error::FilterError,
     hypotheses::Hypotheses,
-    motion_change::MotionChange,
+    motion_change::MotionHistory,
     settings::FilterSettings,
     tracking::{Known, advance},
     window::InitialisationWindow,
 };
 use crate::{
+    dynamics::{DynamicsFilter, DynamicsWeights, Summary},
     measurement::Frame,
     search::Landmarks,
     track::{Outcome, Track},
@@ -108,7 +109,7 @@ pub struct MotionFilter {
     /// Time that the track stands at.
     pub(super) track_time: f64,
     counts: Counts,
-    pub(super) change: MotionChange,
+    pub(super) history: MotionHistory,
     /// Whether the motion of the present track has ever been seen to change.
     pub(super) motion_changed: bool,
     pub(super) hypotheses: Hypotheses,
@@ -131,7 +132,7 @@ impl MotionFilter {
             last_time: f64::NEG_INFINITY,
             track_time: 0.0,
             counts: Counts::default(),
-            change: MotionChange::default(),
+            history: MotionHistory::default(),
             motion_changed: false,
             hypotheses: Hypotheses::default(),
             window: InitialisationWindow::default(),
@@ -151,7 +152,7 @@ impl MotionFilter {
             return Ok(FilterStep { time, phase: self.phase, measurement: None, rejection: None });
         }
         self.last_time = time;
-        let was_changing = self.change.variances().is_some();
+        let was_changing = self.history.is_changing();
         let outcome = match self.phase {
             Phase::Tracking => self.follow(time, outline),
             _ => self.acquire(time, outline),
@@ -161,7 +162,7 @@ impl MotionFilter {
             self.counts.accepted += 1;
             self.counts.taken += 1;
             self.counts.rejected_in_a_row = 0;
-            let changes = !was_changing && self.change.variances().is_some();
+            let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
             if self.track.as_mut().is_some_and(Track::may_show_turn) {
                 self.begin_with_turn(outline);
@@ -192,7 +193,7 @@ impl MotionFilter {
     pub(super) fn begin_window(&mut self, time: f64, outline: &Outline, track: &Track) {
         self.window = InitialisationWindow::begin(time, outline, track);
         self.hypotheses = Hypotheses::default();
-        (self.change, self.motion_changed) = (MotionChange::default(), false);
+        (self.history, self.motion_changed) = (MotionHistory::default(), false);
         (self.counts.taken, self.counts.refused) = (1, 0);
     }
 
@@ -220,10 +221,32 @@ impl MotionFilter {
         let known = if self.counts.rejected_in_a_row > 0 { Known::OthersRejected } else { Known::Nothing };
         let (frame, comparison) = (&mut self.frame, self.hypotheses.comparison());
         frame.load(outline, track.reference());
-        let outcome = advance(&self.settings, (track, frame), &mut self.change, seconds, known, comparison);
-        self.motion_changed |= self.change.is_seen();
+        let outcome = advance(&self.settings, (track, frame), &mut self.history, seconds, known, comparison);
+        self.motion_changed |= self.history.is_changing();
         track.take_spread(outcome.measurement.spread);
-        Some(self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds))
+        let turn = self.hypotheses.taken();
+        let outcome = self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
+        if self.hypotheses.taken() != turn {
+            self.history.dynamics = None;
+        }
+        Some(outcome)
+    }
+
+    /// Pose and motion with their covariance, the hypotheses of dynamics taken together.
+    fn summary(&self) -> Option<Summary> {
+        let track = self.track.as_ref()?;
+        let own = track.summary()?;
+        let Some(dynamics) = &self.history.dynamics else { return Some(own) };
+        let summary = dynamics.combined((!dynamics.leads()).then_some(&own)).unwrap_or(own);
+        let middle = track.centred_pose().middle;
+        dynamics.widened(&summary, &middle)
+    }
+
+    /// Probabilities of the hypotheses of dynamics; `None` where they are not told: before the third frame, with process noise, and for
+    /// projective motion.
+    #[must_use]
+    pub fn dynamics(&self) -> Option<DynamicsWeights> {
+        self.history.dynamics.as_ref().map(DynamicsFilter::weights)
     }
 
     pub(super) fn time_of_last_frame(&self) -> f64 {
@@ -234,6 +257,7 @@ impl MotionFilter {
         self.track = Some(track);
         self.track_time = time;
         self.phase = phase;
+        self.history.dynamics = None;
     }
 
     /// The settings.
@@ -255,7 +279,7 @@ impl MotionFilter {
         if matches!(self.phase, Phase::Waiting | Phase::Acquiring) {
             return None;
         }
-        let estimate = self.track.as_ref()?.estimate()?;
+        let estimate = self.track.as_ref()?.estimate_of(&self.summary()?)?;
         let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
         Some(doubts.filter(|(_, doubtful)| *doubtful).fold(estimate, |e, (j, _)| e.with_unobservable(j)))
     }
@@ -267,7 +291,7 @@ impl MotionFilter {
         let estimate = self.estimate()?;
         let mut observable = [false; MAX_PARAMETERS];
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
-        self.track.as_ref()?.state(self.track_time, observable)
+        self.track.as_ref()?.state_of(&self.summary()?, self.track_time, observable)
     }
 
     /// Velocity of the middle of the object, which is the centre of its known outline, at the time of [`state`](Self::state). It may be
@@ -292,7 +316,7 @@ impl MotionFilter {
     /// finite.
     #[must_use]
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
-        self.track.as_ref()?.covariance()
+        self.track.as_ref()?.covariance_of(&self.summary()?)
     }
 
     /// The outline as now known, image coordinates: one point per cell of its map. The points are not ordered if the map has grown.

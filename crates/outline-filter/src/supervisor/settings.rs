@@ -2,6 +2,7 @@ use freeform_estimate::ProcessNoise;
 use freeform_riccati::MotionModel;
 
 use super::error::FilterError;
+use crate::dynamics::Dynamics;
 
 /// Settings of a [`MotionFilter`](crate::MotionFilter).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +14,9 @@ pub struct FilterSettings {
     /// Whether the filter follows changes of a motion without process noise, as soon as the innovations show them. `true` by default;
     /// if `false`, the motion is assumed constant.
     pub adaptive: bool,
+    /// What is assumed of how the motion goes on from frame to frame; [`Dynamics::Auto`] by default. Without effect with process noise, or if
+    /// `adaptive` is `false`, and on projective motion.
+    pub dynamics: Dynamics,
     /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken, in (0, 1);
     /// 0.7 by default.
     pub smallest_agreement: f64,
@@ -27,6 +31,7 @@ impl Default for FilterSettings {
             model: MotionModel::Rigid,
             process_noise: ProcessNoise::default(),
             adaptive: true,
+            dynamics: Dynamics::Auto,
             smallest_agreement: 0.7,
             patience: 2,
         }
@@ -37,6 +42,14 @@ impl FilterSettings {
     /// Whether changes of the motion are estimated.
     pub(crate) fn finds_changes(&self) -> bool {
         self.adaptive && self.process_noise.is_none()
+    }
+
+    /// The hypotheses of dynamics that are followed.
+    pub(crate) fn followed_dynamics(&self) -> Option<Dynamics> {
+        if !self.process_noise.is_none() {
+            return None;
+        }
+        Some(if self.adaptive { self.dynamics } else { Dynamics::Generator })
     }
 
     pub(crate) fn check(&self) -> Result<(), FilterError> {

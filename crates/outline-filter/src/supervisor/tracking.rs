@@ -1,6 +1,7 @@
 //! A track moved on to a frame, and the changes of its motion found.
-use super::{motion_change::MotionChange, settings::FilterSettings};
+use super::{motion_change::MotionHistory, settings::FilterSettings};
 use crate::{
+    dynamics::DynamicsFilter,
     measurement::Frame,
     track::{Comparison, Outcome, Track},
     tuning::update::SUDDEN,
@@ -35,27 +36,27 @@ pub(super) fn gate(settings: &FilterSettings, track: &Track) -> Gate {
 pub(super) fn advance(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
-    change: &mut MotionChange,
+    history: &mut MotionHistory,
     seconds: f64,
     known: Known,
     comparison: Comparison,
 ) -> Outcome {
-    track.predict(seconds);
-    track.add_process_noise(&settings.process_noise, seconds);
-    if let Some(variances) = change.variances() {
-        track.add_change(variances);
-    }
+    predict(settings, track, history, seconds);
+    let MotionHistory { change, dynamics } = history;
     let parameters = track.model().parameter_count();
     let anywhere = match known {
         Known::ShowsObject => Gate { largest_noise: None, ..gate(settings, track) },
         _ => gate(settings, track),
     };
     if !settings.finds_changes() && known == Known::ShowsObject {
-        return track.update(frame, &anywhere, comparison);
+        let outcome = track.update(frame, &anywhere, comparison);
+        take(dynamics, &outcome);
+        return outcome;
     }
     let as_before = Gate { largest_innovation: Some(largest_innovation(track)), ..anywhere };
     let mut outcome = track.update(frame, &as_before, comparison);
     if !settings.finds_changes() {
+        take(dynamics, &outcome);
         return outcome;
     }
     let innovation = outcome.innovation;
@@ -74,5 +75,36 @@ pub(super) fn advance(
     if outcome.is_accepted() {
         change.take(&innovation, parameters);
     }
+    take(dynamics, &outcome);
     outcome
+}
+
+/// Moves a track on to where its motion has led it, by what is known of its dynamics.
+fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHistory, seconds: f64) {
+    if history.dynamics.is_none()
+        && let Some(setting) = settings.followed_dynamics()
+    {
+        history.dynamics = track.begun_dynamics(setting);
+    }
+    track.predict(seconds);
+    track.add_process_noise(&settings.process_noise, seconds);
+    let (expected, null) = (track.centred_pose(), track.null_directions());
+    let moved = history.dynamics.as_mut().is_some_and(|dynamics| dynamics.predict(&expected, seconds, &null));
+    if !moved {
+        history.dynamics = None;
+    }
+    let leading = history.dynamics.as_mut().filter(|dynamics| dynamics.leads());
+    if let Some((dynamics, expected)) = leading.and_then(|d| d.combined(None).map(|expected| (d, expected))) {
+        track.expect(&expected);
+        dynamics.take_reference(&expected.pose);
+    } else if let Some(variances) = history.change.variances() {
+        track.add_change(variances);
+    }
+}
+
+/// Takes what an accepted frame tells of the pose.
+fn take(dynamics: &mut Option<DynamicsFilter>, outcome: &Outcome) {
+    if let Some((dynamics, measured)) = dynamics.as_mut().zip(outcome.pose.as_ref().filter(|_| outcome.is_accepted())) {
+        dynamics.update(measured);
+    }
 }

@@ -1,40 +1,74 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
 use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Matrix3};
 
 use super::Track;
-use crate::tuning::{null_space::TAKES_PART, supervisor::STEPS_KNOWN};
+use crate::{
+    belief::{STATE, scaled_inverse},
+    dynamics::{Dynamics, DynamicsFilter, Summary},
+    tuning::{null_space::TAKES_PART, supervisor::STEPS_KNOWN},
+    update::{hold, with_hold},
+};
 
 impl Track {
-    /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed, or is beyond any
-    /// number.
-    pub(crate) fn covariance(&self) -> Option<DMatrix<f64>> {
+    /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
+    pub(crate) fn summary(&self) -> Option<Summary> {
+        let (belief, k) = (&self.belief, self.belief.parameter_count());
+        let covariance = scaled_inverse(&belief.marginal, k)? * self.noise.effective_variance();
+        let mut summary = Summary { pose: belief.pose, motion: belief.motion, covariance };
+        (2 * k..STATE).for_each(|i| summary.covariance[(i, i)] = 1.0);
+        covariance.iter().all(|e| e.is_finite()).then_some(summary)
+    }
+
+    /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.
+    pub(crate) fn begun_dynamics(&self, setting: Dynamics) -> Option<DynamicsFilter> {
+        let (belief, k) = (&self.belief, self.belief.parameter_count());
+        let null = self.map.null_directions(belief.model, &belief.pose);
+        let marginal = with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref());
+        let mut covariance = scaled_inverse(&marginal, k)? * self.noise.effective_variance();
+        (2 * k..STATE).for_each(|i| covariance[(i, i)] = 1.0);
+        let summary = Summary { pose: belief.pose, motion: belief.motion, covariance };
+        DynamicsFilter::begin(belief.model, setting, &summary, self.map.middle(), belief.memory.step)
+    }
+
+    /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number.
+    pub(crate) fn covariance_of(&self, summary: &Summary) -> Option<DMatrix<f64>> {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
         let change = model.adjoint(&to_image, &to_image.try_inverse()?);
-        let state = self.belief.covariance_of(&self.belief.marginal, self.noise.effective_variance())?;
         let change = DMatrix::from_fn(k, k, |i, j| change[i][j]);
-        let covariance = &change * state.view((k, k), (k, k)) * change.transpose();
+        let of_motion = DMatrix::from_fn(k, k, |i, j| summary.covariance[(k + i, k + j)]);
+        let covariance = &change * of_motion * change.transpose();
         // The products round apart where the image origin is far away.
         let symmetric = 0.5 * (&covariance + covariance.transpose());
         symmetric.iter().all(|e| e.is_finite()).then_some(symmetric)
+    }
+
+    /// Covariance of the motion parameters as this track alone has it; `None` where it cannot be computed, or is beyond any number.
+    pub(crate) fn covariance(&self) -> Option<DMatrix<f64>> {
+        self.covariance_of(&self.summary()?)
+    }
+
+    /// The motion as this track alone has it: see [`estimate_of`](Self::estimate_of).
+    pub(crate) fn estimate(&self) -> Option<MotionEstimate> {
+        self.estimate_of(&self.summary()?)
     }
 
     /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that it is
     /// known from, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as
     /// unobservable; so is one that takes part in a motion which the outline does not show, such as the turning of a circle
     /// about its centre.
-    pub(crate) fn estimate(&self) -> Option<MotionEstimate> {
-        let covariance = self.covariance()?;
+    pub(crate) fn estimate_of(&self, summary: &Summary) -> Option<MotionEstimate> {
+        let covariance = self.covariance_of(summary)?;
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
         let from_image = to_image.try_inverse()?;
-        let generator = to_image * model.generator(&self.belief.motion[..k]) * from_image;
+        let generator = to_image * model.generator(&summary.motion[..k]) * from_image;
         let values = model.parameters_of(&generator);
         let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
         let mut estimate = MotionEstimate::new(model, &values[..k], Some(&deviations));
-        let blind = self.blind_parameters();
+        let blind = self.blind_parameters(&summary.pose);
         let reach = self.reference.radius + self.reference.origin.coords.norm();
         let memory = &self.belief.memory;
         let shortest = memory.shortest(k);
@@ -53,16 +87,22 @@ impl Track {
     }
 
     /// Pose and motion with their joint covariance at a time in seconds, with the parameters marked that `observable` says nothing is known of.
-    pub(crate) fn state(&self, time: f64, observable: [bool; MAX_PARAMETERS]) -> Option<MotionState> {
-        let (belief, variance) = (&self.belief, self.noise.effective_variance());
+    pub(crate) fn state_of(
+        &self,
+        summary: &Summary,
+        time: f64,
+        observable: [bool; MAX_PARAMETERS],
+    ) -> Option<MotionState> {
+        let (belief, variance, k) = (&self.belief, self.noise.effective_variance(), self.belief.parameter_count());
+        let covariance = DMatrix::from_fn(2 * k, 2 * k, |i, j| summary.covariance[(i, j)]);
         let state = NormalisedState {
             model: belief.model,
             time,
             origin: self.reference.origin,
             radius: self.reference.radius,
-            pose: belief.pose,
-            motion: belief.motion,
-            covariance: belief.covariance_of(&belief.marginal, variance)?,
+            pose: summary.pose,
+            motion: summary.motion,
+            covariance,
             covariance_given_outline: belief.covariance_of(&belief.information.with_outline_given(), variance)?,
             observable,
         };
@@ -93,12 +133,12 @@ impl Track {
 
     /// Parameters, in image units, that take part in a motion which the outline does not show. The velocity at the origin of the image is
     /// one of them wherever the middle of a turn that is not seen is not there.
-    fn blind_parameters(&self) -> [bool; MAX_PARAMETERS] {
+    fn blind_parameters(&self, pose: &Matrix3<f64>) -> [bool; MAX_PARAMETERS] {
         let mut blind = [false; MAX_PARAMETERS];
         let (model, radius) = (self.belief.model, self.reference.radius);
         let to_image = self.reference.to_image();
         let Some(inverse) = to_image.try_inverse() else { return blind };
-        for null in self.map.null_directions(model, &self.belief.pose) {
+        for null in self.map.null_directions(model, pose) {
             let generator = to_image * model.generator(&null.direction[..model.parameter_count()]) * inverse;
             let direction = model.parameters_of(&generator);
             // In units of the object, so that lengths and angles compare.

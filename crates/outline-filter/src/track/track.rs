@@ -8,11 +8,12 @@ use nalgebra::{Affine2, Matrix3, Point2, Projective2};
 use super::first_pose::FirstPose;
 use crate::{
     belief::Belief,
-    map::{Contour, OutlineMap, Resolution, TurnEvidence},
+    dynamics::{CentredPose, Summary},
+    map::{Contour, NullDirection, OutlineMap, Resolution, TurnEvidence},
     measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, update as tuning},
-    update::{FrameMeasurement, Gate, PoseInnovation, Rejection, commit, hold, with_hold},
+    update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, commit, hold, with_hold},
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
@@ -44,6 +45,8 @@ pub(crate) struct Outcome {
     pub(crate) measurement: FrameMeasurement,
     pub(crate) verdict: Result<(), Rejection>,
     pub(crate) innovation: PoseInnovation,
+    /// What the frame tells of the pose by itself.
+    pub(crate) pose: Option<PoseMeasurement>,
     /// Of the frame given what was known before it; none unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
 }
@@ -124,6 +127,27 @@ impl Track {
         self.belief.add_change(variances, &self.map.middle(), variance);
     }
 
+    /// Takes it that the object is where hypotheses of its dynamics expect it, and moves as they say, as far as they know.
+    pub(crate) fn expect(&mut self, expected: &Summary) {
+        let variance = self.noise.effective_variance();
+        self.belief.pose = expected.pose;
+        self.belief.motion = expected.motion;
+        let k = self.belief.parameter_count();
+        let mut added = expected.covariance / variance;
+        (2 * k..added.nrows()).for_each(|i| added[(i, i)] = 0.0);
+        self.belief.add_covariance(&added);
+    }
+
+    /// The pose, with the object's middle in it.
+    pub(crate) fn centred_pose(&self) -> CentredPose {
+        CentredPose { pose: self.belief.pose, middle: self.map.middle() }
+    }
+
+    /// What its outline does not show.
+    pub(crate) fn null_directions(&self) -> Vec<NullDirection> {
+        self.map.null_directions(self.belief.model, &self.belief.pose)
+    }
+
     /// Measures the loaded outline and takes it if the gate lets it through; otherwise nothing changes.
     pub(crate) fn update(&mut self, frame: &mut Frame, gate: &Gate, comparison: Comparison) -> Outcome {
         let (view, radius) = (self.view(), self.reference.radius);
@@ -138,6 +162,7 @@ impl Track {
                     measurement,
                     verdict,
                     innovation: PoseInnovation::default(),
+                    pose: None,
                     likelihood: NegativeLogLikelihood::default(),
                 };
             }
@@ -146,6 +171,7 @@ impl Track {
         let [before, after] =
             [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold.as_ref()));
         let innovation = self.belief.pose_innovation([&before, &after], &proposal.state, &self.map.middle(), variance);
+        let pose = proposal.pose_measurement.map(|measurement| measurement.over(variance));
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
             likelihood = view.negative_log_likelihood(frame);
@@ -167,7 +193,7 @@ impl Track {
                 self.grow_along(contours, frame);
             }
         }
-        Outcome { measurement, verdict, innovation, likelihood }
+        Outcome { measurement, verdict, innovation, pose, likelihood }
     }
 
     /// Takes the spread of a frame, image lengths, used or not.

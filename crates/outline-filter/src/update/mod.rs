@@ -4,6 +4,7 @@ mod gate;
 mod hold;
 mod innovation;
 mod normal_equations;
+mod pose_measurement;
 mod solve;
 
 pub(crate) use commit::commit;
@@ -12,3 +13,4 @@ pub use gate::{FrameMeasurement, Rejection};
 pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
 pub(crate) use normal_equations::accumulate;
+pub(crate) use pose_measurement::PoseMeasurement;
