@@ -44,9 +44,9 @@
 //! ```
 mod batch;
 mod belief;
-mod dynamics;
 #[cfg(test)]
 mod dense_filter;
+mod dynamics;
 mod map;
 mod measurement;
 mod prediction;
@@ -57,8 +57,8 @@ mod tuning;
 mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
-pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics};
-pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase};
+pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
+pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated};
 pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]

@@ -363,3 +363,36 @@ pub(crate) mod innovations {
     /// Correlation of neighbours that is reckoned with at most.
     pub(crate) const LARGEST_CORRELATION: f64 = 0.98;
 }
+
+/// Tests of what a family of motions leaves out.
+pub(crate) mod family {
+    /// Frames, since the map was last cut, that say something.
+    pub(crate) const FEWEST_FRAMES: usize = 6;
+    /// Deviations beyond which a motion that is left out is there. A warning that is always there is none.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Share of the noise of a point that a displacement must have to matter.
+    pub(crate) const MATTERS: f64 = 0.05;
+    /// Mean square, in variances, of a change of shape that has no direction.
+    pub(crate) const SHAPE_CHANGES: f64 = 4.0;
+    /// Frames looked at: all of the first so many, and then every so many.
+    pub(crate) const ALL_OF_THE_FIRST: usize = 16;
+    pub(crate) const EVERY: usize = 4;
+}
+
+/// Symmetry of outlines.
+pub(crate) mod symmetry {
+    /// Largest order that is looked for. An outline that has this one as well, or the one before, is as good as round.
+    pub(crate) const LARGEST_ORDER: usize = 72;
+    /// Turns on either side of none that are tried of a symmetric outline.
+    pub(crate) const TRIED: usize = 2;
+    /// Turns that differ by less than this share of the angle of symmetry are the same.
+    pub(crate) const SAME: f64 = 0.25;
+}
+
+/// What is stated at all.
+pub(crate) mod statement {
+    /// Share of the frames rejected beyond which what the others say is no motion of the object.
+    pub(crate) const MOST_REJECTED: f64 = 0.4;
+    /// Fewest frames rejected that say so.
+    pub(crate) const FEWEST_REJECTED: usize = 5;
+}

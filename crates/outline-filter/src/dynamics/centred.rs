@@ -58,7 +58,7 @@ pub(crate) struct Summary {
 
 impl Summary {
     /// This covariance with the errors about the middle multiplied by factors, one per parameter, those of pose and motion alike, and with
-    /// variances about the middle added.
+    /// deviations about the middle added.
     pub(crate) fn widened(
         &self,
         model: MotionModel,
@@ -70,9 +70,11 @@ impl Summary {
         let at = CentredPose { pose: self.pose, middle: *middle };
         let (to, from) = (at.to_parameters(model)?, at.from_parameters(model));
         let blocks = |m: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>| {
-            StateMatrix::from_fn(|i, j| {
-                if i < 2 * k && j < 2 * k && (i < k) == (j < k) { m[(i % k, j % k)] } else { 0.0 }
-            })
+            StateMatrix::from_fn(
+                |i, j| {
+                    if i < 2 * k && j < 2 * k && (i < k) == (j < k) { m[(i % k, j % k)] } else { 0.0 }
+                },
+            )
         };
         let (to, from) = (blocks(&to), blocks(&from));
         let mut centred = from * self.covariance * from.transpose();
@@ -80,7 +82,7 @@ impl Summary {
             for j in 0..2 * k {
                 centred[(i, j)] *= factors[i % k] * factors[j % k];
             }
-            centred[(i, i)] += added[i / k][i % k];
+            centred[(i, i)] += added[i / k][i % k].powi(2);
         }
         let mut covariance = to * centred * to.transpose();
         // Beyond the state the diagonal is one, as everywhere.

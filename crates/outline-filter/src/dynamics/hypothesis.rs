@@ -198,9 +198,12 @@ impl Hypothesis {
             return None;
         }
         // By columns of the covariance of all entries with the pose.
-        let columns = SMatrix::<f64, ENTRIES, LARGEST>::from_fn(|i, j| {
-            if i < n && j < k { self.covariance[(i, j)] } else { 0.0 }
-        });
+        let columns =
+            SMatrix::<f64, ENTRIES, LARGEST>::from_fn(
+                |i, j| {
+                    if i < n && j < k { self.covariance[(i, j)] } else { 0.0 }
+                },
+            );
         self.mean += columns * pulled;
         self.covariance -= columns * weight * columns.transpose();
         for i in 0..n {

@@ -65,16 +65,13 @@ impl InnovationSeries {
         let mut factors = CentredVector::from_element(1.0);
         let n = self.frames as f64;
         if self.frames >= tuning::FEWEST_FRAMES {
-            let (squares, products): (f64, f64) =
-                (0..k).fold((0.0, 0.0), |(s, p), j| (s + self.squares[j], p + self.products[j]));
-            let correlation = if squares > 0.0 { products / squares } else { 0.0 };
-            let is_dependent = self.frames >= tuning::FEWEST_CORRELATED
-                && correlation > tuning::CORRELATED / (k as f64 * n).sqrt();
+            let correlation = self.correlation(k);
+            let is_dependent = self.is_dependent(correlation, k);
             for j in 0..k {
                 let variance = (tuning::PRIOR_FRAMES + self.squares[j]) / (tuning::PRIOR_FRAMES + n);
                 let mut factor = variance.sqrt();
                 if is_dependent {
-                    let long_run = self.long_run_variance(j, correlation);
+                    let long_run = self.long_run_variance(j, correlation, 1);
                     factor = factor.max(tuning::STUDENT * long_run.sqrt());
                 }
                 factors[j] = factor.max(1.0);
@@ -83,8 +80,42 @@ impl InnovationSeries {
         factors
     }
 
-    /// Long-run variance of one component, by prewhitening with a correlation of neighbours and the first cosines.
-    fn long_run_variance(&self, j: usize, correlation: f64) -> f64 {
+    /// Mean square of one component.
+    pub(crate) fn mean_square(&self, j: usize) -> f64 {
+        if self.frames > 0 { self.squares[j] / self.frames as f64 } else { 0.0 }
+    }
+
+    /// Mean of one component of k, in its deviations, dependence from frame to frame allowed for.
+    pub(crate) fn drift(&self, j: usize, k: usize) -> f64 {
+        let n = self.frames as f64;
+        if self.frames == 0 {
+            return 0.0;
+        }
+        let sum: f64 = self.blocks.iter().map(|block| block[j]).sum();
+        let correlation = self.correlation(k);
+        let variance = if self.is_dependent(correlation, k) {
+            // The first cosine is left to the mean: what drifts is in both.
+            tuning::STUDENT.powi(2) * self.long_run_variance(j, correlation, 2)
+        } else {
+            1.0
+        };
+        sum / (n * variance.max(1.0)).sqrt()
+    }
+
+    /// Correlation of neighbours in time, over k components.
+    fn correlation(&self, k: usize) -> f64 {
+        let (squares, products): (f64, f64) =
+            (0..k).fold((0.0, 0.0), |(s, p), j| (s + self.squares[j], p + self.products[j]));
+        if squares > 0.0 { products / squares } else { 0.0 }
+    }
+
+    fn is_dependent(&self, correlation: f64, k: usize) -> bool {
+        let deviation = 1.0 / (k as f64 * self.frames as f64).sqrt();
+        self.frames >= tuning::FEWEST_CORRELATED && correlation > tuning::CORRELATED * deviation
+    }
+
+    /// Long-run variance of one component, by prewhitening with a correlation of neighbours and cosines from a `first` one on.
+    fn long_run_variance(&self, j: usize, correlation: f64, first: usize) -> f64 {
         let n = self.frames as f64;
         let rho = correlation.clamp(0.0, tuning::LARGEST_CORRELATION);
         let corrected = (rho + (1.0 + 3.0 * rho) / n).min(tuning::LARGEST_CORRELATION);
@@ -94,12 +125,11 @@ impl InnovationSeries {
         let whitened: Vec<f64> = (0..count)
             .map(|t| self.blocks[t][j] - if t > 0 { of_block * self.blocks[t - 1][j] } else { 0.0 })
             .collect();
-        let cosines = tuning::COSINES.min(count.saturating_sub(1)).max(1);
+        let cosines = tuning::COSINES.min(count.saturating_sub(first)).max(1);
         let mut sum = 0.0;
-        for c in 1..=cosines {
+        for c in first..first + cosines {
             let angle = std::f64::consts::PI * c as f64 / count as f64;
-            let projected: f64 =
-                whitened.iter().enumerate().map(|(t, x)| x * (angle * (t as f64 + 0.5)).cos()).sum();
+            let projected: f64 = whitened.iter().enumerate().map(|(t, x)| x * (angle * (t as f64 + 0.5)).cos()).sum();
             sum += 2.0 * projected * projected / count as f64;
         }
         // Sums over blocks have the variance of so many frames.
@@ -127,7 +157,8 @@ mod tests {
             let mut series = InnovationSeries::default();
             let mut x = CentredVector::from_fn(|_, _| normal());
             for _ in 0..frames {
-                x = correlation * x + (1.0 - correlation * correlation).sqrt() * CentredVector::from_fn(|_, _| normal());
+                x = correlation * x
+                    + (1.0 - correlation * correlation).sqrt() * CentredVector::from_fn(|_, _| normal());
                 series.take(&x, 3);
             }
             sum += series.spread(3)[0].powi(2);

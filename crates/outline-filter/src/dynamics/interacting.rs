@@ -48,7 +48,8 @@ impl DynamicsFilter {
         let reference = CentredPose { pose: summary.pose, middle };
         let change = reference.from_parameters(model);
         let (mean, covariance) = centred(&change, summary, k);
-        let pose_variance = CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
+        let pose_variance =
+            CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
         let levels = tuning::LEVELS.map(Course::Accelerating);
         let courses: Vec<Course> = match setting {
             Dynamics::Auto => [Course::ConstantGenerator, Course::ConstantVelocity].into_iter().chain(levels).collect(),
@@ -109,13 +110,8 @@ impl DynamicsFilter {
         }
         self.reference = moved;
         self.mix(seconds);
-        let step = Step {
-            model: self.model,
-            seconds,
-            from: &self.reference,
-            to: pose,
-            pose_variance: &self.pose_variance,
-        };
+        let step =
+            Step { model: self.model, seconds, from: &self.reference, to: pose, pose_variance: &self.pose_variance };
         let possible = self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step));
         self.reference = *pose;
         self.hold(null);
@@ -129,7 +125,9 @@ impl DynamicsFilter {
         for NullDirection { direction, dual } in null {
             let direction = from * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*direction);
             let dual = to.transpose() * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*dual);
-            let short = |v: &nalgebra::SVector<f64, MAX_PARAMETERS>| CentredVector::from_fn(|i, _| if i < k { v[i] } else { 0.0 });
+            let short = |v: &nalgebra::SVector<f64, MAX_PARAMETERS>| {
+                CentredVector::from_fn(|i, _| if i < k { v[i] } else { 0.0 })
+            };
             for hypothesis in &mut self.hypotheses {
                 hypothesis.hold(&short(&direction), &short(&dual), k);
             }
@@ -178,7 +176,8 @@ impl DynamicsFilter {
         let information = to.transpose() * measured.information * to;
         let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
         let pulled = to.transpose() * measured.pulled;
-        let Some(deviation) = solved(&information, &CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 }), k)
+        let Some(deviation) =
+            solved(&information, &CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 }), k)
         else {
             return;
         };
@@ -231,11 +230,9 @@ impl DynamicsFilter {
         self.leads
     }
 
-    /// A summary with deviations as wide as the innovations say; `middle` is the object's in the body frame.
-    pub(crate) fn widened(&self, summary: &Summary, middle: &nalgebra::Point2<f64>) -> Option<Summary> {
-        let factors = self.series.spread(self.model.parameter_count());
-        let none = CentredVector::zeros();
-        summary.widened(self.model, middle, &factors, [&none, &none])
+    /// Factors, at least 1, by which the innovations say that deviations about the middle are to be widened.
+    pub(crate) fn factors(&self) -> CentredVector {
+        self.series.spread(self.model.parameter_count())
     }
 
     /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
@@ -243,10 +240,13 @@ impl DynamicsFilter {
         let mut sorted = self.weights.clone();
         sorted.sort_by(f64::total_cmp);
         let mut sum = 0.0;
-        sorted.into_iter().find(|weight| {
-            sum += weight;
-            sum > tuning::LEFT_OUT
-        }).unwrap_or(0.0)
+        sorted
+            .into_iter()
+            .find(|weight| {
+                sum += weight;
+                sum > tuning::LEFT_OUT
+            })
+            .unwrap_or(0.0)
     }
 
     /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
@@ -290,10 +290,14 @@ impl DynamicsFilter {
         };
         let (error, motion) = (to * large(0), to * large(1));
         let pose = model.flow(&error.as_slice()[..k], 1.0).into_inner() * self.reference.pose;
-        let both = SMatrix::<f64, STATE, STATE>::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
-        let blocks = StateMatrix::from_fn(|i, j| {
-            if i < 2 * k && j < 2 * k && (i < k) == (j < k) { to[(i % k, j % k)] } else { 0.0 }
-        });
+        let both =
+            SMatrix::<f64, STATE, STATE>::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
+        let blocks =
+            StateMatrix::from_fn(
+                |i, j| {
+                    if i < 2 * k && j < 2 * k && (i < k) == (j < k) { to[(i % k, j % k)] } else { 0.0 }
+                },
+            );
         let mut covariance = blocks * both * blocks.transpose();
         (2 * k..STATE).for_each(|i| covariance[(i, i)] = 1.0);
         pose.iter().all(|e| e.is_finite()).then_some(Summary { pose, motion: motion.into(), covariance })
@@ -325,12 +329,7 @@ fn acceleration_prior(pose_variance: &CentredVector, seconds: f64) -> CentredVec
 }
 
 /// The state of a hypothesis as one of another course has it; `prior` are the variances of accelerations that it knows nothing of.
-fn converted(
-    hypothesis: &Hypothesis,
-    to: Course,
-    model: MotionModel,
-    prior: &CentredVector,
-) -> (Entries, EntryMatrix) {
+fn converted(hypothesis: &Hypothesis, to: Course, model: MotionModel, prior: &CentredVector) -> (Entries, EntryMatrix) {
     let k = model.parameter_count();
     let (mut mean, mut covariance) = (hypothesis.mean, hypothesis.covariance);
     let is_of_same_kind = match (hypothesis.course, to) {
@@ -367,9 +366,12 @@ fn centred(
     let motion = change * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
     let mut mean = Entries::zeros();
     (0..k).for_each(|j| mean[k + j] = motion[j]);
-    let blocks = StateMatrix::from_fn(|i, j| {
-        if i < 2 * k && j < 2 * k && (i < k) == (j < k) { change[(i % k, j % k)] } else { 0.0 }
-    });
+    let blocks =
+        StateMatrix::from_fn(
+            |i, j| {
+                if i < 2 * k && j < 2 * k && (i < k) == (j < k) { change[(i % k, j % k)] } else { 0.0 }
+            },
+        );
     let moved = blocks * summary.covariance * blocks.transpose();
     let covariance = EntryMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
     (mean, covariance)
@@ -378,7 +380,8 @@ fn centred(
 /// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
 fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
     let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
-    let jitter = |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
+    let jitter =
+        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
     let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
     regular.lu().solve(b)
 }

@@ -4,11 +4,14 @@
 //! The hypotheses share the measurement of a frame: what it tells of the pose, with the offsets of the outline eliminated. They carry no
 //! outline of their own.
 mod centred;
+mod family;
 mod hypothesis;
 mod innovations;
 mod interacting;
 mod setting;
 
-pub(crate) use centred::{CentredPose, Summary};
+pub(crate) use centred::{CentredPose, CentredVector, LARGEST, Summary};
+pub(crate) use family::FamilyTests;
+pub use family::WrongFamily;
 pub(crate) use interacting::DynamicsFilter;
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
     track::{Comparison, Outcome, Track},
-    tuning::hypotheses as tuning,
+    tuning::{hypotheses as tuning, symmetry::SAME},
     update::Gate,
 };
 
@@ -43,15 +43,17 @@ pub(super) struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Takes the smallest turn of all that are not significantly worse than the best.
-    pub(super) fn among(mut candidates: Vec<Candidate>) -> (Option<Candidate>, Self) {
+    /// Of an outline with a symmetry of some order, takes the smallest turn of all that are not significantly worse than the best.
+    pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize) -> (Option<Candidate>, Self) {
+        let pitch = std::f64::consts::TAU / symmetry as f64;
+        let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
         candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
         let Some(best) = candidates.first().map(|c| c.likelihood) else { return (None, Self::default()) };
         candidates.retain(|candidate| !candidate.likelihood.is_worse_than(&best));
         // The best of those with one turn stands for them.
         let mut different: Vec<Candidate> = Vec::new();
         for candidate in candidates {
-            if different.iter().all(|other| apart(other.turn, candidate.turn)) {
+            if different.iter().all(|other| apart(other.turn, candidate.turn, different_turn)) {
                 different.push(candidate);
             }
         }
@@ -178,7 +180,7 @@ impl Hypotheses {
     }
 }
 
-fn apart(a: f64, b: f64) -> bool {
+fn apart(a: f64, b: f64, different: f64) -> bool {
     let turn = (a - b + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-    turn.abs() > tuning::DIFFERENT_TURN
+    turn.abs() > different
 }

@@ -1,5 +1,10 @@
 //! How fast the motion changes, estimated from the innovations.
-use crate::{dynamics::DynamicsFilter, prediction::ByKind, tuning::motion_change as tuning, update::PoseInnovation};
+use crate::{
+    dynamics::{DynamicsFilter, FamilyTests},
+    prediction::ByKind,
+    tuning::motion_change as tuning,
+    update::PoseInnovation,
+};
 
 const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 
@@ -20,6 +25,7 @@ pub(super) struct MotionHistory {
     pub(super) change: MotionChange,
     /// None before the third frame, and where dynamics are not told.
     pub(super) dynamics: Option<DynamicsFilter>,
+    pub(super) family: FamilyTests,
 }
 
 impl MotionHistory {

@@ -17,6 +17,9 @@ pub struct FilterSettings {
     /// What is assumed of how the motion goes on from frame to frame; [`Dynamics::Auto`] by default. Without effect with process noise, or if
     /// `adaptive` is `false`, and on projective motion.
     pub dynamics: Dynamics,
+    /// Systematic uncertainty of the outlines, image lengths: how far all of a side may lie off in every frame, such as by a shadow or by
+    /// a threshold, not negative; 0 by default. It widens what is stated, and enters nothing else.
+    pub edge_uncertainty: f64,
     /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken, in (0, 1);
     /// 0.7 by default.
     pub smallest_agreement: f64,
@@ -32,6 +35,7 @@ impl Default for FilterSettings {
             process_noise: ProcessNoise::default(),
             adaptive: true,
             dynamics: Dynamics::Auto,
+            edge_uncertainty: 0.0,
             smallest_agreement: 0.7,
             patience: 2,
         }
@@ -61,6 +65,9 @@ impl FilterSettings {
             if !(value.is_finite() && value >= 0.0) {
                 return fail(setting, value, "finite and not negative");
             }
+        }
+        if !(self.edge_uncertainty.is_finite() && self.edge_uncertainty >= 0.0) {
+            return fail("edge uncertainty", self.edge_uncertainty, "finite and not negative");
         }
         if !(self.smallest_agreement > 0.0 && self.smallest_agreement < 1.0) {
             return fail("smallest agreement", self.smallest_agreement, "between 0 and 1");

@@ -1,7 +1,9 @@
 //! A track moved on to a frame, and the changes of its motion found.
-use super::{motion_change::MotionHistory, settings::FilterSettings};
+use super::{
+    motion_change::{MotionChange, MotionHistory},
+    settings::FilterSettings,
+};
 use crate::{
-    dynamics::DynamicsFilter,
     measurement::Frame,
     track::{Comparison, Outcome, Track},
     tuning::update::SUDDEN,
@@ -42,21 +44,30 @@ pub(super) fn advance(
     comparison: Comparison,
 ) -> Outcome {
     predict(settings, track, history, seconds);
-    let MotionHistory { change, dynamics } = history;
+    let outcome = measured(settings, (track, frame), &mut history.change, known, comparison);
+    take(history, &outcome);
+    outcome
+}
+
+/// Measures a frame, and finds changes of the motion that are sudden.
+fn measured(
+    settings: &FilterSettings,
+    (track, frame): (&mut Track, &mut Frame),
+    change: &mut MotionChange,
+    known: Known,
+    comparison: Comparison,
+) -> Outcome {
     let parameters = track.model().parameter_count();
     let anywhere = match known {
         Known::ShowsObject => Gate { largest_noise: None, ..gate(settings, track) },
         _ => gate(settings, track),
     };
     if !settings.finds_changes() && known == Known::ShowsObject {
-        let outcome = track.update(frame, &anywhere, comparison);
-        take(dynamics, &outcome);
-        return outcome;
+        return track.update(frame, &anywhere, comparison);
     }
     let as_before = Gate { largest_innovation: Some(largest_innovation(track)), ..anywhere };
     let mut outcome = track.update(frame, &as_before, comparison);
     if !settings.finds_changes() {
-        take(dynamics, &outcome);
         return outcome;
     }
     let innovation = outcome.innovation;
@@ -75,7 +86,6 @@ pub(super) fn advance(
     if outcome.is_accepted() {
         change.take(&innovation, parameters);
     }
-    take(dynamics, &outcome);
     outcome
 }
 
@@ -102,9 +112,15 @@ fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHis
     }
 }
 
-/// Takes what an accepted frame tells of the pose.
-fn take(dynamics: &mut Option<DynamicsFilter>, outcome: &Outcome) {
-    if let Some((dynamics, measured)) = dynamics.as_mut().zip(outcome.pose.as_ref().filter(|_| outcome.is_accepted())) {
+/// Takes what an accepted frame tells of the pose, and of what the model leaves out.
+fn take(history: &mut MotionHistory, outcome: &Outcome) {
+    if !outcome.is_accepted() {
+        return;
+    }
+    if let Some((dynamics, measured)) = history.dynamics.as_mut().zip(outcome.pose.as_ref()) {
         dynamics.update(measured);
+    }
+    if let Some(misfit) = &outcome.misfit {
+        history.family.take(misfit);
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, Matrix3};
 use super::Track;
 use crate::{
     belief::{STATE, scaled_inverse},
-    dynamics::{Dynamics, DynamicsFilter, Summary},
+    dynamics::{CentredVector, Dynamics, DynamicsFilter, LARGEST, Summary},
     tuning::{null_space::TAKES_PART, supervisor::STEPS_KNOWN},
     update::{hold, with_hold},
 };
@@ -19,6 +19,26 @@ impl Track {
         let mut summary = Summary { pose: belief.pose, motion: belief.motion, covariance };
         (2 * k..STATE).for_each(|i| summary.covariance[(i, i)] = 1.0);
         covariance.iter().all(|e| e.is_finite()).then_some(summary)
+    }
+
+    /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
+    /// about the middle, normalised. Over the time that the motion is known from it may change by as much as it is.
+    pub(crate) fn systematic(&self, size: f64) -> [CentredVector; 2] {
+        let (model, k) = (self.belief.model, self.belief.parameter_count());
+        let (size, memory) = (size / self.reference.radius, &self.belief.memory);
+        let span = memory.shortest(k).max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE);
+        let cells = self.map.cells();
+        let mut levers = [0.0; MAX_PARAMETERS];
+        for cell in cells {
+            let along = model.normal_velocities(&(cell.centre - self.map.middle().coords), &cell.normal);
+            levers.iter_mut().zip(along).for_each(|(sum, v)| *sum += v * v / cells.len() as f64);
+        }
+        let pose = CentredVector::from_fn(|j, _| {
+            let lever = if j < k.min(LARGEST) { levers[j].sqrt() } else { 0.0 };
+            // Half of an error of one side is a shift; what an outline hardly shows may be anything.
+            if lever > 0.0 { (0.5 * size / lever).min(1.0) } else { 0.0 }
+        });
+        [pose, pose * (std::f64::consts::SQRT_2 / span)]
     }
 
     /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.
@@ -37,12 +57,17 @@ impl Track {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
         let change = model.adjoint(&to_image, &to_image.try_inverse()?);
-        let change = DMatrix::from_fn(k, k, |i, j| change[i][j]);
+        let change = DMatrix::from_fn(k, k, |i, j| change[i][j] * self.reference.per_second());
         let of_motion = DMatrix::from_fn(k, k, |i, j| summary.covariance[(k + i, k + j)]);
         let covariance = &change * of_motion * change.transpose();
         // The products round apart where the image origin is far away.
         let symmetric = 0.5 * (&covariance + covariance.transpose());
         symmetric.iter().all(|e| e.is_finite()).then_some(symmetric)
+    }
+
+    /// Standard deviations of the motion parameters in the order of the model, image units.
+    pub(crate) fn deviations_of(&self, summary: &Summary) -> Option<Vec<f64>> {
+        Some(self.covariance_of(summary)?.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect())
     }
 
     /// Covariance of the motion parameters as this track alone has it; `None` where it cannot be computed, or is beyond any number.
@@ -65,7 +90,7 @@ impl Track {
         let to_image = self.reference.to_image();
         let from_image = to_image.try_inverse()?;
         let generator = to_image * model.generator(&summary.motion[..k]) * from_image;
-        let values = model.parameters_of(&generator);
+        let values = model.parameters_of(&generator).map(|value| value * self.reference.per_second());
         let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
         let mut estimate = MotionEstimate::new(model, &values[..k], Some(&deviations));
         let blind = self.blind_parameters(&summary.pose);
@@ -79,14 +104,15 @@ impl Track {
                 ParameterKind::Perspective => (1.0 / reach, memory.effective[j]),
                 ParameterKind::Rate => (1.0, memory.effective[j]),
             };
-            if !self.is_worth(deviations[j], span, limit) || blind[j] {
+            let deviation = deviations[j] * self.reference.time_unit;
+            if !self.is_worth(deviation, span, limit) || blind[j] {
                 estimate = estimate.with_unobservable(j);
             }
         }
         Some(estimate)
     }
 
-    /// Pose and motion with their joint covariance at a time in seconds, with the parameters marked that `observable` says nothing is known of.
+    /// Pose and motion with their joint covariance at a time in the unit of the track, with the parameters marked that `observable` says nothing is known of.
     pub(crate) fn state_of(
         &self,
         summary: &Summary,
@@ -95,15 +121,24 @@ impl Track {
     ) -> Option<MotionState> {
         let (belief, variance, k) = (&self.belief, self.noise.effective_variance(), self.belief.parameter_count());
         let covariance = DMatrix::from_fn(2 * k, 2 * k, |i, j| summary.covariance[(i, j)]);
+        let per_second = self.reference.per_second();
+        // Motion by the second, pose as it is.
+        let in_seconds = |mut m: DMatrix<f64>| {
+            m.rows_mut(k, k).scale_mut(per_second);
+            m.columns_mut(k, k).scale_mut(per_second);
+            m
+        };
         let state = NormalisedState {
             model: belief.model,
-            time,
+            time: time * self.reference.time_unit,
             origin: self.reference.origin,
             radius: self.reference.radius,
             pose: summary.pose,
-            motion: summary.motion,
-            covariance,
-            covariance_given_outline: belief.covariance_of(&belief.information.with_outline_given(), variance)?,
+            motion: summary.motion.map(|value| value * per_second),
+            covariance: in_seconds(covariance),
+            covariance_given_outline: in_seconds(
+                belief.covariance_of(&belief.information.with_outline_given(), variance)?,
+            ),
             observable,
         };
         Some(state.into())
@@ -113,7 +148,8 @@ impl Track {
     pub(crate) fn velocity_of_middle(&self, state: &MotionState) -> Option<PointVelocity> {
         let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.middle().coords));
         let span = self.belief.memory.shortest(self.belief.parameter_count());
-        let worth = |deviation: &f64| self.is_worth(*deviation, span, self.reference.radius);
+        let unit = self.reference.time_unit;
+        let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
     }
 

@@ -1,0 +1,30 @@
+//! Turns that bring an outline onto itself.
+use freeform_curve_fit::Outline;
+use freeform_riccati::map_point;
+use nalgebra::{Matrix3, Rotation2};
+
+use crate::{measurement::Frame, track::Track, tuning::symmetry as tuning};
+
+/// Order of the symmetry of an outline: the largest n for which the known outline turned by the n-th part of a circle explains a frame
+/// as well as it does in its pose; 1 where there is none, and where the outline is as good as round.
+pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f64>, frame: &mut Frame) -> usize {
+    if track.turn_is_unseen() {
+        return 1;
+    }
+    let poses: Vec<_> = std::iter::once(*pose)
+        .chain((2..=tuning::LARGEST_ORDER).map(|n| turned(track, pose, std::f64::consts::TAU / n as f64)))
+        .collect();
+    let likelihoods = track.compared(outline, &poses, frame);
+    let order = (2..=tuning::LARGEST_ORDER).rev().find(|n| !likelihoods[n - 1].is_worse_than(&likelihoods[0]));
+    order.filter(|n| *n < tuning::LARGEST_ORDER - 1).unwrap_or(1)
+}
+
+/// A pose turned by an angle, anticlockwise where y points up, about the object's middle.
+pub(crate) fn turned(track: &Track, pose: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
+    let centre = map_point(pose, &track.centred_pose().middle);
+    let rotation = Rotation2::new(angle);
+    let shift = centre - rotation * centre;
+    let mut map = rotation.to_homogeneous();
+    (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
+    map * pose
+}
