@@ -75,7 +75,7 @@ proptest! {
         prop_assert_eq!(trajectory.motion(from), motion);
         prop_assert_eq!(trajectory.pose(more), motion.flow(more));
         let [wrapped, plain] = [Motion::from(trajectory), Motion::from(motion)];
-        prop_assert_eq!(wrapped.flow(from, from + more), plain.flow(from, from + more));
+        prop_assert!(difference(&wrapped.flow(from, from + more), &plain.flow(from, from + more)) < 1e-13);
         prop_assert!(wrapped.is_constant() && plain.is_constant());
     }
 
@@ -113,7 +113,8 @@ proptest! {
 fn an_object_that_stops_and_goes_rests_in_the_second_half_of_every_period() {
     let dynamics = Dynamics::StopAndGo { period: 2.0 };
     let trajectory = Trajectory::new(Point2::origin(), 1.0, Vector2::new(1.0, 0.0), dynamics).expect("finite");
-    for (time, moved, moves) in [(0.5, 0.5, true), (1.0, 1.0, false), (1.9, 1.0, false), (2.0, 1.0, true), (4.5, 2.5, true)]
+    for (time, moved, moves) in
+        [(0.5, 0.5, true), (1.0, 1.0, false), (1.9, 1.0, false), (2.0, 1.0, true), (4.5, 2.5, true)]
     {
         assert!((trajectory.turn(time) - moved).abs() < 1e-12, "{time}");
         assert!((trajectory.middle(time).x - moved).abs() < 1e-12, "{time}");
