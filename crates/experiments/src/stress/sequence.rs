@@ -70,27 +70,17 @@ impl<'a> Sequence<'a> {
         Ok(sequence)
     }
 
-    /// The truth at the time of a frame.
+    /// The truth at the time of a frame. Growth and bending about the middle have no part in it, as they have none in a rigid motion.
     pub(super) fn truth(&self, frame: usize) -> Truth {
-        let Recipe { time_unit, length_unit, .. } = self.recipe;
         let time = self.recipe.time(frame);
-        let per_time = 1.0 / time_unit;
-        let at_origin = self.plane_velocity(time, &Point2::origin());
-        let middle = self.motion.middle(time);
+        let per_time = 1.0 / self.recipe.time_unit;
+        let per_velocity = self.recipe.length_unit * per_time;
+        let velocity = |point: &Point2<f64>| self.motion.velocity_at(time, point);
         Truth {
             omega: self.motion.trajectory.omega(time) * per_time,
-            b: self.view.derivative_at_origin() * at_origin * (length_unit * per_time),
-            middle: self.plane_velocity(time, &middle) * (length_unit * per_time),
+            b: self.view.derivative_at_origin() * velocity(&Point2::origin()) * per_velocity,
+            middle: velocity(&self.motion.middle(time)) * per_velocity,
         }
-    }
-
-    /// Velocity of the plane of the object at a point, growth included.
-    fn plane_velocity(&self, time: f64, point: &Point2<f64>) -> Vector2<f64> {
-        let growth = match self.recipe.deformation {
-            Deformation::Growth(rate) => rate * (point - self.motion.middle(time)),
-            Deformation::None | Deformation::Bending { .. } => Vector2::zeros(),
-        };
-        self.motion.velocity_at(time, point) + growth
     }
 
     /// The frames in order.
@@ -224,4 +214,89 @@ fn places(sampling: Sampling, points: usize, start: f64, visible: f64, rng: &mut
     };
     places.sort_by(f64::total_cmp);
     places.into_iter().map(|place| start + visible * place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::course::{Course, Path};
+    use crate::stress::{Kind, all_kinds, kinds_containing};
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+
+    fn frames(recipe: &Recipe, seed: u64) -> (Truth, Vec<SeenFrame>) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let sequence = Sequence::new(recipe, &mut rng).expect("a sequence");
+        (sequence.truth(recipe.frames - 1), sequence.frames(&mut rng))
+    }
+
+    fn kind(path: &str) -> Kind {
+        kinds_containing(path).expect("a kind").into_iter().next().expect("a kind")
+    }
+
+    #[test]
+    fn every_kind_makes_outlines_from_the_first_frame_to_the_last() {
+        for kind in all_kinds() {
+            let last = kind.recipe.frames.min(6);
+            let recipe = Recipe { frames: last, ..kind.recipe.clone() };
+            let (truth, seen) = frames(&recipe, 4);
+            assert!(truth.omega.is_finite() && truth.b.iter().all(|b| b.is_finite()), "{}", kind.path());
+            assert_eq!(seen.last().map(|frame| frame.index), Some(last - 1), "{}", kind.path());
+            assert!(seen.iter().all(|frame| frame.outline.is_some()), "{}", kind.path());
+        }
+    }
+
+    #[test]
+    fn the_truth_is_what_exact_outlines_do_at_the_last_frame() {
+        // A disc by dense points: the mean of its points is its middle.
+        let course = Course {
+            omega: (1.0, 2.0),
+            speed: (0.3, 0.5),
+            start: 1.0,
+            path: Path::Accelerating { spin: 0.5, middle: 0.3 },
+        };
+        let disc = Recipe {
+            body: super::super::body::Body::Circle,
+            course,
+            noise: 0.0,
+            points: 2000,
+            sampling: Sampling::Same,
+            ..Recipe::plain()
+        };
+        let recipe = Recipe { frames: 400, fps: 400.0, length_unit: 10.0, time_unit: 0.1, ..disc };
+        let (truth, seen) = frames(&recipe, 9);
+        let middle = |frame: &SeenFrame| frame.outline.as_ref().expect("an outline").centroid();
+        let [.., before, last] = &seen[..] else { panic!("frames") };
+        let velocity = (middle(last) - middle(before)) / (last.time - before.time);
+        assert!((velocity - truth.middle).norm() < 0.01 * truth.middle.norm(), "{velocity} {}", truth.middle);
+        let there = middle(last);
+        let by_generator = truth.b + truth.omega * Vector2::new(there.y, -there.x);
+        assert!((by_generator - truth.middle).norm() < 1e-2 * truth.middle.norm());
+    }
+
+    #[test]
+    fn a_point_of_a_contour_without_symmetry_turns_by_the_true_omega() {
+        let recipe =
+            Recipe { noise: 0.0, sampling: Sampling::Same, frames: 30, ..kind("dynamics/spin grows by 3").recipe };
+        let (truth, seen) = frames(&recipe, 2);
+        let heading = |frame: &SeenFrame| {
+            let outline = frame.outline.as_ref().expect("an outline");
+            let first = outline.points().next().expect("a point");
+            let d = first - outline.centroid();
+            d.y.atan2(d.x)
+        };
+        let [.., before, last] = &seen[..] else { panic!("frames") };
+        let turn = (heading(before) - heading(last) + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+        // The mean over the last step is half a step before its end.
+        let omega = turn / (last.time - before.time) + 0.5 * 3.0 * truth.omega.signum() / 30.0;
+        assert!((omega - truth.omega).abs() < 1e-6, "{omega} {}", truth.omega);
+    }
+
+    #[test]
+    fn the_same_seed_makes_the_same_frames_and_another_one_others() {
+        let recipe = kind("plain/everything").recipe;
+        let points = |seed| frames(&recipe, seed).1[20].outline.as_ref().expect("an outline").centroid();
+        assert_eq!(points(1), points(1));
+        assert_ne!(points(1), points(2));
+    }
 }

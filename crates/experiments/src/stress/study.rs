@@ -109,3 +109,44 @@ fn run(kind: &Kind, seed: u64, number: usize) -> Result<Outcome, ExperimentError
 fn hash(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::{Quantity, kinds_containing};
+
+    fn report(text: &str, seed: u64) -> StressReport {
+        let kinds = kinds_containing(text).expect("some");
+        StressStudy { kinds, runs: 2, seed }.run(&|| ()).expect("a report")
+    }
+
+    #[test]
+    fn what_the_filter_assumes_is_stated_and_right() {
+        let report = report("plain/8 frames", 1);
+        assert_eq!(
+            (report.overall.runs, report.overall.silent_wrong, report.overall.unstated),
+            (2, Some(0.0), Some(0.0))
+        );
+        assert_eq!(report.classes.len(), 1);
+        let quantities: Vec<Quantity> = report.overall.quantities.iter().map(|of| of.quantity).collect();
+        assert_eq!(quantities, [Quantity::Omega, Quantity::B]);
+    }
+
+    #[test]
+    fn a_disc_states_no_turn_and_the_velocity_of_its_middle() {
+        let report = report("round/disc rolling to rest", 1);
+        let [omega, _, v] = &report.overall.quantities[..] else { panic!("{report:?}") };
+        assert_eq!((omega.unstated, v.unstated), (Some(1.0), Some(0.0)));
+    }
+
+    #[test]
+    fn a_kind_has_the_same_figures_whatever_other_kinds_there_are() {
+        let alone = report("plain/3 frames", 5);
+        let among_others = report("frames", 5);
+        let same = among_others.kinds.iter().find(|of| of.kind.name == "3 frames").expect("the kind");
+        assert_eq!(same.summary, alone.kinds[0].summary);
+        let classes: Vec<Class> = among_others.classes.iter().map(|(class, _)| *class).collect();
+        assert_eq!(classes, [Class::Plain, Class::Dynamics]);
+        assert_eq!(among_others.overall.runs, 2 * among_others.kinds.len());
+    }
+}

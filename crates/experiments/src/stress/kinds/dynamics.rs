@@ -68,7 +68,11 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
             ("sudden stop", "straight with constant spin, and from 2.5 s on at rest", on(Path::Stop { time: 2.5 })),
             ("sudden stop, blob", "the same with a smooth contour", blob(on(Path::Stop { time: 2.5 }))),
             ("late stop", "at rest for the last half second only", on(Path::Stop { time: 3.45 })),
-            ("stop and go", "moves for 0.7 s and rests for 0.7 s, over and over", on(Path::StopAndGo { period: 1.4 })),
+            (
+                "stop and go",
+                "moves for 0.68 s and rests for 0.68 s, over and over",
+                on(Path::StopAndGo { period: 1.36 }),
+            ),
             ("slow oscillation", "spin and velocity vary by half to and fro in 4 s", swinging(4.0, 0.25)),
             ("swing", "swings to and fro in 3 s", swinging(3.0, 1.0)),
             ("swing, blob", "the same with a smooth contour", blob(swinging(3.0, 1.0))),
