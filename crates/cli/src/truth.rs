@@ -1,24 +1,76 @@
 use std::fmt;
 
 use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
+use freeform_motion::sim_camera::Simulator;
 
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
 
 /// The true motion of simulated outlines, as stated in a comment at the head of their file:
-/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`.
+/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`, behind it `v1=-3 v2=4`, and
+/// `time=9.9` where the motion changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SimulatedMotion {
     /// In space: image velocities over the scale.
     pub(crate) motion: AffineMotion,
     /// Camera scale f/Z0.
     pub(crate) scale: CameraScale,
+    /// Velocity in space of the middle of the object, its area centroid, in the last frame.
+    pub(crate) middle_velocity: Option<[f64; 2]>,
+    /// The time in seconds at which the motion is that; `None`: at all times.
+    pub(crate) time: Option<f64>,
+}
+
+/// A true motion as it is shown next to a result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Truth {
+    /// The motion in the last frame.
+    pub(crate) motion: AffineMotion,
+    /// Velocity of the middle of the object in the last frame.
+    pub(crate) middle_velocity: Option<[f64; 2]>,
+    /// Whether the motion is the same in all frames.
+    pub(crate) is_constant: bool,
+}
+
+impl Truth {
+    /// Velocity of the point of the object that is at `[x, y]` in the last frame.
+    pub(crate) fn velocity_at(&self, point: [f64; 2]) -> [f64; 2] {
+        velocity_at(&self.motion, point)
+    }
+}
+
+impl From<AffineMotion> for Truth {
+    fn from(motion: AffineMotion) -> Self {
+        Self { motion, middle_velocity: None, is_constant: true }
+    }
+}
+
+fn velocity_at(motion: &AffineMotion, [x, y]: [f64; 2]) -> [f64; 2] {
+    let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
+    [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
 }
 
 impl SimulatedMotion {
-    /// The motion in the image, b divided by the scale of the one who asks, if any.
-    pub(crate) fn seen_at(&self, scale: Option<CameraScale>) -> AffineMotion {
-        self.motion.in_image(self.scale).in_space(scale.unwrap_or_default())
+    /// That of the frames that a simulator makes: of the last one, where it changes.
+    pub(crate) fn of(simulator: &Simulator) -> Self {
+        let scene = simulator.scene();
+        let last = (simulator.frame_count() - 1) as f64 / simulator.settings().fps;
+        let scale = scene.camera().scale();
+        let middle = (scene.true_pose(last) * scene.shape().centroid()) / scale.value();
+        let motion = scene.motion().at(last);
+        let middle_velocity = Some(velocity_at(&motion, middle.into()));
+        Self { motion, scale, middle_velocity, time: (!scene.motion().is_constant()).then_some(last) }
+    }
+
+    /// The motion in the image, velocities divided by the scale of the one who asks, if any.
+    pub(crate) fn seen_at(&self, scale: Option<CameraScale>) -> Truth {
+        let scale = scale.unwrap_or_default();
+        let per_velocity = self.scale.value() / scale.value();
+        Truth {
+            motion: self.motion.in_image(self.scale).in_space(scale),
+            middle_velocity: self.middle_velocity.map(|velocity| velocity.map(|v| v * per_velocity)),
+            is_constant: self.time.is_none(),
+        }
     }
 
     /// Reads a comment line without its `#`; `None` where it is another comment or not complete.
@@ -35,7 +87,8 @@ impl SimulatedMotion {
             None => AffineMotion { a1: value("a1")?, a2: value("a2")?, a3: value("a3")?, a4: value("a4")?, b1, b2 },
         };
         let scale = CameraScale::new(value("scale")?).ok()?;
-        Some(Self { motion, scale })
+        let middle_velocity = value("v1").zip(value("v2")).map(|(x, y)| [x, y]);
+        Some(Self { motion, scale, middle_velocity, time: value("time") })
     }
 }
 
@@ -48,7 +101,11 @@ impl fmt::Display for SimulatedMotion {
             Some(_) => write!(f, "omega={a2}")?,
             None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
         }
-        write!(f, " b1={b1} b2={b2} scale={}", self.scale)
+        write!(f, " b1={b1} b2={b2} scale={}", self.scale)?;
+        if let Some([x, y]) = self.middle_velocity {
+            write!(f, " v1={x} v2={y}")?;
+        }
+        self.time.map_or(Ok(()), |time| write!(f, " time={time}"))
     }
 }
 
@@ -61,11 +118,13 @@ mod tests {
         let rigid = AffineMotion { a1: 0.0, a2: 0.1 + 0.2, a3: -(0.1 + 0.2), a4: 0.0, b1: -3.0, b2: 1e-17 };
         let affine = AffineMotion { a1: 0.3, ..rigid };
         let scale = CameraScale::new(0.1).expect("a scale");
-        for motion in [rigid, affine] {
-            let written = SimulatedMotion { motion, scale };
+        let known =
+            SimulatedMotion { motion: rigid, scale, middle_velocity: Some([0.1 + 0.7, -1e-9]), time: Some(9.9) };
+        let always = SimulatedMotion { time: None, ..known };
+        for written in [known, always, SimulatedMotion { motion: affine, middle_velocity: None, ..always }] {
             assert_eq!(SimulatedMotion::parse(&written.to_string()), Some(written));
         }
-        assert!(SimulatedMotion { motion: rigid, scale }.to_string().starts_with("truth omega="));
+        assert!(known.to_string().starts_with("truth omega="));
     }
 
     #[test]
@@ -79,8 +138,10 @@ mod tests {
     fn the_scale_of_the_one_who_asks_divides_the_velocity_only() {
         let motion = AffineMotion { a2: 2.0, a3: -2.0, b1: -3.0, b2: 4.0, ..AffineMotion::default() };
         let half = CameraScale::new(0.5).expect("a scale");
-        let truth = SimulatedMotion { motion, scale: half };
-        assert_eq!(truth.seen_at(None), AffineMotion { b1: -1.5, b2: 2.0, ..motion });
-        assert_eq!(truth.seen_at(Some(half)), motion);
+        let truth = SimulatedMotion { motion, scale: half, middle_velocity: Some([3.0, -1.0]), time: None };
+        let in_image = truth.seen_at(None);
+        assert_eq!(in_image.motion, AffineMotion { b1: -1.5, b2: 2.0, ..motion });
+        assert_eq!(in_image.middle_velocity, Some([1.5, -0.5]));
+        assert_eq!(truth.seen_at(Some(half)), Truth { motion, middle_velocity: Some([3.0, -1.0]), is_constant: true });
     }
 }

@@ -4,6 +4,7 @@ use freeform_riccati::{AffineMotion, DynamicsError, FlowIntegrator, RigidMotion}
 use nalgebra::{Affine2, Matrix3};
 
 use crate::error::SimulationError;
+use crate::trajectory::{Dynamics, Trajectory};
 
 /// Longest step of the integrator for a varying motion, in seconds: changes shorter than that can be missed.
 const LONGEST_STEP: f64 = 1.0 / 64.0;
@@ -24,6 +25,7 @@ enum Kind {
     Constant(AffineMotion),
     /// Start of each phase in seconds, from 0 and increasing, and its motion.
     Piecewise(Vec<(f64, AffineMotion)>),
+    Trajectory(Trajectory),
     Varying(Arc<Generator>),
 }
 
@@ -55,12 +57,24 @@ impl Motion {
         Self { kind: Kind::Varying(Arc::new(generator)) }
     }
 
+    /// Whether the motion is known to be the same at all times.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        match &self.kind {
+            Kind::Constant(_) => true,
+            Kind::Trajectory(trajectory) => trajectory.dynamics() == Dynamics::Generator,
+            Kind::Piecewise(phases) => phases.len() == 1,
+            Kind::Varying(_) => false,
+        }
+    }
+
     /// The motion at a time in seconds.
     #[must_use]
     pub fn at(&self, time: f64) -> AffineMotion {
         match &self.kind {
             Kind::Constant(motion) => *motion,
             Kind::Piecewise(phases) => phases[phases.partition_point(|(start, _)| *start <= time).max(1) - 1].1,
+            Kind::Trajectory(trajectory) => trajectory.motion(time).into(),
             Kind::Varying(generator) => generator(time),
         }
     }
@@ -86,6 +100,10 @@ impl Motion {
                 let steps = spans.filter(|(start, end, _)| start < end).map(|(start, end, m)| m.flow(end - start));
                 steps.fold(Affine2::identity(), |flow, step| step * flow)
             }
+            Kind::Trajectory(trajectory) => match trajectory.dynamics() {
+                Dynamics::Generator => trajectory.motion(0.0).flow(to - from),
+                _ => trajectory.pose(to) * trajectory.pose(from).inverse(),
+            },
             Kind::Varying(generator) => {
                 let integrator = FlowIntegrator::new(TOLERANCE)?.with_longest_step(LONGEST_STEP)?;
                 let flow = integrator.flow(|time| generator(time).generator(), from, to)?;
@@ -108,11 +126,18 @@ impl From<RigidMotion> for Motion {
     }
 }
 
+impl From<Trajectory> for Motion {
+    fn from(trajectory: Trajectory) -> Self {
+        Self { kind: Kind::Trajectory(trajectory) }
+    }
+}
+
 impl fmt::Debug for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
             Kind::Constant(motion) => f.debug_tuple("Constant").field(motion).finish(),
             Kind::Piecewise(phases) => f.debug_tuple("Piecewise").field(phases).finish(),
+            Kind::Trajectory(trajectory) => trajectory.fmt(f),
             Kind::Varying(_) => f.write_str("Varying(..)"),
         }
     }

@@ -1,4 +1,5 @@
 //! What can be asked for on the command line.
+mod dynamics;
 mod evaluate;
 mod fit;
 mod identify;

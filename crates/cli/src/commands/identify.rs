@@ -4,7 +4,6 @@ use std::path::Path;
 use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::riccati::AffineMotion;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
@@ -23,6 +22,7 @@ use crate::output::{
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
 use crate::reader::{Event, Pace, follow};
+use crate::truth::Truth;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
@@ -30,9 +30,9 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
-    let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
+    let truth = args.truth.map(Truth::from).or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
     let model = args.options.motion.model();
-    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth).is_none()) {
+    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth.motion).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
         warn(&format!("{origin} is not a {model} motion, so it is not shown"));
     }
@@ -156,7 +156,7 @@ impl<'a> Files<'a> {
     }
 
     /// Moves the files to their destinations. A file without content is not written.
-    fn finish(self, tracker: &Tracker, truth: Option<&AffineMotion>, results: &[ObjectResult]) -> Result<(), Failure> {
+    fn finish(self, tracker: &Tracker, truth: Option<&Truth>, results: &[ObjectResult]) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
         let not_written = |options: &[(&str, bool)], reason: &str| {
@@ -199,7 +199,7 @@ impl<'a> Files<'a> {
 fn print(
     args: &IdentifyArgs,
     results: &[ObjectResult],
-    truth: Option<&AffineMotion>,
+    truth: Option<&Truth>,
     b: &MeaningOfB,
     left_out: &LeftOut,
     has_pictures: bool,

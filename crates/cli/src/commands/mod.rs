@@ -8,6 +8,7 @@ mod man;
 mod outline;
 mod reproduce;
 mod simulate;
+mod stress;
 mod track;
 
 use crate::args::{Cli, Command};
