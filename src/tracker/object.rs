@@ -65,6 +65,7 @@ impl TrackedObject {
             innovation: step.innovation,
             ambiguity: step.ambiguity,
             rejection,
+            segment: self.identifier.restarts(),
             warning: self.contour_order.look_at(frame).cloned(),
         }
     }
@@ -84,6 +85,7 @@ impl TrackedObject {
             innovation: None,
             ambiguity: None,
             rejection,
+            segment: self.identifier.restarts(),
             warning: None,
         }
     }
@@ -139,6 +141,8 @@ impl TrackedObject {
             estimate,
             velocity: velocity.filter(freeform_estimate::PointVelocity::is_finite),
             ambiguity: self.identifier.ambiguity(),
+            aliases: self.identifier.aliases(),
+            dynamics: self.identifier.dynamics(),
             warnings,
         }
     }

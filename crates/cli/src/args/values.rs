@@ -69,6 +69,12 @@ pub(crate) fn numbers<const N: usize>(
     }
 }
 
+/// A length that is not negative.
+pub(crate) fn length(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value >= 0.0 { Ok(value) } else { Err(format!("{text} is negative")) }
+}
+
 /// A share of a whole, up to all of it.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
     let value = finite(text)?;

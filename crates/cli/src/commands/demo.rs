@@ -9,7 +9,7 @@ use freeform_motion::{PipelineSettings, Tracker};
 
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
-use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
+use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::fitted_outline::FittedOutline;
@@ -44,8 +44,14 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let camera = Settings { fps: 30.0, length, noise: PaperExperiment::NOISE, ..Settings::default() };
     let simulator = Simulator::new(scene, camera).map_err(Failure::unusable)?;
     let truth = SimulatedMotion::of(&simulator).seen_at(Some(scale));
-    let by_filter =
-        TrackOptions { motion: MotionChoice::Rigid, method: IdentifyMethod::Filter, degree: None, scale: Some(scale) };
+    let by_filter = TrackOptions {
+        motion: MotionChoice::Rigid,
+        method: IdentifyMethod::Filter,
+        degree: None,
+        scale: Some(scale),
+        dynamics: DynamicsChoice::Auto,
+        edge_uncertainty: None,
+    };
     let by_adaptive_law = TrackOptions { method: IdentifyMethod::Adaptive, ..by_filter.clone() };
 
     let mut filter = Identification::new(by_filter.clone(), &folder.join(TRACE))?;

@@ -136,6 +136,8 @@ mod tests {
             estimate: Some(estimate),
             velocity: Some(velocity),
             ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
             warnings: Vec::new(),
         };
         let motion = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 };
@@ -165,6 +167,8 @@ mod tests {
             estimate,
             velocity: None,
             ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
             warnings: Vec::new(),
         };
         let velocity = PointVelocity {

@@ -13,7 +13,7 @@ pub(crate) fn write_trajectory(
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
     let names = || Trajectory::pose_names(model).iter().chain(model.parameter_names());
-    let mut header: Vec<String> = ["object", "frame", "time", "accepted"].map(str::to_owned).into();
+    let mut header: Vec<String> = ["object", "frame", "time", "accepted", "segment"].map(str::to_owned).into();
     header.extend(names().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
     writer.write_record(&header).map_err(io::Error::from)?;
     for (row, known) in trajectory.rows().iter().zip(trajectory.poses(scale)) {
@@ -22,6 +22,7 @@ pub(crate) fn write_trajectory(
             row.frame.to_string(),
             row.time.map_or_else(String::new, |time| time.to_string()),
             row.accepted.to_string(),
+            row.segment.to_string(),
         ];
         match known {
             Some(PoseAndMotion { pose, motion }) => {

@@ -5,9 +5,10 @@ use nalgebra::{Point2, Vector2};
 
 use super::sequence::Truth;
 
-/// Codes of warnings that do not question a value that is stated: that others are not, that single frames were not used, or that the
-/// values are those at the end. Every other warning makes up for a wrong value.
-pub const NOTES: [&str; 6] = [
+/// Codes of warnings that do not question a value that is stated: that others are not, that single frames were not used, that the
+/// values are those at the end, or that there are others (which count where one of them is the true one). Every other warning makes up for a wrong value.
+pub const NOTES: [&str; 7] = [
+    "aliases",
     "not_observable",
     "rotation_not_observable",
     "frame_rejected",
@@ -147,7 +148,7 @@ fn in_deviations(error: f64, deviation: f64) -> f64 {
 fn told_aliases(result: &ObjectResult, frame_rate: f64) -> Vec<f64> {
     let rivals = result.ambiguity.iter().flat_map(|ambiguity| &ambiguity.rival_turns);
     // Turns are anticlockwise, omega is clockwise.
-    rivals.map(|turn| -turn * frame_rate).collect()
+    rivals.map(|turn| -turn * frame_rate).chain(result.aliases.iter().copied()).collect()
 }
 
 #[cfg(test)]
@@ -175,6 +176,8 @@ mod tests {
             estimate: Some(estimate),
             velocity: None,
             ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
             warnings: Vec::new(),
         }
     }
