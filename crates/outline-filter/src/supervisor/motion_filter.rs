@@ -359,7 +359,8 @@ impl MotionFilter {
         let estimate = track.estimate_of(&all)?.with_random_part(&track.deviations_of(&random)?);
         let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
         let is_stated = self.unstated().is_none();
-        let unknown = doubts.filter(|(_, doubtful)| *doubtful || !is_stated);
+        let unknown =
+            doubts.take(self.settings.model.parameter_count()).filter(|(_, doubtful)| *doubtful || !is_stated);
         Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
     }
 
