@@ -4,8 +4,8 @@
 //! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8, negative inside and positive outside, by the 3L method
 //! (three level sets: the data at 0, and the data moved along its normals at -1 and +1). The fit can be globally
 //! stabilised, or closed and bounded by construction. It is equivariant under similarities, that is turns, shifts and changes
-//! of scale: the fit of the moved outline is the moved fit. Under an affine map that stretches or shears it is not, since
-//! distances along normals are not kept.
+//! of scale: the fit of the moved outline is the moved fit. Under an affine map that stretches or shears it is so with
+//! [`Normalise::Affine`] alone, since distances along normals are not kept.
 //!
 //! ```
 //! use freeform_curve_fit::{FitSettings, Fitter, Outline};
@@ -26,6 +26,7 @@
 //! assert!(f.evaluate(&Point2::new(2.0, 1.0)) > 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod area_moments;
 mod bounded;
 mod bounded_polynomial;
 mod contact;
@@ -44,12 +45,14 @@ mod normalisation;
 mod normals;
 mod outline;
 mod polynomial;
+mod resampling;
 mod residuals;
 mod ridge;
 mod settings;
 mod vectors;
 mod windows;
 
+pub use area_moments::AreaMoments;
 pub use bounded_polynomial::BoundedPolynomial;
 pub use degree::{Degree, MAX_COEFFICIENTS, coefficient_count};
 pub use error::{FitError, OutlineError, PolynomialError, SettingsError};
@@ -64,7 +67,7 @@ pub use outline::{ClosedOutline, OpenArc, OpenOutline, Outline, Piece};
 pub use polynomial::ImplicitPolynomial;
 pub use residuals::Residuals;
 pub use ridge::rotation_invariant_ridge;
-pub use settings::{FitSettings, Method};
+pub use settings::{FitSettings, Method, Normalise};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
