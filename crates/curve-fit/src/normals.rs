@@ -96,12 +96,7 @@ impl NormalRegression {
             normals.resize(xs.len(), 0.0);
         }
         self.reserve(xs.len(), half_window);
-        Arch::new().dispatch(NormalKernel {
-            regression: self,
-            points: [xs, ys],
-            half_window,
-            normals: [nx, ny],
-        });
+        Arch::new().dispatch(NormalKernel { regression: self, points: [xs, ys], half_window, normals: [nx, ny] });
     }
 
     /// Makes room for outlines of so many points, whose neighbours beyond the ends may be twice as many as if the points

@@ -106,7 +106,10 @@ mod tests {
     fn an_open_piece_keeps_its_ends() {
         let points = [(0.0, 0.0), (1.0, 0.0), (1.0, 3.0)].map(|(x, y)| Point2::new(x, y));
         let spread = resampled(&points, false, 5);
-        assert_eq!(spread, [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (1.0, 2.0), (1.0, 3.0)].map(|(x, y)| Point2::new(x, y)));
+        assert_eq!(
+            spread,
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (1.0, 2.0), (1.0, 3.0)].map(|(x, y)| Point2::new(x, y))
+        );
     }
 
     #[test]
