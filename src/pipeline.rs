@@ -1,4 +1,6 @@
-use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Outline, SettingsError};
+use freeform_curve_fit::{
+    Fit, FitError, FitSettings, Fitter, Method, Normalisation, Normalise, Outline, SettingsError,
+};
 use freeform_decompose::{
     Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
 };
@@ -41,6 +43,22 @@ impl Default for PipelineSettings {
         let method = Method::Bounded { margin: 0.5, ridge_weight: 0.03 };
         let fit = FitSettings { method, offset: 0.15, ..FitSettings::default() };
         Self { fit, identify: AdaptiveSettings::default() }
+    }
+}
+
+impl PipelineSettings {
+    /// The settings for a family of motions. For affine motion outlines are fitted affine-normalised, since the lines of other fits
+    /// do not follow it, and the law is filtered least squares: over six parameters the structured law takes minutes to
+    /// settle for outlines whose lines excite it little.
+    #[must_use]
+    pub fn for_model(model: MotionModel) -> Self {
+        let mut settings = Self::default();
+        settings.identify.model = model;
+        if model == MotionModel::Affine {
+            settings.fit.normalise = Normalise::Affine;
+            settings.identify.law = AdaptiveLaw::FilteredLeastSquares;
+        }
+        settings
     }
 }
 
@@ -97,10 +115,18 @@ pub struct Pipeline {
     /// From the coordinates that the identifier had at the start to its present ones.
     identifier_from_start: Translation2<f64>,
     last: Option<MatchedFrame>,
+    pose: Option<Pose>,
     frames: usize,
     frames_rejected: usize,
     counts: Counts,
     settling: Settling,
+}
+
+/// Where the working coordinates of the last frame were.
+#[derive(Debug, Clone, Copy)]
+struct Pose {
+    time: f64,
+    image_from_working: Affine2<f64>,
 }
 
 /// What the warnings are drawn from.
@@ -132,6 +158,7 @@ impl Pipeline {
             identifier_from_start: Translation2::identity(),
             settings,
             last: None,
+            pose: None,
             frames: 0,
             frames_rejected: 0,
             counts: Counts::default(),
@@ -153,7 +180,7 @@ impl Pipeline {
     }
 
     fn take(&mut self, time: f64, outline: &Outline) -> Result<FrameResult, PipelineError> {
-        let fit = self.fitter.fit(outline)?;
+        let fit = self.fit(time, outline)?;
         let Some(curve) = fit.bounded_working() else {
             return Err(PipelineError::NotBounded { margin: fit.diagnostics().boundedness_margin });
         };
@@ -172,6 +199,7 @@ impl Pipeline {
         self.identifier.step(time, &lines[..count])?;
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
+        self.pose = Some(Pose { time, image_from_working });
         self.counts.take(correspondence.as_ref());
         let start_from_identifier = nalgebra::convert(self.identifier_from_start.inverse());
         let at_start = self.identifier.estimate().map(|estimate| estimate.in_coordinates(&start_from_identifier));
@@ -180,10 +208,32 @@ impl Pipeline {
         Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
     }
 
-    /// Sets up the identifier in coordinates centred on the first outline.
+    /// Fits a curve to an outline. Arcs of one that is followed affinely, which have no area moments to normalise them by, are
+    /// fitted where the motion has carried the coordinates of the frame before.
+    fn fit(&mut self, time: f64, outline: &Outline) -> Result<Fit, FitError> {
+        match (self.settings.fit.normalise, outline, self.pose) {
+            (Normalise::Affine, Outline::Open(_), Some(pose)) => {
+                let carried = self.flow(time - pose.time) * pose.image_from_working;
+                self.fitter.fit_in(outline, &carried)
+            }
+            _ => self.fitter.fit(outline),
+        }
+    }
+
+    /// How the motion as identified so far moves the image in so many seconds; not at all before it is known.
+    fn flow(&self, seconds: f64) -> Affine2<f64> {
+        let flow = |estimate: MotionEstimate| estimate.model().flow(estimate.values(), seconds).into_inner();
+        self.identified().map_or(Affine2::identity(), |estimate| Affine2::from_matrix_unchecked(flow(estimate)))
+    }
+
+    /// Sets up the identifier in coordinates centred on the first outline and, where the motion is affine, moved to its circle of
+    /// inertia: the slopes of lines of a slender object swing far out.
     fn start_at(&mut self, first: &Normalisation) -> Result<Affine2<f64>, IdentifyError> {
-        let unit = Normalisation { centre: first.centre, radius: first.radius / RMS_RADIUS };
-        let map = unit.image_from_working();
+        let unit = Normalisation { radius: first.radius / RMS_RADIUS, ..*first };
+        let map = match self.settings.identify.model {
+            MotionModel::Affine => unit.image_from_working(),
+            _ => Normalisation::similarity(unit.centre, unit.radius).image_from_working(),
+        };
         let AdaptiveSettings { model, initial_values, .. } = &self.settings.identify;
         if !initial_values.is_empty() {
             let moved = MotionEstimate::new(*model, initial_values, None).in_coordinates(&map.inverse());
@@ -226,8 +276,7 @@ impl Pipeline {
     /// outlines tell nothing are marked unobservable: all of them for a circle.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
-        let map = self.image_from_identifier.as_ref();
-        let identified = map.and_then(|map| self.identifier.estimate().map(|estimate| estimate.in_coordinates(map)));
+        let identified = self.identified();
         if self.frames < 2 || 2 * self.counts.without_separate_lines <= self.frames {
             return identified;
         }
@@ -236,6 +285,12 @@ impl Pipeline {
         let nothing = [0.0; MotionModel::MAX_PARAMETERS];
         let estimate = identified.unwrap_or_else(|| MotionEstimate::new(model, &nothing[..count], None));
         Some((0..count).fold(estimate, MotionEstimate::with_unobservable))
+    }
+
+    /// What the identifier says, in the image frame.
+    fn identified(&self) -> Option<MotionEstimate> {
+        let map = self.image_from_identifier.as_ref()?;
+        Some(self.identifier.estimate()?.in_coordinates(map))
     }
 
     /// The identifier, for what it says beside the estimate. Its own estimate is in its own coordinates.
@@ -285,7 +340,9 @@ impl Pipeline {
         {
             warnings.push(Warning::MayNotHaveSettled { seconds });
         }
-        if self.settings.identify.model == MotionModel::Affine && self.identifier.intervals_followed() > 0 {
+        let PipelineSettings { fit, identify } = &self.settings;
+        let is_biased = identify.model == MotionModel::Affine && fit.normalise == Normalise::Similarity;
+        if is_biased && self.identifier.intervals_followed() > 0 {
             warnings.push(Warning::AffineBias);
         }
         warnings.iter().map(ToString::to_string).collect()

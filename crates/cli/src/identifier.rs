@@ -196,8 +196,7 @@ impl Step {
 
 /// What the options ask of a pipeline.
 pub(crate) fn pipeline_settings(options: &TrackOptions) -> PipelineSettings {
-    let mut settings = PipelineSettings::default();
-    settings.identify.model = options.motion.model();
+    let mut settings = PipelineSettings::for_model(options.motion.model());
     if let Some(degree) = options.degree {
         settings.fit.degree = degree;
     }
