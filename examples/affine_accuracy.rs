@@ -4,7 +4,8 @@
 //! cargo run --release --example affine_accuracy -- [key=value ...] [mask.png ...]
 //! ```
 //!
-//! Keys: `law` (structured), `pairs` (best), `seed`, `noise`, `occlusion`, `offset`, `margin`, `ridge`, `window`,
+//! Keys: `law` (structured), `pairs` (best), `seed`, `noise`, `occlusion` (share hidden from the second
+//! second on), `offset`, `margin`, `ridge`, `window`,
 //! `normalise` (similarity). Columns: the largest error of a1 to a4 in percent of the largest of them, the error of b in
 //! percent of its length, frames rejected.
 use std::{error::Error, path::Path};
@@ -19,11 +20,8 @@ use freeform_motion::{
 };
 
 /// Turns that are faster one way round, one of them the other way, with some growth and some shrinking.
-const MOTIONS: [[f64; 6]; 3] = [
-    [0.05, 1.2, -1.7, -0.08, -0.3, 0.4],
-    [0.1, 1.0, -1.0, -0.1, 0.2, 0.0],
-    [-0.05, -0.8, 1.3, 0.04, 0.1, -0.2],
-];
+const MOTIONS: [[f64; 6]; 3] =
+    [[0.05, 1.2, -1.7, -0.08, -0.3, 0.4], [0.1, 1.0, -1.0, -0.1, 0.2, 0.0], [-0.05, -0.8, 1.3, 0.04, 0.1, -0.2]];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut pipeline = PipelineSettings::for_model(MotionModel::Affine);
@@ -40,7 +38,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             ("normalise", _) if value == "similarity" => pipeline.fit.normalise = Normalise::Similarity,
             ("seed", _) => simulation.seed = value.parse()?,
             ("noise", _) => simulation.noise = value.parse()?,
-            ("occlusion", _) => simulation.occlusion = Occlusion { fraction: value.parse()?, ..Occlusion::default() },
+            ("occlusion", _) => {
+                simulation.occlusion = Occlusion { fraction: value.parse()?, first_frame: 30, ..Occlusion::default() };
+            }
             ("offset", _) => pipeline.fit.offset = value.parse()?,
             ("window", _) => pipeline.fit.normal_half_window = value.parse()?,
             ("margin", Method::Bounded { margin, .. }) => *margin = value.parse()?,

@@ -49,7 +49,8 @@ impl Default for PipelineSettings {
 impl PipelineSettings {
     /// The settings for a family of motions. For affine motion outlines are fitted affine-normalised, since the lines of other fits
     /// do not follow it, and the law is filtered least squares: over six parameters the structured law takes minutes to
-    /// settle for outlines whose lines excite it little.
+    /// settle for outlines whose lines excite it little. An outline moved to its circle of inertia needs less of a ridge, and a
+    /// larger margin keeps the lines of slender ones, whose curve is bounded by it alone, apart.
     #[must_use]
     pub fn for_model(model: MotionModel) -> Self {
         let mut settings = Self::default();
@@ -57,6 +58,7 @@ impl PipelineSettings {
         if model == MotionModel::Affine {
             settings.fit.normalise = Normalise::Affine;
             settings.identify.law = AdaptiveLaw::FilteredLeastSquares;
+            settings.fit.method = Method::Bounded { margin: 0.7, ridge_weight: 0.003 };
         }
         settings
     }

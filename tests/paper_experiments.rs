@@ -4,7 +4,7 @@ mod common;
 use common::{identified, rigid_errors, seconds};
 use freeform_motion::{
     Pipeline, PipelineSettings,
-    identify::AdaptiveSettings,
+    curve_fit::Normalise,
     outline_io::read_shape,
     riccati::{AffineMotion, MotionModel, RigidMotion},
     sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, Shape},
@@ -57,25 +57,50 @@ fn masks_of_real_objects_are_followed_as_well_in_four_cases_out_of_five() {
     assert!(5 * within >= 4 * cases, "{within} of {cases}");
 }
 
-/// The 3L fit is not affine-equivariant: the lines of the fitted quartic do not move exactly as the outline does, so the
-/// six parameters keep a bias that neither time nor less noise removes. Measured here after 30 s: a = (-0.19, 1.39, -1.22,
-/// 0.13), b = (-0.40, 0.13) for a = (0.05, 1.2, -1.7, -0.08), b = (-0.3, 0.4); the mean turn (a2 - a3) / 2 is 10 % off.
-#[test]
-fn an_affine_motion_is_found_roughly() {
+/// Largest error of a1 to a4, as a fraction of the largest of them, and that of b after 30 s.
+fn affine_errors(shape: BuiltInShape, noise: f64, settings: &PipelineSettings) -> (f64, f64) {
     let motion = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
-    let truth = [motion.a1, motion.a2, motion.a3, motion.a4, motion.b1, motion.b2];
-    let scene = Scene::new(BuiltInShape::Bird, motion, Camera::default());
-    let identify = AdaptiveSettings { model: MotionModel::Affine, ..AdaptiveSettings::default() };
-    let pipeline = identified(scene, &seconds(30.0), PipelineSettings { identify, ..PipelineSettings::default() });
+    let scene = Scene::new(shape, motion, Camera::default());
+    let simulation = freeform_motion::sim_camera::Settings { noise, ..seconds(30.0) };
+    let pipeline = identified(scene, &simulation, settings.clone());
     let estimate = pipeline.estimate().expect("an estimate");
     let found = estimate.values();
-    println!("{found:?} for {truth:?}");
-    let error: f64 = found.iter().zip(truth).map(|(value, true_value)| (value - true_value).powi(2)).sum();
-    let size: f64 = truth.iter().map(|value| value * value).sum();
-    assert!(error < 0.2 * size, "{found:?}");
-    assert!(pipeline.warnings().iter().any(|warning| warning.contains("biased")), "{:?}", pipeline.warnings());
-    let turn = 0.5 * (found[1] - found[2]);
-    assert!((turn / 1.45 - 1.0).abs() < 0.15, "mean turn {turn}");
+    let rates = [motion.a1, motion.a2, motion.a3, motion.a4];
+    let worst = found.iter().zip(rates).map(|(value, truth)| (value - truth).abs()).fold(0.0, f64::max);
+    (worst / 1.7, (found[4] - motion.b1).hypot(found[5] - motion.b2) / 0.5)
+}
+
+#[test]
+fn six_parameters_are_found_to_one_percent_without_noise_and_to_three_with_the_noise_of_the_paper() {
+    let settings = PipelineSettings::for_model(MotionModel::Affine);
+    for shape in BuiltInShape::ALL {
+        // What is round or an ellipse tells nothing of a turn within its affine frame but by the path of its middle.
+        if matches!(shape, BuiltInShape::Circle | BuiltInShape::Ellipse) {
+            continue;
+        }
+        for (noise, limit) in [(0.0, 0.01), (0.005, 0.03)] {
+            let (rates, b) = affine_errors(shape, noise, &settings);
+            assert!(rates < limit && b < limit, "{shape}, noise {noise}: {rates}, {b}");
+        }
+    }
+}
+
+/// The 3L fit in centred and scaled coordinates is not affine-equivariant: the lines of the fitted quartic do not move exactly as the
+/// outline does.
+#[test]
+fn without_an_affine_normalisation_six_parameters_keep_a_bias_and_say_so() {
+    let mut settings = PipelineSettings::for_model(MotionModel::Affine);
+    settings.fit.normalise = Normalise::Similarity;
+    let (rates, _) = affine_errors(BuiltInShape::Bird, 0.0, &settings);
+    assert!((0.05..0.5).contains(&rates), "{rates}");
+    let warnings = |settings: PipelineSettings| {
+        let motion = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
+        identified(Scene::new(BuiltInShape::Bird, motion, Camera::default()), &seconds(2.0), settings).warnings()
+    };
+    assert!(warnings(settings).iter().any(|warning| warning.contains("biased")));
+    assert!(
+        !warnings(PipelineSettings::for_model(MotionModel::Affine)).iter().any(|warning| warning.contains("biased"))
+    );
 }
 
 #[test]

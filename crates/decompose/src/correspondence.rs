@@ -21,8 +21,8 @@ const CERTAIN_MARGIN: f64 = 0.5;
 /// Continuity is clear where the change is less than that of a turn by about half a radian...
 const SMALL_COST: f64 = 0.3;
 
-/// ...and the second best pairing is four times as far away (costs are squares).
-const CLEAR_COST_RATIO: f64 = 16.0;
+/// ...and the second best pairing is twice as far away (costs are squares).
+const CLEAR_COST_RATIO: f64 = 4.0;
 
 /// What settled a [`Correspondence`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
