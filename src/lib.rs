@@ -25,6 +25,7 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod followed_pose;
 mod pipeline;
 mod settling;
 mod warning;

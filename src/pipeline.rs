@@ -9,7 +9,7 @@ use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, Ident
 use freeform_riccati::MotionModel;
 use nalgebra::{Affine2, Point2, Translation2};
 
-use crate::{settling::Settling, warning::Warning};
+use crate::{followed_pose::FollowedPose, settling::Settling, warning::Warning};
 
 /// Share of rejected frames that is worth a warning.
 const MANY_REJECTED: f64 = 0.05;
@@ -117,18 +117,12 @@ pub struct Pipeline {
     /// From the coordinates that the identifier had at the start to its present ones.
     identifier_from_start: Translation2<f64>,
     last: Option<MatchedFrame>,
-    pose: Option<Pose>,
+    /// Of an object that is followed affinely.
+    pose: Option<FollowedPose>,
     frames: usize,
     frames_rejected: usize,
     counts: Counts,
     settling: Settling,
-}
-
-/// Where the working coordinates of the last frame were.
-#[derive(Debug, Clone, Copy)]
-struct Pose {
-    time: f64,
-    image_from_working: Affine2<f64>,
 }
 
 /// What the warnings are drawn from.
@@ -182,7 +176,7 @@ impl Pipeline {
     }
 
     fn take(&mut self, time: f64, outline: &Outline) -> Result<FrameResult, PipelineError> {
-        let fit = self.fit(time, outline)?;
+        let (fit, pose) = self.fit(time, outline)?;
         let Some(curve) = fit.bounded_working() else {
             return Err(PipelineError::NotBounded { margin: fit.diagnostics().boundedness_margin });
         };
@@ -201,7 +195,7 @@ impl Pipeline {
         self.identifier.step(time, &lines[..count])?;
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
-        self.pose = Some(Pose { time, image_from_working });
+        self.remember_pose(time, outline, normalisation, pose);
         self.counts.take(correspondence.as_ref());
         let start_from_identifier = nalgebra::convert(self.identifier_from_start.inverse());
         let at_start = self.identifier.estimate().map(|estimate| estimate.in_coordinates(&start_from_identifier));
@@ -210,15 +204,38 @@ impl Pipeline {
         Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
     }
 
-    /// Fits a curve to an outline. Arcs of one that is followed affinely, which have no area moments to normalise them by, are
-    /// fitted where the motion has carried the coordinates of the frame before.
-    fn fit(&mut self, time: f64, outline: &Outline) -> Result<Fit, FitError> {
-        match (self.settings.fit.normalise, outline, self.pose) {
-            (Normalise::Affine, Outline::Open(_), Some(pose)) => {
-                let carried = self.flow(time - pose.time) * pose.image_from_working;
-                self.fitter.fit_in(outline, &carried)
-            }
-            _ => self.fitter.fit(outline),
+    /// Fits a curve to an outline. Arcs of one that is followed affinely have no area moments to normalise them by: they are brought
+    /// to the pose at which they lie on the outline of the frames before, which fills in what is hidden. Where that was
+    /// never seen whole, they are fitted in its coordinates as they are. Also returns the pose, if it was looked for.
+    fn fit(&mut self, time: f64, outline: &Outline) -> Result<(Fit, Option<Affine2<f64>>), FitError> {
+        let arcs = match (self.settings.fit.normalise, outline) {
+            (Normalise::Affine, Outline::Open(arcs)) => arcs,
+            _ => return Ok((self.fitter.fit(outline)?, None)),
+        };
+        let Some(followed) = &self.pose else {
+            // The first frame: any coordinates will do that later frames are brought to.
+            let first = Normalisation::similarity(outline.centroid(), outline.rms_radius());
+            return Ok((self.fitter.fit_in(outline, &first.image_from_working())?, None));
+        };
+        let pose = followed.found(outline, &self.flow(followed.seconds_until(time)));
+        let fit = match followed.completed(arcs, &pose) {
+            Some(whole) => self.fitter.fit(&Outline::Closed(whole)),
+            None => self.fitter.fit_in(outline, &pose),
+        };
+        Ok((fit?, Some(pose)))
+    }
+
+    fn remember_pose(
+        &mut self,
+        time: f64,
+        outline: &Outline,
+        normalisation: &Normalisation,
+        pose: Option<Affine2<f64>>,
+    ) {
+        match (&mut self.pose, pose) {
+            _ if self.settings.fit.normalise == Normalise::Similarity => {}
+            (Some(followed), Some(pose)) => followed.at(time, pose),
+            (followed, _) => *followed = Some(FollowedPose::new(time, outline, normalisation)),
         }
     }
 
