@@ -36,6 +36,7 @@ pub use freeform_estimate as estimate;
 pub use freeform_identify as identify;
 pub use freeform_outline_filter as outline_filter;
 pub use freeform_outline_io as outline_io;
+pub use freeform_recognise as recognise;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};

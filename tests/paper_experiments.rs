@@ -7,7 +7,7 @@ use freeform_motion::{
     curve_fit::Normalise,
     outline_io::read_shape,
     riccati::{AffineMotion, MotionModel, RigidMotion},
-    sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, Shape},
+    sim_camera::{BuiltInShape, Camera, Occlusion, PaperExperiment, Scene, Shape},
 };
 
 /// Allowed errors of omega and of b, relative to their sizes.
@@ -82,6 +82,22 @@ fn six_parameters_are_found_to_one_percent_without_noise_and_to_three_with_the_n
             let (rates, b) = affine_errors(shape, noise, &settings);
             assert!(rates < limit && b < limit, "{shape}, noise {noise}: {rates}, {b}");
         }
+    }
+}
+
+#[test]
+fn a_fifth_of_the_outline_may_be_hidden_once_it_was_seen_whole() {
+    let settings = PipelineSettings::for_model(MotionModel::Affine);
+    let motion = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
+    let occlusion = Occlusion { fraction: 0.2, first_frame: 1, ..Occlusion::default() };
+    for shape in [BuiltInShape::Glider, BuiltInShape::Vase] {
+        let simulation = freeform_motion::sim_camera::Settings { noise: 0.002, occlusion, ..seconds(6.0) };
+        let pipeline = identified(Scene::new(shape, motion, Camera::default()), &simulation, settings.clone());
+        assert_eq!(pipeline.frames_rejected(), 0);
+        let estimate = pipeline.estimate().expect("an estimate");
+        let rates = [motion.a1, motion.a2, motion.a3, motion.a4];
+        let worst = estimate.values().iter().zip(rates).map(|(v, truth)| (v - truth).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.05 * 1.7, "{shape}: {worst}");
     }
 }
 

@@ -4,6 +4,7 @@ use pulp::Arch;
 use crate::{
     area_moments::AreaMoments,
     bounded,
+    covariance::{FitCovariance, Fitted},
     degree::MAX_COEFFICIENTS,
     error::{FitError, SettingsError},
     fit::{Factorisation, Fit, FitDiagnostics},
@@ -83,6 +84,30 @@ impl Fitter {
         self.load_evenly(outline, &normalisation);
         self.find_normals();
         self.fit_loaded(outline, normalisation)
+    }
+
+    /// Fits a polynomial to an outline and says how uncertain its coefficients are. The covariance is that of the least-squares
+    /// solution, carried from independent noise of the points, whose size is told from the outline itself; where a
+    /// [constraint](crate::FitDiagnostics::constraint_active) is active the solution varies less than it says. What the curve
+    /// misses of the shape is no noise and is left out. Allocates.
+    ///
+    /// # Errors
+    /// As [`fit`](Self::fit).
+    pub fn fit_with_covariance(&mut self, outline: &Outline) -> Result<(Fit, FitCovariance), FitError> {
+        let fit = self.fit(outline)?;
+        let condition = fit.diagnostics.condition;
+        let size = self.settings.degree.coefficient_count();
+        let singular = FitError::RankDeficient { rank: size - 1, needed: size, condition };
+        let inverse = self.system.inverse().ok_or(singular)?;
+        let fitted = Fitted {
+            points: self.points.each_ref().map(Vec::as_slice),
+            normals: self.normals.each_ref().map(Vec::as_slice),
+            interpolated_from: (self.settings.normalise == Normalise::Affine).then(|| outline.point_count()),
+            offset: self.settings.offset,
+            polynomial: &fit.working,
+            inverse: &inverse,
+        };
+        Ok((fit, fitted.covariance()))
     }
 
     fn fit_loaded(&mut self, outline: &Outline, normalisation: Normalisation) -> Result<Fit, FitError> {

@@ -44,6 +44,17 @@ impl EvenOutline {
     }
 }
 
+/// So many points, evenly spaced by arc length along a closed contour, from its point farthest from the origin on.
+///
+/// # Panics
+/// If there is no point at all.
+#[must_use]
+pub fn evenly_spaced(contour: &[Point2<f64>], count: usize) -> Vec<Point2<f64>> {
+    let mut out = Vec::with_capacity(count);
+    resample(Piece { points: contour, closed: true }, count, &mut Vec::new(), &mut out);
+    out
+}
+
 /// Appends `count` points, evenly spaced by arc length along a piece, to `out`. An open piece keeps its ends; a closed one begins
 /// at its point farthest from the origin, so that neither a turn about the origin nor another first point changes the points.
 ///

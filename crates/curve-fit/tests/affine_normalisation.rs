@@ -151,3 +151,39 @@ fn a_frame_without_an_inverse_is_refused() {
         assert_eq!(refused.err(), Some(FitError::SingularNormalisation));
     }
 }
+
+/// Root mean square ratio of the stated standard deviations of the coefficients to those over many draws of the noise.
+fn stated_over_true(normalise: Normalise) -> (f64, f64) {
+    let settings = FitSettings {
+        normalise,
+        method: Method::GloballyStabilised { ridge_weight: 1e-3 },
+        ..FitSettings::default()
+    };
+    let mut fitter = Fitter::new(settings).expect("settings");
+    let (noise, draws) = (0.004, 200_u32);
+    let harmonics = [(0.1, 0.05), (-0.12, 0.02), (0.03, 0.08)];
+    let fits: Vec<_> = (0..draws)
+        .map(|seed| fitter.fit_with_covariance(&closed(star(&harmonics, 400, noise, u64::from(seed)))).expect("a fit"))
+        .collect();
+    let size = Degree::Quartic.coefficient_count();
+    let mean = |of: &dyn Fn(usize) -> f64| (0..fits.len()).map(of).sum::<f64>() / f64::from(draws);
+    let ratios = (0..size).map(|k| {
+        let value = |i: usize| fits[i].0.working().coefficients()[k];
+        let average = mean(&value);
+        let variance = mean(&|i| (value(i) - average).powi(2));
+        mean(&|i| fits[i].1.coefficients[(k, k)]) / variance
+    });
+    let ratio = (ratios.sum::<f64>() / size as f64).sqrt();
+    (ratio, mean(&|i| fits[i].1.noise) / noise)
+}
+
+#[test]
+fn the_covariance_of_the_coefficients_is_that_of_many_draws_of_the_noise() {
+    for normalise in [Normalise::Similarity, Normalise::Affine] {
+        let (ratio, noise) = stated_over_true(normalise);
+        println!("{normalise:?}: {ratio} {noise}");
+        assert!((0.7..1.4).contains(&ratio), "{normalise:?}: {ratio}");
+        // In working coordinates, where a star of radius 1 is about of radius 1.
+        assert!((0.6..1.3).contains(&noise), "{normalise:?}: {noise}");
+    }
+}
