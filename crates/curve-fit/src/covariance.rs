@@ -19,11 +19,29 @@ const FOURTH_DIFFERENCE: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
 /// How uncertain the coefficients of a fit are, as far as noise of the points goes that is independent from point to point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitCovariance {
-    /// Covariance of the coefficients of the working polynomial, in graded order.
-    pub coefficients: DMatrix<f64>,
+    per_unit_noise: DMatrix<f64>,
+    noise: f64,
+}
+
+impl FitCovariance {
     /// Standard deviation of the noise along the normals in working coordinates, from the fourth differences of the outline along
-    /// itself: what the shape does not account for.
-    pub noise: f64,
+    /// itself: what a smooth shape does not account for.
+    #[must_use]
+    pub fn noise(&self) -> f64 {
+        self.noise
+    }
+
+    /// Covariance of the coefficients of the working polynomial, in graded order, for that noise.
+    #[must_use]
+    pub fn coefficients(&self) -> DMatrix<f64> {
+        self.coefficients_for(self.noise)
+    }
+
+    /// The same for another noise, in working coordinates.
+    #[must_use]
+    pub fn coefficients_for(&self, noise: f64) -> DMatrix<f64> {
+        &self.per_unit_noise * (noise * noise)
+    }
 }
 
 /// Points in working coordinates with their normals, and what they were fitted with.
@@ -62,8 +80,8 @@ impl Fitted<'_> {
         }
         // Sums over more points than there were have the noise of those that there were.
         let shared = self.interpolated_from.map_or(1.0, |from| self.points[0].len() as f64 / from as f64);
-        let middle = &scores * scores.transpose() * (shared * noise * noise);
-        FitCovariance { coefficients: self.inverse * middle * self.inverse, noise }
+        let middle = &scores * scores.transpose() * shared;
+        FitCovariance { per_unit_noise: self.inverse * middle * self.inverse, noise }
     }
 
     fn noise(&self) -> f64 {

@@ -154,11 +154,8 @@ fn a_frame_without_an_inverse_is_refused() {
 
 /// Root mean square ratio of the stated standard deviations of the coefficients to those over many draws of the noise.
 fn stated_over_true(normalise: Normalise) -> (f64, f64) {
-    let settings = FitSettings {
-        normalise,
-        method: Method::GloballyStabilised { ridge_weight: 1e-3 },
-        ..FitSettings::default()
-    };
+    let settings =
+        FitSettings { normalise, method: Method::GloballyStabilised { ridge_weight: 1e-3 }, ..FitSettings::default() };
     let mut fitter = Fitter::new(settings).expect("settings");
     let (noise, draws) = (0.004, 200_u32);
     let harmonics = [(0.1, 0.05), (-0.12, 0.02), (0.03, 0.08)];
@@ -171,10 +168,10 @@ fn stated_over_true(normalise: Normalise) -> (f64, f64) {
         let value = |i: usize| fits[i].0.working().coefficients()[k];
         let average = mean(&value);
         let variance = mean(&|i| (value(i) - average).powi(2));
-        mean(&|i| fits[i].1.coefficients[(k, k)]) / variance
+        mean(&|i| fits[i].1.coefficients()[(k, k)]) / variance
     });
     let ratio = (ratios.sum::<f64>() / size as f64).sqrt();
-    (ratio, mean(&|i| fits[i].1.noise) / noise)
+    (ratio, mean(&|i| fits[i].1.noise()) / noise)
 }
 
 #[test]

@@ -95,7 +95,8 @@ impl AffineInvariants {
         if self.degree != other.degree || !usable {
             return None;
         }
-        let difference = DVector::from_iterator(self.count, self.values().iter().zip(other.values()).map(|(a, b)| a - b));
+        let difference =
+            DVector::from_iterator(self.count, self.values().iter().zip(other.values()).map(|(a, b)| a - b));
         let eigen = covariance.clone().symmetric_eigen();
         let largest = eigen.eigenvalues.max();
         let components = eigen.eigenvectors.tr_mul(&difference);

@@ -113,8 +113,11 @@ impl Evidence {
             .collect();
         candidates.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         // Whether it is any of them comes first: two known outlines that are affinely the same share the probability.
-        let (known, probability) =
-            if none > 0.5 * total { (None, none / total) } else { (Some(candidates[0].known), candidates[0].probability) };
+        let (known, probability) = if none > 0.5 * total {
+            (None, none / total)
+        } else {
+            (Some(candidates[0].known), candidates[0].probability)
+        };
         Some(Recognition { known, probability, candidates })
     }
 }

@@ -34,7 +34,7 @@ impl Recogniser {
     /// A setting outside its range.
     pub fn new(settings: RecogniseSettings) -> Result<Self, RecogniseError> {
         settings.check()?;
-        Ok(Self { settings, maker: SignatureMaker::new(), known: Vec::new() })
+        Ok(Self { settings, maker: SignatureMaker::new(settings.tracing), known: Vec::new() })
     }
 
     /// The settings.

@@ -11,11 +11,10 @@ use crate::error::RecogniseError;
 pub(crate) const POINTS: usize = 256;
 /// Points on either side of one that its normal is taken from: about the window of the fits.
 const NORMAL_REACH: usize = 4;
-/// The fit that invariants are taken from: a quartic by plain 3L with the smallest ridge that keeps it well-conditioned. A bounded
-/// one would vary with its constraint.
+/// The fit that invariants are taken from: a bounded quartic, which always falls into pairs of lines, with a small ridge.
 const FIT: FitSettings = FitSettings {
     degree: freeform_curve_fit::Degree::Quartic,
-    method: Method::GloballyStabilised { ridge_weight: 1e-3 },
+    method: Method::Bounded { margin: 0.1, ridge_weight: 1e-3 },
     offset: 0.1,
     normal_half_window: 0.02,
     normalise: Normalise::Affine,
@@ -53,12 +52,14 @@ pub(crate) struct Contour {
 /// Makes signatures, in buffers that are reused.
 #[derive(Debug, Clone)]
 pub(crate) struct SignatureMaker {
+    tracing: f64,
     fitter: Fitter,
 }
 
 impl SignatureMaker {
-    pub(crate) fn new() -> Self {
-        Self { fitter: Fitter::new(FIT).expect("settings within their ranges") }
+    /// `tracing` is the smallest uncertainty of a contour, in inertia coordinates.
+    pub(crate) fn new(tracing: f64) -> Self {
+        Self { tracing, fitter: Fitter::new(FIT).expect("settings within their ranges") }
     }
 
     pub(crate) fn signature(&mut self, outline: &Outline) -> Result<Signature, RecogniseError> {
@@ -71,11 +72,13 @@ impl SignatureMaker {
         // Working and inertia coordinates differ by a scale and a shift.
         let inertia_from_working = image_from_inertia.inverse() * fit.normalisation().image_from_working();
         let scale = fit.normalisation().radius / frame.radius;
+        let noise = scale * covariance.noise();
+        let coefficients = covariance.coefficients_for(noise.hypot(self.tracing) / scale);
         let curve = TURNS
             .iter()
-            .find_map(|&turn| curve_signature(fit.working(), &covariance.coefficients, turn, &inertia_from_working).ok())
+            .find_map(|&turn| curve_signature(fit.working(), &coefficients, turn, &inertia_from_working).ok())
             .flatten();
-        Ok(Signature { image_from_inertia, contour, noise: scale * covariance.noise, curve })
+        Ok(Signature { image_from_inertia, contour, noise, curve })
     }
 }
 
