@@ -26,11 +26,11 @@ pub(crate) struct Alignment {
     pub(crate) squared_distance: f64,
 }
 
-/// The best map from a known outline to another: candidates from the related points of both curves (three points fix an affine map)
-/// and from the turn and reflection in which the contours correlate best, refined by iterated closest points.
-pub(crate) fn align(known: &Signature, seen: &Signature) -> Option<Alignment> {
+/// The best map from a known outline to another: of the candidates from the related points of both curves (three points fix an affine
+/// map) and those of [`by_correlation`], refined by iterated closest points.
+pub(crate) fn align(known: &Signature, seen: &Signature, correlated: &[Correlated]) -> Option<Alignment> {
     let mut candidates = by_related_points(known, seen);
-    candidates.extend(by_correlation(&known.contour, &seen.contour));
+    candidates.extend(correlated.iter().map(|candidate| candidate.map));
     let mut judged: Vec<Alignment> = candidates.into_iter().filter_map(|map| judge(known, seen, map)).collect();
     judged.sort_by(|a, b| a.squared_distance.total_cmp(&b.squared_distance));
     judged.truncate(REFINED);
@@ -61,29 +61,37 @@ fn by_related_points(known: &Signature, seen: &Signature) -> Vec<Affine2<f64>> {
     maps.into_iter().filter(is_nearly_a_turn).collect()
 }
 
+/// A turn, or a turn after a reflection, that brings one contour near another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Correlated {
+    map: Affine2<f64>,
+    /// Mean squared distance of points that are as far along both contours, in inertia coordinates.
+    pub(crate) squared_distance: f64,
+}
+
 /// The turn, and the turn after a reflection, that bring one contour nearest to the other over all places to begin at: of all
 /// turns by t, `sum |q_(k+s) - exp(j t) p_k|^2` is least for t the argument of `sum conj(p_k) q_(k+s)`.
-fn by_correlation(known: &Contour, seen: &Contour) -> Vec<Affine2<f64>> {
+pub(crate) fn by_correlation(known: &Contour, seen: &Contour) -> [Correlated; 2] {
     let samples = |contour: &Contour| -> Vec<Complex<f64>> {
         let step = contour.points.len() / CORRELATED;
         contour.points.iter().step_by(step).map(|p| Complex::new(p.x, p.y)).collect()
     };
-    let seen = samples(seen);
-    [(known.clone(), 1.0), (known.mirrored(), -1.0)]
-        .into_iter()
-        .filter_map(|(known, handedness)| {
-            let known = samples(&known);
-            let correlation = |s: usize| {
-                let pairs = known.iter().zip(seen.iter().cycle().skip(s));
-                pairs.map(|(p, q)| p.conj() * q).sum::<Complex<f64>>()
-            };
-            let best = (0..seen.len()).map(correlation).max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()))?;
-            let turn = best / best.norm();
-            let matrix =
-                Matrix3::new(turn.re, -handedness * turn.im, 0.0, turn.im, handedness * turn.re, 0.0, 0.0, 0.0, 1.0);
-            matrix.iter().all(|m| m.is_finite()).then(|| Affine2::from_matrix_unchecked(matrix))
-        })
-        .collect()
+    let (known, seen) = (samples(known), samples(seen));
+    let squares = |points: &[Complex<f64>]| points.iter().map(Complex::norm_sqr).sum::<f64>();
+    let sizes = squares(&known) + squares(&seen);
+    // Mirrored on the x axis and walked the other way, so that it runs counter-clockwise again.
+    let mirrored: Vec<_> = known.iter().rev().map(Complex::conj).collect();
+    [(known, 1.0), (mirrored, -1.0)].map(|(known, handedness)| {
+        let correlation =
+            |s: usize| known.iter().zip(seen[s..].iter().chain(&seen[..s])).map(|(p, q)| p.conj() * q).sum();
+        let larger = |a: Complex<f64>, b: Complex<f64>| if b.norm_sqr() > a.norm_sqr() { b } else { a };
+        let best = (0..seen.len()).map(correlation).fold(Complex::ZERO, larger);
+        let turn = Complex::from_polar(1.0, best.arg());
+        let matrix =
+            Matrix3::new(turn.re, -handedness * turn.im, 0.0, turn.im, handedness * turn.re, 0.0, 0.0, 0.0, 1.0);
+        let squared_distance = ((sizes - 2.0 * best.norm()) / seen.len() as f64).max(0.0);
+        Correlated { map: Affine2::from_matrix_unchecked(matrix), squared_distance }
+    })
 }
 
 /// Both ways, so that neither a part that is missing nor one that is too many goes unseen.

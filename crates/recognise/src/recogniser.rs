@@ -1,15 +1,16 @@
 use freeform_curve_fit::Outline;
 
 use crate::{
-    alignment::align,
+    alignment::{align, by_correlation},
     comparison::{Comparison, OutlineFit},
     error::RecogniseError,
     settings::RecogniseSettings,
     signature::{Signature, SignatureMaker},
 };
 
-/// Known outlines that are always compared as a whole: those whose invariants are nearest.
-const COMPARED: usize = 12;
+/// Known outlines that are always compared as a whole: so many whose invariants are nearest, and so many whose contours correlate best,
+/// for the lines of nearly round or symmetric curves swing out further than their covariance says.
+const COMPARED: usize = 6;
 /// So are those whose invariants are no more than this many standard deviations away. Noise is not all that makes them differ.
 const GATE: f64 = 10.0;
 
@@ -58,8 +59,8 @@ impl Recogniser {
         self.known.iter().map(|known| known.name.as_str())
     }
 
-    /// Compares an outline with every known one: by the Mahalanobis distance of the invariants first, and where that leaves it
-    /// open, or among the nearest, by bringing the known outline onto it. In the order in which they were learnt.
+    /// Compares an outline with every known one: by the Mahalanobis distance of the invariants first and, where that leaves it
+    /// open or is among the smallest, by bringing the known outline onto it. In the order in which they were learnt.
     ///
     /// # Errors
     /// As [`learn`](Self::learn).
@@ -75,23 +76,32 @@ impl Recogniser {
                 fit: None,
             })
             .collect();
-        let mut order: Vec<usize> = (0..comparisons.len()).collect();
-        let distance = |k: usize| comparisons[k].invariant_distance.unwrap_or(0.0);
-        order.sort_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-        let near = order.iter().filter(|&&k| distance(k) <= GATE).count();
-        for &k in &order[..near.max(COMPARED).min(order.len())] {
-            comparisons[k].fit = self.fit(k, &seen);
+        let correlated: Vec<_> =
+            self.known.iter().map(|known| by_correlation(&known.signature.contour, &seen.contour)).collect();
+        let by_invariants = |k: usize| comparisons[k].invariant_distance.unwrap_or(0.0);
+        let by_contour = |k: usize| correlated[k].iter().map(|c| c.squared_distance).fold(f64::INFINITY, f64::min);
+        let mut chosen: Vec<usize> = (0..self.known.len()).filter(|&k| by_invariants(k) <= GATE).collect();
+        chosen.extend(first(self.known.len(), by_invariants));
+        chosen.extend(first(self.known.len(), by_contour));
+        chosen.sort_unstable();
+        chosen.dedup();
+        for k in chosen {
+            let known = &self.known[k].signature;
+            comparisons[k].fit = align(known, &seen, &correlated[k]).map(|alignment| OutlineFit {
+                map: seen.image_from_inertia * alignment.map * known.image_from_inertia.inverse(),
+                distance: alignment.squared_distance.sqrt(),
+                expected: seen.noise.hypot(known.noise).hypot(self.settings.tracing),
+            });
         }
         Ok(comparisons)
     }
+}
 
-    fn fit(&self, known: usize, seen: &Signature) -> Option<OutlineFit> {
-        let known = &self.known[known].signature;
-        let alignment = align(known, seen)?;
-        let map = seen.image_from_inertia * alignment.map * known.image_from_inertia.inverse();
-        let expected = seen.noise.hypot(known.noise).hypot(self.settings.tracing);
-        Some(OutlineFit { map, distance: alignment.squared_distance.sqrt(), expected })
-    }
+/// The few of so many that are smallest by a measure.
+fn first(count: usize, measure: impl Fn(usize) -> f64) -> impl Iterator<Item = usize> {
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&a, &b| measure(a).total_cmp(&measure(b)));
+    order.into_iter().take(COMPARED)
 }
 
 fn invariant_distance(known: &Signature, seen: &Signature) -> Option<f64> {

@@ -123,11 +123,7 @@ impl Contour {
         if outline.signed_area() < 0.0 {
             there.reverse();
         }
-        Self::of_points(evenly_spaced(&there, POINTS))
-    }
-
-    /// From evenly spaced points that run counter-clockwise.
-    pub(crate) fn of_points(points: Vec<Point2<f64>>) -> Self {
+        let points = evenly_spaced(&there, POINTS);
         let count = points.len();
         let normal = |i: usize| {
             let along = points[(i + NORMAL_REACH) % count] - points[(i + count - NORMAL_REACH) % count];
@@ -135,11 +131,6 @@ impl Contour {
         };
         let normals = (0..count).map(normal).collect();
         Self { points, normals }
-    }
-
-    /// The contour mirrored on the x axis, running counter-clockwise again.
-    pub(crate) fn mirrored(&self) -> Self {
-        Self::of_points(self.points.iter().rev().map(|p| Point2::new(p.x, -p.y)).collect())
     }
 
     /// Which of its points is nearest.

@@ -39,7 +39,7 @@ fn integral(points: &[Point2<f64>], (p, q): (usize, usize), centre: Vector2<f64>
 
 /// The seven invariants of M.-K. Hu (Visual pattern recognition by moment invariants, 1962) under similarities, on the usual
 /// logarithmic scale `sign(h) ln |h|`.
-pub fn hu(points: &[Point2<f64>]) -> Vec<f64> {
+pub(crate) fn hu(points: &[Point2<f64>]) -> Vec<f64> {
     let Moments(m) = Moments::of(points);
     let (a, b) = (m[3][0] + m[1][2], m[2][1] + m[0][3]);
     let (c, d) = (m[3][0] - 3.0 * m[1][2], 3.0 * m[2][1] - m[0][3]);
@@ -60,7 +60,7 @@ pub fn hu(points: &[Point2<f64>]) -> Vec<f64> {
 
 /// The four affine moment invariants of J. Flusser and T. Suk (Pattern recognition by affine moment invariants, 1993), up to the third
 /// order; roots bring them to one scale.
-pub fn affine(points: &[Point2<f64>]) -> Vec<f64> {
+pub(crate) fn affine(points: &[Point2<f64>]) -> Vec<f64> {
     let Moments(m) = Moments::of(points);
     let [m20, m11, m02] = [m[2][0], m[1][1], m[0][2]];
     let [m30, m21, m12, m03] = [m[3][0], m[2][1], m[1][2], m[0][3]];
@@ -86,7 +86,7 @@ pub fn affine(points: &[Point2<f64>]) -> Vec<f64> {
 }
 
 /// The known outline whose invariants are nearest, each in units of its spread over the known outlines.
-pub fn nearest(known: &[Vec<f64>], seen: &[f64]) -> usize {
+pub(crate) fn nearest(known: &[Vec<f64>], seen: &[f64]) -> usize {
     let count = known.len() as f64;
     let spread = |i: usize| {
         let mean = known.iter().map(|values| values[i]).sum::<f64>() / count;
