@@ -4,6 +4,7 @@ mod fit;
 mod identify;
 mod outline;
 mod pictures;
+mod recognise;
 mod reproduce;
 mod simulate;
 mod simulated;
@@ -18,6 +19,7 @@ pub(crate) use fit::{FitArgs, FitFormat};
 pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{PictureOptions, through_ffmpeg};
+pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
 pub(crate) use reproduce::{Part, ReproduceArgs};
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
@@ -55,6 +57,7 @@ pub(crate) enum Command {
     Identify(IdentifyArgs),
     Track(TrackArgs),
     Outline(OutlineArgs),
+    Recognise(RecogniseArgs),
     Evaluate(EvaluateArgs),
     Reproduce(ReproduceArgs),
     Completions(CompletionsArgs),

@@ -1,7 +1,9 @@
 use std::io;
 
-use freeform_motion::curve_fit::{Fit, Fitter, Outline};
-use freeform_motion::decompose::{AffineInvariants, Decomposition, DecompositionError, RelatedPoints};
+use freeform_motion::curve_fit::{Fit, FitCovariance, Fitter, Outline};
+use freeform_motion::decompose::{
+    AffineInvariants, CurveUncertainty, Decomposition, DecompositionError, RelatedPoints,
+};
 use freeform_motion::outline_io::OutlineFrame;
 use nalgebra::Point2;
 
@@ -23,8 +25,19 @@ pub(crate) struct FittedOutline {
     pub(crate) fit: Fit,
     /// In image coordinates.
     pub(crate) parts: Result<Parts, DecompositionError>,
+    /// Where it has been asked for.
+    pub(crate) deviations: Option<Deviations>,
     /// Middles of the parts of the curve that lie beside the outline, where they have been looked for.
     pub(crate) stray_parts: Vec<Point2<f64>>,
+}
+
+/// Standard deviations of what a decomposition gives, by the noise of the points.
+#[derive(Debug, Clone)]
+pub(crate) struct Deviations {
+    /// Of x and y of the related points, in image coordinates.
+    pub(crate) related_points: Vec<[f64; 2]>,
+    /// Of the invariants; empty where there are none.
+    pub(crate) invariants: Vec<f64>,
 }
 
 /// What a decomposition gives.
@@ -48,7 +61,31 @@ impl FittedOutline {
             let related_points = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
             Ok(Parts { decomposition, related_points, invariants: AffineInvariants::of(&working) })
         });
-        Self { object: frame.object.clone(), frame: frame.frame, time: frame.time, fit, parts, stray_parts: Vec::new() }
+        Self {
+            object: frame.object.clone(),
+            frame: frame.frame,
+            time: frame.time,
+            fit,
+            parts,
+            deviations: None,
+            stray_parts: Vec::new(),
+        }
+    }
+
+    /// The same with the standard deviations that a covariance of the coefficients gives its parts.
+    fn with_deviations(mut self, covariance: &FitCovariance) -> Self {
+        let carried = CurveUncertainty::carried(self.fit.working(), &covariance.coefficients());
+        let map = self.fit.normalisation().image_from_working();
+        let linear = map.matrix().fixed_view::<2, 2>(0, 0).into_owned();
+        self.deviations = carried.ok().map(|carried| Deviations {
+            related_points: carried
+                .points()
+                .iter()
+                .map(|c| (linear * c * linear.transpose()).diagonal().map(f64::sqrt).into())
+                .collect(),
+            invariants: carried.invariants().map_or_else(Vec::new, |c| c.diagonal().iter().map(|v| v.sqrt()).collect()),
+        });
+        self
     }
 }
 
@@ -92,14 +129,15 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         if !is_wanted(frame.frame) {
             continue;
         }
-        match fitter.fit(&frame.outline) {
-            Ok(fit) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
+        match fitter.fit_with_covariance(&frame.outline) {
+            Ok((fit, _)) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
                 let place = format!("{name}: frame {} of object {:?}", frame.frame, frame.object);
                 reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
             }
-            Ok(fit) => {
+            Ok((fit, covariance)) => {
                 let stray_parts = stray_parts(&fit, &frame.outline);
-                let fitted = FittedOutline { stray_parts, ..FittedOutline::new(&frame, fit) };
+                let fitted = FittedOutline::new(&frame, fit).with_deviations(&covariance);
+                let fitted = FittedOutline { stray_parts, ..fitted };
                 collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;
             }
             Err(error) => {

@@ -6,6 +6,7 @@ mod fit;
 mod identify;
 mod man;
 mod outline;
+mod recognise;
 mod reproduce;
 mod simulate;
 mod track;
@@ -13,7 +14,8 @@ mod track;
 use std::path::{Path, PathBuf};
 
 pub(crate) use evaluate::{Acquisition, Evaluation, Found, MethodResult, Report, Setting, Statistics};
-pub(crate) use fit::{FittedOutline, Parts};
+pub(crate) use fit::{Deviations, FittedOutline, Parts};
+pub(crate) use recognise::RecognisedObject;
 pub(crate) use reproduce::{Drawing, Section, Table};
 
 use crate::args::{Cli, Command, takes_next};
@@ -30,6 +32,7 @@ pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Identify(args) => identify::run(args),
         Command::Track(args) => track::run(args),
         Command::Outline(args) => outline::run(args),
+        Command::Recognise(args) => recognise::run(args),
         Command::Evaluate(args) => evaluate::run(args),
         Command::Reproduce(args) => reproduce::run(args),
         Command::Completions(args) => completions::run(args),

@@ -14,6 +14,7 @@ mod identify_json;
 mod identify_table;
 mod number;
 mod page;
+mod recognised;
 mod trajectory_csv;
 mod velocity;
 
@@ -31,4 +32,5 @@ pub(crate) use identify_json::{track_line, write_identify_json};
 pub(crate) use identify_table::write_identify_table;
 pub(crate) use number::{short, significant};
 pub(crate) use page::write_page;
+pub(crate) use recognised::{write_recognised_json, write_recognised_table};
 pub(crate) use trajectory_csv::write_trajectory;

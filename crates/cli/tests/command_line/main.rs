@@ -9,6 +9,7 @@ mod identify;
 mod outline;
 mod pictures;
 mod real_pictures;
+mod recognise;
 mod reproduce;
 mod simulate;
 mod support;

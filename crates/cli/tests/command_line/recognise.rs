@@ -1,0 +1,65 @@
+use crate::support::{file, json, run, stderr, stdout, succeed};
+
+/// One outline of a shape, as a file.
+fn known(folder: &tempfile::TempDir, shape: &str) -> String {
+    let csv = succeed(&format!("simulate --shape {shape} --noise 0 --seconds 0.03 --points 300"), "");
+    file(folder.path(), &format!("{shape}.csv"), csv)
+}
+
+#[test]
+fn an_object_under_an_affine_motion_has_the_name_of_its_file_and_the_map_that_leads_there() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = ["plane", "hat", "phone"].map(|shape| known(&folder, shape));
+    let seen = succeed("simulate --shape hat --affine 0.4,1.5,-0.8,0.2,1,2 --scale 1 --seconds 0.5 --noise 0.002", "");
+    let document = json(&succeed(&format!("recognise - --format json --known {}", files.join(" ")), &seen));
+    assert_eq!(document["schema"], "freeform.recognise/1");
+    let object = &document["objects"][0];
+    assert_eq!(object["name"], files[1].as_str());
+    assert!(object["probability"].as_f64().expect("a number") > 0.99);
+    // The map of the last frame, at 14/30 s: the exponential of the generator.
+    let generator = nalgebra::Matrix3::new(0.4, 1.5, 1.0, -0.8, 0.2, 2.0, 0.0, 0.0, 0.0);
+    let expected = (generator * (14.0 / 30.0)).exp();
+    for row in 0..3 {
+        for column in 0..3 {
+            let found = object["map"][row][column].as_f64().expect("a number");
+            assert!((found - expected[(row, column)]).abs() < 0.02, "{found} {expected}");
+        }
+    }
+    let table = succeed(&format!("recognise - --known {}", files.join(" ")), &seen);
+    assert!(table.contains("hat.csv") && !table.contains("plane.csv"), "{table}");
+}
+
+#[test]
+fn what_is_none_of_the_known_outlines_has_no_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = ["plane", "hat"].map(|shape| known(&folder, shape));
+    let seen = succeed("simulate --shape shoe --seconds 0.1 --noise 0.002", "");
+    let document = json(&succeed(&format!("recognise - --format json --known {}", files.join(" ")), &seen));
+    let object = &document["objects"][0];
+    assert!(object["name"].is_null() && object["map"].is_null());
+    assert!(object["probability"].as_f64().expect("a number") > 0.99);
+    assert!(succeed(&format!("recognise - --known {}", files[0]), &seen).contains("none of them"));
+}
+
+#[test]
+fn hidden_arcs_are_left_out_and_nothing_else_is_no_result() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let hat = known(&folder, "hat");
+    let seen = succeed("simulate --shape hat --seconds 0.1 --occlusion 0.2", "");
+    let output = run(&format!("recognise - --known {hat}"), &seen);
+    assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(1), ""));
+    assert!(stderr(&output).contains("a part of the outline is hidden"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_known_outline_that_is_missing_or_open_is_unusable() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let seen = succeed("simulate --shape hat --seconds 0.1", "");
+    let output = run("recognise - --known nowhere.csv", &seen);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("nowhere.csv"));
+    let open = file(folder.path(), "open.csv", succeed("simulate --seconds 0.1 --occlusion 0.2", ""));
+    let output = run(&format!("recognise - --known {open}"), &seen);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("open.csv"), "{}", stderr(&output));
+}
