@@ -5,7 +5,8 @@ use faer::linalg::solvers::SolveLstsqCore;
 use freeform_motion::{
     Pipeline, PipelineSettings,
     curve_fit::{
-        Degree, FitSettings, Fitter, Method, Moments, NormalRegression, Outline, evaluate_monomials, outward_normals,
+        Degree, FitSettings, Fitter, Method, Moments, NormalRegression, Outline, PixelGrid, evaluate_monomials,
+        outward_normals,
     },
     decompose::{Correspondence, Decomposition},
     outline_filter::{FilterSettings, MotionFilter, Phase},
@@ -13,7 +14,7 @@ use freeform_motion::{
         DEFAULT_OBJECT, GrayImage, OutlineFrame, OutlineReader, OutlineWriter, TraceSettings, WriterOptions, trace_mask,
     },
     riccati::{MotionModel, RigidMotion},
-    sim_camera::{BuiltInShape, Camera, Mask, Motion, PixelGrid, Scene, SequenceLength, Settings, Simulator},
+    sim_camera::{BuiltInShape, Camera, Mask, Motion, Scene, SequenceLength, Settings, Simulator},
 };
 use std::{
     hint::black_box,
@@ -189,7 +190,7 @@ fn motion_filter_frame(c: &mut Criterion) {
         let settings = FilterSettings { model, ..FilterSettings::default() };
         let mut begun = MotionFilter::new(settings).expect("settings");
         for (time, outline) in &list[..SETTLED] {
-            assert!(begun.step(*time, outline).expect("increasing times").accepted);
+            assert!(begun.step(*time, outline).expect("increasing times").is_accepted());
         }
         group.bench_function(BenchmarkId::from_parameter(format!("{model}, {points} points")), |b| {
             // Single frames may be rejected, as the noise is not kept from it.
@@ -215,7 +216,7 @@ fn acquisition(c: &mut Criterion) {
                 || begun.clone(),
                 |filter| {
                     let step = filter.step(list[1].0, black_box(&list[1].1)).expect("increasing times");
-                    assert_eq!((step.phase, step.accepted), (Phase::Tracking, true));
+                    assert_eq!((step.phase, step.is_accepted()), (Phase::Tracking, true));
                 },
                 BatchSize::SmallInput,
             );
@@ -229,8 +230,9 @@ fn picture(c: &mut Criterion) {
     let mut group = c.benchmark_group("picture to outline");
     let (_, outline) = frames(400, 1).remove(0);
     let pixels_per_unit = 120.0 / outline.rms_radius();
-    let grid = PixelGrid::new(640, 480, outline.centroid(), pixels_per_unit).expect("a grid");
-    let mask = Mask::of_outline(&outline, &grid);
+    let pitch = nalgebra::Vector2::new(1.0, -1.0) / pixels_per_unit;
+    let grid = PixelGrid::new([320.0, 240.0], outline.centroid(), pitch);
+    let mask = Mask::of_outline(&outline, [640, 480], &grid).expect("a good grid");
     let picture = GrayImage::from_raw(640, 480, mask.grey).expect("all pixels");
     group.throughput(Throughput::Elements(640 * 480));
     group.bench_function("640x480", |b| {

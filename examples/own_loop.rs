@@ -9,9 +9,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let time = f64::from(frame) / 30.0;
         let outline = outline_at(time)?;
         let step = filter.step(time, &outline)?;
-        if let Some(estimate) = filter.estimate().filter(|_| frame % 10 == 9) {
-            println!("{time:.2} s, {:?}, accepted: {}", step.phase, step.accepted);
-            for parameter in estimate.parameters() {
+        if let Some(state) = filter.state().filter(|_| frame % 10 == 9) {
+            println!("{time:.2} s, {:?}, accepted: {}", step.phase, step.is_accepted());
+            for number in state.pose_parameters() {
+                println!("  {} = {:.5} +- {:.5}", number.name, number.value, number.standard_deviation);
+            }
+            for parameter in state.motion().parameters() {
                 match (parameter.value, parameter.standard_deviation) {
                     (Some(value), Some(std)) => println!("  {} = {value:.5} +- {std:.5}", parameter.name),
                     _ => println!("  {} is not known", parameter.name),

@@ -1,14 +1,13 @@
 //! From pictures to motion in a loop of one's own, with the default settings of everything but rate and aspect:
 //! `cargo run --release --example pictures_to_motion -- [--fps RATE] [--pixel-aspect WIDTH_OVER_HEIGHT] frames/`.
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::path::PathBuf;
 
 use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::outline_filter::{FilterSettings, MotionFilter};
 use freeform_motion::outline_io::{
-    Clipping, PictureOutlines, PictureSequence, PictureSettings, Selection, SequenceSettings, TraceSettings,
+    Clipping, OutlineFrame, PictureOutlines, PictureSequence, PictureSettings, Selection, SequenceSettings,
+    TraceSettings,
 };
+use freeform_motion::{Tracker, TrackerSettings};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let Arguments { frames_per_second, pixel_aspect, paths } = arguments()?;
@@ -18,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pixel_aspect = pixel_aspect.or(pictures.pixel_aspect()).unwrap_or(1.0);
     let trace = TraceSettings { clipping: Clipping::Open, minimum_area: 100, pixel_aspect, ..TraceSettings::default() };
     let settings = PictureSettings { trace, selection: Selection::All, ..PictureSettings::default() };
-    let mut filters: BTreeMap<u64, MotionFilter> = BTreeMap::new();
+    let mut tracker = Tracker::new(TrackerSettings::default())?;
     for traced in PictureOutlines::new(pictures, settings)? {
         // What is wrong with one picture does not end the sequence.
         let traced = match traced {
@@ -28,21 +27,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 continue;
             }
         };
-        let time = traced.frame.time;
+        let (frame, time) = (traced.frame.frame, traced.frame.time);
         match traced.objects {
             Err(error) => eprintln!("{}: {error}", traced.frame.file),
             Ok(objects) => {
                 for (name, object) in objects {
-                    let filter = match filters.entry(name) {
-                        Entry::Occupied(entry) => entry.into_mut(),
-                        Entry::Vacant(entry) => entry.insert(MotionFilter::new(FilterSettings::default())?),
-                    };
-                    let step = filter.step(time, &object.outline)?;
-                    let used = if step.accepted { "used" } else { "rejected" };
-                    println!("{time:.3} s, object {name}, {used}: {}", in_words(filter.estimate()));
+                    let outline = OutlineFrame { frame, time, object: name.to_string(), outline: object.outline };
+                    let observation = tracker.push(&outline);
+                    let used = if observation.is_accepted() { "used" } else { "rejected" };
+                    println!("{time:.3} s, object {name}, {used}: {}", in_words(observation.estimate));
                 }
             }
         }
+    }
+    for result in tracker.results() {
+        result.warnings.iter().for_each(|warning| eprintln!("object {}: {warning}", result.object));
     }
     Ok(())
 }

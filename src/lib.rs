@@ -1,12 +1,18 @@
-//! Finds how a flat free-form object moves from nothing but its outlines.
+//! Finds how a flat free-form object moves, from its outlines alone.
 //!
-//! Every frame gives noisy points in their order along the outline of the object, without correspondence to the frame before.
-//! [`outline_filter::MotionFilter`] estimates outline, pose and motion from them, with standard deviations; take it first.
-//! [`estimate::smooth`] and [`outline_filter::estimate_batch`] are for recorded frames, and [`estimate::CramerRaoBound`] says what can be reached.
+//! The input of every frame is a list of noisy points in order along the outline of the object. Correspondence between the points of
+//! different frames is not needed.
 //!
-//! A [`Pipeline`] is the way of the paper: it fits an implicit polynomial curve to each outline, takes it apart into complex lines,
-//! matches the lines to those of the frame before, and identifies the motion from their Riccati dynamics (M. Unel, B. K. Ghosh,
-//! *Motion identification of planar free-form objects*). Each stage is a crate of its own, re-exported here.
+//! - [`outline_filter::MotionFilter`] estimates outline, pose and motion of one object, with standard deviations. Start here. Its
+//!   [`state`](outline_filter::MotionFilter::state) holds pose and motion with their joint covariance.
+//! - [`Tracker`] follows many objects by name. It gives an observation for each frame and a result for each object.
+//! - [`Pipeline`] is the method of the paper (M. Unel, B. K. Ghosh, *Motion identification of planar free-form objects*). It fits an
+//!   implicit polynomial curve to each outline, decomposes it into complex lines, matches the lines to those of the frame before, and
+//!   identifies the motion from their Riccati dynamics.
+//! - [`estimate::smooth`] and [`outline_filter::estimate_batch`] are for recorded frames. [`estimate::CramerRaoBound`] gives the smallest
+//!   covariance that any unbiased estimator can reach.
+//!
+//! Each stage is a crate of its own, re-exported here.
 //!
 //! ```
 //! use freeform_motion::{Pipeline, PipelineSettings};
@@ -26,8 +32,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod followed_pose;
+mod frame_ranges;
+mod number;
 mod pipeline;
+mod pipeline_error;
+mod rejection;
 mod settling;
+pub mod tracker;
 mod warning;
 
 pub use freeform_curve_fit as curve_fit;
@@ -39,8 +50,16 @@ pub use freeform_outline_io as outline_io;
 pub use freeform_recognise as recognise;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
-pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};
+pub use number::significant;
+pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
+pub use pipeline_error::PipelineError;
+pub use tracker::{Tracker, TrackerSettings};
+pub use warning::Warning;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct ReadmeDoctests;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/reading-uncertainties.md")]
+struct GuideDoctests;

@@ -1,6 +1,4 @@
-use freeform_curve_fit::{
-    Fit, FitError, FitSettings, Fitter, Method, Normalisation, Normalise, Outline, SettingsError,
-};
+use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Normalise, Outline};
 use freeform_decompose::{
     Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
 };
@@ -9,10 +7,13 @@ use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, Ident
 use freeform_riccati::MotionModel;
 use nalgebra::{Affine2, Point2, Translation2};
 
-use crate::{followed_pose::FollowedPose, settling::Settling, warning::Warning};
+use crate::{
+    followed_pose::FollowedPose,
+    pipeline_error::PipelineError,
+    settling::Settling,
+    warning::{MANY_REJECTED, Warning},
+};
 
-/// Share of rejected frames that is worth a warning.
-const MANY_REJECTED: f64 = 0.05;
 /// A match by continuity is ambiguous where the second best pairing is less than twice as far away (costs are squares).
 const AMBIGUOUS_COST_RATIO: f64 = 4.0;
 /// Share of ambiguous matches that is worth a warning.
@@ -75,32 +76,6 @@ pub struct FrameResult {
     pub correspondence: Option<Correspondence>,
     /// The motion as identified so far; `None` before the second frame.
     pub estimate: Option<MotionEstimate>,
-}
-
-/// Why a frame gave nothing, or a pipeline could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PipelineError {
-    /// The settings of the fit are refused.
-    #[error("fit settings: {0}")]
-    FitSettings(#[from] SettingsError),
-    /// No curve could be fitted.
-    #[error("no fit: {0}")]
-    Fit(#[from] FitError),
-    /// The curve has no decomposition into lines.
-    #[error("no line decomposition: {0}")]
-    Decomposition(#[from] DecompositionError),
-    /// The lines could not be matched to those of the frame before.
-    #[error("lines not matched: {0}")]
-    Correspondence(#[from] CorrespondenceError),
-    /// The identifier refused its settings or the lines.
-    #[error("not identified: {0}")]
-    Identify(#[from] IdentifyError),
-    /// The fitted curve is not bounded, so that some of its lines are real.
-    #[error("the fitted curve is not bounded (margin {margin:.1e})")]
-    NotBounded {
-        /// Minimum of the leading form on the unit circle over its root mean square.
-        margin: f64,
-    },
 }
 
 /// From outlines to motion, frame by frame: fit, decompose, match, identify.
@@ -312,7 +287,7 @@ impl Pipeline {
         Some(self.identifier.estimate()?.in_coordinates(map))
     }
 
-    /// The identifier, for what it says beside the estimate. Its own estimate is in its own coordinates.
+    /// The identifier, for its diagnostics. Its estimate is in its own coordinates, not in those of the image.
     #[must_use]
     pub fn identifier(&self) -> &AdaptiveIdentifier {
         &self.identifier
@@ -330,15 +305,15 @@ impl Pipeline {
         self.frames_rejected
     }
 
-    /// What a user should know of the result, one line each.
+    /// What a user should know of the result.
     #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let unobservable: Vec<_> = self.estimate().map_or(Vec::new(), |estimate| {
             estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name).collect()
         });
         if !unobservable.is_empty() {
-            warnings.push(Warning::NotObservable { parameters: unobservable });
+            warnings.push(Warning::RotationNotObservable { parameters: unobservable });
         }
         let (rejected, frames) = (self.frames_rejected, self.frames);
         if rejected as f64 > MANY_REJECTED * frames as f64 {
@@ -364,7 +339,7 @@ impl Pipeline {
         if is_biased && self.identifier.intervals_followed() > 0 {
             warnings.push(Warning::AffineBias);
         }
-        warnings.iter().map(ToString::to_string).collect()
+        warnings
     }
 }
 

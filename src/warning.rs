@@ -1,29 +1,142 @@
 use std::fmt;
 
-/// What a user should know of an identified motion.
+use freeform_outline_filter::Ambiguity;
+
+use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
+
+/// Share of rejected frames from which on there is a warning.
+pub(crate) const MANY_REJECTED: f64 = 0.05;
+
+/// What a user should know of an identified motion: a [`code`](Self::code) for programs, a message for people.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Warning {
-    /// The outlines tell nothing of these parameters.
-    NotObservable { parameters: Vec<&'static str> },
-    /// Many frames gave nothing.
-    FramesRejected { rejected: usize, frames: usize },
-    /// The pairs of lines could not be matched for certain in many frames.
-    AmbiguousCorrespondence { ambiguous: usize, matched: usize },
+pub enum Warning {
+    /// The points of an outline jump back and forth instead of following the contour.
+    PointsOutOfOrder {
+        /// The first such frame.
+        frame: u64,
+        /// Length of the line through the points in their order, over the perimeter of their bounding box.
+        perimeters: f64,
+    },
+    /// The outlines contain no information on these parameters (motion filter).
+    NotObservable {
+        /// Their names.
+        parameters: Vec<&'static str>,
+    },
+    /// The outlines contain no information on these parameters: the lines of a round outline do not turn with it (adaptive method).
+    RotationNotObservable {
+        /// Their names.
+        parameters: Vec<&'static str>,
+    },
+    /// The object was not seen in the last frames.
+    Lost,
+    /// The object was lost and searched for in the last frames; the motion is the last one known.
+    Reacquiring {
+        /// Time in seconds when the motion was last known.
+        last_known: f64,
+    },
+    /// The object was given up, and the filter started again with a new one.
+    Restarted {
+        /// Number of restarts.
+        times: usize,
+    },
+    /// Many frames were not used.
+    FramesRejected {
+        /// How many.
+        rejected: usize,
+        /// Out of this many.
+        frames: usize,
+    },
+    /// Another turn from one frame to the next explains the outlines equally well.
+    Ambiguous(Ambiguity),
+    /// The motion changed; the estimate is the motion at the end.
+    MotionChanged,
+    /// The method diverged, and its numbers are not finite.
+    Diverged,
+    /// One of the first frames that were not used.
+    FrameRejected(FrameRejection),
+    /// Further frames that were not used, beyond those reported with their reasons.
+    MoreFramesRejected {
+        /// How many.
+        count: usize,
+        /// Their numbers.
+        frames: FrameRanges,
+    },
+    /// In many frames the pairs of lines could not be matched reliably (adaptive method).
+    AmbiguousCorrespondence {
+        /// How many.
+        ambiguous: usize,
+        /// Out of this many.
+        matched: usize,
+    },
     /// The run is shorter than the adaptive law needs, or its parameters still drift.
-    MayNotHaveSettled { seconds: f64 },
-    /// The outline turned too far from frame to frame.
-    LinesNotFollowed { skipped: usize, intervals: usize },
-    /// The parameters of an affine motion are biased.
+    MayNotHaveSettled {
+        /// Length of the run in seconds.
+        seconds: f64,
+    },
+    /// The outline turned too far from frame to frame (adaptive method).
+    LinesNotFollowed {
+        /// Number of intervals between frames over which the lines were not followed.
+        skipped: usize,
+        /// Out of this many.
+        intervals: usize,
+    },
+    /// The parameters of an affine motion are biased (adaptive method).
     AffineBias,
+}
+
+impl Warning {
+    /// A stable name, the same in every version.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::PointsOutOfOrder { .. } => "points_out_of_order",
+            Self::NotObservable { .. } => "not_observable",
+            Self::RotationNotObservable { .. } => "rotation_not_observable",
+            Self::Lost => "lost",
+            Self::Reacquiring { .. } => "reacquiring",
+            Self::Restarted { .. } => "restarted",
+            Self::FramesRejected { .. } => "frames_rejected",
+            Self::Ambiguous(_) => "ambiguous",
+            Self::MotionChanged => "motion_changed",
+            Self::Diverged => "diverged",
+            Self::FrameRejected(_) => "frame_rejected",
+            Self::MoreFramesRejected { .. } => "more_frames_rejected",
+            Self::AmbiguousCorrespondence { .. } => "ambiguous_correspondence",
+            Self::MayNotHaveSettled { .. } => "may_not_have_settled",
+            Self::LinesNotFollowed { .. } => "lines_not_followed",
+            Self::AffineBias => "affine_bias",
+        }
+    }
 }
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::PointsOutOfOrder { frame, perimeters } => write!(
+                f,
+                "frame {frame}: the points do not follow the contour: a line through them in the order of the rows is {} times \
+                 as long as the perimeter of their bounding box; sort the rows along the contour",
+                significant(*perimeters, 2)
+            ),
             Self::NotObservable { parameters } => {
+                write!(f, "not observable from these outlines: {}", parameters.join(", "))
+            }
+            Self::RotationNotObservable { parameters } => {
                 write!(f, "rotation is not observable from these outlines; unknown: {}", parameters.join(", "))
             }
+            Self::Lost => f.write_str("the object was lost at the end"),
+            Self::Reacquiring { last_known } => write!(
+                f,
+                "the object was lost and searched for at the end; this is its motion at {} s",
+                significant(*last_known, 4)
+            ),
+            Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
+            Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
+            Self::MotionChanged => f.write_str("the motion changed: the values are those at the end"),
+            Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
+            Self::FrameRejected(rejection) => write!(f, "rejected: {rejection}"),
+            Self::MoreFramesRejected { count, frames } => write!(f, "rejected: {count} more frame(s), {frames}"),
             Self::AmbiguousCorrespondence { ambiguous, matched } => write!(
                 f,
                 "lines matched ambiguously in {ambiguous} of {matched} frames: \
@@ -38,9 +151,20 @@ impl fmt::Display for Warning {
                  the outline turns by more than about half a radian"
             ),
             Self::AffineBias => f.write_str(
-                "the six parameters are biased, as the fit of an outline does not follow affine motion exactly: \
-                 use the motion filter",
+                "the six parameters are biased, because the curve fit is not affine-equivariant: use the motion filter",
             ),
         }
     }
+}
+
+/// Turns in degrees, positive in the direction of a positive omega.
+fn write_ambiguity(f: &mut fmt::Formatter<'_>, ambiguity: &Ambiguity) -> fmt::Result {
+    let as_omega = |anticlockwise: f64| -anticlockwise.to_degrees();
+    let rivals: Vec<String> = ambiguity.rival_turns.iter().map(|turn| format!("{:.1}", as_omega(*turn))).collect();
+    write!(
+        f,
+        "ambiguous: another turn explains the outlines equally well: {} instead of {:.1} degrees from one frame to the next",
+        rivals.join(" or "),
+        as_omega(ambiguity.turn)
+    )
 }

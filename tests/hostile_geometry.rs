@@ -320,7 +320,7 @@ fn three_points_are_refused_by_name() {
     let good = bird(5);
     let mut filter = by_filter(&good).0;
     let step = filter.step(time(FRAMES), &outline).expect("a later time");
-    assert!(!step.accepted && filter.frames_rejected() == 1);
+    assert!(!step.is_accepted() && filter.frames_rejected() == 1);
 }
 
 #[test]
@@ -337,7 +337,7 @@ fn a_million_points_in_a_frame_give_the_motion() {
     let mut pipeline = Pipeline::new(PipelineSettings::default()).expect("settings");
     for (frame, points) in frames.enumerate() {
         let outline = Outline::closed(points).expect("an outline");
-        assert!(filter.step(time(5 * frame), &outline).expect("enough points").accepted, "frame {frame}");
+        assert!(filter.step(time(5 * frame), &outline).expect("enough points").is_accepted(), "frame {frame}");
         pipeline.push(time(5 * frame), &outline).expect("a curve");
     }
     let (omega, deviation) = omega(filter.estimate()).expect("known");

@@ -38,7 +38,7 @@ fn once_the_outline_is_known_no_step_of_the_motion_filter_allocates() {
     for (index, frame) in frames.iter().enumerate() {
         let mut accepted = false;
         let counts = allocation_counter::measure(|| {
-            accepted = filter.step(frame.time, &frame.outline).expect("increasing times").accepted;
+            accepted = filter.step(frame.time, &frame.outline).expect("increasing times").is_accepted();
         });
         assert!(accepted);
         // The first four frames are kept, for the map is cut anew from them.

@@ -3,7 +3,7 @@ mod common;
 
 use common::{identified, rigid_errors, seconds};
 use freeform_motion::{
-    Pipeline, PipelineSettings,
+    Pipeline, PipelineSettings, Warning,
     curve_fit::Normalise,
     outline_io::read_shape,
     riccati::{AffineMotion, MotionModel, RigidMotion},
@@ -22,7 +22,7 @@ fn the_motions_of_the_paper_are_found_within_three_percent_of_omega_and_five_of_
         println!("{}: omega {:.2} %, b {:.2} %", experiment.title, 100.0 * omega, 100.0 * b);
         assert!(omega < LIMITS.0 && b < LIMITS.1, "{}: omega {omega}, b {b}", experiment.title);
         assert_eq!(pipeline.frames_rejected(), 0);
-        assert_eq!(pipeline.warnings(), Vec::<String>::new());
+        assert_eq!(pipeline.warnings(), []);
     }
 }
 
@@ -113,7 +113,7 @@ fn without_an_affine_normalisation_six_parameters_keep_a_bias_and_say_so() {
         let motion = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
         identified(Scene::new(BuiltInShape::Bird, motion, Camera::default()), &seconds(2.0), settings).warnings()
     };
-    assert!(warnings(settings).iter().any(|warning| warning.contains("biased")));
+    assert!(warnings(settings).contains(&Warning::AffineBias));
     assert!(
         !warnings(PipelineSettings::for_model(MotionModel::Affine)).iter().any(|warning| warning.contains("biased"))
     );

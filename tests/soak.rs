@@ -146,7 +146,7 @@ fn soak(frames: usize, seed: u64) -> Report {
             assert_covariance(&filter);
         }
         gap += 1;
-        if step.accepted && step.phase == Phase::Tracking {
+        if step.is_accepted() && step.phase == Phase::Tracking {
             report.tracked += 1;
             let first: Affine2<f64> = first_pose.expect("set with the first frame");
             if followed(&filter, &(world.pose * first.inverse()), &world.pose) {

@@ -1,9 +1,5 @@
 //! What holds of every result.
-use freeform_motion::{
-    estimate::MotionEstimate,
-    outline_filter::{MotionFilter, OutlineMap},
-    riccati::MotionModel,
-};
+use freeform_motion::{estimate::MotionEstimate, outline_filter::MotionFilter, riccati::MotionModel};
 
 /// Largest difference of a covariance from its transpose, and how far an eigenvalue may be below zero, both relative to
 /// the deviations: b is a velocity at the origin, which may be a million sizes away from the object.
@@ -23,7 +19,7 @@ pub(crate) fn assert_finite(estimate: &MotionEstimate) {
 
 /// The covariance of the motion is finite, symmetric and has no negative eigenvalue, up to rounding.
 pub(crate) fn assert_covariance(filter: &MotionFilter) {
-    let Some(covariance) = filter.map().and_then(OutlineMap::covariance) else { return };
+    let Some(covariance) = filter.covariance() else { return };
     let k = covariance.nrows();
     assert!(k <= MotionModel::MAX_PARAMETERS && covariance.iter().all(|c| c.is_finite()), "{covariance:e}");
     assert!(covariance.diagonal().iter().all(|&variance| variance >= 0.0), "{covariance:e}");

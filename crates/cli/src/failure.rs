@@ -2,6 +2,8 @@ use std::fmt::Display;
 use std::io::{self, Write as _};
 use std::process::ExitCode;
 
+use freeform_experiments::ExperimentError;
+
 /// Why a command ends before its time; decides the exit status.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -22,6 +24,16 @@ impl Failure {
         Self::Unusable(reason.to_string())
     }
 
+    /// An experiment that cannot be made, or that was made and gives nothing.
+    pub(crate) fn of_experiment(error: ExperimentError) -> Self {
+        match error {
+            ExperimentError::Fit(_) | ExperimentError::Decomposition(_) | ExperimentError::NoOutline { .. } => {
+                Self::no_result(error)
+            }
+            _ => Self::unusable(error),
+        }
+    }
+
     /// An error of standard output: a closed pipe means that the reader has seen enough.
     pub(crate) fn of_stdout(error: &io::Error) -> Self {
         match error.kind() {
@@ -30,7 +42,7 @@ impl Failure {
         }
     }
 
-    /// The reason; empty where there is none to tell.
+    /// The reason; empty if there is nothing to print.
     pub(crate) fn text(&self) -> &str {
         match self {
             Self::Silent => "",

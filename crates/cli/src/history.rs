@@ -1,10 +1,11 @@
 //! What was found of every object over time.
 use freeform_motion::curve_fit::Outline;
+use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::outline_io::OutlineFrame;
+use freeform_motion::tracker::Observation;
 
-use crate::commands::FittedOutline;
+use crate::fitted_outline::FittedOutline;
 use crate::overlay::CurveFitter;
-use crate::tracking::{Estimate, Observation};
 
 /// What was found of one object over time, kept for figures.
 #[derive(Debug)]
@@ -13,7 +14,7 @@ pub(crate) struct History {
     /// Time of the first frame in seconds.
     pub(crate) start: Option<f64>,
     /// Time in seconds and what was known then, if anything was.
-    pub(crate) estimates: Vec<(f64, Option<Estimate>)>,
+    pub(crate) estimates: Vec<(f64, Option<MotionEstimate>)>,
     /// Time in seconds and root mean square residual, of frames that were used.
     pub(crate) residuals: Vec<[f64; 2]>,
     /// Time in seconds and squared innovation, of frames that were used.
@@ -25,7 +26,7 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// One of an object that nothing is known of.
+    /// An empty history.
     pub(crate) fn of(object: String) -> Self {
         let (estimates, residuals, innovations, rejected) = Default::default();
         Self { object, start: None, estimates, residuals, innovations, rejected, latest: None }

@@ -1,29 +1,23 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
+mod command_line;
 mod commands;
-mod contour_order;
 mod failure;
-mod frame_ranges;
+mod fitted_outline;
 mod history;
-mod identifier;
 mod input;
 mod interrupt;
 mod left_out;
-mod level_set;
 mod meaning_of_b;
 mod output;
 mod overlay;
 mod picture_input;
 mod plot;
 mod progress;
-mod queues;
 mod reader;
+mod seen;
 mod stdin;
-mod tracking;
-mod trajectory;
 mod truth;
-mod turns;
-mod window;
 
 use std::process::ExitCode;
 

@@ -12,12 +12,11 @@ use freeform_motion::outline_io::{
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
-use crate::commands::{command_line_of_stdin, quoted};
+use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
-use crate::input::{Item, SeenIn};
-use crate::left_out::{Missing, MissingKind};
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::short;
+use crate::seen::{Item, Missing, MissingKind, SeenIn};
 
 /// Pictures that the running median is taken of.
 const MEDIAN_SIZE: usize = 25;
@@ -144,7 +143,7 @@ impl PictureInput {
         match traced {
             Err(error) => {
                 let (reason, kind) = (described(&error, &self.inputs), MissingKind::from(&error.kind));
-                self.waiting.push_back(Item::Missing(Missing { frame, reason, hint: None, kind, seen_in: None }));
+                self.waiting.push_back(Item::Gap(Missing { frame, reason, hint: None, kind, seen_in: None }));
             }
             Ok(traced) => {
                 self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
@@ -155,7 +154,7 @@ impl PictureInput {
                         let reason = format!("{file}: frame {frame}: {error}");
                         let (hint, kind) = (hint(&error, &self.options), MissingKind::from(&error));
                         let seen_in = Some(seen_in);
-                        self.waiting.push_back(Item::Missing(Missing { frame, reason, hint, kind, seen_in }));
+                        self.waiting.push_back(Item::Gap(Missing { frame, reason, hint, kind, seen_in }));
                     }
                     Ok(objects) => self.waiting.extend(objects.into_iter().map(|(name, traced)| {
                         let outline = traced.outline;

@@ -5,7 +5,7 @@ use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
 
-/// The motion that simulated outlines were made with, as it stands in a comment at the head of their file:
+/// The true motion of simulated outlines, as stated in a comment at the head of their file:
 /// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SimulatedMotion {
@@ -44,23 +44,11 @@ impl fmt::Display for SimulatedMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let AffineMotion { a1, a2, a3, a4, b1, b2 } = self.motion;
         f.write_str(MARK)?;
-        match parameters_in(MotionModel::Rigid, &self.motion) {
+        match MotionModel::Rigid.parameters_of_motion(&self.motion) {
             Some(_) => write!(f, "omega={a2}")?,
             None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
         }
         write!(f, " b1={b1} b2={b2} scale={}", self.scale)
-    }
-}
-
-/// The parameters of a motion in a model, `None` where the model does not hold it.
-pub(crate) fn parameters_in(model: MotionModel, motion: &AffineMotion) -> Option<Vec<f64>> {
-    let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
-    let is_similarity = a1 == a4 && a2 == -a3;
-    match model {
-        MotionModel::Rigid => (is_similarity && a1 == 0.0).then(|| vec![a2, b1, b2]),
-        MotionModel::Similarity => is_similarity.then(|| vec![a1, a2, b1, b2]),
-        MotionModel::Affine => Some(vec![a1, a2, a3, a4, b1, b2]),
-        MotionModel::Projective => Some(vec![a1, a2, a3, a4, b1, b2, 0.0, 0.0]),
     }
 }
 

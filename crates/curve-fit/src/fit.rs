@@ -1,9 +1,12 @@
 use nalgebra::Point2;
 
 use crate::{
-    bounded_polynomial::BoundedPolynomial, degree::MAX_COEFFICIENTS, normalisation::Normalisation,
-    polynomial::ImplicitPolynomial,
+    bounded_polynomial::BoundedPolynomial, degree::MAX_COEFFICIENTS, isoline, normalisation::Normalisation,
+    polynomial::ImplicitPolynomial, rectangle::Rectangle,
 };
+
+/// Cells along the longer side of the rectangle that a curve is looked for in.
+const CURVE_CELLS: usize = 160;
 
 /// Which factorisation a fit came from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,7 +70,7 @@ impl Fit {
         &self.working
     }
 
-    /// The same, if it is closed and bounded.
+    /// The polynomial in working coordinates, if its curve is closed and bounded.
     #[must_use]
     pub fn bounded_working(&self) -> Option<BoundedPolynomial> {
         BoundedPolynomial::with_margin(self.working, self.diagnostics.boundedness_margin)
@@ -89,6 +92,13 @@ impl Fit {
     #[must_use]
     pub fn is_bounded(&self) -> bool {
         self.diagnostics.boundedness_margin > 0.0
+    }
+
+    /// The curve `f = 0` within a rectangle of the image, as lines to be drawn: its open and closed parts, closed ones with
+    /// their first point repeated, as [`isoline::of_function`] finds them on 160 cells along the longer side.
+    #[must_use]
+    pub fn curve_within(&self, rectangle: &Rectangle) -> Vec<Vec<Point2<f64>>> {
+        isoline::of_function(|p| self.working.evaluate(&self.normalisation.to_working(p)), rectangle, CURVE_CELLS)
     }
 }
 

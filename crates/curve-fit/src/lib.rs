@@ -1,11 +1,11 @@
 //! Implicit polynomial curves fitted to noisy outlines.
 //!
-//! An outline comes as ordered points without correspondence to anything. A [`Fitter`] turns it into an implicit
-//! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8, negative inside and positive outside, by the 3L method
-//! (three level sets: the data at 0, and the data moved along its normals at -1 and +1). The fit can be globally
-//! stabilised, or closed and bounded by construction. It is equivariant under similarities, that is turns, shifts and changes
-//! of scale: the fit of the moved outline is the moved fit. Under an affine map that stretches or shears it is so with
-//! [`Normalise::Affine`] alone, since distances along normals are not kept.
+//! An outline consists of ordered points, without correspondence to other outlines. A [`Fitter`] fits an implicit
+//! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8 to it, negative inside and positive outside. The 3L method uses
+//! three level sets: the points at 0, and the points moved along their normals at -1 and +1. The fit can be globally
+//! stabilised, or closed and bounded by construction. The fit is equivariant under similarities (turns, shifts and changes of
+//! scale): the fit of the moved outline is the moved fit. Under an affine map that stretches or shears, which changes
+//! distances along normals, it is equivariant with [`Normalise::Affine`] only.
 //!
 //! ```
 //! use freeform_curve_fit::{FitSettings, Fitter, Outline};
@@ -26,16 +26,17 @@
 //! assert!(f.evaluate(&Point2::new(2.0, 1.0)) > 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod active_set;
 mod area_moments;
 mod bounded;
 mod bounded_polynomial;
-mod contact;
 mod covariance;
 mod degree;
 mod error;
 mod fit;
 mod fitter;
 mod interior_point;
+pub mod isoline;
 mod leading_form;
 mod least_squares;
 mod level_set_moments;
@@ -45,11 +46,14 @@ mod monomials;
 mod normalisation;
 mod normals;
 mod outline;
+mod pixel_grid;
 mod polynomial;
+mod rectangle;
 mod resampling;
 mod residuals;
 mod ridge;
 mod settings;
+mod stray_parts;
 mod vectors;
 mod windows;
 
@@ -66,11 +70,14 @@ pub use monomials::{evaluate_monomials, exponents, monomial_index};
 pub use normalisation::Normalisation;
 pub use normals::{NormalRegression, outward_normals};
 pub use outline::{ClosedOutline, OpenArc, OpenOutline, Outline, Piece};
+pub use pixel_grid::PixelGrid;
 pub use polynomial::ImplicitPolynomial;
+pub use rectangle::Rectangle;
 pub use resampling::evenly_spaced;
 pub use residuals::Residuals;
 pub use ridge::rotation_invariant_ridge;
 pub use settings::{FitSettings, Method, Normalise};
+pub use stray_parts::stray_parts;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,14 +1,15 @@
 use freeform_curve_fit::Outline;
 use freeform_estimate::MotionEstimate;
-use freeform_riccati::{MotionModel, ParameterVector};
+use freeform_riccati::MotionModel;
 use nalgebra::DMatrix;
 
-use crate::filter::{FilterError, FilterSettings, MotionFilter, OutlineMap, PLENTY, Phase};
-
-/// Times that the outline is cut anew at most.
-const MOST_ROUNDS: usize = 8;
-/// A round that changes no parameter of the mean of all by so many standard deviations is the last.
-const SETTLED: f64 = 0.1;
+use crate::{
+    measurement::Frame,
+    supervisor::{FilterError, FilterSettings, MotionFilter, Phase},
+    track::{Comparison, Track},
+    tuning::{batch as tuning, remapping::PLENTY},
+    update::Gate,
+};
 
 /// Why a recording gives no motion.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -21,7 +22,7 @@ pub enum BatchError {
         /// What is wrong with it.
         error: FilterError,
     },
-    /// The motion filter, which gives the start, found the object in fewer than two frames.
+    /// The motion filter, which gives the initial motion, found the object in fewer than two frames.
     #[error("the object was found in fewer than two of {frames} frames")]
     NoStart {
         /// Frames given.
@@ -29,7 +30,7 @@ pub enum BatchError {
     },
 }
 
-/// The constant motion that all frames of a recording agree on.
+/// The constant motion that fits all frames of a recording best.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BatchEstimate {
     /// The motion in image units, with standard deviations.
@@ -38,23 +39,24 @@ pub struct BatchEstimate {
     pub covariance: DMatrix<f64>,
     /// Standard deviation of the noise on the points, image lengths.
     pub noise: f64,
-    /// Frames used, and not taken for wrong by the filter that gave the start.
+    /// Frames used: those that the filter for the initial motion did not reject.
     pub frames_used: usize,
-    /// Pieces that the outline was taken as, each with an offset of its own.
+    /// Number of pieces of the outline, each with its own offset.
     pub outline_pieces: usize,
-    /// Times that the outline was cut anew from all frames; 0 where that cannot be, as for a turn that is not seen, frames sampled alike or
-    /// an object found anew on the way: the motion is then that of the filter.
+    /// How often the outline was rebuilt from all frames. It is 0 if that is not possible: the turn is not observable, all frames have the
+    /// same sampling, or the object was lost and found again. The motion is then that of the filter.
     pub rounds: usize,
-    /// Whether the last of them changed the mean of their motions, which is the estimate, by little against the standard deviations.
+    /// Whether the last round changed the estimate, the mean of the motions of the rounds, by little compared with the standard deviations.
     pub converged: bool,
 }
 
-/// Estimates a constant motion from all frames at once.
+/// Estimates a constant motion from all frames together.
 ///
-/// The motion filter gives the start, and tells which frames show something else. Its outline is then cut anew from frames over the
-/// whole recording, aligned by the motion, and all frames are measured against that, until the mean of what this gives settles: points are
-/// given to pieces of an outline that all frames have made, and every frame is linearised at the motion of all. Work is linear in the points,
-/// and repeated for every round: this is the reference for recorded data, [`MotionFilter`] the way to keep up with a camera.
+/// The motion filter gives the initial motion and rejects frames that show something else. In each round the outline is then rebuilt from
+/// frames over the whole recording, aligned by the motion, and all frames are measured against it. Rounds are repeated until the mean of
+/// their motions settles. Points are associated with pieces of an outline built from all frames, and every frame is linearised at the joint
+/// motion. The work of a round is linear in the number of points. Use this estimator as the reference for recorded data, and
+/// [`MotionFilter`] for frames from a camera.
 ///
 /// ```
 /// use freeform_curve_fit::Outline;
@@ -89,41 +91,43 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
         let step = filter.step(*time, outline).map_err(|error| BatchError::Frame { index, error })?;
         let is_begun_anew = filter.restarts() > restarts;
         restarts = filter.restarts();
-        if step.accepted || is_begun_anew {
+        if step.is_accepted() || is_begun_anew {
             // It has not gone on from the frames before.
             if step.phase == Phase::Acquiring {
                 used.clear();
             }
             used.push((*time, outline));
-            last_used = filter.map().cloned();
+            last_used = filter.track().cloned();
         }
     }
     let no_start = BatchError::NoStart { frames: frames.len() };
     let start = filter.estimate().filter(|_| used.len() > 1).ok_or(no_start)?;
     // Frames rejected in the end have moved the filter's own map on.
-    let map = last_used.ok_or(no_start)?;
+    let track = last_used.ok_or(no_start)?;
     let points: usize = used.iter().map(|(_, outline)| outline.point_count()).sum();
-    let take = |map: &mut OutlineMap, seconds: f64, outline: &Outline| {
-        map.predict(seconds);
-        map.update(outline, |update| update.agreement >= smallest)
+    let gate = Gate { smallest_agreement: smallest, largest_innovation: None, largest_noise: None };
+    let take = |track: &mut Track, buffers: &mut Frame, seconds: f64, outline: &Outline| {
+        track.predict(seconds);
+        buffers.load(outline, track.reference());
+        track.update(buffers, &gate, Comparison::NotAsked).is_accepted()
     };
-    let mut best = map.clone();
-    let mut mean = best.motion;
+    let mut buffers = Frame::default();
+    let mut best = track.clone();
+    let mut mean = best.belief().motion;
     let (mut rounds, mut converged) = (0, false);
     // Nothing to cut from where the filter has begun with another frame.
-    while rounds < MOST_ROUNDS && !converged && map.is_begun_with(used[0].1) {
-        let Some(new) = best.recut(&best.placed(used.iter().copied()), points.div_ceil(PLENTY).max(1), take) else {
-            break;
-        };
+    while rounds < tuning::MOST_ROUNDS && !converged && track.is_begun_with(used[0].1) {
+        let stride = points.div_ceil(PLENTY).max(1);
+        let Some(new) = best.remapped(&best.placed(used.iter().copied()), stride, &mut buffers, take) else { break };
         best = new;
         rounds += 1;
         let before = mean;
-        mean.iter_mut().zip(&best.motion).for_each(|(mean, new)| *mean += (new - *mean) / rounds as f64);
+        mean.iter_mut().zip(&best.belief().motion).for_each(|(mean, new)| *mean += (new - *mean) / rounds as f64);
         let moved = best.in_deviations(&before, &mean).ok_or(no_start)?;
-        converged = rounds > 1 && moved < SETTLED;
+        converged = rounds > 1 && moved < tuning::SETTLED;
     }
     // Where points fall on the pieces differs from cut to cut, and so does the motion, by a part of its deviation.
-    best.motion = mean;
+    best.set_motion(mean);
     let covariance = best.covariance().ok_or(no_start)?;
     let motion = best.estimate().ok_or(no_start)?;
     // What the filter has not seen is not there to be seen.
@@ -131,25 +135,10 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
     Ok(BatchEstimate {
         motion: unseen.fold(motion, MotionEstimate::with_unobservable),
         covariance,
-        noise: best.noise(),
+        noise: best.sigma() * best.reference().radius,
         frames_used: used.len(),
         outline_pieces: best.cell_count(),
         rounds,
         converged,
     })
-}
-
-impl OutlineMap {
-    /// Whether the map was begun with an outline.
-    fn is_begun_with(&self, outline: &Outline) -> bool {
-        self.origin == outline.centroid() && self.radius == outline.rms_radius()
-    }
-
-    /// The largest difference of a parameter of two motions, in standard deviations.
-    fn in_deviations(&self, a: &ParameterVector, b: &ParameterVector) -> Option<f64> {
-        let k = self.model.parameter_count();
-        let covariance = self.state_covariance(&self.marginal)?;
-        let differences = (0..k).map(|j| (a[j] - b[j]).abs() / covariance[(k + j, k + j)].sqrt());
-        Some(differences.fold(0.0, f64::max))
-    }
 }

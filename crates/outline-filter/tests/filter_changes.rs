@@ -30,7 +30,11 @@ fn process_noise_lets_the_filter_follow_a_motion_that_drifts() {
     let settings = FilterSettings { process_noise: noise, ..FilterSettings::default() };
     let mut filter = MotionFilter::new(settings).expect("good settings");
     for frame in &frames {
-        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").accepted, "frame {}", frame.index);
+        assert!(
+            filter.step(frame.time, &frame.outline).expect("increasing times").is_accepted(),
+            "frame {}",
+            frame.index
+        );
     }
     let estimate = filter.estimate().expect("an estimate");
     let omega = estimate.parameters().next().expect("omega");
@@ -69,7 +73,11 @@ fn a_motion_that_changes_is_followed_without_being_told_to() {
     let frames = frames_of(BuiltInShape::Bird, Motion::varying(slow), settings(120, 4));
     let mut filter = filter(MotionModel::Rigid);
     for frame in &frames {
-        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").accepted, "frame {}", frame.index);
+        assert!(
+            filter.step(frame.time, &frame.outline).expect("increasing times").is_accepted(),
+            "frame {}",
+            frame.index
+        );
     }
     let omega = filter.estimate().expect("an estimate").parameters().next().expect("omega");
     let error = omega.value.expect("observable") - slow(frames[119].time).a2;
@@ -106,7 +114,7 @@ fn an_object_that_spins_and_travels_keeps_its_pose_where_its_map_is_cut_from_man
             let mut run = MotionFilter::new(FilterSettings::default()).expect("settings");
             let mut worst: f64 = 0.0;
             for frame in &frames {
-                if run.step(frame.time, &frame.outline).expect("a later frame").accepted {
+                if run.step(frame.time, &frame.outline).expect("a later frame").is_accepted() {
                     let pose = run.pose().expect("a pose").into_inner();
                     let turn = (pose[(1, 0)] - pose[(0, 1)]).atan2(pose[(0, 0)] + pose[(1, 1)]);
                     worst = worst.max((turn + omega * frame.time).abs());

@@ -107,12 +107,12 @@ fn a_map_begun_from_a_part_grows_to_the_whole_outline() {
     let frames = frames_of(BuiltInShape::Bird, RIGID, settings);
     let first = filtered(MotionModel::Rigid, &frames[..1]);
     let last = filtered(MotionModel::Rigid, &frames);
-    let cells = |filter: &MotionFilter| filter.map().expect("a map").cell_count() as f64;
+    let cells = |filter: &MotionFilter| filter.outline_points().count() as f64;
     let growth = cells(&last) / cells(&first);
     assert!((1.3..1.6).contains(&growth), "0.7 of the outline grew by {growth}");
     let (shape, pose) = (Shape::from(BuiltInShape::Bird), RIGID.flow(frames[39].time));
     let truth: Vec<_> = (0..2000).map(|i| pose * shape.point_at(f64::from(i) / 2000.0)).collect();
-    let known: Vec<_> = last.map().expect("a map").outline_points().collect();
+    let known: Vec<_> = last.outline_points().collect();
     let near =
         |p: &Point2<f64>, list: &[Point2<f64>]| list.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min);
     assert!(known.iter().filter(|p| near(p, &truth) < 0.01).count() as f64 > 0.97 * known.len() as f64);
@@ -130,12 +130,12 @@ fn frames_that_show_another_object_are_rejected_and_counted_and_none_of_the_othe
     let mut filter = filter(MotionModel::Rigid);
     for frame in &frames {
         let step = filter.step(frame.time, &frame.outline).expect("increasing times");
-        assert_eq!(step.accepted, frame.corruption.wrong_shape.is_none(), "frame {}", frame.index);
+        assert_eq!(step.is_accepted(), frame.corruption.wrong_shape.is_none(), "frame {}", frame.index);
         match step.rejection {
             Some(Rejection::AgreementTooSmall { agreement, smallest }) => {
                 assert!(agreement < smallest && smallest == 0.7);
             }
-            other => assert_eq!((other, step.accepted), (None, true), "frame {}", frame.index),
+            other => assert_eq!((other, step.is_accepted()), (None, true), "frame {}", frame.index),
         }
     }
     assert_eq!((filter.frames_rejected(), filter.frames_accepted()), (wrong, frames.len() - wrong));
@@ -171,7 +171,7 @@ fn the_velocity_of_the_middle_is_known_with_a_standard_deviation_that_holds() {
         let found = run.velocity().expect("known");
         let error = found.velocity - (truth * found.point.to_homogeneous()).xy();
         squares += error.dot(&(found.covariance.try_inverse().expect("regular") * error)) / 2.0;
-        let last = run.map().expect("a map").outline_points().map(|p| p.coords).collect::<Vec<_>>();
+        let last = run.outline_points().map(|p| p.coords).collect::<Vec<_>>();
         let middle = Point2::from(last.iter().sum::<Vector2<f64>>() / last.len() as f64);
         assert!((middle - found.point).norm() < 0.02, "{middle} {}", found.point);
     }
@@ -259,7 +259,7 @@ fn bad_input_is_refused_and_leaves_the_filter_as_it_was() {
     let few = Outline::closed(triangle.to_vec()).expect("a triangle");
     let mut empty = filter(MotionModel::Rigid);
     assert_eq!(empty.step(0.0, &few).err(), Some(FilterError::TooFewPoints { found: 3, needed: 8 }));
-    assert!(!run.step(1.0, &few).expect("later frames may be bad").accepted);
+    assert!(!run.step(1.0, &few).expect("later frames may be bad").is_accepted());
     for (agreement, patience) in [(0.0, 2), (1.0, 2), (f64::NAN, 2), (0.5, 0)] {
         let settings = FilterSettings { smallest_agreement: agreement, patience, ..FilterSettings::default() };
         assert!(matches!(MotionFilter::new(settings), Err(FilterError::Setting { .. })));
@@ -339,7 +339,7 @@ fn an_outline_that_few_points_show_is_cut_anew_from_the_first_frames() {
     let frames = frames_of(BuiltInShape::Van, RIGID, Settings { points: 60, ..settings(20, 3) });
     let coarse = filtered(MotionModel::Rigid, &frames[..3]);
     let fine = filtered(MotionModel::Rigid, &frames);
-    let cells = |filter: &MotionFilter| filter.map().expect("a map").cell_count();
+    let cells = |filter: &MotionFilter| filter.outline_points().count();
     assert!(cells(&coarse) < 70 && cells(&fine) > 120, "{} {}", cells(&coarse), cells(&fine));
     assert_eq!(fine.frames_rejected(), 0);
 }
@@ -374,7 +374,7 @@ fn real_masks_with_correlated_errors_are_followed_and_broken_ones_rejected() {
         let picture = freeform_outline_io::read_picture(folder.join(format!("masks/{index:04}.png"))).expect("a mask");
         let traced = freeform_outline_io::trace_mask(&picture, &freeform_outline_io::TraceSettings::default());
         let step = filter.step(index as f64 / 15.07, &traced.expect("an object").outline).expect("increasing times");
-        if step.accepted {
+        if step.is_accepted() {
             let pose = filter.pose().expect("a pose");
             let m = pose.matrix();
             seen.push(((m[(1, 0)] - m[(0, 1)]).atan2(m[(0, 0)] + m[(1, 1)]).to_degrees(), *angle));

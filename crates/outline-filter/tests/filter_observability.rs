@@ -1,4 +1,4 @@
-//! What the motion filter says of parameters that outlines do not show, or not alone.
+//! What the motion filter says of parameters that outlines do not show.
 mod filter_support;
 
 use filter_support::{filter, filtered, frames_of, settings};
@@ -12,18 +12,26 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
 #[test]
-fn a_circle_that_moves_along_an_arc_tells_its_turn_by_the_path_and_one_that_moves_straight_has_none() {
+fn a_circle_has_no_turn_whether_it_rests_or_moves_straight_or_along_an_arc_and_its_velocity_is_stated() {
     for (omega, b1, noise, seconds) in
         [(1.0, 0.5, 0.005, 3), (1.0, 0.5, 0.0005, 3), (1.0, 0.1, 0.005, 3), (-3.0, 0.5, 0.002, 3), (0.0, 0.5, 0.005, 3)]
     {
         let motion = RigidMotion { omega, b1, b2: 0.0 };
         for seed in 0..5 {
             let settings = Settings { noise, ..settings(30 * seconds, seed) };
-            let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, motion, settings));
-            assert!(run.frames_rejected() <= 1, "{motion:?} {noise}, seed {seed}: {}", run.frames_rejected());
+            let frames = frames_of(BuiltInShape::Circle, motion, settings);
+            let run = filtered(MotionModel::Rigid, &frames);
+            let context = format!("{motion:?} {noise}, seed {seed}");
+            assert!(run.frames_rejected() <= 2, "{context}: {}", run.frames_rejected());
             let found = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
-            let (value, std) = (found.value.expect("told by the path"), found.standard_deviation.expect("one"));
-            assert!((value - omega).abs() < 6.0 * std && std < 0.1, "{motion:?} {noise}, seed {seed}: {value} {std}");
+            assert_eq!(found.value, None, "{context}");
+            let velocity = run.velocity().unwrap_or_else(|| panic!("a velocity: {context}"));
+            let truth = motion.generator() * velocity.point.to_homogeneous();
+            let error = velocity.velocity - truth.xy();
+            // On an arc the velocity is followed as it changes, from frame to frame: half a frame late.
+            let late = 0.5 / 30.0 * omega.abs() * truth.xy().norm();
+            let std = velocity.standard_deviations().norm();
+            assert!(error.norm() < 5.0 * std + 1.5 * late && std < 0.1, "{context}: {error:?} {std} {late}");
         }
     }
 }
@@ -41,16 +49,15 @@ fn a_circle_at_rest_keeps_its_turn_unknown_and_its_place_known_whatever_the_nois
 }
 
 #[test]
-fn a_circle_under_affine_motion_states_what_its_path_tells_and_no_more() {
+fn a_circle_under_affine_motion_shows_no_turn_and_what_is_stated_is_right() {
     let moving = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
     let in_place = AffineMotion { a1: 0.1, a2: 0.3, a3: -0.2, a4: 0.1, b1: 0.0, b2: 0.0 };
-    for (motion, turn_is_known) in [(moving, true), (in_place, false)] {
+    for motion in [moving, in_place] {
         for (seed, noise) in (0..6).zip([0.0005, 0.005].into_iter().cycle()) {
             let frames = frames_of(BuiltInShape::Circle, motion, Settings { noise, ..settings(60, seed) });
             let run = filtered(MotionModel::Affine, &frames);
             let known = observable(&run);
-            assert_eq!([known[1], known[2]], [turn_is_known; 2], "{motion:?} {noise}, seed {seed}");
-            assert!(known[4] && known[5], "{motion:?} {noise}, seed {seed}");
+            assert_eq!([known[1], known[2]], [false; 2], "{motion:?} {noise}, seed {seed}");
             let estimate = run.estimate().expect("an estimate");
             let truth = [motion.a1, motion.a2, motion.a3, motion.a4, motion.b1, motion.b2];
             for (parameter, truth) in estimate.parameters().zip(truth) {
@@ -129,7 +136,7 @@ fn seen_at(shape: BuiltInShape, omega: f64, b1: f64, times: &[f64]) -> MotionFil
     let mut filter = filter(MotionModel::Rigid);
     for time in times {
         let frame = &frames[(time * fps).round() as usize];
-        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").accepted, "at {time} s");
+        assert!(filter.step(frame.time, &frame.outline).expect("increasing times").is_accepted(), "at {time} s");
     }
     filter
 }
@@ -148,7 +155,7 @@ fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_d
     let omega = |filter: &MotionFilter| filter.estimate().expect("an estimate").parameters().next().expect("omega");
     let turn = 50.0_f64.to_radians();
     let two = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0]);
-    assert!(two.is_ambiguous() && omega(&two).value.is_none(), "{:?} {:?}", omega(&two), two.rival_turns());
+    assert!(two.ambiguity().is_some() && omega(&two).value.is_none(), "{:?} {:?}", omega(&two), two.rival_turns());
     let ambiguity = two.ambiguity().expect("two turns");
     assert!(ambiguity.parameters.contains(&"omega") && two.velocity().is_none(), "{ambiguity:?}");
     let degrees = |turn: f64| turn.to_degrees().round();
@@ -157,13 +164,13 @@ fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_d
     // It moves along an arc, which no other turn would.
     let three = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0, 2.0]);
     let stated = omega(&three).value.expect("decided");
-    assert!(!three.is_ambiguous() && (stated - turn).abs() < 0.02, "{stated}");
+    assert!(three.ambiguity().is_none() && (stated - turn).abs() < 0.02, "{stated}");
     assert!(three.ambiguity().is_none() && three.velocity().is_some());
     // Nothing tells how often a square that stays in its place has turned, unless it is little.
     let in_place = seen_at(BuiltInShape::Square, turn, 0.0, &[0.0, 1.0, 2.0]);
-    assert!(in_place.is_ambiguous() && omega(&in_place).value.is_none(), "{:?}", in_place.rival_turns());
+    assert!(in_place.ambiguity().is_some() && omega(&in_place).value.is_none(), "{:?}", in_place.rival_turns());
     let little = seen_at(BuiltInShape::Square, 0.4 * turn, 0.0, &[0.0, 1.0, 2.0]);
-    assert!(!little.is_ambiguous() && (omega(&little).value.expect("stated") - 0.4 * turn).abs() < 0.02);
+    assert!(little.ambiguity().is_none() && (omega(&little).value.expect("stated") - 0.4 * turn).abs() < 0.02);
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn the_state_is_what_the_filter_says_of_pose_and_motion() {
         assert_eq!(state.motion().values(), filter.estimate().expect("an estimate").values());
         let k = model.parameter_count();
         let joint = state.covariance();
-        let motion = filter.map().expect("a map").covariance().expect("a covariance");
+        let motion = filter.covariance().expect("a covariance");
         assert!((joint.view((k, k), (k, k)) - &motion).norm() < 1e-6 * motion.norm());
     }
 }

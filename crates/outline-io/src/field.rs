@@ -1,3 +1,5 @@
+use freeform_curve_fit::isoline::{self, Crossing};
+
 /// Grey values on a grid of samples, row by row.
 #[derive(Debug, Clone)]
 pub(crate) struct Field {
@@ -7,11 +9,9 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// The value of a sample, none beyond the grid.
-    pub(crate) fn get(&self, x: i64, y: i64) -> Option<f64> {
-        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
-        let inside = x < self.width && y < self.height;
-        inside.then(|| f64::from(self.values[y * self.width + x]))
+    /// Where the grey value passes a level, between the samples.
+    pub(crate) fn isolines(&self, level: f64) -> Vec<Vec<Crossing>> {
+        isoline::of_samples([self.width, self.height], |x, y| f64::from(self.values[y * self.width + x]), level)
     }
 
     /// Indices of the samples above, below and beside a sample, as far as the grid goes.

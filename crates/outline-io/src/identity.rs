@@ -1,6 +1,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::affine_moment_invariants::AffineMomentInvariants;
+use crate::assignment::assign;
 use crate::picture_error::TraceError;
 use crate::trace::TracedOutline;
 
@@ -20,6 +21,9 @@ const LARGEST_GROWTH_OF_ONE: f64 = 1.25;
 /// less: by up to 0.08 for a robot of 16,000 pixels, by up to 0.21 for a thin bolt of 4,500 with a blurred edge.
 const OTHER_SHAPE: f64 = 0.5;
 
+/// The cost of a sighting at the farthest place, of the largest growth and of another shape.
+const LARGEST_COST: f64 = 3.0;
+
 /// Which objects of a picture are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Selection {
@@ -29,8 +33,9 @@ pub enum Selection {
     /// The largest of the first picture, then the one nearest to where that is expected.
     Nearest,
     /// All, each with a name that it keeps: its place, predicted from its velocity, its area and the affine moment
-    /// invariants of its shape tell it in the next frame. Where objects touch and are one in the picture, that one is left
-    /// out; after more than 15 frames they are forgotten and it is an object of its own.
+    /// invariants of its shape tell it in the next frame, so that all objects together fit best. Where objects touch and
+    /// are one in the picture, that one is left out; after more than 15 frames they are forgotten, and the joint object counts
+    /// as a new one.
     All,
 }
 
@@ -57,7 +62,7 @@ struct Known {
 struct Difference {
     /// From the place expected, in diameters.
     distance: f64,
-    /// The same over the farthest accepted.
+    /// `distance` over the largest accepted distance.
     place: f64,
     /// Logarithm of the ratio of areas; `None` where one of them is clipped.
     growth: Option<f64>,
@@ -80,8 +85,8 @@ impl Difference {
             && self.shape.is_none_or(|shape| shape <= OTHER_SHAPE)
     }
 
-    /// How ill a sighting fits; `None` where it cannot be the object. Another shape alone may be a failure of the
-    /// segmentation, so that it counts no more than the farthest place.
+    /// How ill a sighting fits, up to [`LARGEST_COST`]; `None` where it cannot be the object. Another shape alone may be a
+    /// failure of the segmentation, so that it counts no more than the farthest place.
     fn cost(&self) -> Option<f64> {
         let growth = self.growth.map_or(0.0, |growth| growth / LARGEST_GROWTH.ln());
         let shape = self.shape.map_or(0.0, |shape| (shape / OTHER_SHAPE).min(1.0));
@@ -196,10 +201,8 @@ impl Identities {
         let unseen: Vec<Point2<f64>> = self.known.iter().filter(apart).map(|known| known.expected(frame)).collect();
         let mut touching = None;
         traced.retain(|traced| {
-            let points = || traced.outline.points();
-            let low = points().fold(Point2::from([f64::INFINITY; 2]), |low, p| low.inf(p));
-            let high = points().fold(Point2::from([f64::NEG_INFINITY; 2]), |high, p| high.sup(p));
-            let count = unseen.iter().filter(|place| **place >= low && **place <= high).count();
+            let around = traced.outline.bounding_box();
+            let count = unseen.iter().filter(|place| around.contains(place)).count();
             touching = touching.or((count > 1).then_some(count));
             count < 2
         });
@@ -207,20 +210,13 @@ impl Identities {
     }
 
     fn all(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Vec<(u64, TracedOutline)> {
-        let mut pairs = Vec::new();
-        for (k, known) in self.known.iter().enumerate() {
-            let costs = traced.iter().map(|traced| known.cost(frame, traced)).enumerate();
-            pairs.extend(costs.filter_map(|(t, cost)| Some((cost?, k, t))));
-        }
-        // The best pair first: of two objects that could be either, the one that fits best keeps its name.
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let cost = |known: usize, seen: usize| self.known[known].cost(frame, &traced[seen]);
+        let seen_as = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
         let mut names = vec![None; traced.len()];
-        let mut used = vec![false; self.known.len()];
-        for (_, k, t) in pairs {
-            if !used[k] && names[t].is_none() {
-                used[k] = true;
-                names[t] = Some(self.known[k].name);
-                self.known[k].see(frame, &traced[t]);
+        for (known, seen) in self.known.iter_mut().zip(seen_as) {
+            if let Some(seen) = seen {
+                names[seen] = Some(known.name);
+                known.see(frame, &traced[seen]);
             }
         }
         let named = traced.into_iter().zip(names).map(|(traced, name)| {

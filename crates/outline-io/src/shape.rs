@@ -5,18 +5,19 @@ use std::path::Path;
 use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
-use crate::csv_columns::{Column, Columns, require};
+use crate::column::Column;
+use crate::csv_columns::{Columns, require};
 use crate::csv_field::number;
 use crate::csv_reader::OutlineReader;
 use crate::csv_rows::Rows;
-use crate::error::{Place, ReadError, ReadErrorKind, ShapeError};
+use crate::error::{Place, ReadError, ReadErrorKind, ReadShapeError};
 use crate::frame::DEFAULT_OBJECT;
 use crate::outline_rows::OutlineRows;
 use crate::picture::read_picture;
 use crate::trace::trace_mask;
 use crate::trace_settings::TraceSettings;
 
-/// Longest beginning of a file that tells a picture format.
+/// Number of bytes at the beginning of a file that identify a picture format.
 const MAGIC_LENGTH: u64 = 16;
 
 /// Reads one closed outline to use as a shape: from a picture, the outer outline of its largest object with the default
@@ -26,7 +27,7 @@ const MAGIC_LENGTH: u64 = 16;
 ///
 /// # Errors
 /// The file cannot be read, follows none of these formats, or holds no closed outline.
-pub fn read_shape(path: impl AsRef<Path>) -> Result<Outline, ShapeError> {
+pub fn read_shape(path: impl AsRef<Path>) -> Result<Outline, ReadShapeError> {
     let path = path.as_ref();
     let file = path.display().to_string();
     let io = |error| {
@@ -40,7 +41,7 @@ pub fn read_shape(path: impl AsRef<Path>) -> Result<Outline, ShapeError> {
     if image::guess_format(&magic).is_ok() || image::ImageFormat::from_path(path).is_ok() {
         let picture = read_picture(path)?;
         let traced = trace_mask(&picture, &TraceSettings::default());
-        return traced.map(|traced| traced.outline).map_err(|source| ShapeError::Trace { file, source });
+        return traced.map(|traced| traced.outline).map_err(|source| ReadShapeError::Trace { file, source });
     }
     source.rewind().map_err(io)?;
     read_shape_csv(BufReader::new(source), file)
@@ -52,7 +53,7 @@ enum ShapeColumns {
     Points { x: usize, y: usize },
 }
 
-fn read_shape_csv(source: impl Read, file: String) -> Result<Outline, ShapeError> {
+fn read_shape_csv(source: impl Read, file: String) -> Result<Outline, ReadShapeError> {
     let (rows, columns) = Rows::open(source, file.clone(), |header| {
         let names = |column: Column| header.iter().any(|name| name.trim_ascii() == column.name().as_bytes());
         if names(Column::Frame) || names(Column::Time) {
@@ -69,8 +70,8 @@ fn read_shape_csv(source: impl Read, file: String) -> Result<Outline, ShapeError
         ShapeColumns::Points { x, y } => read_points(rows, x, y)?,
     };
     match outline {
-        None => Err(ShapeError::NoOutline { file }),
-        Some(Outline::Open(_)) => Err(ShapeError::Open { file }),
+        None => Err(ReadShapeError::NoOutline { file }),
+        Some(Outline::Open(_)) => Err(ReadShapeError::Open { file }),
         Some(outline) => Ok(outline),
     }
 }

@@ -1,15 +1,16 @@
+use freeform_curve_fit::isoline::{Crossing, signed_area};
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use image::GrayImage;
 use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
+use crate::contrast::{Contrast, signal};
 use crate::field::{Field, blur_reach};
-use crate::isoline::{Crossing, area, isolines};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
-use crate::threshold::{Levels, level_in_picture, signal};
-use crate::trace_settings::{Clipping, Contrast, TraceSettings};
+use crate::threshold::{Levels, level_in_picture};
+use crate::trace_settings::{Clipping, TraceSettings};
 
 /// The outline of an object in a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,8 +148,8 @@ impl Seen {
 impl Window<'_> {
     /// The longest outer outline in the window; `None` where nothing passes the level.
     fn outline(&self, picture: &GrayImage, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
-        let lines = isolines(self.field, self.level);
-        let outer = lines.into_iter().max_by(|a, b| area(a).total_cmp(&area(b)));
+        let lines = self.field.isolines(self.level);
+        let outer = lines.into_iter().max_by(|a, b| signed_area(a).total_cmp(&signed_area(b)));
         let Some(line) = outer else { return Ok(None) };
         let grid = settings.pixel_grid(picture.height());
         let touches_border = line.iter().any(|crossing| crossing.at_edge);

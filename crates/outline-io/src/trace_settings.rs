@@ -1,38 +1,19 @@
-use nalgebra::Point2;
+use freeform_curve_fit::PixelGrid;
+use nalgebra::{Point2, Vector2};
 
+use crate::contrast::Contrast;
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
-use crate::threshold::Levels;
+use crate::threshold::{Levels, Threshold};
 
 /// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
 const MASK_SIGMA: f64 = 1.0;
 
-/// The same for pictures of more grey values, in pixels.
+/// Standard deviation of the smoothing of pictures with more grey values, in pixels.
 const GREY_SIGMA: f64 = 0.5;
 
 /// Largest standard deviation of the smoothing, in pixels.
 const SIGMA_LIMIT: f64 = 100.0;
-
-/// Whether objects are lighter or darker than the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Contrast {
-    /// Light objects, as in masks.
-    #[default]
-    LightOnDark,
-    /// Dark objects.
-    DarkOnLight,
-}
-
-/// The grey value that parts objects from the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Threshold {
-    /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
-    /// its two values.
-    #[default]
-    Automatic,
-    /// A grey value of the picture, above 0 and up to 255.
-    Level(f64),
-}
 
 /// How much the picture is smoothed before its outline is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -70,7 +51,7 @@ pub struct TraceSettings {
     pub clipping: Clipping,
     /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
     pub y_up: bool,
-    /// A line around the object by whose outer edge it is told, in place of contrast, threshold and smoothing.
+    /// A line around the object, whose outer edge is traced. Replaces contrast, threshold and smoothing.
     pub ring: Option<Ring>,
     /// Height of a pixel in the length unit of the outline.
     pub pixel_size: f64,
@@ -126,32 +107,8 @@ impl TraceSettings {
     /// How the pixels of a picture of this height lie in the plane of its outlines.
     #[must_use]
     pub fn pixel_grid(&self, height: u32) -> PixelGrid {
-        PixelGrid { height, y_up: self.y_up, pixel_size: self.pixel_size, pixel_aspect: self.pixel_aspect }
-    }
-}
-
-/// How the pixels of a picture lie in the plane of its outlines.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PixelGrid {
-    height: u32,
-    y_up: bool,
-    pixel_size: f64,
-    pixel_aspect: f64,
-}
-
-impl PixelGrid {
-    /// From columns and rows, pixel centres at half numbers, to the plane.
-    #[must_use]
-    pub fn to_plane(&self, column: f64, row: f64) -> Point2<f64> {
-        let y = if self.y_up { f64::from(self.height) - row } else { row };
-        Point2::new(self.pixel_size * self.pixel_aspect * column, self.pixel_size * y)
-    }
-
-    /// From the plane to columns and rows, pixel centres at half numbers.
-    #[must_use]
-    pub fn to_pixels(&self, point: &Point2<f64>) -> [f64; 2] {
-        let y = point.y / self.pixel_size;
-        let row = if self.y_up { f64::from(self.height) - y } else { y };
-        [point.x / (self.pixel_size * self.pixel_aspect), row]
+        let (width, size) = (self.pixel_size * self.pixel_aspect, self.pixel_size);
+        let (row_of_zero, pitch) = if self.y_up { (f64::from(height), -size) } else { (0.0, size) };
+        PixelGrid::new([0.0, row_of_zero], Point2::origin(), Vector2::new(width, pitch))
     }
 }

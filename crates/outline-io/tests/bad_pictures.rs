@@ -2,7 +2,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use freeform_outline_io::{GrayImage, PictureErrorKind, ShapeError, decode_picture, read_picture, read_shape};
+use freeform_outline_io::{GrayImage, PictureErrorKind, ReadShapeError, decode_picture, read_picture, read_shape};
 use image::{DynamicImage, ImageFormat, Luma, LumaA, Rgb};
 
 fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
@@ -145,7 +145,7 @@ fn a_png_with_flipped_bytes_never_panics() {
     assert!(refused > whole.len());
 }
 
-fn shape_of(name: &str, content: &[u8]) -> Result<freeform_curve_fit::Outline, ShapeError> {
+fn shape_of(name: &str, content: &[u8]) -> Result<freeform_curve_fit::Outline, ReadShapeError> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join(name);
     std::fs::write(&path, content).expect("a file");

@@ -1,8 +1,9 @@
 //! Objects keep their names from picture to picture.
 mod support;
 
-use freeform_outline_io::{GrayImage, PictureSettings, Selection, TraceError};
+use freeform_outline_io::{GrayImage, PictureSettings, Selection, TraceError, TraceSettings};
 use image::Luma;
+use nalgebra::Point2;
 use support::traced;
 
 /// Discs at these places.
@@ -86,6 +87,41 @@ fn objects_of_like_size_keep_their_names_whether_they_pass_through_each_other_or
             }
         }
         assert!((3..15).contains(&touching), "{touching}");
+    }
+}
+
+/// Two bars of 48 x 6 pixels, 10 pixels apart, that pass each other; in frame 10, when they are above each other, the camera is
+/// knocked by 7 pixels, so that each seems to be near where the other was.
+fn passing_bars(frame: u32) -> [(f64, f64); 2] {
+    let (along, knock) = (3.0 * f64::from(frame), if frame >= 10 { 7.0 } else { 0.0 });
+    [(70.0 + along, 40.0 + knock), (130.0 - along, 50.0 + knock)]
+}
+
+#[test]
+fn names_are_not_swapped_where_one_object_is_nearest_to_the_place_of_the_other() {
+    let pictures: Vec<GrayImage> = (0..20)
+        .map(|frame| {
+            let bars = passing_bars(frame);
+            GrayImage::from_fn(200, 100, |x, y| {
+                let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let inside = |&(cx, cy): &(f64, f64)| (x - cx).abs() < 24.0 && (y - cy).abs() < 3.0;
+                Luma([if bars.iter().any(inside) { 220 } else { 10 }])
+            })
+        })
+        .collect();
+    let trace = TraceSettings { y_up: false, ..TraceSettings::default() };
+    let settings = PictureSettings { selection: Selection::All, trace, ..PictureSettings::default() };
+    let seen = traced(pictures, settings);
+    let first = seen[0].objects.as_ref().expect("both bars");
+    let upper = first.iter().find(|(_, object)| object.centre.y < 45.0).expect("the upper bar").0;
+    for (frame, traced) in seen.iter().enumerate() {
+        let objects = traced.objects.as_ref().expect("both bars");
+        assert_eq!(objects.len(), 2, "frame {frame}");
+        let [of_upper, of_lower] = passing_bars(frame as u32).map(|(x, y)| Point2::new(x, y));
+        for (name, object) in objects {
+            let expected = if *name == upper { of_upper } else { of_lower };
+            assert!((object.centre - expected).norm() < 0.5, "frame {frame}: {name} at {}", object.centre);
+        }
     }
 }
 

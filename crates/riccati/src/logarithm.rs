@@ -1,4 +1,9 @@
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+use crate::{
+    generator::ParameterVector,
+    motion_model::{MAX_PARAMETERS, MotionModel},
+};
 
 /// Distance from the identity below which the series converges fast.
 const NEAR: f64 = 0.3;
@@ -36,6 +41,39 @@ pub fn logarithm(map: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     Some(sum * factor)
 }
 
+impl MotionModel {
+    /// Parameters of the constant motion of this model that makes the map `change` in `seconds`, by a turn of less than half a circle: by
+    /// Newton's method on the flow, from the closed form of a similarity. Of a map outside the model's group, one that is near. `None`
+    /// where the numbers do not allow it.
+    #[must_use]
+    pub fn motion_between(self, change: &Matrix3<f64>, seconds: f64) -> Option<ParameterVector> {
+        let k = self.parameter_count();
+        let (c, s) = (change[(0, 0)] + change[(1, 1)], change[(1, 0)] - change[(0, 1)]);
+        let mut start = Matrix3::zeros();
+        let omega = -s.atan2(c) / seconds;
+        (start[(0, 1)], start[(1, 0)]) = (omega, -omega);
+        let mut theta = self.parameters_of(&start);
+        for _ in 0..12 {
+            let flow = self.flow(&theta[..k], seconds).into_inner();
+            let rest = change / change[(2, 2)] * flow.try_inverse()?;
+            let error = self.parameters_of(&(rest / rest[(2, 2)] - Matrix3::identity()));
+            let by_motion = self.parameter_columns(self.flow_sensitivities(&theta[..k], seconds).into_iter());
+            let matrix = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| {
+                if i < k && j < k { by_motion[i][j] } else { f64::from(u8::from(i == j)) }
+            });
+            let step = matrix.lu().solve(&SVector::from(error))?;
+            (0..k).for_each(|i| theta[i] += step[i]);
+            if !theta.iter().all(|e| e.is_finite()) {
+                return None;
+            }
+            if step.norm() * seconds < 1e-13 {
+                break;
+            }
+        }
+        Some(theta)
+    }
+}
+
 fn square_root(m: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let (mut y, mut z) = (*m, Matrix3::identity());
     for _ in 0..30 {
@@ -54,7 +92,6 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::motion_model::MotionModel;
 
     proptest! {
         #[test]

@@ -1,6 +1,9 @@
 use nalgebra::{Matrix3, Projective2};
 
-use crate::{exponential::exponential, motion::SimilarityMotion};
+use crate::{
+    exponential::exponential,
+    motion::{AffineMotion, SimilarityMotion},
+};
 
 /// Largest number of parameters of any model, that of a projective motion.
 pub const MAX_PARAMETERS: usize = 8;
@@ -118,6 +121,26 @@ impl MotionModel {
         let basis = self.basis();
         assert_eq!(parameters.len(), basis.len(), "number of parameters of a {self} motion");
         parameters.iter().zip(basis).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta)
+    }
+
+    /// The parameters of an affine motion in this model, in its order; `None` where the model does not hold the motion.
+    ///
+    /// ```
+    /// use freeform_riccati::{MotionModel, RigidMotion};
+    ///
+    /// let motion = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.4 }.into();
+    /// assert_eq!(MotionModel::Rigid.parameters_of_motion(&motion), Some(vec![1.5, -0.3, 0.4]));
+    /// ```
+    #[must_use]
+    pub fn parameters_of_motion(self, motion: &AffineMotion) -> Option<Vec<f64>> {
+        let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
+        let is_similarity = a1 == a4 && a2 == -a3;
+        match self {
+            Self::Rigid => (is_similarity && a1 == 0.0).then(|| vec![a2, b1, b2]),
+            Self::Similarity => is_similarity.then(|| vec![a1, a2, b1, b2]),
+            Self::Affine => Some(vec![a1, a2, a3, a4, b1, b2]),
+            Self::Projective => Some(vec![a1, a2, a3, a4, b1, b2, 0.0, 0.0]),
+        }
     }
 
     /// The map of the plane that the motion makes in `seconds`: in closed form for rigid and similarity motion, `expm(A

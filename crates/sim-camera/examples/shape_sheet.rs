@@ -3,7 +3,9 @@
 //! `cargo run -p freeform-sim-camera --example shape_sheet -- shapes.svg`
 use std::fmt::Write as _;
 
+use freeform_curve_fit::Rectangle;
 use freeform_sim_camera::BuiltInShape;
+use nalgebra::Point2;
 
 const CELL: f64 = 220.0;
 const COLUMNS: usize = 5;
@@ -20,8 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let y = CELL * ((place / COLUMNS) as f64 + 0.45);
         let points = built_in.shape().sample(800, 0.0);
         // The middle of the box around the shape goes to the middle of the cell.
-        let (low, high) = points.iter().fold((points[0], points[0]), |(low, high), p| (low.inf(p), high.sup(p)));
-        let middle = nalgebra::center(&low, &high);
+        let middle = Rectangle::around(points.iter()).map_or_else(Point2::origin, |around| around.centre());
         let offsets = points.iter().map(|p| 0.75 * CELL * (p - middle));
         let path: Vec<String> = offsets.map(|v| format!("{:.2},{:.2}", x + v.x, y - v.y)).collect();
         writeln!(

@@ -39,7 +39,7 @@ pub use corruption::{HiddenArc, Occlusion};
 pub use error::{ShapeError, SimulationError};
 pub use experiments::PaperExperiment;
 pub use motion::Motion;
-pub use raster::{Mask, PixelGrid};
+pub use raster::Mask;
 pub use sampling::Sampling;
 pub use scene::Scene;
 pub use settings::{SequenceLength, Settings};

@@ -1,73 +1,10 @@
-use freeform_curve_fit::Outline;
+use freeform_curve_fit::{Outline, PixelGrid};
 use nalgebra::Point2;
 
 use crate::error::SimulationError;
 
 /// Most pixels of one mask.
 const MOST_PIXELS: usize = 1 << 28;
-
-/// Where a grid of square pixels lies in the image plane. Pixel (column, row) covers the unit square from
-/// `(column, row)` to `(column + 1, row + 1)` in pixel coordinates; rows run down, y runs up.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PixelGrid {
-    width: usize,
-    height: usize,
-    centre: Point2<f64>,
-    pixels_per_unit: f64,
-}
-
-impl PixelGrid {
-    /// A grid of `width` by `height` pixels whose middle lies at `centre`.
-    ///
-    /// # Errors
-    /// No pixel or more than 2^28, a centre that is not finite, a resolution that is not finite and positive.
-    pub fn new(
-        width: usize,
-        height: usize,
-        centre: Point2<f64>,
-        pixels_per_unit: f64,
-    ) -> Result<Self, SimulationError> {
-        if width == 0 || height == 0 || width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
-            return Err(SimulationError::MaskSize { width, height, limit: MOST_PIXELS });
-        }
-        for value in [centre.x, centre.y] {
-            if !value.is_finite() {
-                return Err(SimulationError::OutOfRange { setting: "centre of the mask", value, range: "finite" });
-            }
-        }
-        if !(pixels_per_unit.is_finite() && pixels_per_unit > 0.0) {
-            let (setting, range) = ("pixels per unit", "finite and above 0");
-            return Err(SimulationError::OutOfRange { setting, value: pixels_per_unit, range });
-        }
-        Ok(Self { width, height, centre, pixels_per_unit })
-    }
-
-    /// Number of columns.
-    #[must_use]
-    pub fn width(&self) -> usize {
-        self.width
-    }
-
-    /// Number of rows.
-    #[must_use]
-    pub fn height(&self) -> usize {
-        self.height
-    }
-
-    /// Pixel coordinates (column, row) of a point of the image plane.
-    #[must_use]
-    pub fn pixel_of(&self, point: &Point2<f64>) -> Point2<f64> {
-        let offset = (point - self.centre) * self.pixels_per_unit;
-        Point2::new(0.5 * self.width as f64 + offset.x, 0.5 * self.height as f64 - offset.y)
-    }
-
-    /// The point of the image plane with the given pixel coordinates (column, row).
-    #[must_use]
-    pub fn point_of(&self, pixel: &Point2<f64>) -> Point2<f64> {
-        let x = self.centre.x + (pixel.x - 0.5 * self.width as f64) / self.pixels_per_unit;
-        Point2::new(x, self.centre.y + (0.5 * self.height as f64 - pixel.y) / self.pixels_per_unit)
-    }
-}
 
 /// A grey picture of an object: 255 inside, 0 outside, the covered share of the pixel along the outline.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -82,15 +19,28 @@ pub struct Mask {
 
 impl Mask {
     /// The picture of the polygon through all points of the outline in order; gaps are closed by straight lines. The
-    /// covered share of every pixel is exact where the polygon does not cross itself.
-    #[must_use]
-    pub fn of_outline(outline: &Outline, grid: &PixelGrid) -> Self {
-        let mut accumulator = Accumulator::new(grid.width, grid.height);
-        let corners = outline.points().map(|p| grid.pixel_of(p));
-        for (from, to) in corners.clone().zip(corners.cycle().skip(1)) {
-            accumulator.add_edge(from, to);
+    /// covered share of every pixel is exact where the polygon does not cross itself. The picture has `[width, height]`
+    /// pixels, which lie in the plane of the outline as the grid says.
+    ///
+    /// # Errors
+    /// No pixel or more than 2^28; a grid that leads to no finite place in the picture.
+    pub fn of_outline(
+        outline: &Outline,
+        [width, height]: [usize; 2],
+        grid: &PixelGrid,
+    ) -> Result<Self, SimulationError> {
+        if width == 0 || height == 0 || width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
+            return Err(SimulationError::MaskSize { width, height, limit: MOST_PIXELS });
         }
-        Self { width: grid.width, height: grid.height, grey: accumulator.grey() }
+        let corners: Vec<_> = outline.points().map(|p| Point2::from(grid.to_pixels(p))).collect();
+        if let Some(&value) = corners.iter().flat_map(|p| &p.coords).find(|value| !value.is_finite()) {
+            return Err(SimulationError::OutOfRange { setting: "place in the mask", value, range: "finite" });
+        }
+        let mut accumulator = Accumulator::new(width, height);
+        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            accumulator.add_edge(*from, *to);
+        }
+        Ok(Self { width, height, grey: accumulator.grey() })
     }
 
     /// The binary picture: 255 where at least half of the pixel is covered, else 0.

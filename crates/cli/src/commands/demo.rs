@@ -5,21 +5,22 @@ use std::path::{Path, PathBuf};
 use freeform_motion::outline_io::{OutlineFrame, WriteError};
 use freeform_motion::riccati::AffineMotion;
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+use freeform_motion::tracker::{Method, ObjectResult, Observation};
+use freeform_motion::{PipelineSettings, Tracker};
 
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
-use super::{FittedOutline, command_line};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
+use crate::fitted_outline::FittedOutline;
 use crate::history::History;
-use crate::identifier::pipeline_settings;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
 };
 use crate::overlay::CurveFitter;
-use crate::tracking::{ObjectResult, Observation, Tracking};
 use crate::truth::SimulatedMotion;
 
 /// Length of the sequence in seconds: the time that the paper's figures show.
@@ -71,8 +72,8 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     WholeFile::write(&folder.join(CURVE), &fit_figure(first.as_slice()))?;
 
     let mut listed = settings(&by_filter, "simulated: the flight bird of the paper");
-    listed.push(("For comparison", by_adaptive_law.method.name().to_owned()));
-    listed.extend(fit_settings(&pipeline_settings(&by_adaptive_law).fit));
+    listed.push(("For comparison", Method::from(by_adaptive_law.method).to_string()));
+    listed.extend(fit_settings(&PipelineSettings::default().fit));
     listed.extend([
         ("Frames per second", simulator.settings().fps.to_string()),
         ("Points on the outline", simulator.settings().points.to_string()),
@@ -118,7 +119,7 @@ fn print(
 /// One method at work on the sequence.
 struct Identification {
     options: TrackOptions,
-    tracking: Tracking,
+    tracker: Tracker,
     trace: TraceWriter<WholeFile>,
     trace_path: PathBuf,
     curves: CurveFitter,
@@ -133,28 +134,28 @@ struct Found {
 
 impl Identification {
     fn new(options: TrackOptions, trace_path: &Path) -> Result<Self, Failure> {
-        let tracking = Tracking::new(&options)?;
+        let tracker = Tracker::new(options.tracker_settings()).map_err(Failure::unusable)?;
         let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.model())
             .map_err(|error| file_failure(trace_path, &error))?;
         let curves = CurveFitter::new(&options)?;
-        Ok(Self { options, tracking, trace, trace_path: trace_path.to_owned(), curves, histories: Vec::new() })
+        Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories: Vec::new() })
     }
 
     fn take(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
-        let observation = self.tracking.push(frame)?;
+        let observation = self.tracker.push(frame);
         self.trace.write(&observation).map_err(|error| file_failure(&self.trace_path, &error))?;
         History::take(&mut self.histories, &observation, Some(frame), &mut self.curves);
         Ok(observation)
     }
 
-    /// Writes the trace and the figure, and tells what a user should know.
+    /// Writes the trace and the figure, and prints the warnings.
     fn finish(self, figure: &Path, truth: &AffineMotion) -> Result<Found, Failure> {
-        let Self { options, tracking, trace, trace_path, histories, .. } = self;
+        let Self { options, tracker, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
         WholeFile::write(figure, &parameter_figure(&histories, options.motion.model(), Some(truth)))?;
-        let results = tracking.results();
+        let results = tracker.results();
         for warning in results.iter().flat_map(|result| &result.warnings) {
-            warn(&format!("{} method: {warning}", options.method.name()));
+            warn(&format!("{} method: {warning}", tracker.settings().method()));
         }
         Ok(Found { results, histories })
     }

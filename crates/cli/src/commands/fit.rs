@@ -1,93 +1,16 @@
 use std::io;
 
-use freeform_motion::curve_fit::{Fit, FitCovariance, Fitter, Outline};
-use freeform_motion::decompose::{
-    AffineInvariants, CurveUncertainty, Decomposition, DecompositionError, RelatedPoints,
-};
-use freeform_motion::outline_io::OutlineFrame;
-use nalgebra::Point2;
+use freeform_motion::curve_fit::{Fitter, Outline};
+use freeform_motion::tracker::FrameRanges;
 
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
-use crate::frame_ranges::FrameRanges;
-use crate::input::{Input, Item};
-use crate::left_out::{Missing, MissingWarnings};
-use crate::level_set::stray_parts;
+use crate::fitted_outline::FittedOutline;
+use crate::input::Input;
+use crate::left_out::MissingWarnings;
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
-
-/// A curve fitted to one outline, and what it is made of.
-#[derive(Debug, Clone)]
-pub(crate) struct FittedOutline {
-    pub(crate) object: String,
-    pub(crate) frame: u64,
-    pub(crate) time: f64,
-    pub(crate) fit: Fit,
-    /// In image coordinates.
-    pub(crate) parts: Result<Parts, DecompositionError>,
-    /// Where it has been asked for.
-    pub(crate) deviations: Option<Deviations>,
-    /// Middles of the parts of the curve that lie beside the outline, where they have been looked for.
-    pub(crate) stray_parts: Vec<Point2<f64>>,
-}
-
-/// Standard deviations of what a decomposition gives, by the noise of the points.
-#[derive(Debug, Clone)]
-pub(crate) struct Deviations {
-    /// Of x and y of the related points, in image coordinates.
-    pub(crate) related_points: Vec<[f64; 2]>,
-    /// Of the invariants; empty where there are none.
-    pub(crate) invariants: Vec<f64>,
-}
-
-/// What a decomposition gives.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Parts {
-    pub(crate) decomposition: Decomposition,
-    /// With the values of the monic polynomial in image coordinates.
-    pub(crate) related_points: RelatedPoints,
-    pub(crate) invariants: Option<AffineInvariants>,
-}
-
-impl FittedOutline {
-    /// The curve of one frame of one object.
-    pub(crate) fn new(frame: &OutlineFrame, fit: Fit) -> Self {
-        // In working coordinates, where nothing is lost to rounding, and then moved.
-        let parts = Decomposition::of(fit.working()).and_then(|working| {
-            let image_from_working = fit.normalisation().image_from_working();
-            let decomposition = working.moved(&image_from_working)?;
-            let n = working.degree().value();
-            let factor = working.coefficient(n) / decomposition.coefficient(n);
-            let related_points = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
-            Ok(Parts { decomposition, related_points, invariants: AffineInvariants::of(&working) })
-        });
-        Self {
-            object: frame.object.clone(),
-            frame: frame.frame,
-            time: frame.time,
-            fit,
-            parts,
-            deviations: None,
-            stray_parts: Vec::new(),
-        }
-    }
-
-    /// The same with the standard deviations that a covariance of the coefficients gives its parts.
-    fn with_deviations(mut self, covariance: &FitCovariance) -> Self {
-        let carried = CurveUncertainty::carried(self.fit.working(), &covariance.coefficients());
-        let map = self.fit.normalisation().image_from_working();
-        let linear = map.matrix().fixed_view::<2, 2>(0, 0).into_owned();
-        self.deviations = carried.ok().map(|carried| Deviations {
-            related_points: carried
-                .points()
-                .iter()
-                .map(|c| (linear * c * linear.transpose()).diagonal().map(f64::sqrt).into())
-                .collect(),
-            invariants: carried.invariants().map_or_else(Vec::new, |c| c.diagonal().iter().map(|v| v.sqrt()).collect()),
-        });
-        self
-    }
-}
+use crate::seen::{Item, Missing};
 
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
@@ -109,11 +32,11 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         progress.advance();
         let frame = match item {
             Ok(Item::Outline(frame, _)) => frame,
-            Ok(Item::Rejected { reason, frame, .. }) => {
+            Ok(Item::NoOutline { reason, frame, .. }) => {
                 reasons.extend(Some(reason).filter(|_| is_wanted(frame)));
                 continue;
             }
-            Ok(Item::Missing(missing)) => {
+            Ok(Item::Gap(missing)) => {
                 if is_wanted(missing.frame) {
                     reasons.extend(warnings.take(&missing));
                     first_missing.get_or_insert(missing);
@@ -135,7 +58,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
                 reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
             }
             Ok((fit, covariance)) => {
-                let stray_parts = stray_parts(&fit, &frame.outline);
+                let stray_parts = fit.stray_places(&frame.outline);
                 let fitted = FittedOutline::new(&frame, fit).with_deviations(&covariance);
                 let fitted = FittedOutline { stray_parts, ..fitted };
                 collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;
@@ -160,7 +83,9 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     reasons.extend(warnings.finish());
     reasons.iter().for_each(|reason| warn(reason));
     if let Collected { with_stray_parts: with @ 1.., count, .. } = collected {
-        warn(&format!("{with} of {count} curve(s) have a part beside the outline, where the polynomial is zero too"));
+        warn(&format!(
+            "{with} of {count} curve(s) have a stray part away from the outline, where the polynomial is zero too"
+        ));
     }
     if args.format == FitFormat::Json {
         write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;

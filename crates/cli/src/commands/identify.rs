@@ -5,12 +5,13 @@ use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::AffineMotion;
+use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
+use freeform_motion::{Tracker, Warning};
 
-use super::command_line;
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
-use crate::identifier::{filter_settings, pipeline_settings};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::LeftOut;
@@ -21,22 +22,19 @@ use crate::output::{
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
-use crate::reader::Pace;
-use crate::tracking::{Event, ObjectResult, Observation, Tracking};
-use crate::trajectory::Trajectory;
-use crate::truth::parameters_in;
+use crate::reader::{Event, Pace, follow};
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
-    let mut tracking = Tracking::new(&args.options)?;
+    let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
     let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
     let model = args.options.motion.model();
-    if !args.quiet && truth.is_some_and(|truth| parameters_in(model, &truth).is_none()) {
+    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
-        warn(&format!("{origin}: no {model} motion, nothing is compared with it"));
+        warn(&format!("{origin} is not a {model} motion, so it is not shown"));
     }
     let mut files = Files::create(args)?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
@@ -44,13 +42,13 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let mut left_out = LeftOut::default();
-    let failure = tracking.read(&mut input, Pace::Ahead, args.quiet, |event| {
+    let failure = follow(&mut tracker, &mut input, Pace::Ahead, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
-            overlay.take(&event)?;
+            overlay.take(event)?;
         }
         match event {
-            Event::Observed { observation, frame, .. } => files.take(observation, frame),
-            Event::Missing(missing) => {
+            Event::Object(observation, seen) => files.take(observation, seen.as_ref().map(|(frame, _)| frame)),
+            Event::Gap(missing) => {
                 left_out.take(missing);
                 Ok(())
             }
@@ -60,7 +58,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if let Some(overlay) = overlay {
         overlay.finish()?;
     }
-    let results = tracking.results();
+    let results = tracker.results();
     let is_found = results.iter().any(|result| result.estimate.is_some());
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
     let b = match input.pictures() {
@@ -93,27 +91,28 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
     } else {
         // The failure has the other reasons.
-        for (object, warning) in tracking.out_of_order().filter(|_| !args.quiet) {
-            warn(&format!("object {object}: {warning}"));
+        for result in results.iter().filter(|_| !args.quiet) {
+            let order = result.warnings.iter().filter(|warning| matches!(warning, Warning::PointsOutOfOrder { .. }));
+            order.for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
         Ok(())
     };
-    files.finish(&tracking, truth.as_ref(), &results)?;
+    files.finish(&tracker, truth.as_ref(), &results)?;
     printed?;
     reported?;
     failure.map_or(Ok(()), Err)
 }
 
-/// Refuses options that do not go together.
+/// Refuses options that cannot be combined.
 fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
-        return Err(Failure::unusable("--trajectory: the adaptive method tells no poses, use --method filter"));
+        return Err(Failure::unusable("--trajectory: the adaptive method gives no poses; use --method filter"));
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
-        warn("--degree: the motion filter fits no polynomial, the degree is only that of the curve drawn");
+        warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
     }
     Ok(())
 }
@@ -156,13 +155,8 @@ impl<'a> Files<'a> {
         Ok(())
     }
 
-    /// Puts the files in their places; those that there is nothing to put into are not written.
-    fn finish(
-        self,
-        tracking: &Tracking,
-        truth: Option<&AffineMotion>,
-        results: &[ObjectResult],
-    ) -> Result<(), Failure> {
+    /// Moves the files to their destinations. A file without content is not written.
+    fn finish(self, tracker: &Tracker, truth: Option<&AffineMotion>, results: &[ObjectResult]) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
         let not_written = |options: &[(&str, bool)], reason: &str| {
@@ -181,12 +175,13 @@ impl<'a> Files<'a> {
             trace.into_inner().map_err(|error| file_failure(path, &error))?.finish()?;
         }
         if let Some((path, mut file, mut trajectory)) = trajectory {
-            if args.smooth && tracking.motion_changed() {
-                warn(
-                    "--smooth: the motion changed on the way, which the smoother takes for constant; the poses are as filtered",
-                );
-            } else if args.smooth {
-                trajectory.smooth(&filter_settings(&args.options).process_noise).map_err(Failure::unusable)?;
+            if args.smooth {
+                match trajectory.smooth(tracker) {
+                    Err(changed @ SmoothingError::MotionChanged) => {
+                        warn(&format!("--smooth: {changed}; the poses are not smoothed"));
+                    }
+                    smoothed => smoothed.map_err(Failure::unusable)?,
+                }
             }
             let written = write_trajectory(&mut file, &trajectory, model, args.options.scale);
             written.map_err(|error| file_failure(path, &error))?;
@@ -234,7 +229,8 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
             "{name}: no motion of object {object:?}: {used} frame(s), at least 2 are needed"
         ));
     }
-    match first.first_rejection.as_ref().or(first.warnings.first()) {
+    let rejection = first.first_rejection.as_ref().map(ToString::to_string);
+    match rejection.or_else(|| first.warnings.first().map(ToString::to_string)) {
         Some(reason) => Failure::no_result(format_args!(
             "{name}: no motion of object {object:?}: {frames_rejected} of {frames} frame(s) rejected, {reason}"
         )),
@@ -244,28 +240,25 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
     }
 }
 
-/// The settings as a report lists them.
+/// Names and values of the settings, for a report.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
     let scale = options.scale.map_or_else(|| "none: b in the image".to_owned(), |scale| scale.to_string());
-    let mut listed = vec![
-        ("Input", input.to_owned()),
-        ("Motion model", options.motion.model().to_string()),
-        ("Method", options.method.name().to_owned()),
-    ];
-    match options.method {
-        IdentifyMethod::Filter => {
-            let FilterSettings { smallest_agreement, patience, .. } = filter_settings(options);
+    let mut listed = vec![("Input", input.to_owned()), ("Motion model", options.motion.model().to_string())];
+    let settings = options.tracker_settings();
+    listed.push(("Method", settings.method().to_string()));
+    match settings.method {
+        MethodSettings::Filter(FilterSettings { smallest_agreement, patience, .. }) => {
             listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
             listed.push(("Searched for anew", format!("after {patience} rejected frames")));
-            listed.push(("Degree of the curve drawn", pipeline_settings(options).fit.degree.to_string()));
+            listed.push(("Degree of the curve drawn", options.degree_drawn().to_string()));
         }
-        IdentifyMethod::Adaptive => listed.extend(fit_settings(&pipeline_settings(options).fit)),
+        MethodSettings::Adaptive(settings) => listed.extend(fit_settings(&settings.fit)),
     }
     listed.push(("Camera scale f/Z0", scale));
     listed
 }
 
-/// How curves are fitted, as a report lists it.
+/// Names and values of the settings of the curve fit, for a report.
 pub(crate) fn fit_settings(fit: &FitSettings) -> [(&'static str, String); 3] {
     let method = match fit.method {
         Method::ThreeLevel => "3L".to_owned(),

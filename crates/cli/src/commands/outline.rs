@@ -2,12 +2,13 @@ use freeform_motion::outline_io::{OutlineWriter, WriteError, WriterOptions};
 
 use crate::args::OutlineArgs;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Item};
+use crate::input::Input;
 use crate::interrupt;
-use crate::left_out::{Missing, MissingWarnings};
+use crate::left_out::MissingWarnings;
 use crate::output::{Sink, refuse_overwriting};
 use crate::overlay::{Drawn, Overlay};
 use crate::progress::Progress;
+use crate::seen::{Item, Missing};
 
 /// Traces the outlines of pictures and writes them.
 pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
@@ -75,8 +76,8 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
                 }
             }
             // Pictures give no such item.
-            Item::Rejected { .. } => {}
-            Item::Missing(missing) => {
+            Item::NoOutline { .. } => {}
+            Item::Gap(missing) => {
                 // The reason of a single picture is told in the end.
                 if let Some(warning) = warnings.take(&missing).filter(|_| !args.quiet && !single) {
                     progress.pause(|| warn(&warning));

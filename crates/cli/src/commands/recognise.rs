@@ -3,10 +3,11 @@ use freeform_motion::recognise::{Evidence, RecogniseError, RecogniseSettings, Re
 
 use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Item};
+use crate::input::Input;
 use crate::left_out::MissingWarnings;
 use crate::output::{Sink, write_recognised_json, write_recognised_table};
 use crate::progress::Progress;
+use crate::seen::Item;
 
 /// What is known of one object.
 pub(crate) struct RecognisedObject {
@@ -30,11 +31,11 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
         progress.advance();
         match item {
             Ok(Item::Outline(frame, _)) => seen(&mut objects, &frame.object).take(&mut recogniser, &frame),
-            Ok(Item::Rejected { object, reason, .. }) => {
+            Ok(Item::NoOutline { object, reason, .. }) => {
                 seen(&mut objects, &object).frames_rejected += 1;
                 reasons.push(reason);
             }
-            Ok(Item::Missing(missing)) => reasons.extend(warnings.take(&missing)),
+            Ok(Item::Gap(missing)) => reasons.extend(warnings.take(&missing)),
             Err(error) => {
                 failure = Some(error);
                 break;

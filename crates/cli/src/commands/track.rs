@@ -1,19 +1,20 @@
 use std::io::Write as _;
 
+use freeform_motion::Tracker;
+
 use crate::args::TrackArgs;
 use crate::failure::{Failure, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::output::{Sink, refuse_overwriting, track_line};
 use crate::overlay::ObservedOverlay;
-use crate::reader::Pace;
-use crate::tracking::{Event, Tracking};
+use crate::reader::{Event, Pace, follow};
 
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = args.overlay.iter().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
-    let mut tracking = Tracking::new(&args.options)?;
+    let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let mut overlay =
         ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
@@ -22,16 +23,16 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
-    let failure = tracking.read(&mut input, Pace::FrameByFrame, args.quiet, |event| {
+    let failure = follow(&mut tracker, &mut input, Pace::FrameByFrame, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
-            overlay.take(&event)?;
+            overlay.take(event)?;
         }
-        let Event::Observed { observation, .. } = event else { return Ok(()) };
-        if let Some(warning) = observation.out_of_order.as_ref().filter(|_| !args.quiet) {
+        let Event::Object(observation, _) = event else { return Ok(()) };
+        if let Some(warning) = observation.warning.as_ref().filter(|_| !args.quiet) {
             warn(&format!("object {}: {warning}", observation.object));
         }
         accepted += u64::from(observation.is_accepted());
-        first_reason = first_reason.take().or_else(|| observation.rejected_because.clone());
+        first_reason = first_reason.take().or_else(|| observation.rejection.clone());
         let line = track_line(observation).map_err(Failure::unusable)?;
         writeln!(sink, "{line}").and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
     })?;

@@ -1,5 +1,7 @@
 use std::io::{self, Write};
 
+use freeform_experiments::paper::Table;
+
 /// Columns as wide as their widest entry: those listed in `text_columns` to the left, numbers to the right. Columns that no row
 /// has are left out.
 pub(crate) fn write_aligned(
@@ -9,17 +11,27 @@ pub(crate) fn write_aligned(
     text_columns: &[usize],
 ) -> io::Result<()> {
     let count = rows.first().map_or(heads.len(), Vec::len);
-    let cells = |column: usize| rows.iter().map(move |row| row[column].chars().count());
-    let widths: Vec<usize> = (0..count).map(|c| cells(c).chain([heads[c].len()]).max().unwrap_or(0)).collect();
-    let mut line = |cells: &mut dyn Iterator<Item = &str>| {
+    let heads = heads.iter().take(count).map(|&head| head.to_owned()).collect();
+    sink.write_all(aligned(&heads, rows, "   ", |column| text_columns.contains(&column)).as_bytes())
+}
+
+/// A table of the experiments.
+pub(crate) fn table_text(table: &Table) -> String {
+    aligned(&table.heads, &table.rows, "  ", |column| table.is_of_names(column))
+}
+
+/// Heads and rows line by line, the columns apart by a gap.
+fn aligned(heads: &Vec<String>, rows: &[Vec<String>], gap: &str, is_text: impl Fn(usize) -> bool) -> String {
+    let all = || std::iter::once(heads).chain(rows);
+    let width = |column: usize| all().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..heads.len()).map(width).collect();
+    let line = |row: &Vec<String>| {
         let mut text = String::new();
-        for (column, (cell, &width)) in cells.zip(&widths).enumerate() {
-            let gap = if column == 0 { "  " } else { "   " };
-            let is_text = text_columns.contains(&column);
-            text.push_str(&if is_text { format!("{gap}{cell:<width$}") } else { format!("{gap}{cell:>width$}") });
+        for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
+            text.push_str(if column == 0 { "  " } else { gap });
+            text.push_str(&if is_text(column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") });
         }
-        writeln!(sink, "{}", text.trim_end())
+        text.trim_end().to_owned() + "\n"
     };
-    line(&mut heads.iter().take(count).copied())?;
-    rows.iter().try_for_each(|row| line(&mut row.iter().map(String::as_str)))
+    all().map(line).collect()
 }

@@ -1,8 +1,8 @@
 use std::io::{self, Write};
 
+use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::riccati::MotionModel;
-
-use crate::tracking::{Estimate, ObjectResult, Observation};
+use freeform_motion::tracker::{ObjectPhase, ObjectResult, Observation};
 
 /// Writes the trace: one row per frame with the parameters as identified so far.
 pub(crate) struct TraceWriter<W: Write> {
@@ -26,7 +26,7 @@ impl<W: Write> TraceWriter<W> {
             observation.object.clone(),
             observation.frame.to_string(),
             optional(observation.time),
-            observation.phase.unwrap_or_default().to_owned(),
+            observation.phase.map_or("", ObjectPhase::name).to_owned(),
             observation.is_accepted().to_string(),
         ];
         match &observation.estimate {
@@ -43,7 +43,7 @@ impl<W: Write> TraceWriter<W> {
 }
 
 /// Each parameter and its standard deviation.
-fn values(estimate: &Estimate) -> impl Iterator<Item = String> + '_ {
+fn values(estimate: &MotionEstimate) -> impl Iterator<Item = String> + '_ {
     estimate.parameters().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])
 }
 

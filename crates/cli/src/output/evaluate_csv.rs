@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
-use super::evaluate_table::{ALL, POOLED, by_shape};
-use crate::commands::{Found, Report, Statistics};
+use freeform_experiments::monte_carlo::Statistics;
+
+use super::evaluate_table::{ALL, Evaluated, POOLED};
 
 const HEADER: [&str; 18] = [
     "setting",
@@ -26,19 +27,19 @@ const HEADER: [&str; 18] = [
 
 /// One row per setting, method, shape and parameter; `pooled` shapes and `all` parameters as well. Of an acquisition the ratio is
 /// empty and `lost` holds the runs in which the pose was not found.
-pub(crate) fn write_evaluation_csv(sink: &mut impl Write, report: &Report) -> io::Result<()> {
+pub(crate) fn write_evaluation_csv(sink: &mut impl Write, Evaluated { report, timing }: &Evaluated) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
-    let time_column = report.timing.then_some("microseconds_per_frame");
+    let time_column = timing.then_some("microseconds_per_frame");
     writer.write_record(HEADER.into_iter().chain(time_column)).map_err(io::Error::from)?;
     let mut record = |cells: Vec<String>, time: Option<f64>| {
-        let time = report.timing.then(|| text(time));
+        let time = timing.then(|| text(time));
         writer.write_record(cells.into_iter().chain(time)).map_err(io::Error::from)
     };
     for evaluation in &report.evaluations {
         let setting = &evaluation.setting;
         let truth = setting.truth();
         for result in &evaluation.methods {
-            for (shape, statistics) in by_shape(&report.shapes, &result.shapes, &result.pooled) {
+            for (shape, statistics) in result.by_shape(&report.shapes, POOLED) {
                 let start = || {
                     let mut cells = vec![setting.name.clone(), setting.frames.to_string()];
                     cells.extend([setting.fps, setting.noise].map(|value| value.to_string()));
@@ -64,12 +65,10 @@ pub(crate) fn write_evaluation_csv(sink: &mut impl Write, report: &Report) -> io
     }
     for acquisition in &report.acquisitions {
         let setting = &acquisition.setting;
-        for (method, shapes) in &acquisition.methods {
-            let named = report.shapes.iter().map(String::as_str).zip(shapes.iter().copied());
-            let pooled = (shapes.len() > 1).then(|| (POOLED, Found::pooled(shapes)));
-            for (shape, found) in named.chain(pooled) {
+        for result in &acquisition.methods {
+            for (shape, found) in result.by_shape(&report.shapes, POOLED) {
                 let mut cells = vec![setting.name.clone(), "2".to_owned(), String::new(), setting.noise.to_string()];
-                cells.extend([setting.points.to_string(), method.name().to_owned(), shape.to_owned()]);
+                cells.extend([setting.points.to_string(), result.method.name().to_owned(), shape.to_owned()]);
                 cells.resize(15, String::new());
                 cells.extend([found.runs.to_string(), (found.runs - found.found).to_string(), String::new()]);
                 record(cells, None)?;

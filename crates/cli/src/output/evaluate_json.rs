@@ -1,19 +1,20 @@
 use std::io::{self, Write};
 
+use freeform_experiments::monte_carlo::{Acquisition, Evaluation, Found, MethodResult, Report, Setting, Statistics};
 use freeform_motion::sim_camera::Sampling;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use crate::commands::{Acquisition, Evaluation, Found, Report, Setting, Statistics};
+use super::evaluate_table::Evaluated;
 
 /// The result as one JSON object.
-pub(crate) fn write_evaluation_json(sink: &mut impl Write, report: &Report) -> io::Result<()> {
+pub(crate) fn write_evaluation_json(sink: &mut impl Write, Evaluated { report, timing }: &Evaluated) -> io::Result<()> {
     let document = Document {
         schema: "freeform.evaluate/1",
         runs: report.runs,
         seed: report.seed,
         shapes: &report.shapes,
-        evaluations: report.evaluations.iter().map(|evaluation| evaluation_json(evaluation, report)).collect(),
+        evaluations: report.evaluations.iter().map(|evaluation| evaluation_json(evaluation, report, *timing)).collect(),
         acquisitions: report.acquisitions.iter().map(|acquisition| acquisition_json(acquisition, report)).collect(),
     };
     serde_json::to_writer_pretty(&mut *sink, &document)?;
@@ -30,13 +31,9 @@ struct Document<'a> {
     acquisitions: Vec<Value>,
 }
 
-fn evaluation_json(evaluation: &Evaluation, report: &Report) -> Value {
+fn evaluation_json(evaluation: &Evaluation, report: &Report, timing: bool) -> Value {
     let Evaluation { setting, methods } = evaluation;
-    let methods = methods.iter().map(|result| {
-        let statistics = |s: &Statistics| statistics_json(setting, s, report.timing);
-        let shapes: Map<_, _> = report.shapes.iter().cloned().zip(result.shapes.iter().map(statistics)).collect();
-        (result.method.name().to_owned(), json!({"pooled": statistics(&result.pooled), "shapes": shapes}))
-    });
+    let methods = by_method(methods, report, |statistics| statistics_json(setting, statistics, timing));
     json!({
         "setting": setting.name,
         "motion": setting.model.to_string(),
@@ -49,8 +46,17 @@ fn evaluation_json(evaluation: &Evaluation, report: &Report) -> Value {
         "occlusion": setting.occlusion,
         "outliers": setting.outliers,
         "wrong_frames": setting.wrong_frames,
-        "methods": methods.collect::<Map<_, _>>(),
+        "methods": methods,
     })
+}
+
+/// What each method found, of all shapes together and of each.
+fn by_method<T>(methods: &[MethodResult<T>], report: &Report, json: impl Fn(&T) -> Value) -> Map<String, Value> {
+    let of_method = |result: &MethodResult<T>| {
+        let shapes: Map<_, _> = report.shapes.iter().cloned().zip(result.shapes.iter().map(&json)).collect();
+        (result.method.name().to_owned(), json!({"pooled": json(&result.pooled), "shapes": shapes}))
+    };
+    methods.iter().map(of_method).collect()
 }
 
 fn statistics_json(setting: &Setting, statistics: &Statistics, timing: bool) -> Value {
@@ -85,11 +91,8 @@ fn by_name(setting: &Setting, values: impl Iterator<Item = Value>) -> Map<String
 
 fn acquisition_json(acquisition: &Acquisition, report: &Report) -> Value {
     let setting = &acquisition.setting;
-    let found = |found: Found| json!({"runs": found.runs, "found": found.found, "share": found.share()});
-    let methods = acquisition.methods.iter().map(|(method, list)| {
-        let shapes: Map<_, _> = report.shapes.iter().cloned().zip(list.iter().copied().map(found)).collect();
-        (method.name().to_owned(), json!({"pooled": found(Found::pooled(list)), "shapes": shapes}))
-    });
+    let found = |found: &Found| json!({"runs": found.runs, "found": found.found, "share": found.share()});
+    let methods = by_method(&acquisition.methods, report, found);
     json!({
         "setting": setting.name,
         "motion": setting.model.to_string(),
@@ -98,7 +101,7 @@ fn acquisition_json(acquisition: &Acquisition, report: &Report) -> Value {
         "noise": setting.noise,
         "occlusion": setting.occlusion,
         "outliers": setting.outliers,
-        "methods": methods.collect::<Map<_, _>>(),
+        "methods": methods,
     })
 }
 

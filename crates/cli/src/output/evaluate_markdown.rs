@@ -1,10 +1,12 @@
 use std::io::{self, Write};
 
-use super::evaluate_table::decimals;
-use crate::commands::{Acquisition, Found, MethodResult, Report};
+use freeform_experiments::monte_carlo::{Acquisition, MethodResult, Report, Statistics};
+
+use super::evaluate_table::{Evaluated, decimals};
 
 /// Tables for a document: all methods beside each other, then each in detail, then the acquisition.
-pub(crate) fn write_evaluation_markdown(sink: &mut impl Write, report: &Report) -> io::Result<()> {
+pub(crate) fn write_evaluation_markdown(sink: &mut impl Write, evaluated: &Evaluated) -> io::Result<()> {
+    let Evaluated { report, timing } = evaluated;
     let Report { shapes, runs, seed, .. } = report;
     writeln!(sink, "{} shapes ({}), {runs} runs each, seed {seed}.", shapes.len(), shapes.join(", "))?;
     if let Some(first) = report.evaluations.first() {
@@ -22,18 +24,18 @@ pub(crate) fn write_evaluation_markdown(sink: &mut impl Write, report: &Report) 
             writeln!(sink, "\n### {head}\n")?;
             let mut columns =
                 vec!["RMSE / bound", "worst shape", "coverage", "bias / std. error", "lost", "frames rejected"];
-            columns.extend(report.timing.then_some("us/frame"));
+            columns.extend(timing.then_some("us/frame"));
             write_head(sink, &columns.into_iter().map(str::to_owned).collect::<Vec<_>>())?;
             for evaluation in &report.evaluations {
                 let result = &evaluation.methods[index];
-                write_row(sink, &evaluation.setting.name, details(result, report).into_iter())?;
+                write_row(sink, &evaluation.setting.name, details(result, evaluated).into_iter())?;
             }
         }
     }
     if let Some(first) = report.acquisitions.first() {
-        let runs: usize = first.methods[0].1.iter().map(|found| found.runs).sum();
+        let runs = first.methods[0].pooled.runs;
         writeln!(sink, "\n### Share of second poses found\n\n(worst shape), of {runs} runs.\n")?;
-        let heads: Vec<_> = first.methods.iter().map(|(method, _)| method.name().to_owned()).collect();
+        let heads: Vec<_> = first.methods.iter().map(|result| result.method.name().to_owned()).collect();
         write_head(sink, &heads)?;
         for acquisition in &report.acquisitions {
             write_row(sink, &acquisition.setting.name, found(acquisition, report))?;
@@ -42,12 +44,12 @@ pub(crate) fn write_evaluation_markdown(sink: &mut impl Write, report: &Report) 
     Ok(())
 }
 
-fn ratio_and_lost(result: &MethodResult) -> String {
+fn ratio_and_lost(result: &MethodResult<Statistics>) -> String {
     let ratio = decimals(result.pooled.ratio, 2);
     if result.pooled.lost > 0 { format!("{ratio} ({})", result.pooled.lost) } else { ratio }
 }
 
-fn details(result: &MethodResult, report: &Report) -> Vec<String> {
+fn details(result: &MethodResult<Statistics>, Evaluated { report, timing }: &Evaluated) -> Vec<String> {
     let pooled = &result.pooled;
     let shapes = result.shapes.iter().zip(&report.shapes);
     let worst = shapes
@@ -62,15 +64,15 @@ fn details(result: &MethodResult, report: &Report) -> Vec<String> {
         pooled.lost.to_string(),
         decimals(pooled.frames_rejected, 3),
     ];
-    cells.extend(report.timing.then(|| decimals(pooled.microseconds_per_frame, 0)));
+    cells.extend(timing.then(|| decimals(pooled.microseconds_per_frame, 0)));
     cells
 }
 
 fn found<'a>(acquisition: &'a Acquisition, report: &'a Report) -> impl Iterator<Item = String> + 'a {
-    acquisition.methods.iter().map(|(_, shapes)| {
-        let worst = shapes.iter().zip(&report.shapes).min_by(|a, b| a.0.share().total_cmp(&b.0.share()));
+    acquisition.methods.iter().map(|result| {
+        let worst = result.shapes.iter().zip(&report.shapes).min_by(|a, b| a.0.share().total_cmp(&b.0.share()));
         let worst = worst.map_or_else(String::new, |(found, name)| format!(" ({:.3} {name})", found.share()));
-        format!("{:.4}{worst}", Found::pooled(shapes).share())
+        format!("{:.4}{worst}", result.pooled.share())
     })
 }
 

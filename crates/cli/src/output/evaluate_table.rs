@@ -1,8 +1,9 @@
 use std::io::{self, Write};
 
+use freeform_experiments::monte_carlo::{Acquisition, Evaluation, Report, Setting};
+
 use super::aligned::write_aligned;
 use super::number::{short, significant};
-use crate::commands::{Acquisition, Evaluation, Found, Report, Setting, Statistics};
 
 const COLUMNS: [&str; 12] = [
     "method",
@@ -24,15 +25,24 @@ pub(super) const POOLED: &str = "pooled";
 /// Under which name the parameters appear together.
 pub(super) const ALL: &str = "all";
 
+/// The result of `evaluate`, and how it is printed.
+#[derive(Debug)]
+pub(crate) struct Evaluated {
+    pub(crate) report: Report,
+    /// Whether times are printed.
+    pub(crate) timing: bool,
+}
+
 /// One table per setting.
-pub(crate) fn write_evaluation_table(sink: &mut impl Write, report: &Report) -> io::Result<()> {
+pub(crate) fn write_evaluation_table(sink: &mut impl Write, evaluated: &Evaluated) -> io::Result<()> {
+    let Evaluated { report, timing } = evaluated;
     let mut first = true;
     for evaluation in &report.evaluations {
         if !std::mem::take(&mut first) {
             writeln!(sink)?;
         }
         writeln!(sink, "{}; {} runs", describe(&evaluation.setting), report.runs)?;
-        write_aligned(sink, &COLUMNS[..if report.timing { 12 } else { 11 }], &rows(evaluation, report), &[0, 1, 2])?;
+        write_aligned(sink, &COLUMNS[..column_count(*timing)], &rows(evaluation, evaluated), &[0, 1, 2])?;
     }
     for acquisition in &report.acquisitions {
         if !std::mem::take(&mut first) {
@@ -66,35 +76,30 @@ fn corruption(occlusion: f64, outliers: f64, wrong_frames: f64) -> String {
     present.map(|(share, what)| format!(", {} % {what}", short(100.0 * share))).collect()
 }
 
-/// Names and statistics of every shape, then of all together where there are several.
-pub(super) fn by_shape<'a>(
-    names: &'a [String],
-    shapes: &'a [Statistics],
-    pooled: &'a Statistics,
-) -> impl Iterator<Item = (&'a str, &'a Statistics)> {
-    let all = (names.len() > 1).then_some((POOLED, pooled));
-    names.iter().map(String::as_str).zip(shapes).chain(all)
+fn column_count(timing: bool) -> usize {
+    if timing { COLUMNS.len() } else { COLUMNS.len() - 1 }
 }
 
-fn rows(evaluation: &Evaluation, report: &Report) -> Vec<Vec<String>> {
+fn rows(evaluation: &Evaluation, Evaluated { report, timing }: &Evaluated) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     for result in &evaluation.methods {
-        for (shape, statistics) in by_shape(&report.shapes, &result.shapes, &result.pooled) {
+        for (shape, statistics) in result.by_shape(&report.shapes, POOLED) {
+            let start = |parameter: &str| [result.method.name(), shape, parameter].map(str::to_owned).to_vec();
             for (name, p) in evaluation.setting.model.parameter_names().iter().zip(&statistics.parameters) {
-                let mut row = vec![result.method.name().to_owned(), shape.to_owned(), (*name).to_owned()];
+                let mut row = start(name);
                 row.extend([p.rmse, p.bound].map(|value| number(value, 3)));
                 row.push(decimals(p.ratio, 2));
                 row.extend([p.bias, p.bias_standard_error].map(|value| number(value, 2)));
                 row.push(decimals(p.coverage, 3));
-                row.resize(if report.timing { 12 } else { 11 }, String::new());
+                row.resize(column_count(*timing), String::new());
                 rows.push(row);
             }
-            let mut row = vec![result.method.name().to_owned(), shape.to_owned(), ALL.to_owned()];
+            let mut row = start(ALL);
             row.extend([String::new(), String::new(), decimals(statistics.ratio, 2), String::new(), String::new()]);
             row.push(decimals(statistics.coverage, 3));
             row.push(format!("{} of {}", statistics.lost, statistics.runs));
             row.push(decimals(statistics.frames_rejected, 3));
-            row.extend(report.timing.then(|| decimals(statistics.microseconds_per_frame, 0)));
+            row.extend(timing.then(|| decimals(statistics.microseconds_per_frame, 0)));
             rows.push(row);
         }
     }
@@ -103,18 +108,12 @@ fn rows(evaluation: &Evaluation, report: &Report) -> Vec<Vec<String>> {
 
 fn acquisition_rows(acquisition: &Acquisition, report: &Report) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
-    for (method, shapes) in &acquisition.methods {
-        let pooled = (shapes.len() > 1).then(|| (POOLED, Found::pooled(shapes)));
-        let named = report.shapes.iter().map(String::as_str).zip(shapes.iter().copied());
-        for (shape, found) in named.chain(pooled) {
-            let share = decimals(Some(found.share()), 3);
-            rows.push(vec![
-                method.name().to_owned(),
-                shape.to_owned(),
-                found.found.to_string(),
-                found.runs.to_string(),
-                share,
-            ]);
+    for result in &acquisition.methods {
+        for (shape, found) in result.by_shape(&report.shapes, POOLED) {
+            let mut row = [result.method.name(), shape].map(str::to_owned).to_vec();
+            row.extend([found.found, found.runs].map(|count| count.to_string()));
+            row.push(decimals(Some(found.share()), 3));
+            rows.push(row);
         }
     }
     rows

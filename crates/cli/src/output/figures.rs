@@ -1,15 +1,13 @@
-use freeform_motion::curve_fit::Outline;
-use freeform_motion::estimate::ParameterEstimate;
+use freeform_experiments::figure::{Curve, Look, Panel};
+use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
+use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::riccati::{AffineMotion, MotionModel};
 use nalgebra::Point2;
 
 use super::number::short;
-use crate::commands::FittedOutline;
+use crate::fitted_outline::FittedOutline;
 use crate::history::History;
-use crate::level_set::{Area, curve_of, stray};
-use crate::plot::{Curve, Look, Panel, stacked_svg};
-use crate::tracking::Estimate;
-use crate::truth::parameters_in;
+use crate::plot::stacked_svg;
 
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
@@ -30,14 +28,14 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
     let xy = |p: &Point2<f64>| [p.x, p.y];
     let (mut points, mut curves, mut beside, mut related) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut outside = 0;
-    let whole = Area::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
+    let whole = Rectangle::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
     let view = whole.map(|area| area.widened(SURROUNDINGS).square());
     for (fitted, outline) in drawn {
         points.push(outline.points().map(xy).collect());
         let Some(area) = view else { continue };
         // Beyond what is seen, so that a curve that leaves it goes on to the frame.
-        let traced = curve_of(&fitted.fit, &area.widened(SURROUNDINGS));
-        for (run, stray) in traced.iter().zip(stray(&traced, outline)) {
+        let traced = fitted.fit.curve_within(&area.widened(SURROUNDINGS));
+        for (run, stray) in traced.iter().zip(stray_parts(&traced, outline)) {
             let runs = if stray { &mut beside } else { &mut curves };
             runs.push(run.iter().map(xy).collect());
         }
@@ -85,7 +83,7 @@ pub(crate) fn parameter_panels(
     model: MotionModel,
     truth: Option<&AffineMotion>,
 ) -> Vec<Panel> {
-    let truth = truth.and_then(|motion| parameters_in(model, motion));
+    let truth = truth.and_then(|motion| model.parameters_of_motion(motion));
     let names = model.parameter_names().iter().zip(model.units()).enumerate();
     names
         .map(|(index, (name, unit))| {
@@ -150,7 +148,7 @@ impl History {
 
     /// What was identified of a parameter, with a band where its standard deviation is known; both with gaps where it was not.
     fn curves(&self, parameter: usize) -> Vec<Curve> {
-        let found = |estimate: &Estimate| estimate.parameters().nth(parameter).and_then(|p| p.value.map(|_| p));
+        let found = |estimate: &MotionEstimate| estimate.parameters().nth(parameter).and_then(|p| p.value.map(|_| p));
         let estimates = self.estimates.iter().map(|(time, estimate)| (*time, estimate.as_ref().and_then(found)));
         let estimates: Vec<_> = estimates.collect();
         let (mut runs, mut band) = (Vec::new(), Vec::new());
@@ -176,8 +174,6 @@ impl History {
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::estimate::MotionEstimate;
-
     use super::*;
 
     #[test]
@@ -187,7 +183,7 @@ mod tests {
             let found = if frame == 2 { estimate.with_unobservable(0) } else { estimate };
             // Nothing at all in the first frame of all, and while the object is lost.
             let is_lost = frame == 0 || frame == 5;
-            (f64::from(frame), Estimate::of(found, None).filter(|_| !is_lost))
+            (f64::from(frame), (!is_lost).then_some(found))
         });
         let mut history = History::of("0".to_owned());
         history.estimates = estimates.collect();

@@ -4,7 +4,7 @@ use freeform_motion::curve_fit::exponents;
 use freeform_motion::decompose::{AffineInvariants, DecompositionError};
 use serde_json::{Map, Value, json};
 
-use crate::commands::{Deviations, FittedOutline, Parts};
+use crate::fitted_outline::{Deviations, FittedOutline, Parts};
 
 /// The fits as one JSON object.
 pub(crate) fn write_fits_json(sink: &mut impl Write, fits: &[FittedOutline]) -> io::Result<()> {

@@ -4,7 +4,7 @@ use freeform_motion::curve_fit::exponents;
 use nalgebra::{Complex, Point2};
 
 use super::number::{short, significant};
-use crate::commands::{Deviations, FittedOutline, Parts};
+use crate::fitted_outline::{Deviations, FittedOutline, Parts};
 
 /// Digits of coefficients and lines.
 const DIGITS: usize = 6;

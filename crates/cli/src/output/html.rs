@@ -1,16 +1,18 @@
 use std::fmt::Write as _;
 
 use freeform_motion::riccati::AffineMotion;
+use freeform_motion::tracker::{FrameRanges, ObjectResult};
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
 use super::velocity::meaning_of_v;
-use crate::frame_ranges::FrameRanges;
 use crate::history::History;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::plot::{escape, panel_svg};
-use crate::tracking::{ObjectResult, REASONS_KEPT};
+
+/// Number of left-out pictures that are listed with their reasons.
+const PICTURES_TOLD: usize = 10;
 
 const STYLE: &str = include_str!("report.css");
 
@@ -72,7 +74,7 @@ fn write_left_out(body: &mut String, left_out: &LeftOut) {
         return;
     }
     let _ = writeln!(body, "<h2>Pictures without an outline: {count}</h2>\n<ul>");
-    let (told, others) = pictures.split_at(pictures.len().min(REASONS_KEPT));
+    let (told, others) = pictures.split_at(pictures.len().min(PICTURES_TOLD));
     told.iter().for_each(|(_, reason)| {
         let _ = writeln!(body, "<li>{}</li>", escape(reason));
     });
@@ -124,7 +126,7 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
     if !result.warnings.is_empty() {
         body.push_str("<p class=\"alert\">Warnings</p>\n<ul>\n");
         result.warnings.iter().for_each(|warning| {
-            let _ = writeln!(body, "<li>{}</li>", escape(warning));
+            let _ = writeln!(body, "<li>{}</li>", escape(&warning.to_string()));
         });
         body.push_str("</ul>\n");
     }

@@ -1,13 +1,14 @@
 use std::io::{self, Write};
 
+use freeform_motion::estimate::MotionEstimate;
+use freeform_motion::outline_filter::Ambiguity;
 use freeform_motion::riccati::CameraScale;
+use freeform_motion::tracker::{ObjectPhase, ObjectResult, Observation};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
 use super::velocity::VelocityJson;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
-use crate::tracking::{Estimate, ObjectResult, Observation};
-use crate::turns::Turns;
 
 /// The result as one JSON object.
 pub(crate) fn write_identify_json(
@@ -33,12 +34,12 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         object: &observation.object,
         frame: observation.frame,
         time: observation.time,
-        phase: observation.phase,
+        phase: observation.phase.map(ObjectPhase::name),
         accepted: observation.is_accepted(),
         parameters: estimate.map(Parameters),
         generator: estimate.and_then(generator_rows),
-        reason: observation.rejected_because.as_deref(),
-        ambiguity: observation.ambiguity.as_ref(),
+        reason: observation.rejection.as_ref().map(ToString::to_string),
+        ambiguity: observation.ambiguity.as_ref().map(AmbiguityJson::from),
     })
 }
 
@@ -81,8 +82,23 @@ struct TrackLine<'a> {
     accepted: bool,
     parameters: Option<Parameters<'a>>,
     generator: Option<[[f64; 3]; 3]>,
-    reason: Option<&'a str>,
-    ambiguity: Option<&'a Turns>,
+    reason: Option<String>,
+    ambiguity: Option<AmbiguityJson<'a>>,
+}
+
+/// Turns from one frame to the next that the outlines do not decide between, in degrees, positive where omega is.
+#[derive(serde::Serialize)]
+struct AmbiguityJson<'a> {
+    turn: f64,
+    rival_turns: Vec<f64>,
+    parameters: &'a [&'static str],
+}
+
+impl<'a> From<&'a Ambiguity> for AmbiguityJson<'a> {
+    fn from(Ambiguity { turn, rival_turns, parameters }: &'a Ambiguity) -> Self {
+        let as_omega = |anticlockwise: f64| -anticlockwise.to_degrees();
+        Self { turn: as_omega(*turn), rival_turns: rival_turns.iter().copied().map(as_omega).collect(), parameters }
+    }
 }
 
 struct ObjectJson<'a>(&'a ObjectResult);
@@ -102,8 +118,9 @@ impl Serialize for ObjectJson<'_> {
         }
         object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
         object.serialize_field("velocity", &result.velocity.as_ref().map(VelocityJson))?;
-        object.serialize_field("ambiguity", &result.ambiguity)?;
-        object.serialize_field("warnings", &result.warnings)?;
+        object.serialize_field("ambiguity", &result.ambiguity.as_ref().map(AmbiguityJson::from))?;
+        let warnings: Vec<String> = result.warnings.iter().map(ToString::to_string).collect();
+        object.serialize_field("warnings", &warnings)?;
         object.end()
     }
 }
@@ -116,7 +133,7 @@ struct ParameterJson {
     observable: bool,
 }
 
-struct Parameters<'a>(&'a Estimate);
+struct Parameters<'a>(&'a MotionEstimate);
 
 impl Serialize for Parameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -130,7 +147,7 @@ impl Serialize for Parameters<'_> {
     }
 }
 
-/// The parameters of an object that nothing was found of.
+/// The parameters of an object without a result.
 struct NoParameters<'a>(&'a ObjectResult);
 
 impl Serialize for NoParameters<'_> {
@@ -144,34 +161,34 @@ impl Serialize for NoParameters<'_> {
     }
 }
 
-fn generator_rows(estimate: &Estimate) -> Option<[[f64; 3]; 3]> {
-    let a = estimate.generator()?;
+fn generator_rows(estimate: &MotionEstimate) -> Option<[[f64; 3]; 3]> {
+    let a = estimate.known_generator()?;
     Some([0, 1, 2].map(|row| [a[(row, 0)], a[(row, 1)], a[(row, 2)]]))
 }
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::estimate::MotionEstimate;
-    use freeform_motion::riccati::{CameraScale, MotionModel};
+    use freeform_motion::Warning;
+    use freeform_motion::riccati::MotionModel;
+    use freeform_motion::tracker::Method;
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::args::IdentifyMethod;
 
     #[test]
     fn what_is_not_observable_is_null_and_so_is_the_generator() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.3, 0.4], Some(&[0.1, 0.2, 0.3]));
         let result = ObjectResult {
             object: "left".to_owned(),
-            method: IdentifyMethod::Adaptive,
+            method: Method::Adaptive,
             motion: MotionModel::Rigid,
             frames: 12,
             frames_rejected: 1,
             first_rejection: None,
-            estimate: Estimate::of(estimate.with_unobservable(0), Some(CameraScale::new(0.1).expect("a scale"))),
+            estimate: Some(estimate.with_unobservable(0).in_space(CameraScale::new(0.1).expect("a scale"))),
             velocity: None,
             ambiguity: None,
-            warnings: vec!["a warning".to_owned()],
+            warnings: vec![Warning::AffineBias, Warning::Lost],
         };
         let mut text = Vec::new();
         let b = MeaningOfB::in_coordinates(None);
@@ -184,6 +201,9 @@ mod tests {
             object["parameters"]["b2"],
             json!({"value": 0.4 / 0.1, "std": 0.3 / 0.1, "unit": "1/s", "observable": true})
         );
-        assert_eq!((&object["generator"], &object["warnings"]), (&Value::Null, &json!(["a warning"])));
+        assert_eq!(
+            (&object["generator"], &object["warnings"]),
+            (&Value::Null, &json!([Warning::AffineBias.to_string(), "the object was lost at the end"]))
+        );
     }
 }

@@ -1,13 +1,13 @@
 use std::io::{self, Write};
 
-use freeform_motion::riccati::AffineMotion;
+use freeform_motion::riccati::{AffineMotion, ParameterKind};
+use freeform_motion::significant;
+use freeform_motion::tracker::ObjectResult;
 
 use super::aligned::write_aligned;
-use super::number::{significant, with_deviation};
+use super::number::with_deviation;
 use super::velocity::{VELOCITY_NAMES, meaning_of_v};
 use crate::meaning_of_b::MeaningOfB;
-use crate::tracking::ObjectResult;
-use crate::truth::parameters_in;
 
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
@@ -15,21 +15,21 @@ pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "tru
 /// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
 pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>, b: &MeaningOfB) -> Vec<Vec<String>> {
     let model = result.motion;
-    let truth = truth.and_then(|motion| Some((motion, parameters_in(model, motion)?)));
+    let truth = truth.and_then(|motion| Some((motion, model.parameters_of_motion(motion)?)));
     let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
     let is_ambiguous = |name| result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name));
     let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
-    let names = model.parameter_names().iter().zip(model.units());
+    let names = model.parameter_names().iter().zip(model.units()).zip(model.parameter_kinds());
     let mut rows: Vec<Vec<String>> = names
         .enumerate()
-        .map(|(index, (name, unit))| {
+        .map(|(index, ((name, unit), kind))| {
             let parameter = found.get(index);
             let unknown = match parameter {
                 Some(_) if is_ambiguous(name) => "ambiguous",
                 Some(_) => "unobservable",
                 None => "-",
             };
-            let unit = if name.starts_with('b') { unit_of_b(unit) } else { unit };
+            let unit = if *kind == ParameterKind::Velocity { unit_of_b(unit) } else { unit };
             let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
             row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
         })
@@ -40,15 +40,24 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>
             let ([x, y], AffineMotion { a1, a2, a3, a4, b1, b2 }) = (velocity.point.into(), *motion);
             [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
         });
+        // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
+        // middle is only near that centre, and the true velocity differs between the two by the turn times their distance.
+        let kinds = model.parameter_kinds().iter();
+        let turn_is_known = kinds.zip(&found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
         rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
             let known = Some((velocity.velocity[i], Some(deviations[i])));
-            row([name, "-", unit_of_b("1/s")], known, truth.map(|truth| truth[i]))
+            let mut row =
+                row([name, "-", unit_of_b("1/s")], known, truth.filter(|_| turn_is_known).map(|truth| truth[i]));
+            if truth.is_some() && !turn_is_known {
+                row.extend(["-", "-"].map(str::to_owned));
+            }
+            row
         }));
     }
     rows
 }
 
-/// One row: a value with its standard deviation, or why there is none, and beside it the truth where that is known.
+/// One row: a value with its standard deviation, or why there is none, and the truth if it is known.
 fn row([name, unknown, unit]: [&str; 3], known: Option<(f64, Option<f64>)>, truth: Option<f64>) -> Vec<String> {
     let none = || "-".to_owned();
     let [value, deviation] = match known {
@@ -101,41 +110,66 @@ pub(crate) fn write_identify_table(
 #[cfg(test)]
 mod tests {
     use freeform_motion::estimate::{MotionEstimate, PointVelocity};
+    use freeform_motion::outline_filter::Ambiguity;
     use freeform_motion::riccati::{MotionModel, RigidMotion};
+    use freeform_motion::tracker::Method;
     use nalgebra::{Matrix2, Point2, Vector2};
 
     use super::*;
-    use crate::args::IdentifyMethod;
-    use crate::tracking::Estimate;
-    use crate::turns::Turns;
+
+    #[test]
+    fn no_truth_stands_beside_the_velocity_of_an_object_whose_turn_is_not_observable() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[0.0, 0.3, 0.4], Some(&[0.1, 0.01, 0.01]));
+        let velocity = PointVelocity {
+            point: Point2::new(0.001, 0.0),
+            velocity: Vector2::new(0.3, 0.4),
+            covariance: Matrix2::identity() * 1e-6,
+        };
+        let result = |estimate| ObjectResult {
+            object: "0".to_owned(),
+            method: Method::Filter,
+            motion: MotionModel::Rigid,
+            frames: 30,
+            frames_rejected: 0,
+            first_rejection: None,
+            estimate: Some(estimate),
+            velocity: Some(velocity),
+            ambiguity: None,
+            warnings: Vec::new(),
+        };
+        let truth = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 }.into();
+        let rows = |estimate| parameter_rows(&result(estimate), Some(&truth), &MeaningOfB::in_coordinates(None));
+        let truth_of_v1 = |rows: &[Vec<String>]| rows[3][4..].to_vec();
+        assert_eq!(truth_of_v1(&rows(estimate.with_unobservable(0))), ["-", "-"]);
+        assert_eq!(truth_of_v1(&rows(estimate))[0], "0.300000");
+    }
 
     #[test]
     fn the_table_has_a_line_per_parameter_and_says_what_is_not_observable() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.31, 0.4], Some(&[0.001, 0.0123, 0.01]));
-        let result = |estimate: MotionEstimate| ObjectResult {
+        let result = |estimate: Option<MotionEstimate>| ObjectResult {
             object: "0".to_owned(),
-            method: IdentifyMethod::Adaptive,
+            method: Method::Adaptive,
             motion: MotionModel::Rigid,
             frames: 120,
             frames_rejected: 3,
             first_rejection: None,
-            estimate: Estimate::of(estimate, None),
+            estimate,
             velocity: None,
             ambiguity: None,
             warnings: Vec::new(),
         };
-        let diverged = MotionEstimate::new(MotionModel::Rigid, &[f64::NAN, 0.0, 0.0], None);
         let velocity = PointVelocity {
             point: Point2::new(1.5, -2.0),
             velocity: Vector2::new(0.3, -0.456_78),
             covariance: Matrix2::new(1e-6, 0.0, 0.0, 4e-6),
         };
-        let turns = Turns { turn: 50.0, rival_turns: vec![-40.0], parameters: vec!["omega"] };
+        let ambiguity = Ambiguity { turn: -0.9, rival_turns: vec![0.7], parameters: vec!["omega"] };
         let results = [
-            ObjectResult { velocity: Some(velocity), ..result(estimate) },
-            result(estimate.with_unobservable(0)),
-            ObjectResult { ambiguity: Some(turns), ..result(estimate.with_unobservable(0)) },
-            result(diverged),
+            ObjectResult { velocity: Some(velocity), ..result(Some(estimate)) },
+            result(Some(estimate.with_unobservable(0))),
+            ObjectResult { ambiguity: Some(ambiguity), ..result(Some(estimate.with_unobservable(0))) },
+            result(None),
         ];
         let truth = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 }.into();
         let mut text = Vec::new();

@@ -1,16 +1,4 @@
-/// A number with so many significant digits, in plain notation where that is short.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let rounded = format!("{value:.*e}", digits.saturating_sub(1));
-    let exponent: i32 = rounded.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
-    if !(-5..=6).contains(&exponent) {
-        return rounded;
-    }
-    let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
-    format!("{value:.decimals$}")
-}
+pub(crate) use freeform_motion::significant;
 
 /// Most digits of a value with a standard deviation.
 const MOST_DIGITS: i32 = 8;
@@ -32,7 +20,7 @@ pub(crate) fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{short, significant, with_deviation};
+    use super::{short, with_deviation};
 
     #[test]
     fn a_value_has_the_places_of_its_deviation() {
@@ -52,21 +40,5 @@ mod tests {
     #[test]
     fn a_short_number_has_no_zeros_at_its_end() {
         assert_eq!([0.2 / 3.0, 5.0, 0.0, 120.25].map(short), ["0.0666667", "5", "0", "120.25"]);
-    }
-
-    #[test]
-    fn numbers_keep_their_significant_digits() {
-        for (value, digits, text) in [
-            (1.23456, 4, "1.235"),
-            (-0.3, 3, "-0.300"),
-            (0.000_012_34, 2, "0.000012"),
-            (1.234e-9, 3, "1.23e-9"),
-            (123_456.0, 3, "123456"),
-            (9.9996, 3, "10.0"),
-            (0.0, 4, "0"),
-            (4.2e100, 2, "4.2e100"),
-        ] {
-            assert_eq!(significant(value, digits), text);
-        }
     }
 }

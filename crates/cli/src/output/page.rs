@@ -1,8 +1,12 @@
 use std::fmt::Write as _;
+use std::path::Path;
 
+use freeform_experiments::paper::{Drawing, Section, Table};
+
+use super::file::WholeFile;
 use super::html::{document, write_settings};
-use crate::commands::{Drawing, Section, Table};
-use crate::plot::escape;
+use crate::failure::Failure;
+use crate::plot::{Svg, escape};
 
 /// Least size of a figure on a narrow page, as a share of that of its file; beyond that it is scrolled.
 const SMALLEST: f64 = 0.75;
@@ -35,9 +39,9 @@ pub(crate) fn write_page(
 fn write_drawing(body: &mut String, drawing: &Drawing) {
     let Drawing { name, caption, figure, .. } = drawing;
     // No larger than as a file, and where there is no room for it not so small that its text cannot be read.
-    let [width, _] = figure.size();
+    let [width, _] = Svg(figure).size();
     let least = (SMALLEST * width).round();
-    let (caption, element) = (escape(caption), figure.element());
+    let (caption, element) = (escape(caption), Svg(figure).element());
     let _ = writeln!(
         body,
         "<figure style=\"max-width:{width}px\">\n<div class=\"scroll\"><div style=\"min-width:{least}px\">{element}</div></div>\n\
@@ -58,4 +62,24 @@ fn write_table(body: &mut String, table: &Table) {
         let _ = writeln!(body, "<tr>{}</tr>", cells.collect::<String>());
     }
     body.push_str("</table></div>\n");
+}
+
+/// Writes the figures of a section and the numbers behind its figures and tables into a folder.
+pub(crate) fn write_section_files(section: &Section, folder: &Path) -> Result<(), Failure> {
+    for Drawing { name, figure, data, .. } in &section.drawings {
+        WholeFile::write(&folder.join(format!("{name}.svg")), &Svg(figure).file())?;
+        WholeFile::write(&folder.join(format!("{name}.csv")), &table_csv(data)?)?;
+    }
+    for table in &section.tables {
+        WholeFile::write(&folder.join(format!("{}.csv", table.name)), &table_csv(table)?)?;
+    }
+    Ok(())
+}
+
+fn table_csv(table: &Table) -> Result<String, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut rows = std::iter::once(&table.heads).chain(&table.rows);
+    rows.try_for_each(|row| writer.write_record(row)).map_err(Failure::unusable)?;
+    let bytes = writer.into_inner().map_err(Failure::unusable)?;
+    String::from_utf8(bytes).map_err(Failure::unusable)
 }

@@ -1,7 +1,6 @@
 use freeform_motion::estimate::PointVelocity;
+use freeform_motion::significant;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
-
-use super::number::significant;
 
 /// Names of its components in a table.
 pub(super) const VELOCITY_NAMES: [&str; 2] = ["v1", "v2"];

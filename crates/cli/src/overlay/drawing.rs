@@ -1,18 +1,16 @@
 use std::path::{Path, PathBuf};
 
-use freeform_motion::curve_fit::{Fit, Outline};
-use freeform_motion::outline_io::PixelGrid;
+use freeform_motion::curve_fit::{Fit, Outline, PixelGrid, Rectangle};
 use image::Rgb;
 use nalgebra::{Matrix3, Point2};
 
 use super::canvas::Canvas;
 use super::lettering::write_words;
 use super::target::Target;
-use crate::commands::Parts;
 use crate::failure::Failure;
-use crate::input::SeenIn;
-use crate::level_set::{Area, curve_of};
+use crate::fitted_outline::Parts;
 use crate::output::refuse_drawing_beside;
+use crate::seen::SeenIn;
 
 const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
 const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);
@@ -90,9 +88,9 @@ impl Overlay {
 
 fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
     let pixel = |point: &Point2<f64>| grid.to_pixels(point);
-    let Some(area) = Area::around(drawn.outline.points()) else { return };
+    let area = drawn.outline.bounding_box();
     if let Some((fit, _)) = drawn.fit {
-        for run in curve_of(fit, &area.widened(0.15)) {
+        for run in fit.curve_within(&area.widened(0.15)) {
             canvas.polyline(run.iter().map(pixel), CURVE);
         }
     }
@@ -119,12 +117,12 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
 }
 
 /// The velocity at points around the outline, the longest arrow a fixed share of the object.
-fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &Area, generator: &Matrix3<f64>) {
+fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &Rectangle, generator: &Matrix3<f64>) {
     let velocity = |p: &Point2<f64>| (generator * p.to_homogeneous()).xy();
     let count = outline.points().count();
     let chosen: Vec<&Point2<f64>> = outline.points().step_by((count / ARROWS).max(1)).collect();
     let fastest = chosen.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);
-    let seconds = LONGEST_ARROW * (area.high - area.low).max() / fastest;
+    let seconds = LONGEST_ARROW * area.size().max() / fastest;
     if seconds.is_finite() {
         for p in chosen {
             canvas.arrow(grid.to_pixels(p), grid.to_pixels(&(p + seconds * velocity(p))), MOTION);

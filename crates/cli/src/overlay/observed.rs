@@ -3,14 +3,15 @@ use std::path::{Path, PathBuf};
 use freeform_motion::curve_fit::{Fit, FitSettings, Fitter};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::CameraScale;
+use freeform_motion::tracker::Observation;
 
 use super::drawing::{Drawn, Overlay};
 use crate::args::{PictureOptions, TrackOptions};
-use crate::commands::FittedOutline;
 use crate::failure::Failure;
+use crate::fitted_outline::FittedOutline;
 use crate::input::Input;
-use crate::left_out::Missing;
-use crate::tracking::{Event, Observation};
+use crate::reader::Event;
+use crate::seen::Missing;
 
 /// Draws what was identified of objects on the pictures that they were seen in.
 pub(crate) struct ObservedOverlay {
@@ -39,12 +40,10 @@ impl ObservedOverlay {
     }
 
     /// Draws one object, or a picture without any.
-    pub(crate) fn take(&mut self, event: &Event<'_>) -> Result<(), Failure> {
+    pub(crate) fn take(&mut self, event: &Event) -> Result<(), Failure> {
         let (observation, frame, seen_in) = match event {
-            Event::Observed { observation, frame: Some(frame), seen_in: Some(seen_in) } => {
-                (observation, frame, seen_in)
-            }
-            Event::Missing(Missing { seen_in: Some(seen_in), .. }) => return self.overlay.draw_nothing(seen_in),
+            Event::Object(observation, Some((frame, Some(seen_in)))) => (observation, frame, seen_in),
+            Event::Gap(Missing { seen_in: Some(seen_in), .. }) => return self.overlay.draw_nothing(seen_in),
             _ => return Ok(()),
         };
         let fitted = self.curves.of(observation, frame).map(|fit| FittedOutline::new(frame, fit));
@@ -53,7 +52,9 @@ impl ObservedOverlay {
             name: self.names.then_some(frame.object.as_str()),
             accepted: observation.is_accepted(),
             fit: fitted.as_ref().map(|fitted| (&fitted.fit, fitted.parts.as_ref().ok())),
-            generator: observation.estimate.and_then(|estimate| estimate.generator_in_image(self.scale)),
+            generator: observation.estimate.and_then(|estimate| {
+                Some(self.scale.unwrap_or_default().generator_in_image(&estimate.known_generator()?))
+            }),
         };
         self.overlay.draw(seen_in, &drawn)
     }
@@ -69,8 +70,7 @@ pub(crate) struct CurveFitter(Fitter);
 
 impl CurveFitter {
     pub(crate) fn new(options: &TrackOptions) -> Result<Self, Failure> {
-        let defaults = FitSettings::default();
-        let settings = FitSettings { degree: options.degree.unwrap_or(defaults.degree), ..defaults };
+        let settings = FitSettings { degree: options.degree_drawn(), ..FitSettings::default() };
         Fitter::new(settings).map(Self).map_err(Failure::unusable)
     }
 

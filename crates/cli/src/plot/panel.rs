@@ -1,7 +1,10 @@
 use std::fmt::Write as _;
 
+use freeform_experiments::figure::{Curve, Look, Panel};
+
+use super::curve_marks::{class, crosses, dots, marks};
 use super::legend::{LEGEND_ROW, draw_legend_row, legend_rows};
-use super::style::{escape, text_width};
+use super::text::{escape, text_width};
 use super::ticks::Ticks;
 
 /// Most points drawn of one line; of longer ones the lowest and highest of each stretch are.
@@ -10,94 +13,17 @@ const POINTS_DRAWN: usize = 3000;
 /// What stands beside the legend, in pixels: labels of the y axis and the right margin.
 const LEGEND_MARGINS: f64 = 80.0;
 
-/// What a curve looks like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Look {
-    /// A solid line.
-    Line,
-    /// A dashed line for what is known to be true.
-    Truth,
-    /// A thin dashed line in the colour of the text, for what several curves of different colours are held against.
-    Reference,
-    /// A filled area.
-    Band,
-    /// Small dots.
-    Dots,
-    /// Crosses.
-    Crosses,
-    /// Lines over the whole height, for times at which something was the case; the y axis knows nothing of them.
-    Marks,
-    /// Smaller dots, for many points in a small panel.
-    FineDots,
-    /// A thin grey line, for what is only there for comparison.
-    Faint,
-    /// A solid line in one of the [`SERIES`] colours.
-    Series(usize),
-    /// A dashed line in one of the [`SERIES`] colours.
-    Dashed(usize),
-}
-
-/// Number of colours that several curves of one panel are told apart by.
-pub(crate) const SERIES: usize = 6;
-
-impl Look {
-    pub(super) const fn class(self) -> &'static str {
-        const SOLID: [&str; SERIES] = ["s s0", "s s1", "s s2", "s s3", "s s4", "s s5"];
-        const DASHED: [&str; SERIES] = ["s d s0", "s d s1", "s d s2", "s d s3", "s d s4", "s d s5"];
-        match self {
-            Self::FineDots => "dots fine",
-            Self::Faint => "faint",
-            Self::Series(colour) => SOLID[colour % SERIES],
-            Self::Dashed(colour) => DASHED[colour % SERIES],
-            Self::Line => "line",
-            Self::Truth => "truth",
-            Self::Reference => "reference",
-            Self::Band => "band",
-            Self::Dots => "dots",
-            Self::Crosses => "crosses",
-            Self::Marks => SOLID[1],
-        }
-    }
-}
-
-/// Points of one meaning, in one or more connected runs.
-#[derive(Debug, Clone)]
-pub(crate) struct Curve {
-    /// Stands in the legend, unless it is empty.
-    pub(crate) name: String,
-    pub(crate) look: Look,
-    pub(crate) runs: Vec<Vec<[f64; 2]>>,
-}
-
-/// One pair of axes.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Panel {
-    pub(crate) title: String,
-    pub(crate) x_label: String,
-    pub(crate) y_label: String,
-    pub(crate) curves: Vec<Curve>,
-    /// Where the x axis begins, if before all curves.
-    pub(crate) x_from: Option<f64>,
-    /// Where the x axis ends, if after all curves.
-    pub(crate) x_to: Option<f64>,
-    /// Lower left and upper right corner of what is to be seen, with a length drawn the same along both axes; curves are
-    /// cut off at the frame. Without it, axes are as long as the curves.
-    pub(crate) view: Option<[[f64; 2]; 2]>,
-    /// Whether the y axis is logarithmic; only values above 0 are drawn then.
-    pub(crate) y_logarithmic: bool,
-    /// Lower and upper end of the y axis, if not those of the curves; what lies beyond is cut off at the frame.
-    pub(crate) y_limits: Option<[f64; 2]>,
-    /// Whether only title and curves are drawn, without frame, ticks and labels.
-    pub(crate) is_bare: bool,
-}
+/// A panel as it is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PanelSvg<'a>(pub(super) &'a Panel);
 
 /// Where a panel stands in the picture, in pixels.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
-    pub(crate) left: f64,
-    pub(crate) top: f64,
-    pub(crate) width: f64,
-    pub(crate) height: f64,
+pub(super) struct Place {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
 }
 
 /// A range of values and the pixels it is drawn over.
@@ -136,32 +62,32 @@ impl Axis {
     }
 }
 
-impl Panel {
+impl<'a> PanelSvg<'a> {
     /// Space above the data, in pixels: title and legend.
     fn margin_top(&self, width: f64, has_legend: bool) -> f64 {
         let rows = if has_legend { self.legend_rows(width - LEGEND_MARGINS).len() } else { 0 };
-        LEGEND_ROW * rows as f64 + if self.title.is_empty() { 10.0 } else { 28.0 }
+        LEGEND_ROW * rows as f64 + if self.0.title.is_empty() { 10.0 } else { 28.0 }
     }
 
     const fn margin_below(&self) -> f64 {
-        if self.is_bare { 6.0 } else { 42.0 }
+        if self.0.is_bare { 6.0 } else { 42.0 }
     }
 
     /// The y axis over some pixels, and how many ticks it has room for.
     fn y_axis(&self, from: f64, to: f64) -> (Axis, usize) {
         let (low, high) = self.range(1, 0.06);
-        let pixels_per_tick = match (self.view, self.y_logarithmic) {
+        let pixels_per_tick = match (self.0.view, self.0.y_logarithmic) {
             (Some(_), _) => 50.0,
             (None, true) => 28.0,
             (None, false) => 32.0,
         };
         let count = ((from - to) / pixels_per_tick) as usize;
-        (Axis { low, high, from, to, logarithmic: self.y_logarithmic }, count)
+        (Axis { low, high, from, to, logarithmic: self.0.y_logarithmic }, count)
     }
 
     /// Space that the labels of the y axis need to its left, in pixels, in a panel of some width and height.
-    pub(crate) fn margin_left(&self, width: f64, height: f64, has_legend: bool) -> f64 {
-        if self.is_bare {
+    pub(super) fn margin_left(&self, width: f64, height: f64, has_legend: bool) -> f64 {
+        if self.0.is_bare {
             return 6.0;
         }
         let (y, count) = self.y_axis(height - self.margin_below(), self.margin_top(width, has_legend));
@@ -170,16 +96,16 @@ impl Panel {
     }
 
     /// The panel as SVG elements, with its legend or without, the data beginning so many pixels from its left edge.
-    pub(crate) fn render(&self, place: Place, margin_left: f64, has_legend: bool) -> String {
+    pub(super) fn render(&self, place: Place, margin_left: f64, has_legend: bool) -> String {
         let rows = if has_legend { self.legend_rows(place.width - LEGEND_MARGINS) } else { Vec::new() };
         let bottom = place.top + place.height - self.margin_below();
         let top = place.top + self.margin_top(place.width, has_legend);
         let left = place.left + margin_left;
-        let right = place.left + place.width - if self.is_bare { 6.0 } else { 16.0 };
+        let right = place.left + place.width - if self.0.is_bare { 6.0 } else { 16.0 };
         let (mut y, y_count) = self.y_axis(bottom, top);
         let (low, high) = self.range(0, 0.0);
         let mut x = Axis { low, high, from: left, to: right, logarithmic: false };
-        if self.view.is_some() {
+        if self.0.view.is_some() {
             let density = |axis: &Axis| (axis.high - axis.low) / (axis.to - axis.from).abs();
             let density = density(&x).max(density(&y));
             x.set_density(density);
@@ -187,26 +113,27 @@ impl Panel {
         }
 
         let mut svg = String::new();
-        if !self.is_bare {
+        if !self.0.is_bare {
             let y_ticks = y.ticks(y_count);
             let x_ticks = x.ticks(((right - left) / 60.0) as usize);
             self.draw_frame(&mut svg, (&x, &x_ticks), (&y, &y_ticks));
         }
         let (width, height) = (right - left, bottom - top);
         let frame = format!(r#"x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}""#);
-        let is_cut = self.view.is_some() || self.y_limits.is_some();
+        let is_cut = self.0.view.is_some() || self.0.y_limits.is_some();
         if is_cut {
             let _ = writeln!(svg, r#"<svg {frame} viewBox="{left:.1} {top:.1} {width:.1} {height:.1}">"#);
         }
-        for curve in &self.curves {
+        for curve in &self.0.curves {
             draw_curve(&mut svg, curve, &x, &y);
         }
         if is_cut {
             svg.push_str("</svg>\n");
         }
         let title_top = place.top + 17.0;
-        let _ = writeln!(svg, r#"<text class="title" x="{left:.1}" y="{title_top:.1}">{}</text>"#, escape(&self.title));
-        if !self.is_bare {
+        let _ =
+            writeln!(svg, r#"<text class="title" x="{left:.1}" y="{title_top:.1}">{}</text>"#, escape(&self.0.title));
+        if !self.0.is_bare {
             // Over the data, so that a line along the edge does not hide it.
             let _ = writeln!(svg, r#"<rect class="axis" {frame}/>"#);
             self.draw_labels(
@@ -222,33 +149,33 @@ impl Panel {
     }
 
     fn draw_labels(&self, svg: &mut String, [x_left, x_top]: [f64; 2], [y_left, y_top]: [f64; 2]) {
-        let (x_label, y_label) = (escape(&self.x_label), escape(&self.y_label));
+        let (x_label, y_label) = (escape(&self.0.x_label), escape(&self.0.y_label));
         let _ = writeln!(svg, r#"<text class="label" x="{x_left:.1}" y="{x_top:.1}">{x_label}</text>"#);
         let turned = format!("translate({y_left:.1} {y_top:.1}) rotate(-90)");
         let _ = writeln!(svg, r#"<text class="label" transform="{turned}">{y_label}</text>"#);
     }
 
-    pub(super) fn legend(&self) -> impl Iterator<Item = &Curve> {
-        self.curves.iter().filter(|curve| !curve.name.is_empty() && curve.runs.iter().any(|run| !run.is_empty()))
+    pub(super) fn legend(self) -> impl Iterator<Item = &'a Curve> {
+        self.0.curves.iter().filter(|curve| !curve.name.is_empty() && curve.runs.iter().any(|run| !run.is_empty()))
     }
 
     /// The entries of the legend, as many to a row as fit into a width.
-    fn legend_rows(&self, width: f64) -> Vec<Vec<&Curve>> {
+    fn legend_rows(&self, width: f64) -> Vec<Vec<&'a Curve>> {
         legend_rows(self.legend(), width)
     }
 
     /// Range of all finite values on an axis, widened by a share of itself.
     fn range(&self, axis: usize, margin: f64) -> (f64, f64) {
-        if let Some([low, high]) = self.view {
+        if let Some([low, high]) = self.0.view {
             return (low[axis], high[axis]);
         }
-        if let (Some([low, high]), 1) = (self.y_limits, axis) {
+        if let (Some([low, high]), 1) = (self.0.y_limits, axis) {
             return (low, high);
         }
-        let is_logarithmic = axis == 1 && self.y_logarithmic;
-        let drawn = self.curves.iter().filter(|curve| axis == 0 || curve.look != Look::Marks);
+        let is_logarithmic = axis == 1 && self.0.y_logarithmic;
+        let drawn = self.0.curves.iter().filter(|curve| axis == 0 || curve.look != Look::Marks);
         let points = drawn.flat_map(|curve| curve.runs.iter().flatten());
-        let ends = [self.x_from, self.x_to].into_iter().flatten().filter(|_| axis == 0);
+        let ends = [self.0.x_from, self.0.x_to].into_iter().flatten().filter(|_| axis == 0);
         let values = points.map(|point| point[axis]).chain(ends).filter(|value| value.is_finite());
         let values = values.filter(|value| !is_logarithmic || *value > 0.0);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
@@ -304,7 +231,7 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
         });
     }
     if !path.is_empty() {
-        let _ = writeln!(svg, r#"<path class="{}" d="{path}"/>"#, curve.look.class());
+        let _ = writeln!(svg, r#"<path class="{}" d="{path}"/>"#, class(curve.look));
     }
 }
 
@@ -314,19 +241,6 @@ fn connected(pixels: &[[f64; 2]], end: &str) -> String {
         let _ = write!(path, "{}{x:.2} {y:.2}", if index == 0 { "M" } else { "L" });
     }
     path + end
-}
-
-pub(super) fn dots(pixels: &[[f64; 2]]) -> String {
-    // Lines of no length with round ends.
-    pixels.iter().map(|[x, y]| format!("M{x:.2} {y:.2}h0")).collect()
-}
-
-pub(super) fn crosses(pixels: &[[f64; 2]]) -> String {
-    pixels.iter().map(|[x, y]| format!("M{:.2} {:.2}l8 8m0 -8l-8 8", x - 4.0, y - 4.0)).collect()
-}
-
-pub(super) fn marks(pixels: &[[f64; 2]], from: f64, to: f64) -> String {
-    pixels.iter().map(|[x, _]| format!("M{x:.2} {from:.2}V{to:.2}")).collect()
 }
 
 /// At most [`POINTS_DRAWN`] points that look the same: the lowest and the highest of every stretch.
@@ -368,10 +282,10 @@ mod tests {
 
     #[test]
     fn a_true_value_beyond_the_data_is_within_the_axis() {
-        let (low, high) = panel(&[0.0, 1.0, -7.0]).range(1, 0.06);
+        let (low, high) = PanelSvg(&panel(&[0.0, 1.0, -7.0])).range(1, 0.06);
         assert!(low < -7.0 && high > 1.0);
         let logarithmic = Panel { y_logarithmic: true, ..panel(&[0.0, -3.0, 0.01, 100.0]) };
-        let (low, high) = logarithmic.range(1, 0.06);
+        let (low, high) = PanelSvg(&logarithmic).range(1, 0.06);
         assert!(low > 0.001 && low < 0.01 && high > 100.0, "what is not above 0 takes no part: {low} {high}");
     }
 }

@@ -1,17 +1,8 @@
-use super::legend::shared_legend;
-use super::panel::{Panel, Place};
+use freeform_experiments::figure::{Figure, Panel};
 
-/// About the width of a text at the size of tick labels, in pixels. Fonts differ: it is that of wide ones.
-pub(crate) fn text_width(text: &str) -> f64 {
-    let width = |character: char| match character {
-        'i' | 'j' | 'l' | 'I' | ' ' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 3.6,
-        'f' | 'r' | 't' | '(' | ')' | '[' | ']' | '-' | '/' => 4.8,
-        'm' | 'w' | 'M' | 'W' | '%' => 11.0,
-        character if character.is_uppercase() => 8.6,
-        _ => 7.2,
-    };
-    text.chars().map(width).sum()
-}
+use super::legend::shared_legend;
+use super::panel::{PanelSvg, Place};
+use super::text::escape;
 
 /// Colours and lines on white paper. All can be told apart by everyone (Okabe and Ito, 2008; the last three
 /// somewhat darker, for thin lines).
@@ -33,21 +24,11 @@ text{font-family:Helvetica,Arial,'DejaVu Sans',sans-serif;font-size:12px;fill:#2
 .s{fill:none;stroke-width:1.6;stroke-linejoin:round}.d{stroke-dasharray:7 4}\
 .s0{stroke:#0072b2}.s1{stroke:#d55e00}.s2{stroke:#009e73}.s3{stroke:#b3589a}.s4{stroke:#c98a00}.s5{stroke:#3fa4de}";
 
-/// Panels of equal size, row by row.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Figure {
-    /// Over all panels; none if empty.
-    pub(crate) title: String,
-    /// Whether one legend, over all panels, stands for all.
-    pub(crate) shares_legend: bool,
-    pub(crate) panels: Vec<Panel>,
-    /// Panels in a row, at least 1.
-    pub(crate) columns: usize,
-    /// Width and height of each panel in pixels.
-    pub(crate) panel_size: [f64; 2],
-}
+/// A figure as SVG.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Svg<'a>(pub(crate) &'a Figure);
 
-impl Figure {
+impl Svg<'_> {
     /// The figure as a file of its own, on white paper.
     pub(crate) fn file(&self) -> String {
         let ([width, height], content) = (self.size(), self.content());
@@ -64,31 +45,36 @@ impl Figure {
     /// The figure as an SVG element to stand in a page, which gives it its colours.
     pub(crate) fn element(&self) -> String {
         let ([width, height], content) = (self.size(), self.content());
-        let first = self.panels.first().map_or("", |panel| &panel.title);
-        let title = escape(if self.title.is_empty() { first } else { &self.title });
+        let first = self.0.panels.first().map_or("", |panel| &panel.title);
+        let title = escape(if self.0.title.is_empty() { first } else { &self.0.title });
         format!(r#"<svg viewBox="0 0 {width} {height}" role="img" aria-label="{title}">{content}</svg>"#)
     }
 
     /// Width and height in pixels.
     pub(crate) fn size(&self) -> [f64; 2] {
-        let rows = self.panels.len().div_ceil(self.columns.max(1));
-        [self.width(), self.head().1 + self.panel_size[1] * rows as f64]
+        let rows = self.0.panels.len().div_ceil(self.0.columns.max(1));
+        [self.width(), self.head().1 + self.0.panel_size[1] * rows as f64]
     }
 
     fn width(&self) -> f64 {
-        self.panel_size[0] * self.columns.clamp(1, self.panels.len().max(1)) as f64
+        self.0.panel_size[0] * self.0.columns.clamp(1, self.0.panels.len().max(1)) as f64
     }
 
     /// Title and legend over all panels, and their height.
     fn head(&self) -> (String, f64) {
         const LEFT: f64 = 14.0;
         let (mut svg, mut height) = (String::new(), 0.0);
-        if !self.title.is_empty() {
-            svg = format!(r#"<text class="title" x="{LEFT}" y="20">{}</text>"#, escape(&self.title));
+        if !self.0.title.is_empty() {
+            svg = format!(r#"<text class="title" x="{LEFT}" y="20">{}</text>"#, escape(&self.0.title));
             height = 28.0;
         }
-        if self.shares_legend {
-            let (legend, legend_height) = shared_legend(&self.panels, LEFT, height, self.width() - 2.0 * LEFT);
+        if self.0.shares_legend {
+            let (legend, legend_height) = shared_legend(
+                self.0.panels.iter().map(PanelSvg).flat_map(PanelSvg::legend),
+                LEFT,
+                height,
+                self.width() - 2.0 * LEFT,
+            );
             svg.push_str(&legend);
             height += legend_height + 6.0;
         }
@@ -96,54 +82,40 @@ impl Figure {
     }
 
     fn content(&self) -> String {
-        let [width, height] = self.panel_size;
-        let columns = self.columns.max(1);
+        let [width, height] = self.0.panel_size;
+        let columns = self.0.columns.max(1);
         let (head, head_height) = self.head();
         let place = |k: usize| {
             let (column, row) = ((k % columns) as f64, (k / columns) as f64);
             Place { left: column * width, top: head_height + row * height, width, height }
         };
-        let has_legend = !self.shares_legend;
+        let has_legend = !self.0.shares_legend;
         // The data of panels below one another begins at the same place.
         let margin = |k: usize| {
-            let of_column = self.panels.iter().skip(k % columns).step_by(columns);
-            of_column.map(|panel| panel.margin_left(width, height, has_legend)).fold(0.0, f64::max)
+            let of_column = self.0.panels.iter().skip(k % columns).step_by(columns);
+            of_column.map(|panel| PanelSvg(panel).margin_left(width, height, has_legend)).fold(0.0, f64::max)
         };
-        let panels = self.panels.iter().enumerate().map(|(k, panel)| panel.render(place(k), margin(k), has_legend));
+        let panels =
+            self.0.panels.iter().enumerate().map(|(k, panel)| PanelSvg(panel).render(place(k), margin(k), has_legend));
         head + &panels.collect::<String>()
     }
 }
 
 /// One panel as an SVG element to stand in a page, which gives it its colours.
 pub(crate) fn panel_svg(panel: &Panel, width: f64, height: f64) -> String {
-    Figure { panels: vec![panel.clone()], columns: 1, panel_size: [width, height], ..Figure::default() }.element()
+    let panels = vec![panel.clone()];
+    Svg(&Figure { panels, columns: 1, panel_size: [width, height], ..Figure::default() }).element()
 }
 
 /// Panels below one another as a file of their own, on white paper.
 pub(crate) fn stacked_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
-    Figure { panels: panels.to_vec(), columns: 1, panel_size: [width, panel_height], ..Figure::default() }.file()
-}
-
-/// Text as it stands in SVG and HTML.
-pub(crate) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            other if other.is_control() && other != '\n' && other != '\t' => escaped.push('\u{fffd}'),
-            other => escaped.push(other),
-        }
-    }
-    escaped
+    Svg(&Figure { panels: panels.to_vec(), columns: 1, panel_size: [width, panel_height], ..Figure::default() }).file()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::{Curve, Look};
+    use freeform_experiments::figure::{Curve, Look};
+
     use super::*;
 
     #[test]
@@ -155,11 +127,12 @@ mod tests {
         };
         let panels = vec![panel(1.0), panel(1.0), panel(10_000.0), panel(1.0)];
         let figure = Figure { panels, columns: 2, panel_size: [300.0, 200.0], ..Figure::default() };
-        let svg = figure.file();
+        let svg = Svg(&figure).file();
         let lefts: Vec<&str> =
             svg.split(r#"<rect class="axis" x=""#).skip(1).filter_map(|rest| rest.split('"').next()).collect();
         assert_eq!(lefts.len(), 4);
         assert_eq!((lefts[0], lefts[1]), (lefts[2], lefts[3]));
-        assert_ne!(panel(1.0).margin_left(300.0, 200.0, true), panel(10_000.0).margin_left(300.0, 200.0, true));
+        let margin = |high: f64| PanelSvg(&panel(high)).margin_left(300.0, 200.0, true);
+        assert_ne!(margin(1.0), margin(10_000.0));
     }
 }

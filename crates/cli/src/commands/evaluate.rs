@@ -1,0 +1,133 @@
+//! Monte Carlo of the identification.
+use std::io::{self, Write};
+use std::path::Path;
+
+use freeform_experiments::monte_carlo::{AcquisitionSetting, Setting, Study, suite};
+use freeform_motion::sim_camera::{BuiltInShape, SequenceLength, Settings, Shape};
+
+use super::simulate::shape;
+use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluateFormat, MotionChoice};
+use crate::failure::Failure;
+use crate::output::{
+    Evaluated, Sink, write_evaluation_csv, write_evaluation_json, write_evaluation_markdown, write_evaluation_table,
+};
+use crate::progress::Progress;
+
+/// Simulates, identifies and prints.
+pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
+    let study = study(args)?;
+    study.check().map_err(Failure::of_experiment)?;
+    // The output is refused before the work, not after it.
+    let sink = Sink::open(&args.output)?;
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = args.threads {
+        pool = pool.num_threads(threads);
+    }
+    let pool = pool.build().map_err(Failure::unusable)?;
+    let progress = Progress::of_runs(study.run_count() as u64);
+    let report = pool.install(|| study.run(&|| progress.advance())).map_err(Failure::of_experiment)?;
+    drop(progress);
+    if report.is_all_lost() {
+        return Err(Failure::no_result("every run of every method was lost"));
+    }
+    write(args, &Evaluated { report, timing: !args.no_timing }, sink)
+}
+
+fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
+    let mut shapes: Vec<Shape> = match (&args.suite, args.shape.is_empty()) {
+        (Some(_), _) => suite::SHAPES.iter().map(|shape| shape.shape()).collect(),
+        (None, true) => vec![BuiltInShape::Bird.shape()],
+        (None, false) => Vec::new(),
+    };
+    for name in &args.shape {
+        let shape = named_by_file(shape(name)?, name, &shapes);
+        if shapes.iter().any(|other| other.name() == shape.name()) {
+            return Err(Failure::unusable(format_args!("--shape: {} is given twice", shape.name())));
+        }
+        shapes.push(shape);
+    }
+    let (settings, acquisitions, acquisition_runs) = match &args.suite {
+        Some(text) => {
+            let (settings, acquisitions) = suite::containing(text).map_err(Failure::of_experiment)?;
+            (settings, acquisitions, suite::ACQUISITION_RUNS.saturating_mul(args.runs))
+        }
+        None if args.acquisition => (Vec::new(), vec![acquisition(args)], args.runs),
+        None => (settings(args)?, Vec::new(), args.runs),
+    };
+    let (methods, runs, seed) = (args.method.clone(), args.runs, args.seed);
+    Ok(Study { shapes, settings, acquisitions, methods, runs, acquisition_runs, seed })
+}
+
+/// The shape under the name of its file without the folder, unless another one has that name.
+fn named_by_file(shape: Shape, path: &str, others: &[Shape]) -> Shape {
+    let file_name = Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
+    match file_name.filter(|name| others.iter().all(|other| other.name() != name)) {
+        Some(name) => shape.with_name(name),
+        None => shape.with_name(path),
+    }
+}
+
+/// One setting for each length of sequence that was asked for.
+fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
+    let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
+    let motion = camera.image_motion(&args.motion_in_space.motion());
+    let default = if args.motion_in_space.is_affine() { MotionChoice::Affine } else { MotionChoice::Rigid };
+    let model = args.motion.unwrap_or(default).model();
+    if model.parameters_of_motion(&motion).is_none() {
+        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --affine")));
+    }
+    let of_seconds = |seconds: &f64| {
+        let length = SequenceLength::Seconds(*seconds);
+        Settings { fps: args.fps, length, ..Settings::default() }.frame_count().map_err(Failure::unusable)
+    };
+    let mut lengths = args.frames.clone();
+    lengths.extend(args.seconds.iter().map(of_seconds).collect::<Result<Vec<_>, _>>()?);
+    if lengths.is_empty() {
+        lengths = vec![3, 8, 30, 120];
+    }
+    if let Some(short) = lengths.iter().find(|frames| **frames < 2) {
+        return Err(Failure::unusable(format_args!("a sequence of {short} frame(s) shows no motion")));
+    }
+    let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
+    let setting = |frames| Setting {
+        name: format!("{frames} frames"),
+        model,
+        motion,
+        frames,
+        fps: args.fps,
+        points: args.points,
+        noise,
+        occlusion,
+        outliers,
+        wrong_frames: args.wrong_frames,
+        sampling: args.sampling.sampling(),
+    };
+    Ok(lengths.into_iter().map(setting).collect())
+}
+
+fn acquisition(args: &EvaluateArgs) -> AcquisitionSetting {
+    let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
+    AcquisitionSetting {
+        name: "acquisition".to_owned(),
+        model: args.motion.unwrap_or(MotionChoice::Rigid).model(),
+        points: args.points,
+        noise,
+        occlusion,
+        outliers,
+        sampling: args.sampling.sampling(),
+    }
+}
+
+fn write(args: &EvaluateArgs, evaluated: &Evaluated, mut sink: Sink) -> Result<(), Failure> {
+    let default = if args.suite.is_some() { EvaluateFormat::Markdown } else { EvaluateFormat::Table };
+    let written: io::Result<()> = match args.format.unwrap_or(default) {
+        EvaluateFormat::Table => write_evaluation_table(&mut sink, evaluated),
+        EvaluateFormat::Markdown => write_evaluation_markdown(&mut sink, evaluated),
+        EvaluateFormat::Json => write_evaluation_json(&mut sink, evaluated),
+        EvaluateFormat::Csv => write_evaluation_csv(&mut sink, evaluated),
+    };
+    match written.and_then(|()| sink.flush()) {
+        Ok(()) => sink.finish(),
+        Err(error) => Err(sink.failure(&error)),
+    }
+}

@@ -1,0 +1,98 @@
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use nalgebra::{DMatrix, Matrix3};
+
+use super::{Arrowhead, StateMatrix, scaled_inverse};
+
+/// Pose, motion and offsets of one object with the information on them, in normalised coordinates: centred on the first outline and
+/// divided by its RMS radius. Cheap to clone beside the map, which it does not hold.
+///
+/// The error of the pose is on the left: with the generator X of the error xi, the true pose is `expm(X)` after the one held.
+#[derive(Debug, Clone)]
+pub(crate) struct Belief {
+    pub(crate) model: MotionModel,
+    /// Body to image.
+    pub(crate) pose: Matrix3<f64>,
+    pub(crate) motion: ParameterVector,
+    /// Signed distance of the outline from the centre of each cell along its normal.
+    pub(crate) offsets: Vec<f64>,
+    /// In units of the noise.
+    pub(crate) information: Arrowhead,
+    /// Of pose and motion with the offsets eliminated.
+    pub(crate) marginal: StateMatrix,
+    pub(crate) memory: Memory,
+    pub(crate) earlier_poses: EarlierPoses,
+}
+
+/// How long ago what is known of the motion goes back to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Memory {
+    /// Seconds of the last prediction.
+    pub(crate) step: f64,
+    /// Seconds predicted over since the motion was last unknown.
+    pub(crate) span: f64,
+    /// Effective memory: seconds of the past that each parameter is known from, the span, or, where the motion changes, what of it is
+    /// not forgotten.
+    pub(crate) effective: ParameterVector,
+}
+
+/// Whether the poses of earlier frames are known beside the present one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum EarlierPoses {
+    Known,
+    /// They are off by what nobody knows: something of them was forgotten as the map grew.
+    Forgotten,
+}
+
+impl Belief {
+    /// Nothing known, in the body frame.
+    pub(crate) fn new(model: MotionModel) -> Self {
+        let information = Arrowhead::new(model.parameter_count());
+        Self {
+            model,
+            pose: Matrix3::identity(),
+            motion: [0.0; MAX_PARAMETERS],
+            offsets: Vec::new(),
+            marginal: information.marginal(),
+            information,
+            memory: Memory::default(),
+            earlier_poses: EarlierPoses::Known,
+        }
+    }
+
+    /// Number of parameters k.
+    pub(crate) fn parameter_count(&self) -> usize {
+        self.information.k
+    }
+
+    /// Scale of lengths from the body frame to the image.
+    pub(crate) fn scale(&self) -> f64 {
+        self.pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt()
+    }
+
+    /// Covariance of pose and motion from an information matrix in units of `variance`; `None` where it cannot be computed.
+    pub(crate) fn covariance_of(&self, information: &StateMatrix, variance: f64) -> Option<DMatrix<f64>> {
+        let k = self.information.k;
+        let inverse = scaled_inverse(information, k)? * variance;
+        inverse.iter().all(|e| e.is_finite()).then(|| DMatrix::from_fn(2 * k, 2 * k, |i, j| inverse[(i, j)]))
+    }
+}
+
+impl Memory {
+    /// Moves on by `seconds`.
+    pub(crate) fn advance(&mut self, seconds: f64) {
+        self.span += seconds;
+        self.effective.iter_mut().for_each(|span| *span += seconds);
+        self.step = seconds;
+    }
+
+    /// Effective memory of what takes part in all of k parameters.
+    pub(crate) fn shortest(&self, k: usize) -> f64 {
+        self.effective[..k].iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Forgets everything.
+    pub(crate) fn clear(&mut self) {
+        self.span = 0.0;
+        self.effective = [0.0; MAX_PARAMETERS];
+    }
+}

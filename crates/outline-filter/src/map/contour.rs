@@ -1,0 +1,254 @@
+//! From the noisy points of one frame to places and normals along the contour, robust against outliers.
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
+
+use crate::tuning::{contour as tuning, measurement::MEDIAN_TO_DEVIATION};
+
+/// A place on the contour: position and unit normal.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) centre: Point2<f64>,
+    pub(crate) normal: Vector2<f64>,
+}
+
+/// One connected piece of the contour, resampled.
+#[derive(Debug, Clone)]
+pub(crate) struct SmoothPiece {
+    pub(crate) places: Vec<Place>,
+    pub(crate) closed: bool,
+}
+
+/// Local quadratic at one point.
+#[derive(Debug, Clone, Copy)]
+struct LocalFit {
+    position: Point2<f64>,
+    tangent: Vector2<f64>,
+    /// Variance of the point's residual in units of the noise: below one if the point took part.
+    residual_variance: f64,
+}
+
+/// Points of one piece with what is found of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Contour {
+    points: Vec<Point2<f64>>,
+    closed: bool,
+    outlier: Vec<bool>,
+}
+
+impl Contour {
+    pub(crate) fn new(points: Vec<Point2<f64>>, closed: bool) -> Self {
+        let mut contour = Self { outlier: vec![false; points.len()], points, closed };
+        contour.mark_gross_outliers();
+        contour
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Standard deviation of the noise along the normal, from the residuals of a pilot regression; marks outliers on the way.
+    pub(crate) fn noise(&mut self) -> Option<f64> {
+        let mut sigma = self.residual_scale(tuning::PILOT_HALF_WINDOW)?;
+        for _ in 0..2 {
+            // Along a line whose direction is noise, residuals are too small.
+            let window = self.half_window_for(sigma, tuning::PILOT_NORMAL_NOISE).max(tuning::PILOT_HALF_WINDOW);
+            self.mark_outliers(window, sigma);
+            sigma = self.residual_scale(window)?;
+        }
+        Some(sigma)
+    }
+
+    /// Smallest window that gives normals their direction, for noise `sigma`.
+    pub(crate) fn half_window(&self, sigma: f64) -> usize {
+        self.half_window_for(sigma, tuning::NORMAL_NOISE)
+    }
+
+    fn half_window_for(&self, sigma: f64, normal_noise: f64) -> usize {
+        let step = self.median_step();
+        let needed = (sigma / (normal_noise * step)).powi(2);
+        let enough = |w: &usize| (w * (w + 1) * (2 * w + 1)) as f64 / 3.0 >= needed;
+        let largest = (self.points.len() / 8).clamp(*tuning::HALF_WINDOWS.start(), *tuning::HALF_WINDOWS.end());
+        tuning::HALF_WINDOWS.take_while(|w| *w <= largest).find(enough).unwrap_or(largest)
+    }
+
+    /// Places every `spacing` along the smoothed contour.
+    pub(crate) fn resampled(&mut self, sigma: f64, half_window: usize, spacing: f64) -> Option<SmoothPiece> {
+        self.mark_outliers(half_window, sigma);
+        let mut fits: Vec<LocalFit> = (0..self.points.len())
+            .filter(|i| !self.outlier[*i])
+            .filter_map(|i| self.local_fit(i, half_window))
+            .collect();
+        if fits.len() < 3 {
+            return None;
+        }
+        if self.closed {
+            fits.push(fits[0]);
+        }
+        let mut along = Vec::with_capacity(fits.len());
+        let mut length = 0.0;
+        for (i, fit) in fits.iter().enumerate() {
+            if i > 0 {
+                length += (fit.position - fits[i - 1].position).norm();
+            }
+            along.push(length);
+        }
+        let count = (length / spacing).round().max(1.0);
+        if length <= 0.0 || !length.is_finite() || count > 1e5 {
+            return None;
+        }
+        let step = length / count;
+        let mut places = Vec::with_capacity(count as usize);
+        let mut i = 0;
+        for k in 0..count as usize {
+            let s = (k as f64 + 0.5) * step;
+            while i + 2 < along.len() && along[i + 1] < s {
+                i += 1;
+            }
+            let width = along[i + 1] - along[i];
+            let t = if width > 0.0 { ((s - along[i]) / width).clamp(0.0, 1.0) } else { 0.5 };
+            let centre = fits[i].position + t * (fits[i + 1].position - fits[i].position);
+            let tangent = (1.0 - t) * fits[i].tangent + t * fits[i + 1].tangent;
+            if let Some(tangent) = tangent.try_normalize(1e-12) {
+                places.push(Place { centre, normal: Vector2::new(tangent.y, -tangent.x) });
+            }
+        }
+        (!places.is_empty()).then_some(SmoothPiece { places, closed: self.closed })
+    }
+
+    /// Length of the contour, smoothed.
+    pub(crate) fn smooth_length(&self, half_window: usize) -> f64 {
+        let fits = (0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| self.local_fit(i, half_window));
+        let (mut length, mut before, mut first) = (0.0, None, None);
+        for LocalFit { position, .. } in fits {
+            if let Some(before) = before {
+                length += (position - before as Point2<f64>).norm();
+            }
+            first = first.or(Some(position));
+            before = Some(position);
+        }
+        if let (true, Some(first), Some(last)) = (self.closed, first, before) {
+            length += (last - first).norm();
+        }
+        length
+    }
+
+    /// Index of the point `offset` places from point i, if there is one.
+    fn neighbour(&self, i: usize, offset: isize) -> Option<usize> {
+        let n = self.points.len() as isize;
+        let k = i as isize + offset;
+        if self.closed { Some(k.rem_euclid(n) as usize) } else { (0..n).contains(&k).then_some(k as usize) }
+    }
+
+    fn median_step(&self) -> f64 {
+        let chord = 8.min(self.points.len() / 3).max(1);
+        let steps = (0..self.points.len()).filter_map(|i| {
+            let j = self.neighbour(i, chord as isize)?;
+            Some((self.points[j] - self.points[i]).norm() / chord as f64)
+        });
+        median(&mut steps.collect::<Vec<_>>()).unwrap_or(0.0).max(f64::MIN_POSITIVE)
+    }
+
+    fn mark_gross_outliers(&mut self) {
+        let n = self.points.len();
+        if n < 4 * tuning::MEDIAN_HALF_WINDOW {
+            return;
+        }
+        let m = tuning::MEDIAN_HALF_WINDOW as isize;
+        let mut distances = Vec::with_capacity(n);
+        let (mut xs, mut ys) = (Vec::new(), Vec::new());
+        for i in 0..n {
+            xs.clear();
+            ys.clear();
+            // At an open end the window slides inwards; its median stands off along the contour, which the scale allows for.
+            for offset in -m..=m {
+                if let Some(j) = self.neighbour(i, offset) {
+                    xs.push(self.points[j].x);
+                    ys.push(self.points[j].y);
+                }
+            }
+            let middle = Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0));
+            distances.push((self.points[i] - middle).norm());
+        }
+        let scale = median(&mut distances.clone()).unwrap_or(0.0);
+        for (outlier, distance) in self.outlier.iter_mut().zip(distances) {
+            *outlier = distance > tuning::GROSS * scale;
+        }
+    }
+
+    /// Distance of a point from the line of its neighbours, in units that make its variance that of the noise.
+    fn residual(&self, i: usize, fit: &LocalFit) -> Option<f64> {
+        let tangent = fit.tangent.try_normalize(1e-12)?;
+        let deviation = fit.residual_variance.max(tuning::LEAST_RESIDUAL_VARIANCE).sqrt();
+        Some(tangent.perp(&(self.points[i] - fit.position)).abs() / deviation)
+    }
+
+    fn residual_scale(&self, half_window: usize) -> Option<f64> {
+        let residuals = (0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| {
+            let fit = self.local_fit(i, half_window)?;
+            (fit.residual_variance > tuning::TELLING_RESIDUAL_VARIANCE).then(|| self.residual(i, &fit)).flatten()
+        });
+        median(&mut residuals.collect::<Vec<_>>()).map(|m| MEDIAN_TO_DEVIATION * m)
+    }
+
+    fn mark_outliers(&mut self, half_window: usize, sigma: f64) {
+        let marks: Vec<bool> = (0..self.points.len())
+            .map(|i| {
+                let residual = self.local_fit(i, half_window).and_then(|fit| self.residual(i, &fit));
+                residual.is_none_or(|r| r > tuning::OUTLYING * sigma)
+            })
+            .collect();
+        // A window that smooths corners away must not take half the contour for outliers.
+        if marks.iter().filter(|mark| **mark).count() * 4 < marks.len() {
+            self.outlier = marks;
+        }
+    }
+
+    /// Least-squares quadratic of position against the number of the point, over the point and the nearest neighbours on either side that
+    /// are not outliers.
+    fn local_fit(&self, i: usize, half_window: usize) -> Option<LocalFit> {
+        let w = half_window as isize;
+        let mut gram = Matrix3::zeros();
+        let (mut x, mut y) = (Vector3::zeros(), Vector3::zeros());
+        let origin = self.points[i];
+        let mut take = |offset: isize, j: usize| {
+            let u = offset as f64 / w as f64;
+            let row = Vector3::new(1.0, u, u * u);
+            let p = self.points[j] - origin;
+            gram += row * row.transpose();
+            x += row * p.x;
+            y += row * p.y;
+        };
+        let mut count = 0;
+        if !self.outlier[i] {
+            take(0, i);
+            count += 1;
+        }
+        for side in [-1, 1] {
+            let farther = (1..=w.max((self.points.len() / tuning::PARTS) as isize)).map(|distance| side * distance);
+            let kept = farther.filter_map(|offset| Some((offset, self.neighbour(i, offset)?)));
+            for (offset, j) in kept.filter(|(_, j)| !self.outlier[*j]).take(half_window) {
+                take(offset, j);
+                count += 1;
+            }
+        }
+        if count < 4 {
+            return None;
+        }
+        let inverse = gram.try_inverse()?;
+        let (x, y) = (inverse * x, inverse * y);
+        Some(LocalFit {
+            position: origin + Vector2::new(x[0], y[0]),
+            tangent: Vector2::new(x[1], y[1]),
+            // An outlier stays one unless it lies within the noise of its neighbours' line as if that were exact.
+            residual_variance: if self.outlier[i] { 1.0 } else { 1.0 - inverse[(0, 0)] },
+        })
+    }
+}
+
+/// Median, the upper one of two; reorders the list.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    if values.is_empty() {
+        return None;
+    }
+    let middle = values.len() / 2;
+    Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}

@@ -1,0 +1,12 @@
+//! The outline in the body frame: cells along it, how they follow each other, which is nearest to a point, and what they do not show.
+mod chains;
+mod contour;
+mod growth;
+mod nearest_field;
+mod null_space;
+mod outline_map;
+
+pub(crate) use chains::{CellPoint, has_common_places};
+pub(crate) use contour::{Contour, median};
+pub(crate) use null_space::{NullDirection, TurnEvidence};
+pub(crate) use outline_map::{Cell, OutlineMap, Resolution};

@@ -1,0 +1,274 @@
+//! Null directions: directions of the pose that an outline does not show, such as the turning of a circle about its centre.
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, turn_rate};
+use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
+
+use super::OutlineMap;
+use crate::tuning::null_space as tuning;
+
+/// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NullDirection {
+    pub(crate) direction: ParameterVector,
+    pub(crate) dual: ParameterVector,
+}
+
+impl NullDirection {
+    /// Projects the direction out of the Jacobian of a measurement.
+    pub(crate) fn project_out(&self, jacobian: &mut ParameterVector) {
+        let along: f64 = jacobian.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
+        jacobian.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
+    }
+}
+
+impl NullDirection {
+    /// Takes the part of a motion in this direction off.
+    pub(crate) fn take_off(&self, motion: &mut ParameterVector) {
+        let part: f64 = motion.iter().zip(&self.dual).map(|(a, b)| a * b).sum();
+        motion.iter_mut().zip(&self.direction).for_each(|(m, d)| *m -= part * d);
+    }
+}
+
+/// What frames have said of the turn about the object's middle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum TurnEvidence {
+    /// As much as the normals of the cells promise.
+    #[default]
+    AsTheNormals,
+    /// Frames have not shown it, whatever the normals promise.
+    Hidden,
+    /// What a frame has shown for the first time shows it, by the normals.
+    AtLast,
+    /// The map was begun anew with a frame that shows it, and no other frame has told it since.
+    New,
+    /// As [`New`](Self::New), and the last frame has not shown it again.
+    NewAndHidden,
+}
+
+/// The null directions of an outline in the body frame.
+#[derive(Debug, Clone)]
+pub(super) struct NullSpace {
+    pub(super) in_body: Vec<ParameterVector>,
+    /// From centred coordinates of unit RMS radius to the body frame.
+    pub(super) frame: Matrix3<f64>,
+    pub(super) turn: TurnEvidence,
+}
+
+impl Default for NullSpace {
+    fn default() -> Self {
+        Self { in_body: Vec::new(), frame: Matrix3::identity(), turn: TurnEvidence::default() }
+    }
+}
+
+impl OutlineMap {
+    /// Centre of the cells in the body frame.
+    pub(crate) fn middle(&self) -> Point2<f64> {
+        Point2::new(self.null_space.frame[(0, 2)], self.null_space.frame[(1, 2)])
+    }
+
+    /// What frames have said of the turn.
+    pub(crate) fn turn_evidence(&self) -> TurnEvidence {
+        self.null_space.turn
+    }
+
+    /// Takes it that one frame alone has shown the turn so far.
+    pub(crate) fn take_turn_as_new(&mut self) {
+        self.null_space.turn = match self.null_space.turn {
+            TurnEvidence::Hidden | TurnEvidence::NewAndHidden => TurnEvidence::NewAndHidden,
+            _ => TurnEvidence::New,
+        };
+    }
+
+    /// Takes it that another frame has shown the turn too, unless it is hidden.
+    pub(crate) fn confirm_turn(&mut self) {
+        if self.null_space.turn == TurnEvidence::New {
+            self.null_space.turn = TurnEvidence::AsTheNormals;
+        }
+    }
+
+    /// Takes it that a growth of the map has shown the turn where it could not be seen before, or that it has not.
+    pub(crate) fn take_growth(&mut self, shows_turn: bool) {
+        let space = &mut self.null_space;
+        if shows_turn {
+            space.turn = TurnEvidence::AtLast;
+        } else if space.turn == TurnEvidence::AtLast {
+            space.turn = TurnEvidence::AsTheNormals;
+        }
+    }
+
+    /// Takes it that the turn about the object's centre cannot be seen.
+    pub(crate) fn hide_turn(&mut self, model: MotionModel) {
+        let turn = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        let parameters = model.parameters_of(&turn);
+        let size = parameters[..model.parameter_count()].iter().map(|c| c * c).sum::<f64>().sqrt();
+        let space = &mut self.null_space;
+        let Some(inverse) = space.frame.try_inverse() else { return };
+        if !space.holds_turn(model) {
+            space.turn = match space.turn {
+                TurnEvidence::New | TurnEvidence::NewAndHidden => TurnEvidence::NewAndHidden,
+                _ => TurnEvidence::Hidden,
+            };
+            space.in_body.push(model.parameters_of(&(space.frame * turn / size * inverse)));
+        }
+    }
+
+    /// Takes that back.
+    pub(crate) fn show_turn(&mut self) {
+        let space = &mut self.null_space;
+        let shown = match space.turn {
+            TurnEvidence::Hidden => TurnEvidence::AsTheNormals,
+            TurnEvidence::NewAndHidden => TurnEvidence::New,
+            _ => return,
+        };
+        space.turn = shown;
+        space.in_body.pop();
+    }
+
+    /// Whether a null direction holds a turn.
+    pub(crate) fn turn_is_unseen(&self, model: MotionModel) -> bool {
+        self.null_space.holds_turn(model)
+    }
+
+    /// Finds the null directions from the lever arms of the cells about their mean; `sigma` is the deviation of the noise.
+    pub(crate) fn find_null_directions(&mut self, model: MotionModel, sigma: f64) {
+        let k = model.parameter_count();
+        let count = self.cells.len() as f64;
+        let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
+        let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
+        let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
+        levers.view_mut((0, 0), (k, k)).fill(0.0);
+        // What errors of the normals alone would make of the levers.
+        let mut levers_of_noise = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
+        for (number, cell) in self.cells.iter().enumerate() {
+            let (normal, variance) = self.normal_by_neighbours(number, sigma);
+            let p = Point2::from((cell.centre - centroid) / spread);
+            let velocities = |along| SVector::from(model.normal_velocities(&p, along));
+            let (across, along) = (velocities(&normal), velocities(&Vector2::new(-normal.y, normal.x)));
+            levers += across * across.transpose() / count;
+            levers_of_noise += variance / count * along * along.transpose();
+        }
+        let eigen = levers.symmetric_eigen();
+        let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
+        let space = &mut self.null_space;
+        space.in_body.clear();
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            let of_noise = (vector.transpose() * levers_of_noise * vector)[(0, 0)];
+            if *value < tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise) {
+                let generator = model.generator(&vector.as_slice()[..k]);
+                let Some(inverse) = to_body.try_inverse() else { continue };
+                space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
+            }
+        }
+        space.frame = to_body;
+        space.turn = match space.turn {
+            TurnEvidence::Hidden => TurnEvidence::AsTheNormals,
+            TurnEvidence::NewAndHidden => TurnEvidence::New,
+            turn => turn,
+        };
+    }
+
+    /// Normal of the outline at a cell, and the variance of its direction in rad squared, by the cells some way before and after it. Where
+    /// cells err together this does not, as their own normals do: a circle would have its middle beside where it is.
+    fn normal_by_neighbours(&self, number: usize, sigma: f64) -> (Vector2<f64>, f64) {
+        // Of the value of a quadratic in the middle of its window.
+        let window = (2 * self.half_window + 1) as f64;
+        let noise = sigma * (tuning::QUADRATIC / window).sqrt();
+        let steps = (noise / (std::f64::consts::SQRT_2 * tuning::CHORD_NOISE * self.spacing)).ceil() as usize;
+        let steps = steps.clamp(1, (self.cells.len() / tuning::FEWEST_PARTS).max(1));
+        let [before, after] = [0, 1].map(|side| {
+            let (mut last, mut here) = (number, self.cells[number].neighbours[side]);
+            for _ in 1..steps {
+                // Links may point either way.
+                let [a, b] = self.cells[here].neighbours;
+                let next = if a == last { b } else { a };
+                if a == here || b == here {
+                    break;
+                }
+                (last, here) = (here, next);
+            }
+            self.cells[here].centre
+        });
+        let chord = after - before;
+        match chord.try_normalize(1e-12) {
+            Some(along) => {
+                let variance = (2.0 * noise * noise / chord.norm_squared()).min(tuning::ANY_DIRECTION);
+                (Vector2::new(along.y, -along.x), variance)
+            }
+            None => (self.cells[number].normal, tuning::ANY_DIRECTION),
+        }
+    }
+
+    /// The null directions in the image, for a pose.
+    pub(crate) fn null_directions(&self, model: MotionModel, pose: &Matrix3<f64>) -> Vec<NullDirection> {
+        let space = &self.null_space;
+        if space.in_body.is_empty() {
+            return Vec::new();
+        }
+        let k = model.parameter_count();
+        let Some(inverse) = pose.try_inverse() else { return Vec::new() };
+        let (ad, ad_inverse) = (model.adjoint(pose, &inverse), model.adjoint(&inverse, pose));
+        // Duals in centred coordinates, where the directions are orthonormal. What is taken off along a turn is all of the turn: noise of the
+        // normals gives its middle a place of its own, and the object would be taken to turn as it travels.
+        let Some(from_body) = space.frame.try_inverse() else { return Vec::new() };
+        let centring = model.adjoint(&from_body, &space.frame);
+        let list = space.in_body.iter().map(|u| {
+            let mut direction = [0.0; MAX_PARAMETERS];
+            let mut centred = [0.0; MAX_PARAMETERS];
+            for i in 0..k {
+                direction[i] = (0..k).map(|j| ad[i][j] * u[j]).sum();
+                centred[i] = (0..k).map(|j| centring[i][j] * u[j]).sum();
+            }
+            if space.in_body.len() == 1 {
+                centred = of_its_rates(model, centred);
+            }
+            let mut in_body = [0.0; MAX_PARAMETERS];
+            let mut dual = [0.0; MAX_PARAMETERS];
+            for j in 0..k {
+                in_body[j] = (0..k).map(|i| centred[i] * centring[i][j]).sum();
+            }
+            for j in 0..k {
+                dual[j] = (0..k).map(|i| in_body[i] * ad_inverse[i][j]).sum();
+            }
+            NullDirection { direction, dual }
+        });
+        list.collect()
+    }
+
+    /// Of all poses that differ from `pose` by null directions, the one that moves the object the least from `from`.
+    pub(crate) fn least_moved(&self, model: MotionModel, from: &Matrix3<f64>, pose: &Matrix3<f64>) -> Matrix3<f64> {
+        let k = model.parameter_count();
+        let mut pose = *pose;
+        let frame = &self.null_space.frame;
+        let (Some(to_body), Some(to_centred)) = (from.try_inverse(), frame.try_inverse()) else { return pose };
+        for direction in &self.null_space.in_body {
+            let generator = model.generator(&direction[..k]);
+            let centred = model.parameters_of(&(to_centred * generator * frame));
+            for _ in 0..tuning::LEAST_STEPS {
+                let change = to_centred * to_body * pose * frame;
+                let Some(step) = model.motion_between(&change, 1.0) else { break };
+                let along: f64 = step.iter().zip(&centred).map(|(a, b)| a * b).sum();
+                pose *= model.flow(&direction[..k], -along).into_inner();
+            }
+        }
+        pose
+    }
+}
+
+/// The dual of a unit direction that leaves nothing of its rates, where they are most of it; the direction itself otherwise.
+fn of_its_rates(model: MotionModel, direction: ParameterVector) -> ParameterVector {
+    let mut rates = direction;
+    let kinds = rates.iter_mut().zip(model.parameter_kinds());
+    kinds.filter(|(_, kind)| **kind != ParameterKind::Rate).for_each(|(rate, _)| *rate = 0.0);
+    let squared: f64 = rates.iter().map(|rate| rate * rate).sum();
+    if squared > 0.5 { rates.map(|rate| rate / squared) } else { direction }
+}
+
+impl NullSpace {
+    fn holds_turn(&self, model: MotionModel) -> bool {
+        let Some(inverse) = self.frame.try_inverse() else { return false };
+        self.in_body.iter().any(|direction| {
+            let generator = model.generator(&direction[..model.parameter_count()]);
+            let centred = inverse * generator * self.frame;
+            turn_rate(&centred).abs() > tuning::HOLDS_TURN
+        })
+    }
+}

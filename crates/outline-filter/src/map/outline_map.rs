@@ -1,0 +1,139 @@
+use nalgebra::{Point2, Vector2};
+
+use super::{Contour, nearest_field::NearestField, null_space::NullSpace};
+use crate::tuning::map as tuning;
+
+/// A stretch of the outline in the body frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cell {
+    pub(crate) centre: Point2<f64>,
+    pub(crate) normal: Vector2<f64>,
+    /// The cells before and after it; its own number where none is known.
+    pub(crate) neighbours: [usize; 2],
+}
+
+/// Geometry of an outline: cells along it in the body frame, in normalised coordinates.
+///
+/// Where the outline lies on the normal of a cell is not geometry but belief: `Belief::offsets`.
+#[derive(Debug, Clone)]
+pub(crate) struct OutlineMap {
+    pub(super) cells: Vec<Cell>,
+    pub(super) field: NearestField,
+    /// Length of a cell.
+    pub(super) spacing: f64,
+    /// Of the regression that places and normals come from, in points.
+    pub(super) half_window: usize,
+    /// Most places that a frame has shown at once.
+    pub(super) most_seen: usize,
+    pub(super) null_space: NullSpace,
+}
+
+impl OutlineMap {
+    /// One without cells, for contours with noise of deviation `sigma`, of which `points` will be measured. `None` where their length
+    /// is none.
+    pub(crate) fn for_contours(resolution: Resolution) -> Option<Self> {
+        let Resolution { spacing, half_window } = resolution;
+        let map = Self {
+            cells: Vec::new(),
+            field: NearestField::default(),
+            spacing,
+            half_window,
+            most_seen: 0,
+            null_space: NullSpace::default(),
+        };
+        (spacing > 0.0).then_some(map)
+    }
+
+    pub(crate) fn cells(&self) -> &[Cell] {
+        &self.cells
+    }
+
+    pub(crate) fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// Number of a cell near a body point, if there is any cell.
+    #[inline(always)]
+    pub(crate) fn near(&self, q: &Point2<f64>) -> Option<usize> {
+        self.field.lookup(q)
+    }
+
+    /// Number of the cell nearest to a body point.
+    pub(crate) fn nearest(&self, q: &Point2<f64>) -> Option<usize> {
+        self.field.lookup(q).map(|near| self.nearest_from(near, q))
+    }
+
+    /// The cell nearest to a body point, from one near it.
+    #[inline(always)]
+    pub(crate) fn nearest_from(&self, near: usize, q: &Point2<f64>) -> usize {
+        let mut number = near;
+        let mut distance = (self.cells[number].centre - q).norm_squared();
+        loop {
+            let mut better = number;
+            for neighbour in self.cells[number].neighbours {
+                let d = (self.cells[neighbour].centre - q).norm_squared();
+                if d < distance {
+                    (better, distance) = (neighbour, d);
+                }
+            }
+            if better == number {
+                return number;
+            }
+            number = better;
+        }
+    }
+
+    /// Whether a body point lies beyond a known end of the outline, its nearest cell given.
+    pub(crate) fn is_beyond_end(&self, number: usize, q: &Point2<f64>) -> bool {
+        let cell = &self.cells[number];
+        let [a, b] = cell.neighbours;
+        if a != number && b != number {
+            return false;
+        }
+        let tangent = Vector2::new(-cell.normal.y, cell.normal.x);
+        let along = tangent.dot(&(q - cell.centre));
+        let known = if a == number { b } else { a };
+        let to_known = tangent.dot(&(self.cells[known].centre - cell.centre));
+        along.abs() > tuning::BEYOND_END * self.spacing && (known == number || along * to_known < 0.0)
+    }
+
+    /// How far a bent outline lies from the straight cells, in the median: what is left to be noise where the points have none.
+    pub(crate) fn sagitta(&self) -> f64 {
+        let bends = self.cells.iter().map(|cell| {
+            let [a, b] = cell.neighbours.map(|n| self.cells[n].centre);
+            cell.normal.dot(&(nalgebra::center(&a, &b) - cell.centre)).abs()
+        });
+        // Over a chord of two cells: a quarter of it is left at the ends of one.
+        super::median(&mut bends.collect::<Vec<_>>()).unwrap_or(0.0)
+    }
+}
+
+/// How finely an outline is cut.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Resolution {
+    spacing: f64,
+    half_window: usize,
+}
+
+impl Resolution {
+    /// For contours, and the deviation of their noise, which is no less than `least_noise`; `points` of one frame will be measured on the cells.
+    pub(crate) fn of(contours: &[Contour], least_noise: f64, points: usize) -> (Self, f64) {
+        let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
+        for contour in contours {
+            let mut contour = contour.clone();
+            let weight = contour.len() as f64;
+            let Some(sigma) = contour.noise().map(|noise| noise.max(least_noise)) else { continue };
+            window = contour.half_window(sigma).max(window);
+            variance += weight * sigma * sigma;
+            count += weight;
+            length += contour.smooth_length(window);
+        }
+        // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
+        let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
+        let finest = (count / tuning::POINTS_PER_CELL).clamp(4.0, tuning::MOST_CELLS);
+        let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);
+        let spacing =
+            plenty.min(tuning::NOISE_PER_CELL * sigma).max(length / finest).min(length / tuning::CELLS_PER_LENGTH);
+        (Self { spacing, half_window: window }, sigma)
+    }
+}

@@ -1,0 +1,156 @@
+//! Which cell each point of a frame belongs to.
+use freeform_riccati::{is_affine, map_point_by};
+use nalgebra::{Matrix3, Point2, Vector3};
+
+use super::{Frame, Measurement, NoiseModel};
+use crate::{
+    belief::Belief,
+    map::{NullDirection, OutlineMap},
+    tuning::measurement as tuning,
+};
+
+/// In place of the number of a cell: none.
+pub(crate) const NO_CELL: usize = usize::MAX;
+
+/// Whether a frame is looked at for the first time, in a pose that may be off, or again, with weights known from before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pass {
+    First,
+    Again,
+}
+
+/// All that a frame is measured against.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View<'a> {
+    pub(crate) map: &'a OutlineMap,
+    pub(crate) belief: &'a Belief,
+    pub(crate) noise: &'a NoiseModel,
+}
+
+impl View<'_> {
+    /// The cell of every point and the linearised distance from it in a pose, with robust weights and null directions projected out.
+    ///
+    /// A point belongs to the cell that it was seen of, not to the nearest: noise along the outline moves a point out of a bend, so
+    /// that its distance from the nearest cell is too large by about `curvature sigma^2 / 2`, which thousands of points add up.
+    /// The mean of its neighbours along the contour has little of that noise, and its nearest cell is taken.
+    pub(crate) fn measure(&self, frame: &mut Frame, pose: &Matrix3<f64>, null: &[NullDirection], pass: Pass) {
+        let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
+        let half_window = self.half_window_of_places(pose, frame.points.len());
+        if pass == Pass::First {
+            frame.measurements.clear();
+            frame.measurements.resize(frame.points.len(), Measurement::NOTHING);
+        }
+        if is_affine(&inverse) {
+            self.measure_by::<true>(frame, &inverse, half_window, null, pass);
+        } else {
+            self.measure_by::<false>(frame, &inverse, half_window, null, pass);
+        }
+    }
+
+    fn measure_by<const AFFINE: bool>(
+        &self,
+        frame: &mut Frame,
+        inverse: &Matrix3<f64>,
+        half_window: usize,
+        null: &[NullDirection],
+        pass: Pass,
+    ) {
+        let Frame { points, measurements, values, shifts, pieces, places, .. } = frame;
+        places.clear();
+        if half_window == 0 {
+            places.extend_from_slice(points);
+        } else {
+            if pass == Pass::First {
+                // What the points count with in the means.
+                self.associate::<AFFINE>(measurements, inverse, points, points);
+                for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
+                    self.distance::<AFFINE>(measurement, p, inverse, shifts);
+                }
+                self.weigh(measurements, values, pass);
+            }
+            for piece in pieces.iter() {
+                let range = piece.range();
+                mean_of_neighbours(&points[range.clone()], &measurements[range], piece.closed, half_window, places);
+            }
+        }
+        self.associate::<AFFINE>(measurements, inverse, points, places);
+        self.keep_to_sides::<AFFINE>(measurements, pieces, places, inverse, half_window);
+        for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
+            let normal = self.distance::<AFFINE>(measurement, p, inverse, shifts);
+            self.linearise(measurement, p, &normal, null);
+        }
+        self.weigh(measurements, values, pass);
+    }
+
+    /// Points on either side whose mean says which cell a point belongs to: enough for the noise to be small against a cell, and few
+    /// against the outline.
+    fn half_window_of_places(&self, pose: &Matrix3<f64>, count: usize) -> usize {
+        let scale = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
+        let needed = (self.noise.sigma / (scale * self.map.spacing() * tuning::PLACE_NOISE)).powi(2);
+        let most = count as f64 * tuning::WIDEST_WINDOW;
+        (0.5 * (needed.min(most) - 1.0)).round().max(0.0) as usize
+    }
+
+    /// The cells of points, by the means of their neighbours where they count and by themselves where they do not.
+    fn associate<const AFFINE: bool>(
+        &self,
+        measurements: &mut [Measurement],
+        inverse: &Matrix3<f64>,
+        points: &[Point2<f64>],
+        places: &[Point2<f64>],
+    ) {
+        let map = self.map;
+        let body_place = |measurement: &Measurement, p, place| {
+            map_point_by::<AFFINE>(inverse, if measurement.weight > 0.0 { place } else { p })
+        };
+        // A first look at all of them waits for none; which way to go from there cannot be foreseen.
+        for (measurement, (p, place)) in measurements.iter_mut().zip(points.iter().zip(places)) {
+            measurement.cell = map.near(&body_place(measurement, p, place)).unwrap_or(NO_CELL);
+        }
+        for (measurement, (p, place)) in measurements.iter_mut().zip(points.iter().zip(places)) {
+            if measurement.cell != NO_CELL {
+                let q = body_place(measurement, p, place);
+                let number = map.nearest_from(measurement.cell, &q);
+                measurement.cell = if map.is_beyond_end(number, &q) { NO_CELL } else { number };
+            }
+        }
+    }
+}
+
+/// Mean of the neighbours of every point along a piece of the contour, weighted, the point itself included.
+fn mean_of_neighbours(
+    points: &[Point2<f64>],
+    measurements: &[Measurement],
+    closed: bool,
+    half_window: usize,
+    places: &mut Vec<Point2<f64>>,
+) {
+    let count = points.len();
+    let w = half_window.min((count - 1) / 2);
+    let weighted = |i: usize| (measurements[i].weight * points[i].coords).push(measurements[i].weight);
+    // Less than two rounds on, where a remainder would be most of the work.
+    let at = |i: usize| weighted(if i < count { i } else { i - count });
+    let mut sum = Vector3::zeros();
+    if closed {
+        // The window of the first point reaches back over the end.
+        (count - w..=count + w).for_each(|i| sum += at(i));
+    } else {
+        sum += at(0);
+    }
+    for (i, point) in points.iter().enumerate() {
+        if i > 0 && closed {
+            sum += at(i + w) - at(i + count - w - 1);
+        } else if i > 0 {
+            // Symmetric windows, narrower towards the ends: a lopsided mean lies off along the contour.
+            let (before, now) = (w.min(i - 1).min(count - i), w.min(i).min(count - 1 - i));
+            sum = if now > before {
+                sum + at(2 * i - 1) + at(2 * i)
+            } else if now < before {
+                sum - at(i - 1 - before) - at(i - before)
+            } else {
+                sum + at(i + now) - at(i - 1 - before)
+            };
+        }
+        places.push(if sum.z > 1e-3 { Point2::from(sum.xy() * (1.0 / sum.z)) } else { *point });
+    }
+}

@@ -1,0 +1,112 @@
+use freeform_curve_fit::Outline;
+use freeform_riccati::map_point;
+use nalgebra::{Matrix3, Point2};
+
+use super::Measurement;
+use crate::{belief::CellInformation, map::Contour};
+
+/// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reference {
+    /// Image coordinates.
+    pub(crate) origin: Point2<f64>,
+    /// Image lengths.
+    pub(crate) radius: f64,
+}
+
+impl Reference {
+    /// Of an outline.
+    pub(crate) fn of(outline: &Outline) -> Self {
+        Self { origin: outline.centroid(), radius: outline.rms_radius() }
+    }
+
+    /// Normalised coordinates to image coordinates.
+    pub(crate) fn to_image(self) -> Matrix3<f64> {
+        Matrix3::new(self.radius, 0.0, self.origin.x, 0.0, self.radius, self.origin.y, 0.0, 0.0, 1.0)
+    }
+}
+
+/// A connected run of points.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Piece {
+    start: usize,
+    count: usize,
+    pub(crate) closed: bool,
+}
+
+impl Piece {
+    pub(crate) fn range(&self) -> std::ops::Range<usize> {
+        self.start..self.start + self.count
+    }
+}
+
+/// The points of one frame and what is found of them; buffers that are reused from frame to frame.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Frame {
+    /// In normalised coordinates.
+    pub(crate) points: Vec<Point2<f64>>,
+    /// Pieces of the contour that the points make.
+    pub(crate) pieces: Vec<Piece>,
+    /// Means of neighbouring points, which say where along the outline they lie.
+    pub(crate) places: Vec<Point2<f64>>,
+    pub(crate) measurements: Vec<Measurement>,
+    /// Corrections of the offsets that are being tried.
+    pub(crate) shifts: Vec<f64>,
+    /// Information on the offsets with the frame, before it is taken.
+    pub(crate) cells: Vec<CellInformation>,
+    /// Right-hand sides of the offsets.
+    pub(crate) right: Vec<f64>,
+    /// For whatever needs a list of numbers.
+    pub(crate) values: Vec<f64>,
+}
+
+impl Frame {
+    /// Takes the points of an outline. One that repeats the point before it is no second measurement.
+    pub(crate) fn load(&mut self, outline: &Outline, reference: Reference) {
+        let (origin, scale) = (reference.origin, 1.0 / reference.radius);
+        let Self { points, pieces, .. } = self;
+        points.clear();
+        pieces.clear();
+        for piece in outline.pieces() {
+            let start = points.len();
+            for p in piece.points {
+                let p = Point2::from((p - origin) * scale);
+                if points.len() == start || points.last() != Some(&p) {
+                    points.push(p);
+                }
+            }
+            while piece.closed && points.len() > start + 1 && points.last() == Some(&points[start]) {
+                points.pop();
+            }
+            pieces.push(Piece { start, count: points.len() - start, closed: piece.closed });
+        }
+    }
+
+    /// Leaves at most about so many of the points.
+    pub(crate) fn thin_out(&mut self, count: usize) {
+        let stride = self.points.len().div_ceil(count).max(1);
+        let mut kept = 0;
+        for piece in &mut self.pieces {
+            let start = kept;
+            for i in piece.range().step_by(stride) {
+                self.points[kept] = self.points[i];
+                kept += 1;
+            }
+            (piece.start, piece.count) = (start, kept - start);
+        }
+        self.points.truncate(kept);
+    }
+
+    /// No corrections of the offsets of so many cells.
+    pub(crate) fn clear_shifts(&mut self, cells: usize) {
+        self.shifts.clear();
+        self.shifts.resize(cells, 0.0);
+    }
+
+    /// The pieces as contours in the body frame, for a pose.
+    pub(crate) fn contours(&self, pose: &Matrix3<f64>) -> Vec<Contour> {
+        let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
+        let in_body = |piece: &Piece| self.points[piece.range()].iter().map(|p| map_point(&inverse, p)).collect();
+        self.pieces.iter().map(|piece| Contour::new(in_body(piece), piece.closed)).collect()
+    }
+}

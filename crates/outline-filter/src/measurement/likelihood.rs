@@ -1,0 +1,117 @@
+//! How badly a pose explains a frame, for comparison with other poses.
+use nalgebra::Matrix3;
+
+use super::{Frame, Measurement, Pass, View};
+use crate::{
+    map::median,
+    tuning::{likelihood as tuning, measurement::MEDIAN_TO_DEVIATION},
+};
+
+/// Twice the negative logarithm of a likelihood, but for a constant, and how much chance there is in it.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NegativeLogLikelihood {
+    pub(crate) squares: f64,
+    points: f64,
+    /// Number of points, with a larger weight for points with correlated errors.
+    weighted: f64,
+}
+
+impl NegativeLogLikelihood {
+    /// Whether the difference is more than what noise makes of two poses that are wrong alike, or right alike: a test of models of which
+    /// neither holds the other (Q. Vuong 1989, Likelihood ratio tests for model selection and non-nested hypotheses), the variance taken
+    /// from the noise. Noise is what the other leaves, if that is more than was known of.
+    pub(crate) fn is_worse_than(&self, other: &Self) -> bool {
+        let unit = (other.squares / other.points).max(1.0);
+        self.squares - other.squares > tuning::SIGNIFICANT * unit * (tuning::VARIANCE * other.weighted).sqrt()
+    }
+
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.squares += other.squares;
+        self.points += other.points;
+        self.weighted += other.weighted;
+    }
+}
+
+impl View<'_> {
+    /// Smallest noise that poses are compared by.
+    pub(crate) fn comparable_noise(&self) -> f64 {
+        self.noise.sigma.max(tuning::CELL_ERROR * self.map.spacing())
+    }
+
+    /// Of the points as they have been measured, before the information of their frame has been taken.
+    pub(crate) fn negative_log_likelihood(&self, frame: &Frame) -> NegativeLogLikelihood {
+        let scale = self.comparable_noise();
+        let innovations = frame.measurements.iter().map(|m| self.innovation_of(m, &frame.shifts));
+        of_innovations(innovations, scale, self.noise.correlation())
+    }
+
+    /// Of the loaded points in several poses. Where the map leaves more than the noise in the best of them, as one of few points does,
+    /// that is what they are compared by.
+    pub(crate) fn negative_log_likelihoods(
+        &self,
+        frame: &mut Frame,
+        poses: &[Matrix3<f64>],
+    ) -> Vec<NegativeLogLikelihood> {
+        frame.clear_shifts(self.map.cells().len());
+        let mut scale = f64::INFINITY;
+        let mut all: Vec<Vec<Option<f64>>> = Vec::with_capacity(poses.len());
+        for pose in poses {
+            self.measure(frame, pose, &[], Pass::First);
+            let list: Vec<_> = frame.measurements.iter().map(|m| self.innovation_of(m, &frame.shifts)).collect();
+            let mut sizes: Vec<f64> = list.iter().flatten().map(|innovation| innovation.abs()).collect();
+            scale = scale.min(median(&mut sizes).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m));
+            all.push(list);
+        }
+        let scale = if scale.is_finite() { scale.max(self.comparable_noise()) } else { self.comparable_noise() };
+        let correlation = self.noise.correlation();
+        all.into_iter().map(|list| of_innovations(list.into_iter(), scale, correlation)).collect()
+    }
+
+    /// Distance of a point from the outline as it was known, as if that were exact; `None` where nothing was known.
+    fn innovation_of(&self, m: &Measurement, shifts: &[f64]) -> Option<f64> {
+        let own = self.belief.information.cells.get(m.cell).map(|cell| cell.own).filter(|own| *own > 0.0)?;
+        let variance = 1.0 + m.by_offset * m.by_offset / own;
+        Some((m.residual + m.by_offset * shifts[m.cell]) / variance.sqrt())
+    }
+}
+
+fn of_innovations(
+    innovations: impl ExactSizeIterator<Item = Option<f64>>,
+    scale: f64,
+    correlation: f64,
+) -> NegativeLogLikelihood {
+    let points = innovations.len() as f64;
+    let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
+    let squares = innovations.map(|innovation| innovation.map_or(tuning::UNKNOWN, square)).sum();
+    NegativeLogLikelihood { squares, points, weighted: points * correlation }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn the_variance_of_a_difference_of_squares_is_that_of_points_that_share_half_their_noise() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let (points, runs) = (50, 2000);
+        let (mut sum, mut worse) = (0.0, 0);
+        for _ in 0..runs {
+            let mut poses =
+                [NegativeLogLikelihood { squares: 0.0, points: f64::from(points), weighted: f64::from(points) }; 2];
+            for _ in 0..points {
+                let shared = normal();
+                poses.iter_mut().for_each(|pose| pose.squares += 0.5 * (shared + normal()).powi(2));
+            }
+            sum += (poses[0].squares - poses[1].squares).powi(2);
+            worse += usize::from(poses[0].is_worse_than(&poses[1]));
+        }
+        let variance = sum / f64::from(runs * points);
+        assert!((variance / tuning::VARIANCE - 1.0).abs() < 0.1, "{variance}");
+        assert_eq!(worse, 0);
+    }
+}

@@ -1,0 +1,111 @@
+//! The distance of a point from its cell, its Jacobian, and its weight.
+use freeform_riccati::{MAX_PARAMETERS, ParameterVector, map_point_by, pull_back_by};
+use nalgebra::{Matrix3, Point2, Vector2};
+
+use super::{NO_CELL, Pass, View};
+use crate::{
+    map::{NullDirection, median},
+    tuning::measurement as tuning,
+};
+
+/// What becomes of one point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Measurement {
+    /// Its cell, or [`NO_CELL`].
+    pub(crate) cell: usize,
+    /// Distance from the outline along its normal in the image, normalised.
+    pub(crate) residual: f64,
+    /// How fast the residual falls as the offset grows.
+    pub(crate) by_offset: f64,
+    /// How fast the residual falls as the pose error grows.
+    pub(crate) jacobian: ParameterVector,
+    /// Information in units of the noise.
+    pub(crate) weight: f64,
+}
+
+impl Measurement {
+    pub(super) const NOTHING: Self =
+        Self { cell: NO_CELL, residual: 0.0, by_offset: 0.0, jacobian: [0.0; MAX_PARAMETERS], weight: 0.0 };
+}
+
+impl View<'_> {
+    /// Distance `z = n . (g^-1 p - c) - d` of an image point from the outline on the normal of its cell, brought to image lengths.
+    /// Returns the normal of the outline in the image.
+    #[inline(always)]
+    pub(super) fn distance<const AFFINE: bool>(
+        &self,
+        measurement: &mut Measurement,
+        p: &Point2<f64>,
+        inverse: &Matrix3<f64>,
+        shifts: &[f64],
+    ) -> Vector2<f64> {
+        let number = measurement.cell;
+        if number == NO_CELL {
+            (measurement.residual, measurement.by_offset) = (0.0, 0.0);
+            return Vector2::zeros();
+        }
+        let cell = &self.map.cells()[number];
+        let q = map_point_by::<AFFINE>(inverse, p);
+        let z = cell.normal.dot(&(q - cell.centre)) - self.belief.offsets[number] - shifts[number];
+        // A unit step along the image normal moves the body point by |D' n| along n.
+        let pulled = pull_back_by::<AFFINE>(inverse, p, &q, &cell.normal);
+        measurement.by_offset = 1.0 / pulled.norm();
+        measurement.residual = z * measurement.by_offset;
+        pulled * measurement.by_offset
+    }
+
+    /// The Jacobian of the distance: the normal velocity that each parameter of the pose error gives the foot of the point on the outline.
+    /// For affine motion the noisy point itself would bias it.
+    #[inline]
+    pub(super) fn linearise(
+        &self,
+        measurement: &mut Measurement,
+        p: &Point2<f64>,
+        normal: &Vector2<f64>,
+        null: &[NullDirection],
+    ) {
+        if measurement.cell == NO_CELL {
+            measurement.jacobian = [0.0; MAX_PARAMETERS];
+            return;
+        }
+        let foot = p - measurement.residual * normal;
+        measurement.jacobian = self.belief.model.normal_velocities(&foot, normal);
+        null.iter().for_each(|direction| direction.project_out(&mut measurement.jacobian));
+    }
+
+    /// Tukey's weights.
+    pub(super) fn weigh(&self, measurements: &mut [Measurement], values: &mut Vec<f64>, pass: Pass) {
+        let noise = self.noise;
+        let mut scale = noise.sigma;
+        let limit = tuning::FULL_WEIGHT * scale;
+        let near = measurements.iter().filter(|m| m.residual.abs() < limit).count();
+        let mut share = 1.0;
+        if (near as f64) < tuning::NEAR_ENOUGH * measurements.len() as f64 {
+            values.clear();
+            values.extend(measurements.iter().filter(|m| m.cell != NO_CELL).map(|m| m.residual.abs()));
+            scale = scale.max(tuning::MEDIAN_TO_DEVIATION * median(values).unwrap_or(0.0));
+            if pass == Pass::Again {
+                // A frame with more noise than most counts for less. A prediction that is off by more than the noise, though, must not
+                // lose the points it has to be corrected by.
+                scale = scale.min(noise.tolerated());
+                share = (noise.sigma / scale).powi(2);
+            }
+        }
+        let scale = 1.0 / scale;
+        for measurement in measurements {
+            if measurement.cell == NO_CELL {
+                measurement.weight = 0.0;
+                continue;
+            }
+            let variance = noise.inflation(measurement.cell);
+            let residual = if variance > 1.0 { measurement.residual / variance.sqrt() } else { measurement.residual };
+            let excess = (residual.abs() * scale - tuning::FULL_WEIGHT) / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT);
+            measurement.weight = match excess {
+                e if e <= 0.0 => 1.0,
+                e if e < 1.0 => (1.0 - e * e).powi(2),
+                _ => 0.0,
+            } * share
+                / variance;
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! Points of one frame against the map: which cell each belongs to, its distance from it, how that changes with the pose, and how much it counts.
+mod association;
+mod frame;
+mod likelihood;
+mod linearisation;
+mod noise;
+mod normal_consistency;
+mod variance_inflation;
+
+pub(crate) use association::{NO_CELL, Pass, View};
+pub(crate) use frame::{Frame, Piece, Reference};
+pub(crate) use likelihood::NegativeLogLikelihood;
+pub(crate) use linearisation::Measurement;
+pub(crate) use noise::{NoiseModel, Tolerance, correlation_of, spread};

@@ -1,0 +1,155 @@
+//! Noise of the points: how much there is, whether it is correlated along the contour, and how much more of it corners have.
+use super::{Measurement, NO_CELL, variance_inflation::VarianceInflation};
+use crate::{map::median, tuning::noise as tuning};
+
+/// Whether a frame may show more noise than the contour of the first, none having been compared yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tolerance {
+    /// No more than by comparison with frames seen.
+    Known,
+    /// The contour of one frame may hide errors that are smooth along it and change from frame to frame.
+    Relaxed,
+}
+
+/// Deviation of the noise on the points, normalised, and what goes with it.
+#[derive(Debug, Clone)]
+pub(crate) struct NoiseModel {
+    pub(crate) sigma: f64,
+    /// Frames that its estimate is worth.
+    weight: f64,
+    /// What bent cells alone would leave of the residuals.
+    floor: f64,
+    pub(crate) tolerance: Tolerance,
+    level: NoiseLevel,
+    correlation: Correlation,
+    /// Of each cell.
+    inflation: Vec<VarianceInflation>,
+}
+
+/// Spread of the last frames, good ones and bad ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct NoiseLevel {
+    frames: [f64; tuning::FRAMES],
+    count: usize,
+}
+
+/// How many times the variance of a mean along the contour is what independent errors give.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Correlation {
+    ratio: f64,
+    frames: f64,
+}
+
+impl NoiseModel {
+    /// Of contours with noise of deviation `sigma`, cut into cells with a sagitta and a spacing.
+    pub(crate) fn new(sigma: f64) -> Self {
+        Self {
+            sigma,
+            weight: tuning::FIRST_WEIGHT,
+            floor: tuning::SMALLEST,
+            tolerance: Tolerance::Known,
+            level: NoiseLevel { frames: [0.0; tuning::FRAMES], count: 0 },
+            correlation: Correlation { ratio: 1.0, frames: 0.0 },
+            inflation: Vec::new(),
+        }
+    }
+
+    /// Takes it that straight cells leave some of a bent outline.
+    pub(crate) fn allow_for_cells(&mut self, sagitta: f64, spacing: f64) {
+        self.floor = self.floor.max(tuning::SAGITTA_LEFT * sagitta).max(tuning::CELL_ERROR * spacing);
+        self.sigma = self.sigma.max(2.0 * tuning::SAGITTA_LEFT * sagitta).max(self.floor);
+    }
+
+    /// Takes what frames have shown so far from another model.
+    pub(crate) fn take_level_of(&mut self, other: &Self) {
+        (self.level, self.correlation, self.tolerance) = (other.level, other.correlation, other.tolerance);
+    }
+
+    /// Makes room for so many cells.
+    pub(crate) fn resize(&mut self, cells: usize) {
+        self.inflation.resize(cells, VarianceInflation::NEW);
+    }
+
+    /// Takes a frame's estimate of the noise into the running mean.
+    pub(crate) fn take(&mut self, sigma: f64) {
+        let weight = self.weight;
+        self.sigma = (self.sigma * weight + sigma) / (weight + 1.0);
+        self.sigma = self.sigma.max(self.floor);
+        self.weight = (weight + 1.0).min(tuning::MEMORY);
+    }
+
+    /// Takes the spread of a frame, used or not.
+    pub(crate) fn take_spread(&mut self, spread: f64) {
+        self.level.frames[self.level.count % tuning::FRAMES] = spread.min(2.0 * tuning::LARGEST);
+        self.level.count += 1;
+    }
+
+    /// Takes a squared residual of a cell in units of the noise.
+    pub(crate) fn take_residual(&mut self, cell: usize, square: f64) {
+        self.inflation[cell].take(square);
+    }
+
+    /// Takes how many times the variance of the mean over a stretch was what independent errors give.
+    pub(crate) fn take_correlation(&mut self, ratio: f64) {
+        let Correlation { ratio: mean, frames } = &mut self.correlation;
+        *frames = (*frames + 1.0).min(tuning::CORRELATION_MEMORY);
+        *mean += (ratio - *mean) / *frames;
+    }
+
+    /// Variance that the points of a cell count with, in units of that of the noise; at least 1.
+    #[inline(always)]
+    pub(crate) fn inflation(&self, cell: usize) -> f64 {
+        self.inflation[cell].variance
+    }
+
+    /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any.
+    pub(crate) fn tolerated(&self) -> f64 {
+        let known = self.sigma;
+        let mut frames = self.level.frames;
+        let seen = &mut frames[..self.level.count.min(tuning::FRAMES)];
+        let typical = median(seen);
+        let at_first = match self.tolerance {
+            Tolerance::Relaxed => tuning::LARGEST_AT_FIRST,
+            Tolerance::Known => 0.0,
+        };
+        let most =
+            typical.map_or(at_first, |typical| (tuning::LARGEST_RATIO * typical.max(known)).min(tuning::LARGEST));
+        most.max(tuning::LARGEST_RATIO * known)
+    }
+
+    /// Points that tell as much as one with independent errors would, at least 1.
+    pub(crate) fn correlation(&self) -> f64 {
+        let Correlation { ratio, frames } = self.correlation;
+        let uncertainty = (2.0 / (tuning::STRETCHES as f64 * frames.max(1.0))).sqrt();
+        (ratio / (1.0 + tuning::CORRELATION_SIGNIFICANT * uncertainty)).max(1.0)
+    }
+
+    /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
+    pub(crate) fn effective_variance(&self) -> f64 {
+        self.sigma * self.sigma * self.correlation()
+    }
+}
+
+/// How many times the variance of the mean residual over a stretch of the contour is what independent errors of deviation `noise` give;
+/// `None` where it cannot be told.
+pub(crate) fn correlation_of(measurements: &[Measurement], noise: Option<f64>) -> Option<f64> {
+    let length = measurements.len() / tuning::STRETCHES;
+    let noise = noise.filter(|noise| *noise > 0.0 && length >= tuning::FEWEST_IN_STRETCH)?;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for stretch in measurements.chunks_exact(length) {
+        let used = stretch.iter().filter(|m| m.weight > 0.0);
+        let (total, number) = used.fold((0.0, 0.0), |(total, number), m| (total + m.residual, number + 1.0));
+        if 2.0 * number > length as f64 {
+            sum += total * total / number;
+            count += 1.0;
+        }
+    }
+    (2.0 * count > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
+}
+
+/// Robust deviation of all residuals; infinite where there are none.
+pub(crate) fn spread(values: &mut Vec<f64>, measurements: &[Measurement]) -> f64 {
+    values.clear();
+    values.extend(measurements.iter().filter(|m| m.cell != NO_CELL).map(|m| m.residual.abs()));
+    median(values).map_or(f64::INFINITY, |m| crate::tuning::measurement::MEDIAN_TO_DEVIATION * m)
+}

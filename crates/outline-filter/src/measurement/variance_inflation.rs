@@ -1,0 +1,51 @@
+//! Variance inflation: how much the points of a cell scatter beyond the noise, as at corners that straight cells do not follow.
+use crate::tuning::noise as tuning;
+
+/// Running mean square of a cell's residuals in units of the noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct VarianceInflation {
+    mean_square: f64,
+    points: f64,
+    /// Variance that the points count with, in units of that of the noise; at least 1.
+    pub(super) variance: f64,
+}
+
+impl VarianceInflation {
+    pub(super) const NEW: Self = Self { mean_square: 1.0, points: tuning::INFLATION_PRIOR_POINTS, variance: 1.0 };
+
+    /// Takes one squared residual in units of the noise.
+    pub(super) fn take(&mut self, square: f64) {
+        self.points = (self.points + 1.0).min(tuning::INFLATION_MEMORY);
+        let square = square.min(tuning::INFLATION_CLIPPED * self.variance);
+        let share = 1.0 / self.points;
+        self.mean_square += (square - self.mean_square) * share;
+        let uncertainty = (2.0 * share).sqrt();
+        self.variance = (self.mean_square / (1.0 + tuning::INFLATION_SIGNIFICANT * uncertainty)).max(1.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn cells_whose_points_scatter_more_than_the_noise_count_for_less_once_that_is_sure() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut after = |deviation: f64, points: usize| {
+            let mut inflation = VarianceInflation::NEW;
+            (0..points).for_each(|_| {
+                let residual: f64 = StandardNormal.sample(&mut rng);
+                inflation.take((deviation * residual).powi(2));
+            });
+            inflation.variance
+        };
+        let (usual, soon, later) = (after(1.0, 400), after(3.0, 4), after(3.0, 400));
+        assert!(usual < 1.1, "{usual}");
+        assert!(soon < 3.0, "{soon}");
+        assert!((5.0..10.0).contains(&later), "{later}");
+    }
+}

@@ -1,0 +1,8 @@
+//! What is believed moved on in time, and what is forgotten on the way.
+mod pose_change;
+mod process_noise;
+mod shape_noise;
+mod step;
+
+pub(crate) use pose_change::{ByKind, centred_change, kind_index};
+pub(crate) use shape_noise::ShapeNoise;

@@ -1,0 +1,130 @@
+//! Shape process noise: outlines that change slowly, as those of segmented pictures do, seen by innovations of the offsets that repeat.
+use crate::{
+    belief::{Belief, CellInformation, STATE},
+    tuning::shape_noise as tuning,
+};
+
+/// How fast the offsets change, from the correlation of their innovations in successive frames (R. Mehra, 1970); none until the
+/// evidence is significant.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ShapeNoise {
+    /// Variance added to every offset per frame, in units of the noise.
+    variance: f64,
+    repeated: f64,
+    uncertainty: f64,
+    /// Innovation of the offset of each cell in the last frame, in units of the noise; 0 where it was not seen.
+    last: Vec<f64>,
+}
+
+impl ShapeNoise {
+    /// Makes room for so many cells.
+    pub(crate) fn resize(&mut self, cells: usize) {
+        self.last.resize(cells, 0.0);
+    }
+
+    /// Takes the sums of products of successive innovations and of their squares, over so many cells.
+    fn take(&mut self, products: f64, squares: f64, cells: f64) {
+        if self.variance > 0.0 {
+            self.variance = (self.variance + tuning::GAIN * products / cells).max(0.0);
+            return;
+        }
+        let kept = 1.0 - 1.0 / tuning::MEMORY;
+        self.repeated = kept * self.repeated + products;
+        self.uncertainty = kept * self.uncertainty + squares;
+        if self.repeated > tuning::SIGNIFICANT * self.uncertainty.sqrt() {
+            self.variance = tuning::GAIN * products.max(0.0) / cells;
+            (self.repeated, self.uncertainty) = (0.0, 0.0);
+        }
+    }
+
+    /// Compares the innovations of the offsets with those of the frame before. `before` is the information that the cells had, now
+    /// held by the belief with the frame added; `shifts` are the corrections made; `sigma` is the deviation of the noise.
+    pub(crate) fn compare_innovations(
+        &mut self,
+        belief: &Belief,
+        shifts: &[f64],
+        before: &[CellInformation],
+        sigma: f64,
+    ) {
+        let scale = belief.scale() / sigma;
+        let (mut products, mut squares, mut count) = (0.0, 0.0, 0.0);
+        for (number, last) in self.last.iter_mut().enumerate() {
+            let gain = 1.0 - before[number].own / belief.information.cells[number].own;
+            // Also false where a cell has no information yet.
+            let is_told = gain > tuning::SMALLEST_GAIN && before[number].own > 0.0;
+            let innovation = if is_told { scale * shifts[number] / gain } else { 0.0 };
+            let innovation = innovation.clamp(-tuning::CLIPPED, tuning::CLIPPED);
+            if innovation != 0.0 && *last != 0.0 {
+                let product = innovation * *last;
+                products += product;
+                squares += product * product;
+                count += 1.0;
+            }
+            *last = innovation;
+        }
+        if count > 0.0 {
+            self.take(products, squares, count);
+        }
+    }
+
+    /// Lets the outline have changed since the last frame: the offsets lose information, pose and motion do not.
+    pub(crate) fn forget_shape(&self, belief: &mut Belief) {
+        if self.variance <= 0.0 {
+            return;
+        }
+        for cell in &mut belief.information.cells {
+            if cell.own <= 0.0 {
+                continue;
+            }
+            let own = 1.0 / (1.0 / cell.own + self.variance);
+            let kept = own / cell.own;
+            // The marginal information `dense - c c' / own` stays as it is.
+            let lost = (1.0 - kept) / cell.own;
+            for i in 0..STATE {
+                let factor = lost * cell.coupling[i];
+                for j in 0..STATE {
+                    belief.information.dense[i][j] -= factor * cell.coupling[j];
+                }
+            }
+            cell.coupling.iter_mut().for_each(|entry| *entry *= kept);
+            cell.own = own;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::dense_filter::{AGREES, DenseFilter, Problem};
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn shape_noise_adds_a_variance_to_every_offset_and_leaves_pose_and_motion_alone(mut problem in Problem::any()) {
+            let noise = ShapeNoise { variance: problem.rng.random_range(0.01..2.0), ..ShapeNoise::default() };
+            let belief = &mut problem.belief;
+            let mut dense = DenseFilter::of(&belief.information);
+            dense.add_shape_noise(noise.variance);
+            noise.forget_shape(belief);
+            let difference = dense.difference(&belief.information, |_, _| true);
+            prop_assert!(difference < AGREES, "{difference}");
+            let difference = dense.difference_of_marginal(&belief.marginal);
+            prop_assert!(difference < AGREES, "marginal {difference}");
+        }
+    }
+
+    #[test]
+    fn innovations_that_repeat_are_taken_for_a_changing_shape_and_independent_ones_are_not() {
+        let variance_after = |products: f64| {
+            let mut noise = ShapeNoise::default();
+            (0..60).for_each(|_| noise.take(products, 100.0, 100.0));
+            noise.variance
+        };
+        assert!(variance_after(50.0) > 0.0);
+        assert_eq!(variance_after(5.0), 0.0);
+        assert_eq!(variance_after(-50.0), 0.0);
+    }
+}

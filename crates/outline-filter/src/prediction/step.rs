@@ -1,0 +1,48 @@
+use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
+use nalgebra::Matrix3;
+
+use crate::{
+    belief::{Belief, CellInformation, EarlierPoses, moved_marginal},
+    tuning::update::MOTION_PRIOR,
+};
+
+impl Belief {
+    /// Moves on by `seconds` of the estimated motion: `g <- exp(A(theta) dt) g`, information `<- F^-T . F^-1` with the error transition
+    /// `F = [[Ad, V], [0, I]]`. Whether the numbers allow it; nothing changes otherwise.
+    pub(crate) fn predict(&mut self, seconds: f64) -> bool {
+        let (model, k) = (self.model, self.information.k);
+        let flow = model.flow(&self.motion[..k], seconds).into_inner();
+        let Some(inverse) = flow.try_inverse().filter(|m| m.iter().all(|e| e.is_finite())) else { return false };
+        let sensitivities = model.flow_sensitivities(&self.motion[..k], seconds);
+        let by_motion = model.parameter_columns(sensitivities.into_iter());
+        let ad_inverse = model.adjoint(&inverse, &flow);
+        let mut product: ParameterMatrix = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+        for i in 0..k {
+            for j in 0..k {
+                product[i][j] = (0..k).map(|m| ad_inverse[i][m] * by_motion[m][j]).sum();
+            }
+        }
+        self.pose = flow * self.pose;
+        self.information.predict(&ad_inverse, &product);
+        self.marginal = moved_marginal(&self.marginal, k, &ad_inverse, &product);
+        self.memory.advance(seconds);
+        true
+    }
+
+    /// Puts the object into a new pose and forgets motion and pose, keeping the outline.
+    pub(crate) fn relocate(&mut self, pose: Matrix3<f64>) {
+        let k = self.information.k;
+        self.pose = pose;
+        self.information.clear_dense();
+        for i in 0..k {
+            self.information.dense[i][i] = MOTION_PRIOR;
+            self.information.dense[k + i][k + i] = MOTION_PRIOR;
+        }
+        for cell in &mut self.information.cells {
+            *cell = CellInformation { own: cell.own, ..CellInformation::NOTHING };
+        }
+        self.marginal = self.information.marginal();
+        self.earlier_poses = EarlierPoses::Known;
+        self.memory.clear();
+    }
+}

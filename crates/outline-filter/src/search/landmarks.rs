@@ -1,0 +1,31 @@
+use freeform_curve_fit::{FitSettings, Fitter, Outline};
+use freeform_decompose::{Decomposition, RelatedPoints};
+use nalgebra::{Affine2, Point2};
+
+use crate::measurement::Reference;
+
+/// Related points of one outline, those of the quartic's two line pairs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Landmarks([Point2<f64>; 2]);
+
+impl Landmarks {
+    /// In the image coordinates of the outline.
+    pub(crate) fn of(outline: &Outline) -> Option<Self> {
+        let fit = Fitter::new(FitSettings::default()).ok()?.fit(outline).ok()?;
+        let decomposition = Decomposition::of(fit.working()).ok()?;
+        let related = RelatedPoints::of(&decomposition);
+        let mut points =
+            related.level(4).map(|d| fit.normalisation().centre + fit.normalisation().radius * d.point.coords);
+        Some(Self([points.next()?, points.next()?]))
+    }
+
+    /// Moved by an affine map of the image.
+    pub(crate) fn moved(&self, map: &Affine2<f64>) -> Self {
+        Self(self.0.map(|p| map * p))
+    }
+
+    /// In normalised coordinates.
+    pub(super) fn normalised(&self, reference: Reference) -> [Point2<f64>; 2] {
+        self.0.map(|p| Point2::from((p - reference.origin) / reference.radius))
+    }
+}

@@ -1,0 +1,181 @@
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point, pull_back};
+use nalgebra::{Matrix3, Point2, Rotation2, SMatrix, SVector, Vector2};
+
+use super::Landmarks;
+use crate::{
+    map::median,
+    measurement::View,
+    track::Track,
+    tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning},
+};
+
+/// A pose that fits a frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RegisteredPose {
+    /// Body to image, normalised coordinates.
+    pub(crate) pose: Matrix3<f64>,
+    /// Trimmed mean distance of the points from the map, normalised.
+    score: f64,
+    /// Turn from the pose before, rad, anticlockwise where y points up.
+    pub(crate) turn: f64,
+}
+
+/// Poses that bring the outline of a track onto the normalised points of a frame, at most four (eight with a model of more parameters).
+/// `landmarks` are the related points of the track in its present pose, and those of the frame.
+pub(crate) fn register(
+    track: &Track,
+    points: &[Point2<f64>],
+    landmarks: Option<[Landmarks; 2]>,
+) -> Vec<RegisteredPose> {
+    let view = track.view();
+    let (map, model, pose) = (view.map, track.model(), track.body_pose());
+    let stride = (points.len() / tuning::FEW_POINTS).max(1);
+    let few: Vec<_> = points.iter().step_by(stride).copied().collect();
+    let count = map.cells().len() as f64;
+    let body_centre = map.cells().iter().map(|c| map_point(pose, &c.centre).coords / count).sum::<Vector2<f64>>();
+    let centre = points.iter().map(|p| p.coords / points.len() as f64).sum::<Vector2<f64>>();
+    // Of turns that make no difference the least is taken.
+    let turns = if track.turn_is_unseen() { 1 } else { tuning::TURNS };
+    let mut starts: Vec<_> = (0..turns)
+        .map(|i| turn_between(std::f64::consts::TAU * i as f64 / tuning::TURNS as f64, &body_centre, &centre))
+        .collect();
+    if turns > 1 {
+        starts.push(Matrix3::identity());
+    }
+    if let Some([before, after]) = landmarks.filter(|_| turns > 1) {
+        let ([a, b], [c, d]) = (before.normalised(track.reference()), after.normalised(track.reference()));
+        for (c, d) in [(c, d), (d, c)] {
+            let (from, to) = (b - a, d - c);
+            let turn = from.perp(&to).atan2(from.dot(&to));
+            let middle = |p: Point2<f64>, q: Point2<f64>| 0.5 * (p.coords + q.coords);
+            starts.push(turn_between(turn, &middle(a, b), &middle(c, d)));
+        }
+    }
+    let found: Vec<RegisteredPose> = starts
+        .iter()
+        .map(|start| refined(track, &few, MotionModel::Rigid, &(start * pose), tuning::SEARCH_STEPS))
+        .collect();
+    let mut best = Vec::new();
+    for found in found.into_iter().filter(|h| h.score.is_finite()) {
+        match best.iter_mut().find(|other| same(other, &found)) {
+            Some(other) if other.score > found.score => *other = found,
+            Some(_) => {}
+            None => best.push(found),
+        }
+    }
+    keep(&mut best, tuning::REFINED);
+    best = best.iter().map(|h| refined(track, points, MotionModel::Rigid, &h.pose, tuning::REFINEMENT_STEPS)).collect();
+    best.retain(|h| h.score.is_finite());
+    keep(&mut best, tuning::KEPT);
+    if model != MotionModel::Rigid {
+        // More parameters start from fewer. They may also lead astray where arcs are missing, so that the rigid poses stay.
+        let more = best.clone().into_iter().map(|found| {
+            let models = MotionModel::ALL.into_iter().filter(|m| *m > MotionModel::Rigid && *m <= model);
+            models.fold(found, |h, model| refined(track, points, model, &h.pose, tuning::REFINEMENT_STEPS))
+        });
+        best.extend(more);
+        best.retain(|h| h.score.is_finite());
+    }
+    for found in &mut best {
+        // A start between middles slides along what the frame shows more of.
+        found.pose = map.least_moved(model, pose, &found.pose);
+        found.turn = turn_of(&found.pose, pose);
+    }
+    best
+}
+
+/// Keeps the best, so many, and as many of the smallest turns that are hardly worse: a symmetric outline has any number of equals.
+fn keep(list: &mut Vec<RegisteredPose>, count: usize) {
+    list.sort_by(|a, b| a.score.total_cmp(&b.score));
+    let Some(limit) = list.first().map(|h| tuning::TIE * h.score) else { return };
+    let rest = list.split_off(count.min(list.len()));
+    let mut ties: Vec<_> = rest.into_iter().filter(|h| h.score <= limit).collect();
+    ties.sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
+    ties.truncate(count);
+    list.append(&mut ties);
+}
+
+fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {
+    let turn = (a.turn - b.turn + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+    turn.abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < tuning::SAME_POSE
+}
+
+/// The turn that takes one point to another.
+fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -> Matrix3<f64> {
+    let rotation = Rotation2::new(angle);
+    let shift = to - rotation * from;
+    let mut map = rotation.to_homogeneous();
+    (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
+    map
+}
+
+/// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals.
+fn refined(
+    track: &Track,
+    points: &[Point2<f64>],
+    model: MotionModel,
+    start: &Matrix3<f64>,
+    steps: usize,
+) -> RegisteredPose {
+    let View { map, belief, noise } = track.view();
+    let k = model.parameter_count();
+    let mut pose = *start;
+    let mut distances = Vec::with_capacity(points.len());
+    let mut rows: Vec<(f64, [f64; MAX_PARAMETERS])> = Vec::with_capacity(points.len());
+    for step in 0..=steps {
+        let Some(inverse) = pose.try_inverse() else { break };
+        let null = map.null_directions(belief.model, &pose);
+        distances.clear();
+        rows.clear();
+        for p in points {
+            let q = map_point(&inverse, p);
+            let Some(number) = map.nearest(&q) else { continue };
+            let cell = &map.cells()[number];
+            let from = q - (cell.centre + belief.offsets[number] * cell.normal);
+            distances.push(from.norm());
+            let pulled = pull_back(&inverse, p, &q, &cell.normal);
+            let slope = 1.0 / pulled.norm();
+            let residual = cell.normal.dot(&from) * slope;
+            let normal = pulled * slope;
+            let mut row = model.normal_velocities(&(p - residual * normal), &normal);
+            if model == belief.model {
+                null.iter().for_each(|direction| direction.project_out(&mut row));
+            }
+            rows.push((residual, row));
+        }
+        if step == steps {
+            break;
+        }
+        let mut sizes: Vec<f64> = rows.iter().map(|(r, _)| r.abs()).collect();
+        let scale = tuning::TUKEY * MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
+        let mut gram = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity() * tuning::DAMPING;
+        let mut right = SVector::<f64, MAX_PARAMETERS>::zeros();
+        for (residual, row) in &rows {
+            let u = residual / scale;
+            if u.abs() < 1.0 {
+                let weight = (1.0 - u * u).powi(2);
+                let row = SVector::from(*row);
+                gram += weight * row * row.transpose();
+                right += weight * *residual * row;
+            }
+        }
+        let Some(factor) = gram.cholesky() else { break };
+        let x = factor.solve(&right);
+        let next = model.flow(&x.as_slice()[..k], 1.0).into_inner() * pose;
+        if !next.iter().all(|e| e.is_finite()) || next.determinant().abs() < 1e-6 {
+            break;
+        }
+        pose = next;
+    }
+    distances.sort_unstable_by(f64::total_cmp);
+    let kept = ((tuning::TRIMMED * distances.len() as f64) as usize).max(1).min(distances.len());
+    let score = if distances.is_empty() { f64::INFINITY } else { distances[..kept].iter().sum::<f64>() / kept as f64 };
+    let turn = turn_of(&pose, track.body_pose());
+    RegisteredPose { pose, score, turn }
+}
+
+/// Turn of a pose from the one before.
+fn turn_of(pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
+    let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
+    (step[(1, 0)] - step[(0, 1)]).atan2(step[(0, 0)] + step[(1, 1)])
+}

@@ -1,0 +1,113 @@
+//! The object looked for where nothing says how it has moved, with all poses that explain the frame.
+use freeform_curve_fit::Outline;
+
+use super::{
+    hypotheses::{Candidate, Hypotheses},
+    motion_filter::{MotionFilter, Phase},
+    tracking::gate,
+};
+use crate::{
+    measurement::{NegativeLogLikelihood, Tolerance},
+    search::{Landmarks, RegisteredPose, register},
+    track::{Comparison, Outcome, Track},
+    tuning::supervisor::LARGEST_INNOVATION,
+    update::Gate,
+};
+
+impl MotionFilter {
+    /// Goes on as predicted if that fits, searches for the object otherwise.
+    pub(super) fn acquire(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
+        let seconds = time - self.track_time;
+        let track = self.track.as_ref()?;
+        if self.phase == Phase::Lost {
+            let gate = Gate { largest_innovation: Some(LARGEST_INNOVATION), ..gate(&self.settings, track) };
+            let mut going_on = track.clone();
+            going_on.predict(seconds);
+            self.frame.load(outline, going_on.reference());
+            let outcome = going_on.update(&mut self.frame, &gate, Comparison::NotAsked);
+            if outcome.is_accepted() {
+                self.replace(going_on, time, Phase::Tracking);
+                return Some(outcome);
+            }
+        }
+        // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
+        // where nothing fits without.
+        let mut candidates = self.candidates(outline, seconds, Tolerance::Known);
+        if !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
+            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed);
+            candidates = if relaxed.is_empty() { candidates } else { relaxed };
+        }
+        let agreement = |c: &Candidate| c.outcome.measurement.agreement;
+        let nearest = candidates.iter().max_by(|a, b| agreement(a).total_cmp(&agreement(b)))?.outcome;
+        let lost = self.phase == Phase::Lost;
+        candidates.retain(|candidate| candidate.outcome.is_accepted());
+        let (taken, others) = Hypotheses::among(candidates);
+        self.hypotheses = others;
+        let outcome = taken.as_ref().map_or(nearest, |candidate| candidate.outcome);
+        if let Some(taken) = taken {
+            // Where a lost object is now says nothing of how it moves now.
+            self.replace(taken.track, time, if lost { Phase::Acquiring } else { Phase::Tracking });
+            self.track.as_mut().into_iter().for_each(Track::confirm_turn);
+        }
+        if let Some(track) = self.track.as_mut().filter(|_| outcome.is_accepted() || lost) {
+            track.take_spread(outcome.measurement.spread);
+        }
+        Some(outcome)
+    }
+
+    /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen.
+    fn candidates(&mut self, outline: &Outline, seconds: f64, tolerance: Tolerance) -> Vec<Candidate> {
+        self.track.as_mut().into_iter().for_each(Track::show_turn);
+        let candidates = self.measured(outline, seconds, tolerance);
+        let fitting = candidates.iter().filter(|c| c.outcome.is_accepted());
+        let Some(best) = fitting.min_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares)) else {
+            return candidates;
+        };
+        let pose = *best.track.body_pose();
+        let Some(track) = self.track.as_mut().filter(|track| !track.turn_is_unseen()) else { return candidates };
+        if track.shows_turn(outline, &pose, &mut self.frame) {
+            return candidates;
+        }
+        track.hide_turn();
+        self.measured(outline, seconds, tolerance)
+    }
+
+    fn measured(&mut self, outline: &Outline, seconds: f64, tolerance: Tolerance) -> Vec<Candidate> {
+        let Some(track) = self.track.as_ref() else { return Vec::new() };
+        let landmarks = self.landmarks.and_then(|landmarks| {
+            let pose = track.affine_pose()?;
+            Some([landmarks.moved(&pose), Landmarks::of(outline)?])
+        });
+        self.frame.load(outline, track.reference());
+        let mut candidates = Vec::new();
+        for found in register(track, &self.frame.points, landmarks) {
+            let Some((mut track, turn)) = self.moved(&found, seconds).map(|track| (track, found.turn)) else {
+                continue;
+            };
+            track.set_tolerance(tolerance);
+            let gate = gate(&self.settings, &track);
+            let outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
+            track.set_tolerance(Tolerance::Known);
+            candidates.push(Candidate { track, outcome, turn, likelihood: NegativeLogLikelihood::default() });
+        }
+        let poses: Vec<_> = candidates.iter().map(|candidate| *candidate.track.body_pose()).collect();
+        if let Some(track) = &self.track {
+            let likelihoods = track.compared(outline, &poses, &mut self.frame);
+            candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
+        }
+        candidates
+    }
+
+    /// The track moved into a pose that was found.
+    fn moved(&self, found: &RegisteredPose, seconds: f64) -> Option<Track> {
+        let mut track = self.track.clone()?;
+        if self.phase == Phase::Lost {
+            track.relocate(found.pose);
+        } else {
+            let change = found.pose * track.body_pose().try_inverse()?;
+            track.set_motion(self.settings.model.motion_between(&change, seconds)?);
+            track.predict(seconds);
+        }
+        Some(track)
+    }
+}

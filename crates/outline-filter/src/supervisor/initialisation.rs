@@ -1,0 +1,149 @@
+//! The initialisation window: the frames that a track was begun from, and its map cut anew from them.
+use freeform_curve_fit::Outline;
+use nalgebra::{Affine2, Matrix3};
+
+use super::{
+    motion_change::MotionChange,
+    motion_filter::{MotionFilter, Phase},
+    settings::FilterSettings,
+    tracking::{Known, advance},
+    window::InitialisationWindow,
+};
+use crate::{
+    measurement::Frame,
+    search::Landmarks,
+    track::{Comparison, PlacedFrame, Track},
+    tuning::remapping as tuning,
+};
+
+/// A track cut anew, how the motion changes in the frames that it was cut from, and their poses.
+struct Remapped {
+    track: Track,
+    change: MotionChange,
+    poses: Vec<Matrix3<f64>>,
+}
+
+impl MotionFilter {
+    /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
+    /// may be what coarse cells make of it.
+    pub(super) fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
+        let Some(track) = &mut self.track else { return };
+        if self.phase != Phase::Tracking {
+            // Found again somewhere: what was seen before has come there by what nobody knows.
+            self.window.begin_anew(time, outline, track);
+            track.begin_here();
+            return;
+        }
+        let is_due = self.window.take(time, outline, track);
+        if !is_due && !changes || !self.window.are_several() {
+            return;
+        }
+        if track.turn_is_unseen() {
+            self.begin_with_turn(outline);
+        } else {
+            self.remap();
+        }
+        self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
+    }
+
+    /// Cuts the map anew from the first frames, until it settles, and looks for changes of the motion once more: what was taken for one may
+    /// have been what coarse cells left.
+    fn remap(&mut self) {
+        let Some(track) = &self.track else { return };
+        let remapper = Remapper { settings: &self.settings, window: &self.window };
+        let Some(cut) = remapper.settled(track, remapper.may_change(&self.change), &mut self.frame) else { return };
+        let frame = &mut self.frame;
+        self.hypotheses.remap(|track| remapper.settled(track, false, frame).map(|cut| cut.track));
+        self.track = Some(cut.track);
+        self.motion_changed = cut.change.is_seen();
+        // What the first few frames seem to say of it counts for nothing.
+        self.change = if cut.change.is_seen() { cut.change } else { MotionChange::default() };
+        self.window.take_poses(cut.poses);
+    }
+
+    /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
+    /// knows.
+    pub(super) fn begin_with_turn(&mut self, outline: &Outline) {
+        let Some(track) = &mut self.track else { return };
+        let Some(new) = track.begun_anew(outline, &mut self.frame) else {
+            track.hide_turn();
+            track.take_turn_as_new();
+            return;
+        };
+        let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
+        self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
+        self.begin_window(self.time_of_last_frame(), outline, &new);
+        self.replace(new, self.track_time, Phase::Acquiring);
+    }
+}
+
+/// Cuts maps anew from the frames of a window.
+#[derive(Clone, Copy)]
+struct Remapper<'a> {
+    settings: &'a FilterSettings,
+    window: &'a InitialisationWindow,
+}
+
+impl Remapper<'_> {
+    /// A track cut anew from the first frames until its pose settles; `changes` tells whether its motion has been another in them.
+    fn settled(&self, track: &Track, changes: bool, buffers: &mut Frame) -> Option<Remapped> {
+        let frames = if changes { self.window.as_found() } else { self.window.by_motion(track) };
+        let mut cut = self.cut(track, &frames, buffers)?;
+        let mut before = *track.body_pose();
+        // Better aligned frames make a better map, which aligns them better.
+        for _ in 1..tuning::MOST_CUTS {
+            if (cut.track.body_pose() - before).norm() < cut.track.sigma() {
+                break;
+            }
+            before = *cut.track.body_pose();
+            let mut frames = self.window.by_motion(&cut.track);
+            if self.may_change(&cut.change) {
+                frames.iter_mut().zip(&cut.poses).for_each(|(frame, pose)| frame.pose = *pose);
+            }
+            cut = self.cut(&cut.track, &frames, buffers)?;
+        }
+        Some(cut)
+    }
+
+    /// Whether the motion changes, as is seen or as the settings say.
+    fn may_change(&self, change: &MotionChange) -> bool {
+        change.is_seen() || !self.settings.process_noise.is_none()
+    }
+
+    fn cut(&self, track: &Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
+        let mut change = MotionChange::default();
+        let mut poses = vec![*track.first_body_pose()];
+        let track = track.remapped(frames, 1, buffers, |track, frame, seconds, outline| {
+            frame.load(outline, track.reference());
+            let (known, comparison) = (Known::ShowsObject, Comparison::NotAsked);
+            let outcome = advance(self.settings, (track, frame), &mut change, seconds, known, comparison);
+            poses.push(*track.body_pose());
+            outcome.is_accepted()
+        })?;
+        Some(Remapped { track, change, poses })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MotionModel;
+    use nalgebra::Point2;
+
+    use super::*;
+
+    #[test]
+    fn frames_are_not_kept_for_ever_where_the_turn_stays_unknown() {
+        let circle = |i: i32| {
+            let angle = std::f64::consts::TAU * f64::from(i) / 100.0;
+            Point2::new(angle.cos(), angle.sin())
+        };
+        let outline = Outline::closed((0..100).map(circle).collect()).expect("an outline");
+        let mut filter =
+            MotionFilter::new(FilterSettings { model: MotionModel::Rigid, ..Default::default() }).expect("settings");
+        for frame in 0..100 {
+            filter.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
+            assert!(filter.window.len() <= tuning::OCCASIONS[2], "frame {frame}");
+        }
+        assert!(filter.track.as_ref().is_some_and(Track::turn_is_unseen));
+    }
+}

@@ -1,0 +1,16 @@
+//! The motion filter: phases, restarts, hypotheses and changes of the motion. The only state machine.
+mod acquisition;
+mod ambiguity;
+mod error;
+mod hypotheses;
+mod initialisation;
+mod motion_change;
+mod motion_filter;
+mod settings;
+mod tracking;
+mod window;
+
+pub use ambiguity::Ambiguity;
+pub use error::FilterError;
+pub use motion_filter::{FilterStep, MotionFilter, Phase};
+pub use settings::FilterSettings;

@@ -1,0 +1,128 @@
+//! How fast the motion changes, estimated from the innovations.
+use crate::{prediction::ByKind, tuning::motion_change as tuning, update::PoseInnovation};
+
+const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
+
+/// Recursive maximum-likelihood estimates, by Fisher's scoring, of the variances by which the rates and the velocities of the motion change
+/// per second; none until the evidence is significant.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct MotionChange {
+    kinds: [Change; 2],
+    /// Of one variance for both: chance has no more than one occasion.
+    of_both: Evidence,
+    /// Whether it has ever changed from one frame to the next by more than such variances tell.
+    pub(crate) was_sudden: bool,
+}
+
+/// One of them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Change {
+    /// Normalised units, per second.
+    variance: f64,
+    evidence: Evidence,
+    has_changed: bool,
+}
+
+/// Slope of the likelihood by a variance at none, of every frame in its own standard deviations, over the frames looked back on. Frames in
+/// which much is known count no more than others: their Fisher information is that of a variance of next to none.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Evidence {
+    slope: f64,
+    /// Roots of the Fisher information: what the slope is for a unit variance.
+    by_variance: f64,
+    frames: f64,
+}
+
+impl MotionChange {
+    /// The variances, unless both are none.
+    pub(crate) fn variances(&self) -> Option<ByKind> {
+        let variances = self.kinds.map(|change| change.variance);
+        variances.iter().any(|v| *v > 0.0).then_some(variances)
+    }
+
+    /// Whether the motion has been seen to change.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.was_sudden || self.kinds.iter().any(|change| change.variance > 0.0 || change.has_changed)
+    }
+
+    /// Takes the innovation of an accepted frame of a motion with so many parameters.
+    pub(crate) fn take(&mut self, innovation: &PoseInnovation, parameters: usize) {
+        let limit = tuning::LIMIT * parameters as f64;
+        let share = if innovation.squared > limit { limit / innovation.squared } else { 1.0 };
+        let by_chance = innovation.squared < tuning::BEYOND_CHANCE * parameters as f64;
+        for (change, (gradient, fisher)) in self.kinds.iter_mut().zip(innovation.gradient.iter().zip(innovation.fisher))
+        {
+            if fisher > 0.0 {
+                change.take(gradient * share, fisher, by_chance);
+            }
+        }
+        let open = |kind: &usize| self.kinds[*kind].variance <= 0.0;
+        let gradient = (0..2).filter(open).map(|kind| innovation.gradient[kind] * share).sum();
+        let is_open = (0..2).all(|kind| open(&kind));
+        let fisher =
+            if is_open { innovation.fisher_of_both } else { (0..2).filter(open).map(|k| innovation.fisher[k]).sum() };
+        if fisher > 0.0 {
+            self.of_both.take(gradient, fisher, by_chance);
+        }
+        let [rates, velocities] = &self.kinds;
+        let significant =
+            if rates.has_changed || velocities.has_changed { tuning::SIGNIFICANT_AGAIN } else { tuning::SIGNIFICANT };
+        if self.of_both.deviations() > significant {
+            let (clearest, other) =
+                if rates.evidence.deviations() > velocities.evidence.deviations() { (0, 1) } else { (1, 0) };
+            self.kinds[clearest].begin();
+            // What the one explains is no evidence of the other.
+            self.kinds[other].evidence = Evidence::default();
+            self.of_both = Evidence::default();
+        }
+    }
+}
+
+impl Change {
+    fn take(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
+        if self.variance <= 0.0 {
+            self.evidence.take(gradient, fisher, by_chance);
+            return;
+        }
+        self.variance += gradient / (tuning::MEMORY * fisher);
+        if self.variance <= 0.0 {
+            *self = Self { has_changed: true, ..Self::default() };
+        }
+    }
+
+    fn begin(&mut self) {
+        let Evidence { slope, by_variance, .. } = std::mem::take(&mut self.evidence);
+        self.variance = slope / by_variance;
+    }
+}
+
+impl Evidence {
+    /// Takes that of one frame, no more than chance may make unless it is beyond that.
+    fn take(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
+        let most = if by_chance { tuning::EVIDENCE } else { f64::INFINITY };
+        self.slope = KEPT * self.slope + (gradient / fisher.sqrt()).min(most);
+        self.by_variance = KEPT * self.by_variance + fisher.sqrt();
+        self.frames = KEPT * self.frames + 1.0;
+    }
+
+    /// Slope in standard deviations; 0 where there is none.
+    fn deviations(&self) -> f64 {
+        if self.frames > 0.0 { self.slope / self.frames.sqrt() } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_frame_that_chance_may_make_shows_no_change_but_several_in_a_row_do() {
+        let innovation = PoseInnovation { squared: 20.0, gradient: [14.0, 2.0], fisher: [1.0; 2], fisher_of_both: 2.5 };
+        let mut change = MotionChange::default();
+        change.take(&innovation, 6);
+        assert_eq!(change.variances(), None);
+        (0..4).for_each(|_| change.take(&innovation, 6));
+        let [rates, velocities] = change.variances().expect("a change");
+        assert!(rates > 0.0 && velocities == 0.0);
+    }
+}

@@ -1,0 +1,346 @@
+use freeform_curve_fit::Outline;
+use freeform_estimate::{MotionEstimate, MotionState, PointVelocity, TimeNotIncreasing};
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::{DMatrix, Point2, Projective2};
+
+use super::{
+    error::FilterError,
+    hypotheses::Hypotheses,
+    motion_change::MotionChange,
+    settings::FilterSettings,
+    tracking::{Known, advance},
+    window::InitialisationWindow,
+};
+use crate::{
+    measurement::Frame,
+    search::Landmarks,
+    track::{Outcome, Track},
+    tuning::{map::FEWEST_POINTS, supervisor as tuning},
+    update::{FrameMeasurement, Rejection},
+};
+
+/// The phase of the filter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// No frame yet.
+    Waiting,
+    /// The outline is known, its motion is not. The object is searched for in the next frame.
+    Acquiring,
+    /// Outline and motion are known and predict the next frame.
+    Tracking,
+    /// The object was not found in the last frames. It is searched for in every frame.
+    Lost,
+}
+
+/// The result of one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterStep {
+    /// Time of the frame in seconds.
+    pub time: f64,
+    /// Phase after the frame.
+    pub phase: Phase,
+    /// Comparison with the known outline; `None` if there was no outline or no pose to compare with.
+    pub measurement: Option<FrameMeasurement>,
+    /// Why the frame was not used; `None` if it was used.
+    pub rejection: Option<Rejection>,
+}
+
+impl FilterStep {
+    /// Whether the frame was used.
+    #[must_use]
+    pub fn is_accepted(&self) -> bool {
+        self.rejection.is_none()
+    }
+}
+
+/// How many frames became what.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    accepted: usize,
+    rejected: usize,
+    rejected_in_a_row: usize,
+    /// Frames that the present track has taken, and that it has not.
+    taken: usize,
+    refused: usize,
+    restarts: usize,
+}
+
+/// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
+///
+/// The first frame starts a map of the outline. The pose in the second frame is found by global registration, without an initial guess.
+/// From the third frame on, motion, pose and outline are estimated together, with errors near the Cramer-Rao bound. Frames that do not
+/// fit are rejected and counted; after a few of them the object is searched for again. Frames may be missing and may come at uneven
+/// times.
+///
+/// A turn is taken from the outline, never from the path of the object alone. For a circle the angular velocity is therefore not
+/// observable, also along an arc; [`velocity`](Self::velocity) is still known.
+///
+/// ```
+/// use freeform_curve_fit::Outline;
+/// use freeform_outline_filter::{FilterSettings, MotionFilter};
+/// use nalgebra::{Isometry2, Point2, Vector2};
+///
+/// // An egg that turns anticlockwise at 0.5 rad/s and drifts to the right.
+/// let egg = |i: i32| {
+///     let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+///     Point2::new(0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
+/// };
+/// let mut filter = MotionFilter::new(FilterSettings::default())?;
+/// for frame in 0..10 {
+///     let time = f64::from(frame) / 30.0;
+///     let pose = Isometry2::new(Vector2::new(0.2 * time, 0.0), 0.5 * time);
+///     let outline = Outline::closed((0..300).map(|i| pose * egg(i)).collect())?;
+///     assert!(filter.step(time, &outline)?.is_accepted());
+/// }
+/// let estimate = filter.estimate().expect("ten good frames");
+/// let omega = estimate.parameters().next().expect("omega comes first");
+/// assert!((omega.value.expect("an egg is not round") + 0.5).abs() < 0.01);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct MotionFilter {
+    pub(super) settings: FilterSettings,
+    pub(super) phase: Phase,
+    pub(super) track: Option<Track>,
+    /// Of the first outline, in its image coordinates.
+    pub(super) landmarks: Option<Landmarks>,
+    last_time: f64,
+    /// Time that the track stands at.
+    pub(super) track_time: f64,
+    counts: Counts,
+    pub(super) change: MotionChange,
+    /// Whether the motion of the present track has ever been seen to change.
+    pub(super) motion_changed: bool,
+    pub(super) hypotheses: Hypotheses,
+    pub(super) window: InitialisationWindow,
+    pub(super) frame: Frame,
+}
+
+impl MotionFilter {
+    /// A filter that waits for its first frame.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn new(settings: FilterSettings) -> Result<Self, FilterError> {
+        settings.check()?;
+        Ok(Self {
+            settings,
+            phase: Phase::Waiting,
+            track: None,
+            landmarks: None,
+            last_time: f64::NEG_INFINITY,
+            track_time: 0.0,
+            counts: Counts::default(),
+            change: MotionChange::default(),
+            motion_changed: false,
+            hypotheses: Hypotheses::default(),
+            window: InitialisationWindow::default(),
+            frame: Frame::default(),
+        })
+    }
+
+    /// Takes the outline seen at a time in seconds.
+    ///
+    /// # Errors
+    /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
+    pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
+        TimeNotIncreasing::check(self.last_time, time)?;
+        if self.track.is_none() {
+            self.start(time, outline)?;
+            self.counts.accepted += 1;
+            return Ok(FilterStep { time, phase: self.phase, measurement: None, rejection: None });
+        }
+        self.last_time = time;
+        let was_changing = self.change.variances().is_some();
+        let outcome = match self.phase {
+            Phase::Tracking => self.follow(time, outline),
+            _ => self.acquire(time, outline),
+        };
+        let rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
+        if rejection.is_none() {
+            self.counts.accepted += 1;
+            self.counts.taken += 1;
+            self.counts.rejected_in_a_row = 0;
+            let changes = !was_changing && self.change.variances().is_some();
+            self.keep(time, outline, changes);
+            if self.track.as_mut().is_some_and(Track::may_show_turn) {
+                self.begin_with_turn(outline);
+            }
+        } else {
+            self.counts.rejected += 1;
+            self.counts.refused += 1;
+            self.counts.rejected_in_a_row += 1;
+            self.fall_back(time, outline);
+        }
+        let measurement = outcome.map(|outcome| outcome.measurement);
+        Ok(FilterStep { time, phase: self.phase, measurement, rejection })
+    }
+
+    /// Begins a track with a first frame.
+    fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
+        let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
+        let track = Track::begin(self.settings.model, outline, &mut self.frame).ok_or(too_few)?;
+        self.landmarks = Landmarks::of(outline);
+        self.begin_window(time, outline, &track);
+        self.replace(track, time, Phase::Acquiring);
+        self.last_time = time;
+        self.counts.rejected_in_a_row = 0;
+        Ok(())
+    }
+
+    /// Forgets what was known of hypotheses and changes, and keeps a frame as the first of a new track.
+    pub(super) fn begin_window(&mut self, time: f64, outline: &Outline, track: &Track) {
+        self.window = InitialisationWindow::begin(time, outline, track);
+        self.hypotheses = Hypotheses::default();
+        (self.change, self.motion_changed) = (MotionChange::default(), false);
+        (self.counts.taken, self.counts.refused) = (1, 0);
+    }
+
+    /// After a rejected frame: look elsewhere, or begin again.
+    fn fall_back(&mut self, time: f64, outline: &Outline) {
+        let Counts { rejected_in_a_row, taken, refused, .. } = self.counts;
+        // Few frames that more speak against than for did not show the object.
+        let is_outvoted = rejected_in_a_row >= self.settings.patience && taken <= tuning::FEW_FRAMES && refused > taken;
+        let give_up = match self.phase {
+            Phase::Acquiring => rejected_in_a_row >= tuning::FALSE_START,
+            _ => rejected_in_a_row >= tuning::GIVEN_UP || is_outvoted,
+        };
+        if give_up && self.start(time, outline).is_ok() {
+            self.counts.restarts += 1;
+        } else if self.phase == Phase::Tracking && rejected_in_a_row >= self.settings.patience {
+            self.phase = Phase::Lost;
+        }
+    }
+
+    /// Predicts and measures.
+    fn follow(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
+        let track = self.track.as_mut()?;
+        let seconds = time - self.track_time;
+        self.track_time = time;
+        let known = if self.counts.rejected_in_a_row > 0 { Known::OthersRejected } else { Known::Nothing };
+        let (frame, comparison) = (&mut self.frame, self.hypotheses.comparison());
+        frame.load(outline, track.reference());
+        let outcome = advance(&self.settings, (track, frame), &mut self.change, seconds, known, comparison);
+        self.motion_changed |= self.change.is_seen();
+        track.take_spread(outcome.measurement.spread);
+        Some(self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds))
+    }
+
+    pub(super) fn time_of_last_frame(&self) -> f64 {
+        self.last_time
+    }
+
+    pub(super) fn replace(&mut self, track: Track, time: f64, phase: Phase) {
+        self.track = Some(track);
+        self.track_time = time;
+        self.phase = phase;
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn settings(&self) -> &FilterSettings {
+        &self.settings
+    }
+
+    /// The phase of the filter.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// The estimated motion, at the time of [`state`](Self::state). `None` before the second accepted frame, also after a restart of the
+    /// map by a frame that shows the turn of the object for the first time.
+    #[must_use]
+    pub fn estimate(&self) -> Option<MotionEstimate> {
+        if matches!(self.phase, Phase::Waiting | Phase::Acquiring) {
+            return None;
+        }
+        let estimate = self.track.as_ref()?.estimate()?;
+        let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
+        Some(doubts.filter(|(_, doubtful)| *doubtful).fold(estimate, |e, (j, _)| e.with_unobservable(j)))
+    }
+
+    /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`
+    /// if [`estimate`](Self::estimate) is.
+    #[must_use]
+    pub fn state(&self) -> Option<MotionState> {
+        let estimate = self.estimate()?;
+        let mut observable = [false; MAX_PARAMETERS];
+        observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
+        self.track.as_ref()?.state(self.track_time, observable)
+    }
+
+    /// Velocity of the middle of the object, which is the centre of its known outline, at the time of [`state`](Self::state). It may be
+    /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
+    /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
+    #[must_use]
+    pub fn velocity(&self) -> Option<PointVelocity> {
+        if self.hypotheses.are_doubtful() {
+            return None;
+        }
+        self.track.as_ref()?.velocity_of_middle(&self.state()?)
+    }
+
+    /// The map of the image from the outline of the first frame to its place in the last accepted frame; after rejected frames, to its
+    /// predicted place. `None` before the first frame.
+    #[must_use]
+    pub fn pose(&self) -> Option<Projective2<f64>> {
+        self.track.as_ref().map(Track::pose)
+    }
+
+    /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not
+    /// finite.
+    #[must_use]
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        self.track.as_ref()?.covariance()
+    }
+
+    /// The outline as now known, image coordinates: one point per cell of its map. The points are not ordered if the map has grown.
+    /// Empty before the first frame.
+    pub fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        self.track.iter().flat_map(Track::outline_points)
+    }
+
+    /// Standard deviation of the noise on the points, image lengths; `None` before the first frame.
+    #[must_use]
+    pub fn noise(&self) -> Option<f64> {
+        self.track.as_ref().map(|track| track.sigma() * track.reference().radius)
+    }
+
+    pub(crate) fn track(&self) -> Option<&Track> {
+        self.track.as_ref()
+    }
+
+    /// Frames used.
+    #[must_use]
+    pub fn frames_accepted(&self) -> usize {
+        self.counts.accepted
+    }
+
+    /// Frames that did not fit. A frame that starts a new track after others is included.
+    #[must_use]
+    pub fn frames_rejected(&self) -> usize {
+        self.counts.rejected
+    }
+
+    /// The other hypotheses of the turn, in radians, anticlockwise if y points up: turns of the object, up to the frame in which it was last
+    /// searched for and found, that explain all frames since then about as well as the turn taken. Of equally good turns the smallest is
+    /// taken. Empty for outlines without symmetry. [`ambiguity`](Self::ambiguity) tells whether the motion is in doubt.
+    #[must_use]
+    pub fn rival_turns(&self) -> &[f64] {
+        self.hypotheses.turns()
+    }
+
+    /// Whether the innovations have shown a change of motion. The estimate is then that of the last frame, not of all frames. Always false
+    /// if `FilterSettings::process_noise` allows for changes.
+    #[must_use]
+    pub fn motion_changed(&self) -> bool {
+        self.motion_changed
+    }
+
+    /// How often the filter has given up an object and started again.
+    #[must_use]
+    pub fn restarts(&self) -> usize {
+        self.counts.restarts
+    }
+}

@@ -1,0 +1,105 @@
+use freeform_curve_fit::Outline;
+use nalgebra::Matrix3;
+
+use crate::{
+    track::{PlacedFrame, Track},
+    tuning::remapping as tuning,
+};
+
+/// Whether frames are still kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Window {
+    #[default]
+    Open,
+    Closed,
+}
+
+/// The frames that a map was begun from, kept until it has been cut from enough of them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct InitialisationWindow {
+    frames: Vec<(f64, Outline)>,
+    /// What the map found of them.
+    poses: Vec<Matrix3<f64>>,
+    points: usize,
+    state: Window,
+}
+
+impl InitialisationWindow {
+    /// Begins with the first frame of a map.
+    pub(super) fn begin(time: f64, outline: &Outline, track: &Track) -> Self {
+        let mut frames = Self {
+            frames: vec![(time, outline.clone())],
+            poses: vec![*track.body_pose()],
+            points: outline.point_count(),
+            state: Window::Open,
+        };
+        frames.end_unless_few(track.cell_count());
+        frames
+    }
+
+    /// Forgets what is kept.
+    pub(super) fn end(&mut self) {
+        *self = Self { state: Window::Closed, ..Self::default() };
+    }
+
+    /// Begins anew with a frame, unless a map has been cut already, which knows more of the outline than frames yet to come.
+    pub(super) fn begin_anew(&mut self, time: f64, outline: &Outline, track: &Track) {
+        if self.frames.len() < tuning::OCCASIONS[0] && self.state == Window::Open {
+            *self = Self::begin(time, outline, track);
+        } else {
+            self.end();
+        }
+    }
+
+    /// Keeps a frame that follows the others, in the pose of the map; whether the map is to be cut from them now.
+    pub(super) fn take(&mut self, time: f64, outline: &Outline, track: &Track) -> bool {
+        if self.state == Window::Closed {
+            return false;
+        }
+        self.frames.push((time, outline.clone()));
+        self.poses.push(*track.body_pose());
+        self.points += outline.point_count();
+        tuning::OCCASIONS.contains(&self.frames.len())
+    }
+
+    /// Whether there are frames to cut a map from.
+    pub(super) fn are_several(&self) -> bool {
+        self.frames.len() > 1
+    }
+
+    /// Forgets what is kept unless more frames would make a map of so many cells better.
+    pub(super) fn end_unless_few(&mut self, cells: usize) {
+        let count = self.frames.len().max(1);
+        let next = tuning::OCCASIONS.into_iter().find(|occasion| *occasion > count);
+        let each = self.points / count;
+        let would_be_plenty = count > 1 && next.is_none_or(|next| next * each > tuning::PLENTY);
+        let one_is_plenty = each as f64 > tuning::PLENTY_PER_CELL * cells as f64;
+        if would_be_plenty || one_is_plenty {
+            self.end();
+        }
+    }
+
+    /// Takes the poses that a map cut anew has found.
+    pub(super) fn take_poses(&mut self, poses: Vec<Matrix3<f64>>) {
+        self.poses = poses;
+    }
+
+    /// In the poses that they were found in.
+    pub(super) fn as_found(&self) -> Vec<PlacedFrame<'_>> {
+        let placed = self.frames.iter().zip(&self.poses);
+        placed.map(|((time, outline), pose)| PlacedFrame { time: *time, outline, pose: *pose }).collect()
+    }
+
+    /// In the poses that the motion of a map puts them in: where they were if it has never changed.
+    pub(super) fn by_motion(&self, track: &Track) -> Vec<PlacedFrame<'_>> {
+        track.placed(self.frames.iter().map(|(time, outline)| (*time, outline)))
+    }
+}
+
+#[cfg(test)]
+impl InitialisationWindow {
+    /// Number of frames kept.
+    pub(super) fn len(&self) -> usize {
+        self.frames.len()
+    }
+}

@@ -1,0 +1,45 @@
+//! How well poses of an object explain a frame, compared with each other.
+use freeform_curve_fit::Outline;
+use freeform_riccati::map_point;
+use nalgebra::{Matrix3, Rotation2};
+
+use super::Track;
+use crate::{
+    map::TurnEvidence,
+    measurement::{Frame, NegativeLogLikelihood},
+    tuning::{likelihood::ENOUGH_POINTS, registration as tuning},
+};
+
+impl Track {
+    /// Negative log-likelihoods of an outline in several poses.
+    pub(crate) fn compared(
+        &self,
+        outline: &Outline,
+        poses: &[Matrix3<f64>],
+        frame: &mut Frame,
+    ) -> Vec<NegativeLogLikelihood> {
+        frame.load(outline, self.reference);
+        frame.thin_out(ENOUGH_POINTS);
+        self.view().negative_log_likelihoods(frame, poses)
+    }
+
+    /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
+    pub(crate) fn shows_turn(&self, outline: &Outline, pose: &Matrix3<f64>, frame: &mut Frame) -> bool {
+        let centre = map_point(pose, &self.map.middle());
+        let turned = (1..=tuning::OTHER_TURNS).map(|i| Rotation2::new(tuning::GOLDEN_ANGLE * i as f64));
+        let turned = turned.filter(|rotation| rotation.angle().abs() >= tuning::NEAR).map(|rotation| {
+            let shift = centre - rotation * centre;
+            let mut turned = rotation.to_homogeneous();
+            (turned[(0, 2)], turned[(1, 2)]) = (shift.x, shift.y);
+            turned * pose
+        });
+        let poses: Vec<_> = std::iter::once(*pose).chain(turned).collect();
+        let likelihoods = self.compared(outline, &poses, frame);
+        let worse = likelihoods[1..].iter().filter(|other| other.is_worse_than(&likelihoods[0])).count();
+        // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in
+        // what that frame does not show.
+        let is_new = matches!(self.turn_evidence(), TurnEvidence::New | TurnEvidence::NewAndHidden);
+        let share = if is_new { tuning::NEARLY_ALL } else { tuning::MOST };
+        worse as f64 > share * (likelihoods.len() - 1) as f64 && (!is_new || self.begun_anew(outline, frame).is_some())
+    }
+}

@@ -1,0 +1,170 @@
+//! Cells for what a frame shows for the first time, with their first measurement.
+use std::sync::Arc;
+
+use freeform_curve_fit::Outline;
+
+use super::Track;
+use crate::{
+    belief::{CellInformation, StateVector},
+    map::Contour,
+    measurement::{Frame, NO_CELL, Pass},
+    update::accumulate,
+};
+
+impl Track {
+    /// A track of the same body frame of what one outline shows, in the pose that this one is in but for its turn, which is unknown as its
+    /// motion is. `None` where that outline does not show the turn either.
+    pub(crate) fn begun_anew(&self, outline: &Outline, frame: &mut Frame) -> Option<Self> {
+        frame.load(outline, self.reference);
+        let contours = frame.contours(&self.belief.pose);
+        let mut track = Self::cut(self.belief.model, self.reference, self.belief.pose, contours, 0.0, frame)?;
+        if track.turn_is_unseen() {
+            return None;
+        }
+        track.noise.take_level_of(&self.noise);
+        track.take_turn_as_new();
+        track.begin_here_with_any_turn();
+        Some(track)
+    }
+
+    /// Adds cells for the parts of contours in the body frame that the map does not have yet, and measures them by the loaded points, which
+    /// the contours are of.
+    pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) {
+        let model = self.belief.model;
+        let map = Arc::make_mut(&mut self.map);
+        let Some(first_new) = map.grow(contours, self.noise.sigma / self.belief.scale(), &self.belief.offsets) else {
+            return;
+        };
+        let cells = map.cells().len();
+        self.belief.information.cells.resize(cells, CellInformation::NOTHING);
+        self.belief.offsets.resize(cells, 0.0);
+        self.noise.resize(cells);
+        self.shape.resize(cells);
+        let (null, turn_was_unseen) = (map.null_directions(model, &self.belief.pose), map.turn_is_unseen(model));
+        map.find_null_directions(model, self.noise.sigma);
+        if !null.is_empty() {
+            let variance = self.noise.effective_variance();
+            self.belief.forget(&null, variance);
+            self.belief.forget(&map.null_directions(model, &self.belief.pose), variance);
+            map.take_growth(turn_was_unseen && !map.turn_is_unseen(model));
+        }
+        self.measure_new_cells(frame, first_new);
+    }
+
+    /// Takes the loaded points on cells from `first_new` on as their first measurement.
+    fn measure_new_cells(&mut self, frame: &mut Frame, first_new: usize) {
+        let null = self.map.null_directions(self.belief.model, &self.belief.pose);
+        frame.clear_shifts(self.map.cells().len());
+        self.view().measure(frame, &self.belief.pose, &null, Pass::First);
+        frame.measurements.retain(|m| m.cell != NO_CELL && m.cell >= first_new);
+        let mut work = self.belief.information.clone();
+        accumulate(frame, &mut work, &StateVector::zeros());
+        for (number, right) in frame.right.iter().enumerate().skip(first_new) {
+            if work.cells[number].own > 0.0 {
+                self.belief.offsets[number] += right / work.cells[number].own;
+            }
+        }
+        self.belief.information = work;
+        self.belief.marginal = self.belief.information.marginal();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::{OpenArc, OpenOutline};
+    use freeform_riccati::MotionModel;
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::{
+        dense_filter::{AGREES, DenseFilter},
+        measurement::Measurement,
+        tuning::map::MOST_TIMES_SEEN,
+    };
+
+    /// Three quarters of an outline that shows every model of motion, and all of it, in the same body frame.
+    fn part_and_whole() -> [Outline; 2] {
+        let point = |i: i32| {
+            let t = std::f64::consts::TAU * f64::from(i) / 320.0;
+            // The last term keeps residuals from being zero.
+            let r = 0.5
+                + 0.12 * (3.0 * t).cos()
+                + 0.08 * (2.0 * t).sin()
+                + 0.05 * (5.0 * t).cos()
+                + 0.002 * (31.0 * t).sin();
+            Point2::new(r * t.cos(), r * t.sin())
+        };
+        let arc = OpenArc::new((0..240).map(point).collect()).expect("an arc");
+        let part = Outline::Open(OpenOutline::new(vec![arc]).expect("an outline"));
+        [part, Outline::closed((0..320).map(point).collect()).expect("an outline")]
+    }
+
+    #[test]
+    fn new_cells_are_begun_as_the_dense_filter_begins_them_with_pose_and_motion_held() {
+        let [part, whole] = part_and_whole();
+        for model in MotionModel::ALL {
+            let mut frame = Frame::default();
+            let mut track = Track::begin(model, &part, &mut frame).expect("a track");
+            // Well known, so that the reference loses no digits.
+            let k = track.belief.parameter_count();
+            (0..k).for_each(|i| track.belief.information.dense[k + i][k + i] = 100.0);
+            // Ends that no point lies on have no information; the reference would divide by it.
+            track.belief.information.cells.iter_mut().for_each(|cell| cell.own = cell.own.max(1.0));
+            track.belief.marginal = track.belief.information.marginal();
+            let mut dense = DenseFilter::of(&track.belief.information);
+            // Otherwise something would be forgotten.
+            assert!(track.map.null_directions(model, &track.belief.pose).is_empty(), "{model:?}");
+            let first_new = track.map.cells().len();
+            frame.load(&whole, track.reference);
+            track.grow_along(frame.contours(&track.belief.pose), &mut frame);
+            let count = track.map.cells().len();
+            assert!(count > first_new + 10, "{model:?}: {first_new} and {count} cells");
+            let unseen = Measurement { cell: 0, residual: 0.0, by_offset: 1.0, jacobian: [0.0; 8], weight: 1.0 };
+            for cell in first_new..count {
+                let mut of_cell = frame.measurements.iter().filter(|m| m.cell == cell && m.weight > 0.0);
+                let first = of_cell.next();
+                dense.begin_cell(first.unwrap_or(&unseen));
+                of_cell.for_each(|m| dense.measure(m));
+                if first.is_none() {
+                    track.belief.information.cells[cell].own = 1.0;
+                }
+            }
+            let difference = dense.difference(&track.belief.information, |_, _| true);
+            assert!(difference < AGREES, "{model:?}: {difference}");
+            let difference = dense.difference_of_marginal(&track.belief.marginal);
+            assert!(difference < AGREES, "{model:?}: marginal {difference}");
+            // What is left out is next to nothing.
+            let step = |i: usize| dense.mean[i].abs() / (dense.covariance[(i, i)].sqrt() * track.noise.sigma);
+            assert!((0..2 * k).map(step).all(|step| step < 1e-3), "{model:?}");
+            let expected = dense.offsets_where_state_is_zero(first_new);
+            let size = expected.iter().fold(0.0, |size, offset| f64::max(size, offset.abs()));
+            for (found, expected) in track.belief.offsets[first_new..].iter().zip(expected) {
+                assert!((found - expected).abs() < AGREES * size, "{model:?}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_that_wrong_poses_add_to_for_ever_stops_growing() {
+        let egg = |shift: f64| {
+            let point = |i: i32| {
+                let t = std::f64::consts::TAU * f64::from(i) / 300.0;
+                Point2::new(shift + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
+            };
+            Outline::closed((0..300).map(point).collect()).expect("an outline")
+        };
+        let mut frame = Frame::default();
+        let mut track = Track::begin(MotionModel::Rigid, &egg(0.0), &mut frame).expect("a track");
+        let count = |track: &Track| track.map.cells().len();
+        let first = count(&track);
+        let mut counts = Vec::new();
+        for shift in 1..30 {
+            frame.load(&egg(3.0 * f64::from(shift)), track.reference);
+            let contours = frame.contours(&track.belief.pose);
+            track.grow_along(contours, &mut frame);
+            counts.push(count(&track));
+        }
+        assert!(counts[0] > first && counts[28] <= (MOST_TIMES_SEEN + 1) * first + 10, "{first}: {counts:?}");
+        assert_eq!(counts[27], counts[28]);
+    }
+}

@@ -1,0 +1,15 @@
+//! A track: one object with its map, what is believed of it, and the noise; frames are taken, and the map grows or is cut anew.
+mod comparison;
+mod estimate;
+mod first_pose;
+mod growth;
+#[cfg(test)]
+mod jacobians;
+mod remapping;
+#[cfg(test)]
+mod sides;
+#[expect(clippy::module_inception, reason = "the module holds the type that the layer is about")]
+mod track;
+
+pub(crate) use remapping::PlacedFrame;
+pub(crate) use track::{Comparison, Outcome, Track};

@@ -1,0 +1,99 @@
+//! Remapping: the map cut anew from several frames together, once they are aligned.
+use freeform_curve_fit::Outline;
+use freeform_riccati::map_point;
+use nalgebra::Matrix3;
+
+use super::Track;
+use crate::{
+    belief::EarlierPoses,
+    map::{CellPoint, Contour, has_common_places},
+    measurement::{Frame, NO_CELL, Pass},
+    tuning::remapping as tuning,
+};
+
+/// A frame and the pose, body to image, in which it shows the object.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PlacedFrame<'a> {
+    pub(crate) time: f64,
+    pub(crate) outline: &'a Outline,
+    pub(crate) pose: Matrix3<f64>,
+}
+
+impl Track {
+    /// Frames, the last of which this track stands at, in the poses that its motion puts them in.
+    pub(crate) fn placed<'a>(
+        &self,
+        frames: impl DoubleEndedIterator<Item = (f64, &'a Outline)>,
+    ) -> Vec<PlacedFrame<'a>> {
+        let belief = &self.belief;
+        let mut last_time = None;
+        let placed = frames.rev().map(|(time, outline)| {
+            let seconds = time - *last_time.get_or_insert(time);
+            let flow = belief.model.flow(&belief.motion[..belief.parameter_count()], seconds);
+            PlacedFrame { time, outline, pose: flow.into_inner() * belief.pose }
+        });
+        let mut placed: Vec<_> = placed.collect();
+        placed.reverse();
+        placed
+    }
+
+    /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken, and all
+    /// then taken one by one; `take` says whether a frame was. `None` where one of them is not.
+    pub(crate) fn remapped(
+        &self,
+        frames: &[PlacedFrame<'_>],
+        stride: usize,
+        buffers: &mut Frame,
+        mut take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
+    ) -> Option<Self> {
+        // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
+        if self.belief.earlier_poses == EarlierPoses::Forgotten || self.turn_is_unseen() {
+            return None;
+        }
+        let first = frames.first()?;
+        let points = self.points_in_body(frames, stride, buffers)?;
+        if self.map.has_common_points(&points) {
+            return None;
+        }
+        let runs = self.map.along_chains(points, &self.belief.offsets);
+        if has_common_places(&runs) {
+            return None;
+        }
+        let contours =
+            runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
+        buffers.load(first.outline, self.reference);
+        let (model, least_noise) = (self.belief.model, tuning::LEAST_NOISE * self.noise.sigma);
+        let first_pose = self.first_pose;
+        let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least_noise, buffers)?;
+        track.first_pose = first_pose;
+        track.noise.take_level_of(&self.noise);
+        track.doubt_first_pose();
+        track.belief.motion = self.belief.motion;
+        let mut before = first.time;
+        for PlacedFrame { time, outline, .. } in &frames[1..] {
+            if !take(&mut track, buffers, time - before, outline) {
+                return None;
+            }
+            before = *time;
+        }
+        Some(track)
+    }
+
+    /// The points of every frame out of `stride` in the body frame, with the cells that they were seen of.
+    fn points_in_body(&self, frames: &[PlacedFrame<'_>], stride: usize, buffers: &mut Frame) -> Option<Vec<CellPoint>> {
+        let mut list = Vec::new();
+        for PlacedFrame { outline, pose, .. } in frames.iter().step_by(stride) {
+            buffers.load(outline, self.reference);
+            let inverse = pose.try_inverse()?;
+            buffers.clear_shifts(self.map.cells().len());
+            self.view().measure(buffers, pose, &[], Pass::First);
+            let Frame { measurements, points, places, .. } = &*buffers;
+            for ((m, p), place) in measurements.iter().zip(points).zip(places) {
+                let place = if m.weight > 0.0 { place } else { p };
+                let cell = Some(m.cell).filter(|cell| *cell != NO_CELL);
+                list.push(CellPoint { cell, place: map_point(&inverse, place), at: map_point(&inverse, p) });
+            }
+        }
+        Some(list)
+    }
+}

@@ -1,0 +1,317 @@
+use std::sync::Arc;
+
+use freeform_curve_fit::Outline;
+use freeform_estimate::ProcessNoise;
+use freeform_riccati::{MotionModel, ParameterVector};
+use nalgebra::{Affine2, Matrix3, Point2, Projective2};
+
+use super::first_pose::FirstPose;
+use crate::{
+    belief::Belief,
+    map::{Contour, OutlineMap, Resolution, TurnEvidence},
+    measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
+    prediction::{ByKind, ShapeNoise},
+    tuning::{map::FEWEST_POINTS, update as tuning},
+    update::{FrameMeasurement, Gate, PoseInnovation, Rejection, commit, hold, with_hold},
+};
+
+/// One object: its outline, where it is, how it moves, and how well all of it is known.
+///
+/// A frame goes one way: loaded into a [`Frame`], associated and linearised ([`View::measure`]), solved for a proposal
+/// ([`View::solve`]), judged ([`Gate::verdict`]), committed ([`commit`]); then the map grows by what is new.
+/// Copies share the map until one of them changes it.
+#[derive(Debug, Clone)]
+pub(crate) struct Track {
+    pub(super) reference: Reference,
+    pub(super) map: Arc<OutlineMap>,
+    pub(super) belief: Belief,
+    pub(super) noise: NoiseModel,
+    pub(super) shape: ShapeNoise,
+    /// The pose that it was begun in.
+    pub(super) first_pose: FirstPose,
+}
+
+/// Whether a frame is to be compared with what other tracks make of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Comparison {
+    Asked,
+    NotAsked,
+}
+
+/// What became of a frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Outcome {
+    pub(crate) measurement: FrameMeasurement,
+    pub(crate) verdict: Result<(), Rejection>,
+    pub(crate) innovation: PoseInnovation,
+    /// Of the frame given what was known before it; none unless asked for.
+    pub(crate) likelihood: NegativeLogLikelihood,
+}
+
+impl Outcome {
+    pub(crate) fn is_accepted(&self) -> bool {
+        self.verdict.is_ok()
+    }
+}
+
+impl Track {
+    /// One of what an outline shows, its motion unknown. Outliers and missing arcs are allowed for. `None` for fewer than 8 points, or
+    /// points that make no contour.
+    pub(crate) fn begin(model: MotionModel, outline: &Outline, frame: &mut Frame) -> Option<Self> {
+        if outline.point_count() < FEWEST_POINTS {
+            return None;
+        }
+        let reference = Reference::of(outline);
+        frame.load(outline, reference);
+        let contours = frame.contours(&Matrix3::identity());
+        Self::cut(model, reference, Matrix3::identity(), contours, 0.0, frame)
+    }
+
+    /// Takes cells along contours in the body frame, and the loaded points, which were seen in a pose, as their first measurement. `None`
+    /// where the contours do not make an outline. Their noise is no less than what is known of it.
+    pub(super) fn cut(
+        model: MotionModel,
+        reference: Reference,
+        pose: Matrix3<f64>,
+        contours: Vec<Contour>,
+        least_noise: f64,
+        frame: &mut Frame,
+    ) -> Option<Self> {
+        let loaded = frame.points.len();
+        let (resolution, sigma) = Resolution::of(&contours, least_noise, loaded);
+        if loaded < FEWEST_POINTS || !sigma.is_finite() {
+            return None;
+        }
+        let mut belief = Belief::new(model);
+        belief.pose = pose;
+        let k = belief.parameter_count();
+        for i in 0..k {
+            belief.information.dense[i][i] = tuning::GAUGE_WEIGHT * loaded as f64;
+            belief.information.dense[k + i][k + i] = tuning::MOTION_PRIOR;
+        }
+        let mut track = Self {
+            reference,
+            map: Arc::new(OutlineMap::for_contours(resolution)?),
+            belief,
+            noise: NoiseModel::new(sigma),
+            shape: ShapeNoise::default(),
+            first_pose: FirstPose::default(),
+        };
+        track.grow_along(contours, frame);
+        if track.map.cells().len() < 3 {
+            return None;
+        }
+        track.belief.marginal = track.belief.information.marginal();
+        track.noise.allow_for_cells(track.map.sagitta(), track.map.spacing());
+        Some(track)
+    }
+
+    /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise.
+    pub(crate) fn predict(&mut self, seconds: f64) {
+        if self.belief.predict(seconds) {
+            self.shape.forget_shape(&mut self.belief);
+        }
+    }
+
+    pub(crate) fn add_process_noise(&mut self, noise: &ProcessNoise, seconds: f64) {
+        let variance = self.noise.effective_variance();
+        self.belief.add_process_noise(noise, seconds, self.reference.radius, variance);
+    }
+
+    /// Lets the motion have changed during the last step by variances per second of its rates and of the velocity of the middle.
+    pub(crate) fn add_change(&mut self, variances: ByKind) {
+        let variance = self.noise.effective_variance();
+        self.belief.add_change(variances, &self.map.middle(), variance);
+    }
+
+    /// Measures the loaded outline and takes it if the gate lets it through; otherwise nothing changes.
+    pub(crate) fn update(&mut self, frame: &mut Frame, gate: &Gate, comparison: Comparison) -> Outcome {
+        let (view, radius) = (self.view(), self.reference.radius);
+        let null = self.map.null_directions(self.belief.model, &self.belief.pose);
+        let hold = hold(&self.belief, &self.map, &null);
+        let proposal = match view.solve(frame, &null, hold.as_ref()) {
+            Ok(proposal) => proposal,
+            Err(iterations) => {
+                let measurement = FrameMeasurement::unsolved(iterations);
+                let verdict = gate.verdict(&measurement).and(Err(Rejection::NotFound));
+                return Outcome {
+                    measurement,
+                    verdict,
+                    innovation: PoseInnovation::default(),
+                    likelihood: NegativeLogLikelihood::default(),
+                };
+            }
+        };
+        let variance = view.comparable_noise().powi(2) * self.noise.correlation();
+        let [before, after] =
+            [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold.as_ref()));
+        let innovation = self.belief.pose_innovation([&before, &after], &proposal.state, &self.map.middle(), variance);
+        let mut likelihood = NegativeLogLikelihood::default();
+        if comparison == Comparison::Asked {
+            likelihood = view.negative_log_likelihood(frame);
+            likelihood.squares += innovation.squared;
+        }
+        let measurement = view.judge(frame, &proposal, innovation.squared, radius);
+        let correlation = correlation_of(&frame.measurements, measurement.noise.map(|noise| noise / radius));
+        let verdict = gate.verdict(&measurement);
+        if verdict.is_ok() {
+            commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
+            if let Some(noise) = measurement.noise {
+                self.noise.take(noise / radius);
+            }
+            if let Some(ratio) = correlation {
+                self.noise.take_correlation(ratio);
+            }
+            if measurement.new_points >= tuning::FEWEST_NEW_POINTS {
+                let contours = frame.contours(&self.belief.pose);
+                self.grow_along(contours, frame);
+            }
+        }
+        Outcome { measurement, verdict, innovation, likelihood }
+    }
+
+    /// Takes the spread of a frame, image lengths, used or not.
+    pub(crate) fn take_spread(&mut self, spread: f64) {
+        self.noise.take_spread(spread / self.reference.radius);
+    }
+
+    /// Takes the noise of another track: it is the same whatever the pose.
+    pub(crate) fn take_noise_of(&mut self, other: &Self) {
+        self.noise.sigma = other.noise.sigma;
+    }
+
+    pub(crate) fn set_tolerance(&mut self, tolerance: Tolerance) {
+        self.noise.tolerance = tolerance;
+    }
+
+    /// Most noise of a frame that shows the outline, image lengths.
+    pub(crate) fn largest_noise(&self) -> f64 {
+        self.view().largest_noise(self.reference.radius)
+    }
+
+    /// Puts the object into a new pose and forgets motion and pose, keeping the outline.
+    pub(crate) fn relocate(&mut self, pose: Matrix3<f64>) {
+        self.belief.relocate(pose);
+    }
+
+    /// Takes a motion for granted that a step was made by, as long as nothing else is known. Of motions that differ in null directions
+    /// it is the one without them: the object is not known to turn or slide in ways that its outline does not show.
+    pub(crate) fn set_motion(&mut self, motion: ParameterVector) {
+        self.belief.motion = motion;
+        for null in self.map.null_directions(self.belief.model, &self.belief.pose) {
+            null.take_off(&mut self.belief.motion);
+        }
+    }
+
+    /// All that a frame is measured against.
+    pub(crate) fn view(&self) -> View<'_> {
+        View { map: &self.map, belief: &self.belief, noise: &self.noise }
+    }
+
+    pub(crate) fn model(&self) -> MotionModel {
+        self.belief.model
+    }
+
+    /// Whether it was begun with an outline.
+    pub(crate) fn is_begun_with(&self, outline: &Outline) -> bool {
+        self.reference == Reference::of(outline)
+    }
+
+    pub(crate) fn belief(&self) -> &Belief {
+        &self.belief
+    }
+
+    pub(crate) fn reference(&self) -> Reference {
+        self.reference
+    }
+
+    /// The pose, body to image, in normalised coordinates.
+    pub(crate) fn body_pose(&self) -> &Matrix3<f64> {
+        &self.belief.pose
+    }
+
+    /// The pose that it was begun in, body to image, in normalised coordinates.
+    pub(crate) fn first_body_pose(&self) -> &Matrix3<f64> {
+        &self.first_pose.pose
+    }
+
+    /// The map of the image that has moved the first frame's outline to where it is now.
+    pub(crate) fn pose(&self) -> Projective2<f64> {
+        let to_image = self.reference.to_image();
+        let inverse = to_image.try_inverse().unwrap_or_else(Matrix3::identity);
+        Projective2::from_matrix_unchecked(to_image * self.belief.pose * inverse)
+    }
+
+    /// The pose as an affine map; `None` if it is not affine.
+    pub(crate) fn affine_pose(&self) -> Option<Affine2<f64>> {
+        nalgebra::try_convert(self.pose())
+    }
+
+    /// Number of cells of the map.
+    pub(crate) fn cell_count(&self) -> usize {
+        self.map.cells().len()
+    }
+
+    /// Deviation of the noise, normalised.
+    pub(crate) fn sigma(&self) -> f64 {
+        self.noise.sigma
+    }
+
+    #[cfg(test)]
+    pub(crate) fn set_noise(&mut self, sigma: f64) {
+        self.noise.sigma = sigma;
+    }
+
+    /// The outline as it is known now, image coordinates: one point per cell, in no particular order where the map has grown.
+    pub(crate) fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        let to_image = self.reference.to_image() * self.belief.pose;
+        let cells = self.map.cells().iter().zip(&self.belief.offsets);
+        cells.map(move |(cell, offset)| freeform_riccati::map_point(&to_image, &(cell.centre + *offset * cell.normal)))
+    }
+
+    /// Whether neither the outline nor the frames show the turn.
+    pub(crate) fn turn_is_unseen(&self) -> bool {
+        self.map.turn_is_unseen(self.belief.model)
+    }
+
+    pub(crate) fn turn_evidence(&self) -> TurnEvidence {
+        self.map.turn_evidence()
+    }
+
+    /// Takes it that the turn cannot be seen, or that it can by the normals.
+    pub(crate) fn hide_turn(&mut self) {
+        if !self.turn_is_unseen() {
+            Arc::make_mut(&mut self.map).hide_turn(self.belief.model);
+        }
+    }
+
+    /// Takes that back.
+    pub(crate) fn show_turn(&mut self) {
+        if matches!(self.turn_evidence(), TurnEvidence::Hidden | TurnEvidence::NewAndHidden) {
+            Arc::make_mut(&mut self.map).show_turn();
+        }
+    }
+
+    /// Takes it that one frame alone has shown the turn so far.
+    pub(crate) fn take_turn_as_new(&mut self) {
+        Arc::make_mut(&mut self.map).take_turn_as_new();
+    }
+
+    /// Takes it that another frame has shown the turn too.
+    pub(crate) fn confirm_turn(&mut self) {
+        if self.turn_evidence() == TurnEvidence::New {
+            Arc::make_mut(&mut self.map).confirm_turn();
+        }
+    }
+
+    /// Whether the next frame may show the turn where those before it did not. Says so of each growth once.
+    pub(crate) fn may_show_turn(&mut self) -> bool {
+        match self.turn_evidence() {
+            TurnEvidence::AtLast => {
+                Arc::make_mut(&mut self.map).take_growth(false);
+                true
+            }
+            evidence => evidence == TurnEvidence::NewAndHidden,
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! Every constant of the motion filter, once, with its reason and, where there is one, its source.
+//!
+//! Lengths are in RMS radii of the first outline unless a line says otherwise; "deviations" are standard deviations.
+
+/// The map: cells along the outline, cut from points.
+pub(crate) mod map {
+    /// Fewest points that a map is begun with. Three cells of two points make no outline; below eight, chance makes any shape.
+    pub(crate) const FEWEST_POINTS: usize = 8;
+    /// Length of a cell in deviations of the noise. Shorter cells leave more offsets to be estimated, and points that come to the wrong
+    /// cell; longer ones a coarser outline.
+    pub(crate) const NOISE_PER_CELL: f64 = 3.0;
+    /// As [`NOISE_PER_CELL`], where there are [`PLENTY_PER_CELL`] points for each cell, so that offsets are known all the same.
+    pub(crate) const LEAST_NOISE_PER_CELL: f64 = 1.5;
+    /// Points for each cell that are plenty.
+    pub(crate) const PLENTY_PER_CELL: f64 = 4.0;
+    /// Fewest points of the first frame for each cell: with fewer, cells would be seen by chance.
+    pub(crate) const POINTS_PER_CELL: f64 = 1.0;
+    /// Most cells of the first frame, which bounds the work of a frame.
+    pub(crate) const MOST_CELLS: f64 = 800.0;
+    /// An outline is cut into so many cells at least, so that it has sides.
+    pub(crate) const CELLS_PER_LENGTH: f64 = 12.0;
+    /// Places further than this many spacings from all cells are new: a cell reaches half a spacing, and its neighbour half of one more.
+    pub(crate) const UNCOVERED: f64 = 1.1;
+    /// A map of so many times the places that any frame has shown at once holds what is not of the object, and grows no more: an
+    /// object of which less was seen at a time could not have been found again. Without this the map of an object that comes and
+    /// goes at the edge of the picture would grow for ever, by poses that its few points leave in doubt.
+    pub(crate) const MOST_TIMES_SEEN: usize = 8;
+    /// Shortest run of new places that is taken: one alone is an outlier as often as not.
+    pub(crate) const SHORTEST_RUN: usize = 2;
+    /// Longest side of the picture of nearest cells, pixels: it stays within the second cache of a processor.
+    pub(crate) const FIELD_PIXELS: f64 = 192.0;
+    /// Points further than this many spacings beyond a known end belong to what is not known yet.
+    pub(crate) const BEYOND_END: f64 = 0.75;
+}
+
+/// Smoothing of one contour, robust against outliers.
+pub(crate) mod contour {
+    /// Half window of the median that finds gross outliers, in points: up to four outliers in a row are found.
+    pub(crate) const MEDIAN_HALF_WINDOW: usize = 4;
+    /// A point this many median distances from the median of its neighbours is a gross outlier.
+    pub(crate) const GROSS: f64 = 5.0;
+    /// Half window of the pilot regression that the noise is taken from.
+    pub(crate) const PILOT_HALF_WINDOW: usize = 4;
+    /// Residuals beyond this many deviations leave the regression: one of 2,000 good points.
+    pub(crate) const OUTLYING: f64 = 3.5;
+    /// Deviation of a normal's direction that the window is chosen for, rad: its cosine is then within 0.2 %.
+    pub(crate) const NORMAL_NOISE: f64 = 0.05;
+    /// As [`NORMAL_NOISE`], for the pilot regression.
+    pub(crate) const PILOT_NORMAL_NOISE: f64 = 0.25;
+    /// Neighbours are looked for among one of so many parts of the points, on either side, where outliers lie between.
+    pub(crate) const PARTS: usize = 8;
+    /// Smallest and largest half window of the local regression, in points.
+    pub(crate) const HALF_WINDOWS: std::ops::RangeInclusive<usize> = 2..=30;
+    /// Residuals of a regression that a point took part in are divided by their deviation, no less than this share of a variance.
+    pub(crate) const LEAST_RESIDUAL_VARIANCE: f64 = 0.05;
+    /// Points whose residuals keep less of their variance than this tell nothing of the noise.
+    pub(crate) const TELLING_RESIDUAL_VARIANCE: f64 = 0.1;
+}
+
+/// Directions of the pose that an outline does not show.
+pub(crate) mod null_space {
+    /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
+    pub(crate) const DEGENERATE: f64 = 0.003;
+    /// Times what the errors of the normals would make of the levers in a direction that is not seen: that, and some more.
+    pub(crate) const EXPLAINED: f64 = 2.0;
+    /// Deviation of a normal's direction that cells are far enough apart for, rad...
+    pub(crate) const CHORD_NOISE: f64 = 0.035;
+    /// ...but no further than one of so many parts of all.
+    pub(crate) const FEWEST_PARTS: usize = 16;
+    /// Variance that stands for any direction: the mean squared sine.
+    pub(crate) const ANY_DIRECTION: f64 = 0.5;
+    /// Points of a window over which a quadratic is fitted, for each that its middle is worth.
+    pub(crate) const QUADRATIC: f64 = 2.25;
+    /// Steps of Newton's method to the least of the motions that look alike; each doubles the digits.
+    pub(crate) const LEAST_STEPS: usize = 3;
+    /// Turn, in rad, of a unit step in a direction that counts as turning.
+    pub(crate) const HOLDS_TURN: f64 = 0.3;
+    /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.
+    pub(crate) const TAKES_PART: f64 = 0.01;
+    /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
+    /// over the frames of a recording, and leaves seven digits to the solution.
+    pub(crate) const HOLDING: f64 = 1e9;
+}
+
+/// Points of a frame against the map.
+pub(crate) mod measurement {
+    /// Residuals up to this many deviations count in full...
+    pub(crate) const FULL_WEIGHT: f64 = 3.0;
+    /// ...and beyond this many not at all, with the biweight of Beaton and Tukey (1974) between.
+    pub(crate) const NO_WEIGHT: f64 = 6.0;
+    /// With this share of the points near the prediction, their spread need not be looked at before they are weighted.
+    pub(crate) const NEAR_ENOUGH: f64 = 0.75;
+    /// Deviation that the place of a point along the outline may have, in spacings.
+    pub(crate) const PLACE_NOISE: f64 = 0.13;
+    /// Share of all points that the mean is taken over at most: a wider mean would cut corners.
+    pub(crate) const WIDEST_WINDOW: f64 = 0.04;
+    /// Fewest points on either side that the direction of the contour is told from.
+    pub(crate) const FEWEST_NEIGHBOURS: usize = 2;
+    /// Share of the points whose cells must run the same way along the contour: most, or nothing can be said of the rest.
+    pub(crate) const SURE_DIRECTION: f64 = 0.8;
+    /// Points before and after one that are looked at for the side it is on, in windows.
+    pub(crate) const FURTHEST_NEIGHBOUR: usize = 8;
+    /// From the median of absolute values to the deviation of Gaussian noise, 1 / 0.6745.
+    pub(crate) const MEDIAN_TO_DEVIATION: f64 = 1.4826;
+}
+
+/// Noise of the points.
+pub(crate) mod noise {
+    /// Smallest deviation of the noise that is reckoned with: far below what any picture tells, and far above rounding.
+    pub(crate) const SMALLEST: f64 = 1e-9;
+    /// What straight cells leave of an outline where it bends most, in spacings: noise is not told from it below.
+    pub(crate) const CELL_ERROR: f64 = 0.03;
+    /// Share of the sagitta over a chord of two cells that is left at the ends of one.
+    pub(crate) const SAGITTA_LEFT: f64 = 0.25;
+    /// Frames that the running mean of the noise looks back on.
+    pub(crate) const MEMORY: f64 = 200.0;
+    /// Weight of the first frame's noise in that mean, in frames: it comes from one contour alone.
+    pub(crate) const FIRST_WEIGHT: f64 = 0.5;
+    /// Frames whose spread is looked back on to tell a bad frame.
+    pub(crate) const FRAMES: usize = 9;
+    /// A frame with so many times the noise of most does not show the known outline, however well the map is bent to it.
+    pub(crate) const LARGEST_RATIO: f64 = 1.8;
+    /// Nor does one with more than this: outlines of different objects differ by more.
+    pub(crate) const LARGEST: f64 = 0.05;
+    /// As [`LARGEST`], while no frame has been compared with another.
+    pub(crate) const LARGEST_AT_FIRST: f64 = 0.03;
+    /// Stretches that the contour is cut into to see whether its errors are correlated.
+    pub(crate) const STRETCHES: usize = 24;
+    /// Fewest points of a stretch whose mean tells something of correlation.
+    pub(crate) const FEWEST_IN_STRETCH: usize = 3;
+    /// Frames that the correlation is averaged over.
+    pub(crate) const CORRELATION_MEMORY: f64 = 50.0;
+    /// Deviations of its estimate by which a correlation must be larger than none.
+    pub(crate) const CORRELATION_SIGNIFICANT: f64 = 2.0;
+    /// Noise below this many spacings is never too much: exact points leave what the cells do not follow.
+    pub(crate) const NEVER_TOO_MUCH: f64 = 0.1;
+    /// Points that the assumption of the usual noise of a cell is worth.
+    pub(crate) const INFLATION_PRIOR_POINTS: f64 = 8.0;
+    /// Deviations of its estimate by which the variance of a cell's points must be larger than that of the noise.
+    pub(crate) const INFLATION_SIGNIFICANT: f64 = 2.0;
+    /// Squared residual, in units of the variance known, beyond which a point may be an outlier and counts no more than that.
+    pub(crate) const INFLATION_CLIPPED: f64 = 9.0;
+    /// Points of a cell that are remembered.
+    pub(crate) const INFLATION_MEMORY: f64 = 400.0;
+}
+
+/// Comparison of poses by their likelihoods.
+pub(crate) mod likelihood {
+    /// Smallest noise that poses are compared by, in spacings: without noise residuals are what straight cells leave.
+    pub(crate) const CELL_ERROR: f64 = 0.1;
+    /// Residuals of more deviations are no worse: they may be outliers.
+    pub(crate) const LARGEST: f64 = 4.0;
+    /// Square that stands for a point beyond the known ends of the outline.
+    pub(crate) const UNKNOWN: f64 = 2.0;
+    /// Variance of the difference of a point's squared residuals from two parts of an outline: the noise of the point is in both, that
+    /// of the map is not (2 + 2 - 2 / 2).
+    pub(crate) const VARIANCE: f64 = 3.0;
+    /// Deviations of the difference by which one of many poses must be worse.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Points that turns are compared by; more of them would not decide more.
+    pub(crate) const ENOUGH_POINTS: usize = 2000;
+}
+
+/// Shape process noise: outlines that change slowly.
+pub(crate) mod shape_noise {
+    /// Frames that the evidence looks back on.
+    pub(crate) const MEMORY: f64 = 15.0;
+    /// Deviations by which repeated innovations must be seen. A shape that does not change must not be forgotten.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Share of the repeated part that the variance is corrected by in one frame.
+    pub(crate) const GAIN: f64 = 0.1;
+    /// Innovation of one cell, in deviations, that counts at most: one cell gone wrong must not speak for all.
+    pub(crate) const CLIPPED: f64 = 6.0;
+    /// Share of what is known of a cell that a frame must add for its innovation to be told.
+    pub(crate) const SMALLEST_GAIN: f64 = 1e-6;
+}
+
+/// Solving for a frame, and the gate.
+pub(crate) mod update {
+    /// Weight of the first pose, in points: it only fixes the gauge, since pose and offsets can move together.
+    pub(crate) const GAUGE_WEIGHT: f64 = 10.0;
+    /// Information on the motion that makes the first equations solvable, per squared second: next to nothing.
+    pub(crate) const MOTION_PRIOR: f64 = 1e-10;
+    /// Most linearisations per frame. One suffices in steady state; acquisition needs three or four.
+    pub(crate) const MOST_ITERATIONS: usize = 6;
+    /// A step that moves points by less than this many deviations of the noise is the last.
+    pub(crate) const SETTLED: f64 = 0.03;
+    /// Determinant of a pose below which it has collapsed.
+    pub(crate) const COLLAPSED: f64 = 1e-12;
+    /// Residuals within this many deviations agree with the map.
+    pub(crate) const AGREEING: f64 = 3.5;
+    /// Residuals below this many spacings agree too: corners lie off the straight cells by as much.
+    pub(crate) const BEND: f64 = 0.2;
+    /// So many points beyond the known ends count as one in the share that agrees: they may be anything.
+    pub(crate) const NEW_POINTS_PER_POINT: f64 = 3.0;
+    /// Share of what is known of a cell beyond which a point says nothing of the noise: the cell follows it.
+    pub(crate) const LARGEST_LEVERAGE: f64 = 0.8;
+    /// Fewest points beyond the known ends that make the map grow.
+    pub(crate) const FEWEST_NEW_POINTS: usize = 4;
+    /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
+    /// that once in a million frames.
+    pub(crate) const SUDDEN: f64 = 25.0;
+}
+
+/// Remapping: the map cut anew from several frames.
+pub(crate) mod remapping {
+    /// Frames after which the map is cut anew.
+    pub(crate) const OCCASIONS: [usize; 3] = [4, 16, 64];
+    /// With so many points of one frame for each cell there is nothing to be gained.
+    pub(crate) const PLENTY_PER_CELL: f64 = 3.5;
+    /// Times that a map is cut from the same frames at most.
+    pub(crate) const MOST_CUTS: usize = 4;
+    /// Points of several frames beyond which more of them would not make cells finer.
+    pub(crate) const PLENTY: usize = 3200;
+    /// Points nearer than so many spacings are one.
+    pub(crate) const COINCIDENT: f64 = 0.05;
+    /// Share of the noise that the map has seen, which the points are taken to have at least: where those of many frames lie in one place
+    /// they make contours of their own.
+    pub(crate) const LEAST_NOISE: f64 = 0.5;
+    /// Points that follow each other in less than this share of the mean distance lie in one place.
+    pub(crate) const COMMON: f64 = 0.2;
+}
+
+/// Global registration: the object looked for without a guess.
+pub(crate) mod registration {
+    /// Turns tried over the whole circle, 15 degrees apart: within reach of the local search on every outline tried.
+    pub(crate) const TURNS: usize = 24;
+    /// Points that the search is made with.
+    pub(crate) const FEW_POINTS: usize = 80;
+    /// Share of the points, nearest first, that a pose is scored by: the rest may be hidden in the map or wrong.
+    pub(crate) const TRIMMED: f64 = 0.75;
+    /// Steps of the search for each start.
+    pub(crate) const SEARCH_STEPS: usize = 8;
+    /// Steps of the refinement of the best.
+    pub(crate) const REFINEMENT_STEPS: usize = 15;
+    /// Poses that are refined.
+    pub(crate) const REFINED: usize = 5;
+    /// Poses that are handed back at most, with as many of smaller turns.
+    pub(crate) const KEPT: usize = 2;
+    /// Poses whose turns differ by less than this are the same, rad.
+    pub(crate) const SAME_TURN: f64 = 0.15;
+    /// Poses whose matrices differ by less than this are the same.
+    pub(crate) const SAME_POSE: f64 = 0.5;
+    /// A score up to this many times the best is a tie.
+    pub(crate) const TIE: f64 = 1.25;
+    /// Tukey's constant for 95 % efficiency at Gaussian noise.
+    pub(crate) const TUKEY: f64 = 4.685;
+    /// What makes the equations of a step solvable where the points do not.
+    pub(crate) const DAMPING: f64 = 1e-6;
+    /// Turns from the best that are compared with it, spread by the golden angle, to see whether a frame shows the turn.
+    pub(crate) const OTHER_TURNS: usize = 32;
+    /// The golden angle, rad.
+    pub(crate) const GOLDEN_ANGLE: f64 = 2.399_963;
+    /// Turns nearer than this to the best are no others, rad.
+    pub(crate) const NEAR: f64 = 0.3;
+    /// Share of other turns that a frame must explain worse than the best to show the turn...
+    pub(crate) const MOST: f64 = 0.5;
+    /// ...and where no frame has before.
+    pub(crate) const NEARLY_ALL: f64 = 0.88;
+}
+
+/// Hypotheses: turns that explain a frame alike.
+pub(crate) mod hypotheses {
+    /// Turns that differ by less are the same, rad.
+    pub(crate) const DIFFERENT_TURN: f64 = 0.15;
+    /// Of turns that explain the frames alike the smallest is taken for granted if the others are so many times as large: the turn per
+    /// frame is then less than two thirds of half the angle of symmetry.
+    pub(crate) const SURELY_SMALLER: f64 = 2.0;
+    /// Frames after which hypotheses that are surely larger turns are no longer followed: a symmetric outline will not tell them apart.
+    pub(crate) const FOLLOWED: usize = 8;
+    /// Deviations by which the motions of hypotheses must differ to be in doubt.
+    pub(crate) const DIFFERENT: f64 = 2.0;
+}
+
+/// Changes of the motion.
+pub(crate) mod motion_change {
+    /// Frames that the estimate looks back on.
+    pub(crate) const MEMORY: f64 = 15.0;
+    /// Deviations of the likelihood's slope from which a change counts as seen. Constant motion must stay at the bound.
+    pub(crate) const SIGNIFICANT: f64 = 7.0;
+    /// As [`SIGNIFICANT`], for a motion that has been seen to change before.
+    pub(crate) const SIGNIFICANT_AGAIN: f64 = 3.0;
+    /// Squared innovation per parameter that counts at most in the running estimate: squares have long tails.
+    pub(crate) const LIMIT: f64 = 4.0;
+    /// Squared innovation per parameter that chance does not make...
+    pub(crate) const BEYOND_CHANCE: f64 = 8.0;
+    /// ...and up to which one frame counts at most so many deviations of its slope as evidence, which takes several frames that agree.
+    pub(crate) const EVIDENCE: f64 = 4.0;
+}
+
+/// Phases of the filter, and what of the motion is stated.
+pub(crate) mod supervisor {
+    /// Frames rejected in a row before the second one was ever found: the first was not the object.
+    pub(crate) const FALSE_START: usize = 3;
+    /// A map that has taken no more frames than this may have been begun from what is not the object.
+    pub(crate) const FEW_FRAMES: usize = 5;
+    /// Frames rejected in a row after which the object is given up and a new one taken: a second of video.
+    pub(crate) const GIVEN_UP: usize = 30;
+    /// Squared innovation of one frame beyond which a lost object has not gone on as it was.
+    pub(crate) const LARGEST_INNOVATION: f64 = 80.0;
+    /// Steps over which a parameter must be known at least, however fast the motion changes.
+    pub(crate) const STEPS_KNOWN: f64 = 30.0;
+}
+
+/// The batch estimator.
+pub(crate) mod batch {
+    /// Times that the outline is cut anew at most.
+    pub(crate) const MOST_ROUNDS: usize = 8;
+    /// Deviations by which the mean of the rounds may still change where it has settled.
+    pub(crate) const SETTLED: f64 = 0.1;
+}

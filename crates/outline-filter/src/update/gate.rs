@@ -1,0 +1,170 @@
+//! Whether a frame shows the outline that is known, where it is expected.
+use std::fmt;
+
+use super::solve::Proposal;
+use crate::{
+    map::median,
+    measurement::{Frame, Measurement, NO_CELL, View, spread},
+    tuning::{measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, update as tuning},
+};
+
+/// Comparison of one frame with the known outline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameMeasurement {
+    /// Share of the points that lie on the known outline, of those that do not lie beyond its ends; in [0, 1].
+    pub agreement: f64,
+    /// Points that lie beyond the known ends of the outline.
+    pub new_points: usize,
+    /// Squared innovation of the pose in units of its covariance. On average about the number of parameters, if the motion has not
+    /// changed.
+    pub innovation: f64,
+    /// Linearisations taken.
+    pub iterations: usize,
+    /// Standard deviation of the noise of this frame, image lengths; `None` if too few cells have been seen before.
+    pub noise: Option<f64>,
+    /// Robust spread of all points about the outline, including points left out, image lengths; infinite if there are none.
+    pub spread: f64,
+}
+
+/// Why a [`MotionFilter`](crate::MotionFilter) has not used a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rejection {
+    /// Too few points lie on the known outline.
+    AgreementTooSmall {
+        /// Share of the points on the outline, in [0, 1].
+        agreement: f64,
+        /// Share needed, [`FilterSettings::smallest_agreement`](crate::FilterSettings::smallest_agreement).
+        smallest: f64,
+    },
+    /// The frame shows the outline, but not at the place predicted by the motion.
+    InnovationTooLarge {
+        /// Squared innovation of the pose, as in [`FrameMeasurement::innovation`].
+        innovation: f64,
+        /// Largest accepted value.
+        largest: f64,
+    },
+    /// The frame shows the outline, but its points scatter about it more than those of other frames.
+    NoiseTooLarge {
+        /// Standard deviation of this frame's noise, image lengths.
+        noise: f64,
+    },
+    /// No pose was found.
+    NotFound,
+}
+
+/// Conditions for accepting a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Gate {
+    /// Smallest share of points that agree.
+    pub(crate) smallest_agreement: f64,
+    /// Largest squared innovation of the pose, where it matters.
+    pub(crate) largest_innovation: Option<f64>,
+    /// Largest deviation of the noise in image lengths, where it matters.
+    pub(crate) largest_noise: Option<f64>,
+}
+
+impl Gate {
+    /// Tests the measurement of a frame.
+    ///
+    /// # Errors
+    /// The first condition that is not met.
+    pub(crate) fn verdict(&self, measurement: &FrameMeasurement) -> Result<(), Rejection> {
+        let FrameMeasurement { agreement, innovation, .. } = *measurement;
+        let smallest = self.smallest_agreement;
+        // Not a number does not agree either.
+        if agreement.is_nan() || agreement < smallest {
+            return Err(Rejection::AgreementTooSmall { agreement, smallest });
+        }
+        if let Some(largest) = self.largest_innovation.filter(|largest| innovation > *largest || innovation.is_nan()) {
+            return Err(Rejection::InnovationTooLarge { innovation, largest });
+        }
+        match (measurement.noise, self.largest_noise) {
+            (Some(noise), Some(largest)) if noise > largest || noise.is_nan() => {
+                Err(Rejection::NoiseTooLarge { noise })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl FrameMeasurement {
+    /// Of a frame that no pose was found for.
+    pub(crate) const fn unsolved(iterations: usize) -> Self {
+        Self {
+            agreement: 0.0,
+            new_points: 0,
+            innovation: f64::INFINITY,
+            iterations,
+            noise: None,
+            spread: f64::INFINITY,
+        }
+    }
+}
+
+impl View<'_> {
+    /// Most noise of a frame that shows the known outline, in image lengths; `radius` is that of the first outline.
+    pub(crate) fn largest_noise(&self, radius: f64) -> f64 {
+        self.noise.tolerated().max(NEVER_TOO_MUCH * self.map.spacing()) * radius
+    }
+
+    /// What a proposal leaves of a frame. Lengths are multiplied by `radius`.
+    pub(crate) fn judge(
+        &self,
+        frame: &mut Frame,
+        proposal: &Proposal,
+        innovation: f64,
+        radius: f64,
+    ) -> FrameMeasurement {
+        let Frame { measurements, values, cells, .. } = frame;
+        let spread = spread(values, measurements);
+        let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
+        let tolerance = (tuning::AGREEING * scale).max(tuning::BEND * self.map.spacing());
+        let (mut known, mut agreeing, mut new_points) = (0usize, 0usize, 0usize);
+        values.clear();
+        for m in measurements.iter() {
+            if m.cell == NO_CELL {
+                new_points += 1;
+                continue;
+            }
+            known += 1;
+            agreeing += usize::from(m.residual.abs() < tolerance);
+            if let Some(factor) = without_leverage(m, cells[m.cell].own).filter(|_| m.weight > 0.0) {
+                values.push(m.residual.abs() * factor.sqrt());
+            }
+        }
+        let enough = values.len() * 4 > measurements.len();
+        let noise = median(values).filter(|_| enough).map(|m| MEDIAN_TO_DEVIATION * m * radius);
+        let total = known as f64 + new_points as f64 / tuning::NEW_POINTS_PER_POINT;
+        let agreement = if total > 0.0 { agreeing as f64 / total } else { 0.0 };
+        let iterations = proposal.iterations;
+        FrameMeasurement { agreement, new_points, innovation, iterations, noise, spread: spread * radius }
+    }
+}
+
+/// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is;
+/// `None` where that share is too large to tell.
+pub(super) fn without_leverage(measurement: &Measurement, own: f64) -> Option<f64> {
+    let of_point = measurement.weight * measurement.by_offset * measurement.by_offset;
+    (of_point < tuning::LARGEST_LEVERAGE * own).then(|| own / (own - of_point))
+}
+
+impl fmt::Display for Rejection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::AgreementTooSmall { agreement, .. } => {
+                write!(f, "does not fit the object, {:.0} % of the points lie on its outline", 100.0 * agreement)
+            }
+            Self::InnovationTooLarge { innovation, .. } => {
+                write!(f, "does not go on from the frames before it, squared innovation {innovation:.0}")
+            }
+            Self::NoiseTooLarge { noise } => {
+                let decimals = (1.0 - noise.log10().floor()).max(0.0) as usize;
+                write!(
+                    f,
+                    "its points scatter by {noise:.decimals$} about the outline known, more than those of other frames"
+                )
+            }
+            Self::NotFound => f.write_str("the object was not found"),
+        }
+    }
+}

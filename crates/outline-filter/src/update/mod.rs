@@ -1,0 +1,14 @@
+//! One frame taken into what is believed: solve for a proposal, judge it at a gate, commit it.
+mod commit;
+mod gate;
+mod hold;
+mod innovation;
+mod normal_equations;
+mod solve;
+
+pub(crate) use commit::commit;
+pub(crate) use gate::Gate;
+pub use gate::{FrameMeasurement, Rejection};
+pub(crate) use hold::{hold, with_hold};
+pub(crate) use innovation::PoseInnovation;
+pub(crate) use normal_equations::accumulate;

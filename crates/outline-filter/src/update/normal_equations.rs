@@ -1,0 +1,58 @@
+//! The normal equations of a frame, added to the information, and the offsets eliminated from them.
+use crate::{
+    belief::{Arrowhead, StateVector},
+    measurement::{Frame, Measurement},
+};
+
+/// Adds the measurements to the information; returns the right-hand side of pose and motion, and leaves those of the offsets in the frame.
+/// `state` is the step that the residuals were taken after.
+pub(crate) fn accumulate(frame: &mut Frame, work: &mut Arrowhead, state: &StateVector) -> StateVector {
+    frame.right.clear();
+    frame.right.resize(work.cells.len(), 0.0);
+    match work.k {
+        3 => accumulate_sized::<3>(frame, work, state),
+        4 => accumulate_sized::<4>(frame, work, state),
+        6 => accumulate_sized::<6>(frame, work, state),
+        _ => accumulate_sized::<8>(frame, work, state),
+    }
+}
+
+fn accumulate_sized<const K: usize>(frame: &mut Frame, work: &mut Arrowhead, state: &StateVector) -> StateVector {
+    let mut right = StateVector::zeros();
+    let mut dense = [[0.0; K]; K];
+    for Measurement { cell, residual, by_offset, jacobian, weight } in &frame.measurements {
+        if *weight == 0.0 {
+            continue;
+        }
+        let mut along = 0.0;
+        (0..K).for_each(|i| along += jacobian[i] * state[i]);
+        let target = residual + along + by_offset * frame.shifts[*cell];
+        let information = &mut work.cells[*cell];
+        let weighted = weight * by_offset;
+        for i in 0..K {
+            let wi = weight * jacobian[i];
+            for j in 0..K {
+                dense[i][j] += wi * jacobian[j];
+            }
+            right[i] += wi * target;
+            information.coupling[i] += weighted * jacobian[i];
+        }
+        information.own += weighted * by_offset;
+        frame.right[*cell] += weighted * target;
+    }
+    for (sum, row) in work.dense.iter_mut().zip(&dense) {
+        sum.iter_mut().zip(row).for_each(|(s, d)| *s += d);
+    }
+    right
+}
+
+/// Right-hand side with the offsets eliminated.
+pub(super) fn reduce(work: &Arrowhead, right_of_cells: &[f64], mut right: StateVector) -> StateVector {
+    for (cell, r) in work.cells.iter().zip(right_of_cells) {
+        if cell.own > 0.0 && *r != 0.0 {
+            let factor = r / cell.own;
+            right.iter_mut().zip(&cell.coupling).for_each(|(right, coupling)| *right -= factor * coupling);
+        }
+    }
+    right
+}

@@ -1,0 +1,177 @@
+//! A frame linearised and solved for pose, motion and offsets until the pose settles.
+use nalgebra::Matrix3;
+
+use super::{
+    hold::with_hold,
+    normal_equations::{accumulate, reduce},
+};
+use crate::{
+    belief::{Arrowhead, CellInformation, STATE, StateMatrix, StateVector, scaled_solution},
+    map::NullDirection,
+    measurement::{Frame, NO_CELL, Pass, View},
+    tuning::update as tuning,
+};
+
+/// What a frame asks for: a step of pose and motion, and the information with the frame. That of the offsets, and their corrections, are in
+/// the buffers of the frame until it is committed.
+#[derive(Debug, Clone)]
+pub(crate) struct Proposal {
+    /// Step of pose and motion from what was predicted.
+    pub(crate) state: StateVector,
+    pub(crate) pose: Matrix3<f64>,
+    /// Information on pose and motion with the frame, the outline given.
+    pub(crate) dense: [[f64; STATE]; STATE],
+    /// Information on pose and motion with the frame, the offsets eliminated.
+    pub(crate) marginal: StateMatrix,
+    /// Linearisations taken.
+    pub(crate) iterations: usize,
+}
+
+impl View<'_> {
+    /// Linearises and solves until the pose settles; the number of linearisations where there is no solution. `null` are the null directions
+    /// of the predicted pose, `hold` is information that is added for the solution only.
+    pub(crate) fn solve(
+        &self,
+        frame: &mut Frame,
+        null: &[NullDirection],
+        hold: Option<&StateMatrix>,
+    ) -> Result<Proposal, usize> {
+        let belief = self.belief;
+        let (model, k) = (belief.model, belief.parameter_count());
+        frame.clear_shifts(self.map.cells().len());
+        let mut proposal = Proposal {
+            state: StateVector::zeros(),
+            pose: belief.pose,
+            dense: belief.information.dense,
+            marginal: belief.marginal,
+            iterations: 0,
+        };
+        let mut null = null.to_vec();
+        let mut work = Arrowhead::new(k);
+        let mut settled = false;
+        while proposal.iterations < tuning::MOST_ITERATIONS && !settled {
+            // A turn that is not seen is one about the middle as the frame has it.
+            if proposal.iterations > 0 && !null.is_empty() {
+                null = self.map.null_directions(model, &proposal.pose);
+            }
+            let pass = if proposal.iterations == 0 { Pass::First } else { Pass::Again };
+            self.measure(frame, &proposal.pose, &null, pass);
+            frame.cells.clone_from(&belief.information.cells);
+            std::mem::swap(&mut work.cells, &mut frame.cells);
+            work.dense = belief.information.dense;
+            let right = accumulate(frame, &mut work, &proposal.state);
+            let marginal = work.marginal();
+            let reduced = reduce(&work, &frame.right, right);
+            let solution = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
+            let next = solution.filter(|next| next.iter().all(|e| e.is_finite()));
+            if let Some(next) = next {
+                frame.take_step(&work.cells, &(next - proposal.state), &next, k);
+            }
+            std::mem::swap(&mut work.cells, &mut frame.cells);
+            let next = next.ok_or(proposal.iterations)?;
+            let step = (0..k).map(|i| (next[i] - proposal.state[i]).abs()).fold(0.0, f64::max);
+            let pose = model.flow(&next.as_slice()[..k], 1.0).into_inner() * belief.pose;
+            if !pose.iter().all(|e| e.is_finite()) || pose.determinant().abs() < tuning::COLLAPSED {
+                return Err(proposal.iterations);
+            }
+            let iterations = proposal.iterations + 1;
+            proposal = Proposal { state: next, pose, dense: work.dense, marginal, iterations };
+            settled = step < tuning::SETTLED * self.noise.sigma;
+        }
+        Ok(proposal)
+    }
+}
+
+impl Frame {
+    /// Offsets that go with a solution for pose and motion, and what it leaves of the residuals.
+    fn take_step(&mut self, cells: &[CellInformation], step: &StateVector, state: &StateVector, k: usize) {
+        self.values.clear();
+        for ((shift, cell), right) in self.shifts.iter_mut().zip(cells).zip(&self.right) {
+            let before = *shift;
+            if cell.own > 0.0 {
+                let along: f64 = (0..2 * k).map(|i| cell.coupling[i] * state[i]).sum();
+                *shift = (right - along) / cell.own;
+            }
+            self.values.push(*shift - before);
+        }
+        for measurement in self.measurements.iter_mut().filter(|m| m.cell != NO_CELL) {
+            let along: f64 = (0..k).map(|i| measurement.jacobian[i] * step[i]).sum();
+            measurement.residual -= along + measurement.by_offset * self.values[measurement.cell];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        dense_filter::{AGREES, DenseFilter, Problem, random_measurements},
+        measurement::NoiseModel,
+        prediction::ShapeNoise,
+        update::commit,
+    };
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn a_linear_update_is_that_of_the_dense_filter(mut problem in Problem::any()) {
+            let (k, cells) = (problem.belief.parameter_count(), problem.belief.offsets.len());
+            let belief = &mut problem.belief;
+            let mut dense = DenseFilter::of(&belief.information);
+            let measurements = random_measurements(&mut problem.rng, k, 0..cells, 3 * cells);
+            measurements.iter().for_each(|m| dense.measure(m));
+
+            let mut frame = Frame { measurements, ..Frame::default() };
+            frame.clear_shifts(cells);
+            let mut work = belief.information.clone();
+            let right = accumulate(&mut frame, &mut work, &StateVector::zeros());
+            let reduced = reduce(&work, &frame.right, right);
+            let state = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
+            frame.take_step(&work.cells, &state, &state, k);
+            frame.cells.clone_from(&work.cells);
+            let marginal = work.marginal();
+            let proposal = Proposal { state, pose: belief.pose, dense: work.dense, marginal, iterations: 1 };
+            let (motion, offsets) = (belief.motion, belief.offsets.clone());
+            let (mut noise, mut shape) = (NoiseModel::new(1.0), ShapeNoise::default());
+            noise.resize(cells);
+            shape.resize(cells);
+            commit(&proposal, &mut frame, (belief, &mut noise, &mut shape));
+
+            let difference = dense.difference(&belief.information, |_, _| true);
+            prop_assert!(difference < AGREES, "{difference}");
+            let difference = dense.difference_of_marginal(&belief.marginal);
+            prop_assert!(difference < AGREES, "marginal {difference}");
+            let size = dense.mean.amax();
+            let pose = (0..k).map(|i| state[i]);
+            let moved = pose.chain((0..k).map(|i| belief.motion[i] - motion[i]));
+            let moved = moved.chain(belief.offsets.iter().zip(&offsets).map(|(after, before)| after - before));
+            for (found, expected) in moved.zip(dense.mean.iter()) {
+                prop_assert!((found - expected).abs() < AGREES * size, "{found} {expected}");
+            }
+        }
+
+        /// Measurements are the same whichever step their residuals were taken after.
+        #[test]
+        fn a_second_linearisation_at_the_same_place_changes_nothing(mut problem in Problem::any()) {
+            let (k, cells) = (problem.belief.parameter_count(), problem.belief.offsets.len());
+            let measurements = random_measurements(&mut problem.rng, k, 0..cells, 3 * cells);
+            let mut frame = Frame { measurements, ..Frame::default() };
+            frame.clear_shifts(cells);
+            let mut state = StateVector::zeros();
+            let mut steps = Vec::new();
+            for _ in 0..2 {
+                let mut work = problem.belief.information.clone();
+                let right = accumulate(&mut frame, &mut work, &state);
+                let reduced = reduce(&work, &frame.right, right);
+                let next = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
+                frame.take_step(&work.cells, &(next - state), &next, k);
+                steps.push((next - state).amax());
+                state = next;
+            }
+            prop_assert!(steps[1] < AGREES * steps[0], "{steps:?}");
+        }
+    }
+}

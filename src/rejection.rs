@@ -1,0 +1,64 @@
+use std::{error::Error, fmt};
+
+use freeform_outline_filter::{FilterError, Rejection};
+
+use crate::pipeline_error::PipelineError;
+
+/// Why a frame of an object was not used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameRejection {
+    /// Name of the object.
+    pub object: String,
+    /// Number of the frame.
+    pub frame: u64,
+    /// The reason.
+    pub cause: RejectionCause,
+}
+
+/// Reasons not to use a frame.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RejectionCause {
+    /// The points are not an outline. The text comes from the reader and names the frame.
+    NoOutline(String),
+    /// The frame does not fit the object as the motion filter knows it.
+    NotAccepted(Rejection),
+    /// Error of the motion filter.
+    Filter(FilterError),
+    /// Error of the pipeline.
+    Pipeline(PipelineError),
+}
+
+impl fmt::Display for FrameRejection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { object, frame, cause } = self;
+        match cause {
+            RejectionCause::NoOutline(_) => cause.fmt(f),
+            _ => write!(f, "frame {frame} of object {object:?}: {cause}"),
+        }
+    }
+}
+
+impl fmt::Display for RejectionCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoOutline(reason) => f.write_str(reason),
+            Self::NotAccepted(rejection) => rejection.fmt(f),
+            Self::Filter(error) => f.write_str(&with_causes(error)),
+            Self::Pipeline(error) => f.write_str(&with_causes(error)),
+        }
+    }
+}
+
+/// An error and what caused it, without what its own text already says.
+fn with_causes(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        let cause_text = cause.to_string();
+        if !text.contains(&cause_text) {
+            text = format!("{text}: {cause_text}");
+        }
+        source = cause.source();
+    }
+    text
+}

@@ -1,0 +1,162 @@
+//! The identifier of one object, whichever method it is.
+use freeform_curve_fit::{Fit, Outline};
+use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
+use freeform_outline_filter::{Ambiguity, MotionFilter, Phase};
+
+use super::{
+    observation::ObjectPhase,
+    settings::{MethodSettings, TrackerError},
+};
+use crate::pipeline::{Pipeline, PipelineSettings};
+use crate::rejection::RejectionCause;
+use crate::warning::{MANY_REJECTED, Warning};
+
+/// What is known of one object.
+#[derive(Debug, Clone)]
+pub(super) enum Identifier {
+    /// The paper's identifier on the lines of fitted curves.
+    Adaptive(Box<Pipeline>),
+    /// The motion filter on the points of the outlines.
+    Filter(Box<FilteredObject>),
+}
+
+/// A filter, and what it knew before it began to look for the object again.
+#[derive(Debug, Clone)]
+pub(super) struct FilteredObject {
+    filter: MotionFilter,
+    /// Time in seconds and motion when it was last known.
+    last_known: Option<(f64, MotionEstimate)>,
+}
+
+/// What became of one frame.
+#[derive(Debug, Default)]
+pub(super) struct Step {
+    pub(super) phase: Option<ObjectPhase>,
+    pub(super) estimate: Option<MotionEstimate>,
+    pub(super) fit: Option<Fit>,
+    pub(super) residual: Option<f64>,
+    pub(super) innovation: Option<f64>,
+    pub(super) state: Option<MotionState>,
+    pub(super) ambiguity: Option<Ambiguity>,
+    pub(super) rejected_because: Option<RejectionCause>,
+}
+
+impl Identifier {
+    /// One that has seen nothing yet.
+    pub(super) fn new(settings: &MethodSettings) -> Result<Self, TrackerError> {
+        Ok(match settings {
+            MethodSettings::Adaptive(settings) => {
+                Self::Adaptive(Box::new(Pipeline::new(PipelineSettings::clone(settings))?))
+            }
+            MethodSettings::Filter(settings) => {
+                Self::Filter(Box::new(FilteredObject { filter: MotionFilter::new(*settings)?, last_known: None }))
+            }
+        })
+    }
+
+    /// Takes the outline seen at a time in seconds.
+    pub(super) fn push(&mut self, time: f64, outline: &Outline) -> Step {
+        match self {
+            Self::Adaptive(pipeline) => match pipeline.push(time, outline) {
+                Ok(result) => {
+                    let phase = if result.estimate.is_some() { ObjectPhase::Adapt } else { ObjectPhase::Start };
+                    let residual = Some(result.fit.diagnostics().geometric_residual);
+                    let (estimate, fit) = (result.estimate, Some(result.fit));
+                    Step { phase: Some(phase), estimate, fit, residual, ..Step::default() }
+                }
+                Err(error) => Step { rejected_because: Some(RejectionCause::Pipeline(error)), ..Step::default() },
+            },
+            Self::Filter(object) => object.push(time, outline),
+        }
+    }
+
+    /// The motion as it was last known; `None` before two frames were used.
+    pub(super) fn estimate(&self) -> Option<MotionEstimate> {
+        match self {
+            Self::Adaptive(pipeline) => pipeline.estimate(),
+            Self::Filter(object) => object.last_known.map(|(_, estimate)| estimate),
+        }
+    }
+
+    /// Velocity of the middle of the object at the end, if the method estimates it and it is known.
+    pub(super) fn velocity(&self) -> Option<PointVelocity> {
+        match self {
+            Self::Filter(object) => object.filter.velocity(),
+            Self::Adaptive(_) => None,
+        }
+    }
+
+    /// Turns that the outlines do not decide between, if any.
+    pub(super) fn ambiguity(&self) -> Option<Ambiguity> {
+        match self {
+            Self::Filter(object) => object.filter.ambiguity(),
+            Self::Adaptive(_) => None,
+        }
+    }
+
+    /// Whether the motion was seen to change, which a smoother that takes it for constant does not know.
+    pub(super) fn motion_changed(&self) -> bool {
+        matches!(self, Self::Filter(object) if object.filter.motion_changed())
+    }
+
+    /// What a user should know of the result.
+    pub(super) fn warnings(&self) -> Vec<Warning> {
+        match self {
+            Self::Adaptive(pipeline) => pipeline.warnings(),
+            Self::Filter(object) => object.warnings(),
+        }
+    }
+}
+
+impl FilteredObject {
+    fn push(&mut self, time: f64, outline: &Outline) -> Step {
+        let step = match self.filter.step(time, outline) {
+            Ok(step) => step,
+            Err(error) => return Step { rejected_because: Some(RejectionCause::Filter(error)), ..Step::default() },
+        };
+        let estimate = self.filter.estimate();
+        self.last_known = estimate.map(|estimate| (time, estimate)).or(self.last_known);
+        Step {
+            phase: Some(step.phase.into()),
+            estimate,
+            fit: None,
+            residual: step.measurement.and_then(|measurement| measurement.noise),
+            innovation: step.measurement.map(|measurement| measurement.innovation),
+            state: self.filter.state(),
+            ambiguity: self.filter.ambiguity(),
+            rejected_because: step.rejection.map(RejectionCause::NotAccepted),
+        }
+    }
+
+    fn warnings(&self) -> Vec<Warning> {
+        let Self { filter, last_known } = self;
+        let ambiguity = filter.ambiguity();
+        let mut warnings = Vec::new();
+        if let Some((_, estimate)) = last_known {
+            let ambiguous = ambiguity.as_ref().map_or(&[][..], |ambiguity| &ambiguity.parameters);
+            let unknown = estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name);
+            let parameters: Vec<_> = unknown.filter(|name| !ambiguous.contains(name)).collect();
+            if !parameters.is_empty() {
+                warnings.push(Warning::NotObservable { parameters });
+            }
+        }
+        match (filter.phase(), last_known) {
+            (Phase::Lost, _) => warnings.push(Warning::Lost),
+            (Phase::Acquiring, Some((time, _))) => warnings.push(Warning::Reacquiring { last_known: *time }),
+            _ => {}
+        }
+        if filter.restarts() > 0 {
+            warnings.push(Warning::Restarted { times: filter.restarts() });
+        }
+        let rejected = filter.frames_rejected();
+        let frames = filter.frames_accepted() + rejected;
+        if rejected as f64 > MANY_REJECTED * frames as f64 {
+            warnings.push(Warning::FramesRejected { rejected, frames });
+        }
+        warnings.extend(ambiguity.map(Warning::Ambiguous));
+        if filter.motion_changed() {
+            warnings.push(Warning::MotionChanged);
+        }
+        warnings
+    }
+}

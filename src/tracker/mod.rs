@@ -1,0 +1,134 @@
+//! Many objects followed through a sequence of outlines.
+//!
+//! A [`Tracker`] takes outlines with the names of their objects, frame by frame ([`push`](Tracker::push)) or as a whole recording on
+//! several threads ([`follow`](Tracker::follow)). It uses the motion filter or the paper's adaptive identifier. It gives an
+//! [`Observation`] for each frame of each object, and an [`ObjectResult`] with [`Warning`](crate::Warning)s for each object. A
+//! [`Trajectory`] keeps the poses.
+mod contour_order;
+mod identifier;
+mod object;
+mod observation;
+mod queues;
+mod recording;
+mod result;
+mod settings;
+mod trajectory;
+
+use std::collections::HashMap;
+
+use freeform_outline_io::OutlineFrame;
+
+use self::{identifier::Identifier, object::TrackedObject};
+
+pub use self::{
+    observation::{ObjectPhase, Observation},
+    recording::{Followed, ReadAhead, Recorded},
+    result::ObjectResult,
+    settings::{Method, MethodSettings, TrackerError, TrackerSettings},
+    trajectory::{PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
+};
+pub use crate::{
+    frame_ranges::FrameRanges,
+    rejection::{FrameRejection, RejectionCause},
+};
+
+/// Identifies the motion of many objects from their outlines. Memory does not grow with the number of frames.
+///
+/// ```
+/// use freeform_motion::{Tracker, TrackerSettings};
+/// use freeform_motion::outline_io::OutlineFrame;
+/// use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+///
+/// let mut tracker = Tracker::new(TrackerSettings::default())?;
+/// let settings = Settings { length: SequenceLength::Frames(30), ..Settings::default() };
+/// let simulator = Simulator::new(PaperExperiment::FLIGHT_BIRD.scene(0.1)?, settings)?;
+/// for (frame, seen) in (0..).zip(simulator.frames()) {
+///     let outline = OutlineFrame { frame, time: seen.time, object: "bird".to_owned(), outline: seen.outline };
+///     let observation = tracker.push(&outline);
+///     // Pose and motion in this frame, with their joint covariance.
+///     if let Some(state) = observation.state {
+///         let angle = state.pose_parameters()[0];
+///         println!("{frame}: {} = {:.3} +- {:.3} rad", angle.name, angle.value, angle.standard_deviation);
+///     }
+/// }
+/// for result in tracker.results() {
+///     let omega = result.estimate.and_then(|motion| motion.parameters().next()?.value);
+///     assert!(omega.is_some_and(|omega| (omega - std::f64::consts::FRAC_PI_2).abs() < 0.05));
+///     result.warnings.iter().for_each(|warning| println!("{}: {}: {warning}", result.object, warning.code()));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Tracker {
+    settings: TrackerSettings,
+    /// One that has seen nothing yet.
+    unused: Identifier,
+    objects: Objects,
+}
+
+/// Objects in the order in which they first appeared.
+#[derive(Debug, Clone, Default)]
+struct Objects {
+    list: Vec<TrackedObject>,
+    /// By their names.
+    positions: HashMap<String, usize>,
+}
+
+impl Tracker {
+    /// A tracker without objects.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn new(settings: TrackerSettings) -> Result<Self, TrackerError> {
+        let unused = Identifier::new(&settings.method)?;
+        Ok(Self { settings, unused, objects: Objects::default() })
+    }
+
+    /// Its settings.
+    #[must_use]
+    pub fn settings(&self) -> &TrackerSettings {
+        &self.settings
+    }
+
+    /// Takes the next outline of an object. A new name starts a new object. Objects may come in any order; the times of each object must
+    /// increase. A frame that cannot be used is rejected, with the reason in the observation.
+    pub fn push(&mut self, frame: &OutlineFrame) -> Observation {
+        self.object(&frame.object).push(frame)
+    }
+
+    /// Records a frame of an object whose points are not an outline. It counts as rejected. The reason should name the frame.
+    pub fn reject(&mut self, object: &str, frame: u64, reason: String) -> Observation {
+        self.object(object).reject(frame, reason)
+    }
+
+    /// The result for each object so far, in the order in which the objects first appeared.
+    #[must_use]
+    pub fn results(&self) -> Vec<ObjectResult> {
+        self.objects.list.iter().map(|object| object.result(&self.settings)).collect()
+    }
+
+    /// Names of the objects so far, in the order in which they first appeared.
+    pub fn objects(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.objects.list.iter().map(TrackedObject::name)
+    }
+
+    /// Whether the motion of any object changed.
+    #[must_use]
+    pub fn motion_changed(&self) -> bool {
+        self.objects.list.iter().any(TrackedObject::motion_changed)
+    }
+
+    fn object(&mut self, name: &str) -> &mut TrackedObject {
+        let position = self.objects.positions.get(name).copied().unwrap_or_else(|| {
+            let position = self.objects.list.len();
+            self.objects.positions.insert(name.to_owned(), position);
+            self.objects.list.push(self.new_object(name));
+            position
+        });
+        &mut self.objects.list[position]
+    }
+
+    fn new_object(&self, name: &str) -> TrackedObject {
+        TrackedObject::new(name.to_owned(), self.unused.clone(), self.settings.scale)
+    }
+}

@@ -1,0 +1,145 @@
+//! One object of a sequence.
+use freeform_estimate::MotionEstimate;
+use freeform_outline_io::OutlineFrame;
+use freeform_riccati::CameraScale;
+
+use super::{
+    contour_order::ContourOrder, identifier::Identifier, observation::Observation, result::ObjectResult,
+    settings::TrackerSettings,
+};
+use crate::frame_ranges::FrameRanges;
+use crate::rejection::{FrameRejection, RejectionCause};
+use crate::warning::Warning;
+
+/// Rejected frames of an object that are kept with their reasons.
+const REJECTIONS_KEPT: usize = 10;
+
+/// An object, what is known of it, and what became of its frames.
+#[derive(Debug, Clone)]
+pub(super) struct TrackedObject {
+    name: String,
+    identifier: Identifier,
+    scale: Option<CameraScale>,
+    contour_order: ContourOrder,
+    frames: usize,
+    rejected: usize,
+    /// The first of them.
+    rejections: Vec<FrameRejection>,
+    /// Numbers of the others.
+    rejected_later: FrameRanges,
+}
+
+impl TrackedObject {
+    /// A new object without frames.
+    pub(super) fn new(name: String, identifier: Identifier, scale: Option<CameraScale>) -> Self {
+        Self {
+            name,
+            identifier,
+            scale,
+            contour_order: ContourOrder::default(),
+            frames: 0,
+            rejected: 0,
+            rejections: Vec::new(),
+            rejected_later: FrameRanges::default(),
+        }
+    }
+
+    /// Its name.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Takes its next outline.
+    pub(super) fn push(&mut self, frame: &OutlineFrame) -> Observation {
+        let step = self.identifier.push(frame.time, &frame.outline);
+        let rejection = self.count(frame.frame, step.rejected_because);
+        Observation {
+            object: self.name.clone(),
+            frame: frame.frame,
+            time: Some(frame.time),
+            phase: step.phase,
+            estimate: step.estimate.and_then(|estimate| self.reported(estimate)),
+            state: step.state,
+            fit: step.fit,
+            residual: step.residual,
+            innovation: step.innovation,
+            ambiguity: step.ambiguity,
+            rejection,
+            warning: self.contour_order.look_at(frame).cloned(),
+        }
+    }
+
+    /// Takes note of a frame whose points are no outline.
+    pub(super) fn reject(&mut self, frame: u64, reason: String) -> Observation {
+        let rejection = self.count(frame, Some(RejectionCause::NoOutline(reason)));
+        Observation {
+            object: self.name.clone(),
+            frame,
+            time: None,
+            phase: None,
+            estimate: None,
+            state: None,
+            fit: None,
+            residual: None,
+            innovation: None,
+            ambiguity: None,
+            rejection,
+            warning: None,
+        }
+    }
+
+    /// Counts a frame, and keeps why it was rejected, if it was.
+    fn count(&mut self, frame: u64, cause: Option<RejectionCause>) -> Option<FrameRejection> {
+        self.frames += 1;
+        let rejection = FrameRejection { object: self.name.clone(), frame, cause: cause? };
+        self.rejected += 1;
+        if self.rejections.len() < REJECTIONS_KEPT {
+            self.rejections.push(rejection.clone());
+        } else {
+            self.rejected_later.add(frame);
+        }
+        Some(rejection)
+    }
+
+    /// An estimate as it is handed out; `None` where a number is not finite.
+    fn reported(&self, estimate: MotionEstimate) -> Option<MotionEstimate> {
+        let estimate = self.scale.map_or(estimate, |scale| estimate.in_space(scale));
+        estimate.is_finite().then_some(estimate)
+    }
+
+    /// Whether its motion was seen to change.
+    pub(super) fn motion_changed(&self) -> bool {
+        self.identifier.motion_changed()
+    }
+
+    /// What is known of it now.
+    pub(super) fn result(&self, settings: &TrackerSettings) -> ObjectResult {
+        let raw = self.identifier.estimate();
+        let estimate = raw.and_then(|estimate| self.reported(estimate));
+        // First, as it is the reason for others.
+        let out_of_order = self.contour_order.warning().cloned();
+        let mut warnings: Vec<Warning> = out_of_order.into_iter().chain(self.identifier.warnings()).collect();
+        if raw.is_some() && estimate.is_none() {
+            warnings.push(Warning::Diverged);
+        }
+        warnings.extend(self.rejections.iter().cloned().map(Warning::FrameRejected));
+        if self.rejected > self.rejections.len() {
+            let count = self.rejected - self.rejections.len();
+            warnings.push(Warning::MoreFramesRejected { count, frames: self.rejected_later.clone() });
+        }
+        let velocity = self.identifier.velocity();
+        let velocity = velocity.map(|velocity| self.scale.map_or(velocity, |scale| velocity.in_space(scale)));
+        ObjectResult {
+            object: self.name.clone(),
+            method: settings.method(),
+            motion: settings.motion(),
+            frames: self.frames,
+            frames_rejected: self.rejected,
+            first_rejection: self.rejections.first().cloned(),
+            estimate,
+            velocity: velocity.filter(freeform_estimate::PointVelocity::is_finite),
+            ambiguity: self.identifier.ambiguity(),
+            warnings,
+        }
+    }
+}

@@ -1,0 +1,95 @@
+use std::fmt;
+
+use freeform_curve_fit::Fit;
+use freeform_estimate::{MotionEstimate, MotionState};
+use freeform_outline_filter::{Ambiguity, Phase};
+
+use crate::Warning;
+use crate::rejection::FrameRejection;
+
+/// The result of one frame of one object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    /// Name of the object.
+    pub object: String,
+    /// Number of the frame.
+    pub frame: u64,
+    /// Time in seconds; `None` if the points are not an outline.
+    pub time: Option<f64>,
+    /// State of the method after the frame; `None` if the frame was not passed to the method.
+    pub phase: Option<ObjectPhase>,
+    /// The motion estimated after the frame, in space if a camera scale is given. All numbers are finite. `None` if it is not known.
+    pub estimate: Option<MotionEstimate>,
+    /// Pose and motion with their joint covariance, in the image (motion filter). The state is the last one known: while the object is lost,
+    /// its time is before that of the frame.
+    pub state: Option<MotionState>,
+    /// The curve fitted to the outline (adaptive method).
+    pub fit: Option<Fit>,
+    /// Adaptive method: root mean square distance of the points from the curve. Motion filter: noise of this frame. In image lengths.
+    pub residual: Option<f64>,
+    /// Squared innovation of pose and motion in units of its predicted covariance (motion filter).
+    pub innovation: Option<f64>,
+    /// Turns between which the outlines so far do not decide (motion filter).
+    pub ambiguity: Option<Ambiguity>,
+    /// Why the frame was not used; `None` where it was.
+    pub rejection: Option<FrameRejection>,
+    /// An immediate warning: [`Warning::PointsOutOfOrder`], in the first such frame of an object.
+    pub warning: Option<Warning>,
+}
+
+impl Observation {
+    /// Whether the frame was used.
+    #[must_use]
+    pub fn is_accepted(&self) -> bool {
+        self.rejection.is_none()
+    }
+}
+
+/// The state of a method with an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ObjectPhase {
+    /// Motion filter: no frame yet.
+    Waiting,
+    /// Motion filter: the outline is known, its motion is not.
+    Acquiring,
+    /// Motion filter: outline and motion are known and predict the next frame.
+    Tracking,
+    /// Motion filter: frames have not shown the object for a while.
+    Lost,
+    /// Adaptive method: no motion yet.
+    Start,
+    /// Adaptive method: the parameters adapt.
+    Adapt,
+}
+
+impl ObjectPhase {
+    /// Its name: `waiting`, `acquiring`, `tracking`, `lost`, `start` or `adapt`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Acquiring => "acquiring",
+            Self::Tracking => "tracking",
+            Self::Lost => "lost",
+            Self::Start => "start",
+            Self::Adapt => "adapt",
+        }
+    }
+}
+
+impl From<Phase> for ObjectPhase {
+    fn from(phase: Phase) -> Self {
+        match phase {
+            Phase::Waiting => Self::Waiting,
+            Phase::Acquiring => Self::Acquiring,
+            Phase::Tracking => Self::Tracking,
+            Phase::Lost => Self::Lost,
+        }
+    }
+}
+
+impl fmt::Display for ObjectPhase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

@@ -1,0 +1,98 @@
+use std::fmt;
+
+use freeform_outline_filter::{FilterError, FilterSettings};
+use freeform_riccati::{CameraScale, MotionModel};
+
+use crate::{PipelineError, PipelineSettings};
+
+/// Settings of a [`Tracker`](super::Tracker): method, motion model and camera scale.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrackerSettings {
+    /// The method for every object, with its settings.
+    pub method: MethodSettings,
+    /// Camera scale f/Z0. If it is given, estimates and velocities are those in space: b divided by the scale (equations 23 and 24).
+    pub scale: Option<CameraScale>,
+}
+
+/// A method with its settings.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MethodSettings {
+    /// The motion filter.
+    Filter(FilterSettings),
+    /// The paper's adaptive identifier.
+    Adaptive(Box<PipelineSettings>),
+}
+
+/// A method of identification.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Outline, pose and motion estimated together, with standard deviations: [`MotionFilter`](freeform_outline_filter::MotionFilter).
+    Filter,
+    /// The paper's adaptive identifier on the lines of fitted curves: [`Pipeline`](crate::Pipeline).
+    Adaptive,
+}
+
+/// Why the settings of a [`Tracker`](super::Tracker) are refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TrackerError {
+    /// The motion filter refuses its settings.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// The pipeline refuses its settings.
+    #[error(transparent)]
+    Pipeline(#[from] PipelineError),
+}
+
+impl TrackerSettings {
+    /// Default settings of a method for a motion model, without a camera scale.
+    #[must_use]
+    pub fn new(method: Method, motion: MotionModel) -> Self {
+        let method = match method {
+            Method::Filter => MethodSettings::Filter(FilterSettings { model: motion, ..FilterSettings::default() }),
+            Method::Adaptive => MethodSettings::Adaptive(Box::new(PipelineSettings::for_model(motion))),
+        };
+        Self { method, scale: None }
+    }
+
+    /// The motion model.
+    #[must_use]
+    pub fn motion(&self) -> MotionModel {
+        match &self.method {
+            MethodSettings::Filter(settings) => settings.model,
+            MethodSettings::Adaptive(settings) => settings.identify.model,
+        }
+    }
+
+    /// The method.
+    #[must_use]
+    pub fn method(&self) -> Method {
+        match self.method {
+            MethodSettings::Filter(_) => Method::Filter,
+            MethodSettings::Adaptive(_) => Method::Adaptive,
+        }
+    }
+}
+
+impl Default for TrackerSettings {
+    /// Rigid motions by the motion filter, in image lengths.
+    fn default() -> Self {
+        Self::new(Method::Filter, MotionModel::Rigid)
+    }
+}
+
+impl Method {
+    /// Its name: `filter` or `adaptive`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Filter => "filter",
+            Self::Adaptive => "adaptive",
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

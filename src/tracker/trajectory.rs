@@ -1,0 +1,186 @@
+//! The pose of every object in every frame.
+use std::collections::HashMap;
+
+use freeform_estimate::{MotionEstimate, MotionState, PoseParameter, ProcessNoise, SmootherError, smooth};
+use freeform_riccati::{CameraScale, MotionModel};
+
+use super::{MethodSettings, Tracker, observation::Observation};
+
+/// The pose of every object in every frame: one row per observation, in their order. It needs the motion filter: the adaptive method gives no poses.
+///
+/// ```
+/// use freeform_motion::{Tracker, TrackerSettings};
+/// use freeform_motion::outline_io::OutlineFrame;
+/// use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+/// use freeform_motion::tracker::Trajectory;
+///
+/// let (mut tracker, mut trajectory) = (Tracker::new(TrackerSettings::default())?, Trajectory::default());
+/// let settings = Settings { length: SequenceLength::Frames(30), ..Settings::default() };
+/// let simulator = Simulator::new(PaperExperiment::FLIGHT_BIRD.scene(0.1)?, settings)?;
+/// let frames = (0..).zip(simulator.frames());
+/// let outlines = frames.map(|(frame, seen)| OutlineFrame { frame, time: seen.time, object: "bird".into(), outline: seen.outline });
+/// tracker.follow(outlines, |observation| trajectory.take(&observation));
+/// // Later frames say more of the first ones.
+/// trajectory.smooth(&tracker)?;
+/// let poses = trajectory.poses(tracker.settings().scale);
+/// assert!(poses.iter().all(|pose| pose.is_some()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trajectory {
+    rows: Vec<TrajectoryRow>,
+}
+
+/// One object in one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrajectoryRow {
+    /// Name of the object.
+    pub object: String,
+    /// Number of the frame.
+    pub frame: u64,
+    /// Time in seconds; `None` where the points are no outline.
+    pub time: Option<f64>,
+    /// Whether the frame was used.
+    pub accepted: bool,
+    /// The state known then, at a time up to that of the frame.
+    state: Option<MotionState>,
+}
+
+/// Pose and motion of an object in one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PoseAndMotion {
+    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are continuous from row to row of an object and may
+    /// exceed half a turn.
+    pub pose: Vec<PoseParameter>,
+    /// The motion.
+    pub motion: MotionEstimate,
+}
+
+/// Why a trajectory cannot be smoothed.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SmoothingError {
+    /// The motion of an object changed.
+    #[error("the motion changed, and the smoother assumes a constant one")]
+    MotionChanged,
+    /// The states do not form one sequence.
+    #[error(transparent)]
+    States(#[from] SmootherError),
+}
+
+impl TrajectoryRow {
+    /// Pose and motion at the time of the frame, in the image; `None` where they are not known then.
+    #[must_use]
+    pub fn state(&self) -> Option<&MotionState> {
+        let (state, time) = (self.state.as_ref()?, self.time?);
+        // Not since it was lost: where it is then is a guess.
+        (state.time() == time).then_some(state)
+    }
+}
+
+impl Trajectory {
+    /// Adds the observation of a frame.
+    pub fn take(&mut self, observation: &Observation) {
+        self.rows.push(TrajectoryRow {
+            object: observation.object.clone(),
+            frame: observation.frame,
+            time: observation.time,
+            accepted: observation.is_accepted(),
+            state: observation.state.clone(),
+        });
+    }
+
+    /// The rows in the order of the observations.
+    #[must_use]
+    pub fn rows(&self) -> &[TrajectoryRow] {
+        &self.rows
+    }
+
+    /// Names of the pose parameters in [`poses`](Self::poses), in their order.
+    #[must_use]
+    pub fn pose_names(model: MotionModel) -> &'static [&'static str] {
+        match model {
+            MotionModel::Rigid => &["angle", "x", "y"],
+            MotionModel::Similarity => &["scale", "angle", "x", "y"],
+            MotionModel::Affine => &["m11", "m12", "m21", "m22", "x", "y"],
+            MotionModel::Projective => &["m11", "m12", "m21", "m22", "x", "y", "m31", "m32"],
+        }
+    }
+
+    /// Pose and motion of every row, `None` where they are not known at its time. With a camera scale f/Z0 they are those in space: positions
+    /// and velocities divided by it.
+    #[must_use]
+    pub fn poses(&self, scale: Option<CameraScale>) -> Vec<Option<PoseAndMotion>> {
+        let mut angles: HashMap<&str, f64> = HashMap::new();
+        let rows = self.rows.iter().map(|row| {
+            let state = row.state()?;
+            let mut pose = state.pose_parameters();
+            pose.iter_mut().for_each(|parameter| report(parameter, scale, angles.entry(&row.object).or_default()));
+            let motion = state.motion();
+            Some(PoseAndMotion { pose, motion: scale.map_or(motion, |scale| motion.in_space(scale)) })
+        });
+        rows.collect()
+    }
+
+    /// Lets later frames take part, within each run of frames through which an object was followed. The frame that such a run
+    /// began with, when the motion was not known yet, gets its pose from the ones after it. `tracker` is the one that followed the objects.
+    ///
+    /// # Errors
+    /// The motion was seen to change, and the smoother assumes a constant one; the rows stay as filtered.
+    pub fn smooth(&mut self, tracker: &Tracker) -> Result<(), SmoothingError> {
+        if tracker.motion_changed() {
+            return Err(SmoothingError::MotionChanged);
+        }
+        let noise = match &tracker.settings().method {
+            MethodSettings::Filter(settings) => settings.process_noise,
+            MethodSettings::Adaptive(_) => ProcessNoise::default(),
+        };
+        let mut objects: HashMap<String, Vec<&mut TrajectoryRow>> = HashMap::new();
+        for row in &mut self.rows {
+            objects.entry(row.object.clone()).or_default().push(row);
+        }
+        for rows in objects.values_mut() {
+            let followed: Vec<bool> = rows.iter().map(|row| row.state.is_some()).collect();
+            let mut start = 0;
+            for run in followed.chunk_by(|a, b| a == b) {
+                if run[0] {
+                    let (before, from) = rows.split_at_mut(start);
+                    smooth_run(&mut from[..run.len()], before.last_mut().map(|row| &mut **row), &noise)?;
+                }
+                start += run.len();
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Changes a number of a pose to how it is reported; `last_angle` is that of the row before.
+fn report(parameter: &mut PoseParameter, scale: Option<CameraScale>, last_angle: &mut f64) {
+    let PoseParameter { name, value, standard_deviation } = parameter;
+    // As a generator changes between image and space, so does a map.
+    match (*name, scale.map(CameraScale::value)) {
+        ("angle", _) => {
+            *value += std::f64::consts::TAU * ((*last_angle - *value) / std::f64::consts::TAU).round();
+            *last_angle = *value;
+        }
+        ("x" | "y", Some(scale)) => (*value, *standard_deviation) = (*value / scale, *standard_deviation / scale),
+        ("m31" | "m32", Some(scale)) => {
+            (*value, *standard_deviation) = (*value * scale, *standard_deviation * scale);
+        }
+        _ => {}
+    }
+}
+
+fn smooth_run(
+    rows: &mut [&mut TrajectoryRow],
+    before: Option<&mut TrajectoryRow>,
+    noise: &ProcessNoise,
+) -> Result<(), SmootherError> {
+    let filtered: Vec<MotionState> = rows.iter().filter_map(|row| row.state().cloned()).collect();
+    let smoothed = smooth(&filtered, noise)?;
+    if let (Some(before), Some(first)) = (before.filter(|row| row.accepted), smoothed.first()) {
+        before.state = before.time.map(|time| first.predicted(time, noise));
+    }
+    let known = rows.iter_mut().filter(|row| row.state().is_some());
+    known.zip(smoothed).for_each(|(row, state)| row.state = Some(state));
+    Ok(())
+}
