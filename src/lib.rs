@@ -1,14 +1,18 @@
-//! Finds how a flat free-form object moves from nothing but its outlines.
+//! Finds how a flat free-form object moves, from its outlines alone.
 //!
-//! Every frame gives noisy points in their order along the outline of the object, without correspondence to the frame before.
-//! [`outline_filter::MotionFilter`] estimates outline, pose and motion from them, with standard deviations; take it first.
-//! Where an object is and how it moves, with the joint covariance of both, is its [`state`](outline_filter::MotionFilter::state).
-//! A [`Tracker`] follows many objects by their names, and has an observation for each frame and a result for each object.
-//! [`estimate::smooth`] and [`outline_filter::estimate_batch`] are for recorded frames, and [`estimate::CramerRaoBound`] says what can be reached.
+//! The input of every frame is a list of noisy points in order along the outline of the object. Correspondence between the points of
+//! different frames is not needed.
 //!
-//! A [`Pipeline`] is the way of the paper: it fits an implicit polynomial curve to each outline, takes it apart into complex lines,
-//! matches the lines to those of the frame before, and identifies the motion from their Riccati dynamics (M. Unel, B. K. Ghosh,
-//! *Motion identification of planar free-form objects*). Each stage is a crate of its own, re-exported here.
+//! - [`outline_filter::MotionFilter`] estimates outline, pose and motion of one object, with standard deviations. Start here. Its
+//!   [`state`](outline_filter::MotionFilter::state) holds pose and motion with their joint covariance.
+//! - [`Tracker`] follows many objects by name. It gives an observation for each frame and a result for each object.
+//! - [`Pipeline`] is the method of the paper (M. Unel, B. K. Ghosh, *Motion identification of planar free-form objects*). It fits an
+//!   implicit polynomial curve to each outline, decomposes it into complex lines, matches the lines to those of the frame before, and
+//!   identifies the motion from their Riccati dynamics.
+//! - [`estimate::smooth`] and [`outline_filter::estimate_batch`] are for recorded frames. [`estimate::CramerRaoBound`] gives the smallest
+//!   covariance that any unbiased estimator can reach.
+//!
+//! Each stage is a crate of its own, re-exported here.
 //!
 //! ```
 //! use freeform_motion::{Pipeline, PipelineSettings};
@@ -27,8 +31,11 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod frame_ranges;
 mod number;
 mod pipeline;
+mod pipeline_error;
+mod rejection;
 mod settling;
 pub mod tracker;
 mod warning;
@@ -42,7 +49,8 @@ pub use freeform_outline_io as outline_io;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use number::significant;
-pub use pipeline::{FrameResult, Pipeline, PipelineError, PipelineSettings};
+pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
+pub use pipeline_error::PipelineError;
 pub use tracker::{Tracker, TrackerSettings};
 pub use warning::Warning;
 

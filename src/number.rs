@@ -1,4 +1,4 @@
-/// A number with so many significant digits, in plain notation where that is short, as it stands in messages.
+/// A number with the given count of significant digits, for messages; in plain notation if that is short.
 ///
 /// ```
 /// use freeform_motion::significant;

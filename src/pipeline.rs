@@ -1,4 +1,4 @@
-use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Outline, SettingsError};
+use freeform_curve_fit::{Fit, FitSettings, Fitter, Method, Normalisation, Outline};
 use freeform_decompose::{
     Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
 };
@@ -8,6 +8,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Affine2, Point2, Translation2};
 
 use crate::{
+    pipeline_error::PipelineError,
     settling::Settling,
     warning::{MANY_REJECTED, Warning},
 };
@@ -56,32 +57,6 @@ pub struct FrameResult {
     pub correspondence: Option<Correspondence>,
     /// The motion as identified so far; `None` before the second frame.
     pub estimate: Option<MotionEstimate>,
-}
-
-/// Why a frame gave nothing, or a pipeline could not be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PipelineError {
-    /// The settings of the fit are refused.
-    #[error("fit settings: {0}")]
-    FitSettings(#[from] SettingsError),
-    /// No curve could be fitted.
-    #[error("no fit: {0}")]
-    Fit(#[from] FitError),
-    /// The curve has no decomposition into lines.
-    #[error("no line decomposition: {0}")]
-    Decomposition(#[from] DecompositionError),
-    /// The lines could not be matched to those of the frame before.
-    #[error("lines not matched: {0}")]
-    Correspondence(#[from] CorrespondenceError),
-    /// The identifier refused its settings or the lines.
-    #[error("not identified: {0}")]
-    Identify(#[from] IdentifyError),
-    /// The fitted curve is not bounded, so that some of its lines are real.
-    #[error("the fitted curve is not bounded (margin {margin:.1e})")]
-    NotBounded {
-        /// Minimum of the leading form on the unit circle over its root mean square.
-        margin: f64,
-    },
 }
 
 /// From outlines to motion, frame by frame: fit, decompose, match, identify.
@@ -239,7 +214,7 @@ impl Pipeline {
         Some((0..count).fold(estimate, MotionEstimate::with_unobservable))
     }
 
-    /// The identifier, for what it says beside the estimate. Its own estimate is in its own coordinates.
+    /// The identifier, for its diagnostics. Its estimate is in its own coordinates, not in those of the image.
     #[must_use]
     pub fn identifier(&self) -> &AdaptiveIdentifier {
         &self.identifier

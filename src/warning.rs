@@ -2,73 +2,70 @@ use std::fmt;
 
 use freeform_outline_filter::Ambiguity;
 
-use crate::{
-    number::significant,
-    tracker::{FrameRanges, FrameRejection},
-};
+use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
 
-/// Share of rejected frames that is worth a warning.
+/// Share of rejected frames from which on there is a warning.
 pub(crate) const MANY_REJECTED: f64 = 0.05;
 
 /// What a user should know of an identified motion: a [`code`](Self::code) for programs, a message for people.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
-    /// The points of an outline hop about instead of following the contour.
+    /// The points of an outline jump back and forth instead of following the contour.
     PointsOutOfOrder {
-        /// The first frame that shows it.
+        /// The first such frame.
         frame: u64,
-        /// Length of the way through the points over the perimeter of the box around them.
+        /// Length of the line through the points in their order, over the perimeter of their bounding box.
         perimeters: f64,
     },
-    /// The outlines tell nothing of these parameters (motion filter).
+    /// The outlines contain no information on these parameters (motion filter).
     NotObservable {
         /// Their names.
         parameters: Vec<&'static str>,
     },
-    /// The outlines tell nothing of these parameters, as lines of a round outline do not turn with it (adaptive method).
+    /// The outlines contain no information on these parameters: the lines of a round outline do not turn with it (adaptive method).
     RotationNotObservable {
         /// Their names.
         parameters: Vec<&'static str>,
     },
     /// The object was not seen in the last frames.
     Lost,
-    /// The object was searched for again in the last frames, and its motion is an earlier one.
+    /// The object was lost and searched for in the last frames; the motion is the last one known.
     Reacquiring {
         /// Time in seconds when the motion was last known.
         last_known: f64,
     },
-    /// What was known of the object was given up, and it was begun with anew.
+    /// The object was given up, and the filter started again with a new one.
     Restarted {
-        /// How often.
+        /// Number of restarts.
         times: usize,
     },
     /// Many frames were not used.
     FramesRejected {
         /// How many.
         rejected: usize,
-        /// Of so many.
+        /// Out of this many.
         frames: usize,
     },
-    /// Another turn from one frame to the next explains the outlines as well.
+    /// Another turn from one frame to the next explains the outlines equally well.
     Ambiguous(Ambiguity),
-    /// The motion changed on the way, so that the estimate is that at the end.
+    /// The motion changed; the estimate is the motion at the end.
     MotionChanged,
     /// The method diverged, and its numbers are not finite.
     Diverged,
     /// One of the first frames that were not used.
     FrameRejected(FrameRejection),
-    /// Frames that were not used after those that are named with their reasons.
+    /// Further frames that were not used, beyond those reported with their reasons.
     MoreFramesRejected {
         /// How many.
         count: usize,
         /// Their numbers.
         frames: FrameRanges,
     },
-    /// The pairs of lines could not be matched for certain in many frames (adaptive method).
+    /// In many frames the pairs of lines could not be matched reliably (adaptive method).
     AmbiguousCorrespondence {
         /// How many.
         ambiguous: usize,
-        /// Of so many.
+        /// Out of this many.
         matched: usize,
     },
     /// The run is shorter than the adaptive law needs, or its parameters still drift.
@@ -78,9 +75,9 @@ pub enum Warning {
     },
     /// The outline turned too far from frame to frame (adaptive method).
     LinesNotFollowed {
-        /// Over so many intervals between frames.
+        /// Number of intervals between frames over which the lines were not followed.
         skipped: usize,
-        /// Of so many.
+        /// Out of this many.
         intervals: usize,
     },
     /// The parameters of an affine motion are biased (adaptive method).
@@ -88,7 +85,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// A name that stays the same from version to version.
+    /// A stable name, the same in every version.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {
@@ -117,8 +114,8 @@ impl fmt::Display for Warning {
         match self {
             Self::PointsOutOfOrder { frame, perimeters } => write!(
                 f,
-                "frame {frame}: the points do not follow the contour (joined in the order of the rows they make a line {} \
-                 times as long as the edge of the box around them): rows must be in the order of the contour",
+                "frame {frame}: the points do not follow the contour: a line through them in the order of the rows is {} times \
+                 as long as the perimeter of their bounding box; sort the rows along the contour",
                 significant(*perimeters, 2)
             ),
             Self::NotObservable { parameters } => {
@@ -130,13 +127,13 @@ impl fmt::Display for Warning {
             Self::Lost => f.write_str("the object was lost at the end"),
             Self::Reacquiring { last_known } => write!(
                 f,
-                "the object was looked for again at the end; this is its motion at {} s",
+                "the object was lost and searched for at the end; this is its motion at {} s",
                 significant(*last_known, 4)
             ),
-            Self::Restarted { times } => write!(f, "given up and begun anew {times} time(s)"),
+            Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
             Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
-            Self::MotionChanged => f.write_str("the motion changed on the way: these are its values at the end"),
+            Self::MotionChanged => f.write_str("the motion changed: the values are those at the end"),
             Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
             Self::FrameRejected(rejection) => write!(f, "rejected: {rejection}"),
             Self::MoreFramesRejected { count, frames } => write!(f, "rejected: {count} more frame(s), {frames}"),
@@ -154,20 +151,19 @@ impl fmt::Display for Warning {
                  the outline turns by more than about half a radian"
             ),
             Self::AffineBias => f.write_str(
-                "the six parameters are biased, as the fit of an outline does not follow affine motion exactly: \
-                 use the motion filter",
+                "the six parameters are biased, because the curve fit is not affine-equivariant: use the motion filter",
             ),
         }
     }
 }
 
-/// In degrees, positive where omega is.
+/// Turns in degrees, positive in the direction of a positive omega.
 fn write_ambiguity(f: &mut fmt::Formatter<'_>, ambiguity: &Ambiguity) -> fmt::Result {
     let as_omega = |anticlockwise: f64| -anticlockwise.to_degrees();
     let rivals: Vec<String> = ambiguity.rival_turns.iter().map(|turn| format!("{:.1}", as_omega(*turn))).collect();
     write!(
         f,
-        "ambiguous: another turn explains the outlines as well: {} instead of {:.1} degrees from one frame to the next",
+        "ambiguous: another turn explains the outlines equally well: {} instead of {:.1} degrees from one frame to the next",
         rivals.join(" or "),
         as_omega(ambiguity.turn)
     )

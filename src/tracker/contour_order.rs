@@ -8,15 +8,15 @@ use crate::Warning;
 /// Frames of an object that are looked at.
 const FRAMES: usize = 5;
 
-/// A way through the points that is longer than this many perimeters of the box around them may hop about: fewer than 40 points in any order
-/// may make a shorter one and pass. Deep notches make a contour about as long as seven.
+/// Points may be out of order if the line through them is longer than this many perimeters of their bounding box. Fewer than 40 points in
+/// random order may have a shorter line and pass. Deep notches make a contour about as long as seven perimeters.
 const LONG: f64 = 5.0;
 
-/// It does if it also is longer than this many perimeters per point. Points in any order make it 0.1 to 0.16, points in order
-/// with noise of a fifth of the object's size 0.055, and contours less the more points they have.
+/// They are out of order if the line is also longer than this many perimeters per point. Points in random order give 0.1 to 0.16, points
+/// in order with noise of a fifth of the size of the object 0.055, and contours the less the more points they have.
 const LONG_PER_POINT: f64 = 0.08;
 
-/// The same where a coordinate never falls, as in a list of pixels that was read row by row.
+/// As `LONG`, for outlines in which a coordinate never decreases, such as pixels listed row by row.
 const LONG_IF_SORTED: f64 = 2.0;
 
 /// Looks at the first frames of an object, whose rows should be in the order of the contour.
@@ -44,7 +44,7 @@ impl ContourOrder {
     }
 }
 
-/// Length of the way through the points over the perimeter of the box around them, where they hop about.
+/// Length of the line through the points over the perimeter of their bounding box; `None` if they follow the contour.
 fn hops(outline: &Outline) -> Option<f64> {
     let length: f64 = outline.pieces().map(|piece| way_through(&piece)).sum();
     let times = length / (2.0 * outline.bounding_box().size().sum());

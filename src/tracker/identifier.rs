@@ -5,10 +5,11 @@ use freeform_outline_filter::{Ambiguity, MotionFilter, Phase};
 
 use super::{
     observation::ObjectPhase,
-    rejection::RejectionCause,
     settings::{MethodSettings, TrackerError},
 };
-use crate::{Pipeline, PipelineSettings, Warning, warning::MANY_REJECTED};
+use crate::pipeline::{Pipeline, PipelineSettings};
+use crate::rejection::RejectionCause;
+use crate::warning::{MANY_REJECTED, Warning};
 
 /// What is known of one object.
 #[derive(Debug, Clone)]
@@ -77,7 +78,7 @@ impl Identifier {
         }
     }
 
-    /// Velocity of the middle of the object at the end, where the method tells it and it is known.
+    /// Velocity of the middle of the object at the end, if the method estimates it and it is known.
     pub(super) fn velocity(&self) -> Option<PointVelocity> {
         match self {
             Self::Filter(object) => object.filter.velocity(),

@@ -1,17 +1,15 @@
 //! Many objects followed through a sequence of outlines.
 //!
-//! A [`Tracker`] takes outlines with the names of their objects, frame by frame ([`push`](Tracker::push)) or a whole recording on several threads
-//! ([`follow`](Tracker::follow)), by the motion filter or by the paper's adaptive identifier. It gives an [`Observation`] for each
-//! frame of each object and an [`ObjectResult`] for each object, with what a user should know as [`Warning`](crate::Warning)s; a [`Trajectory`]
-//! keeps where the objects were.
+//! A [`Tracker`] takes outlines with the names of their objects, frame by frame ([`push`](Tracker::push)) or as a whole recording on
+//! several threads ([`follow`](Tracker::follow)). It uses the motion filter or the paper's adaptive identifier. It gives an
+//! [`Observation`] for each frame of each object, and an [`ObjectResult`] with [`Warning`](crate::Warning)s for each object. A
+//! [`Trajectory`] keeps the poses.
 mod contour_order;
-mod frame_ranges;
 mod identifier;
 mod object;
 mod observation;
 mod queues;
 mod recording;
-mod rejection;
 mod result;
 mod settings;
 mod trajectory;
@@ -23,16 +21,18 @@ use freeform_outline_io::OutlineFrame;
 use self::{identifier::Identifier, object::TrackedObject};
 
 pub use self::{
-    frame_ranges::FrameRanges,
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
-    rejection::{FrameRejection, RejectionCause},
     result::ObjectResult,
     settings::{Method, MethodSettings, TrackerError, TrackerSettings},
     trajectory::{PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
 };
+pub use crate::{
+    frame_ranges::FrameRanges,
+    rejection::{FrameRejection, RejectionCause},
+};
 
-/// Finds how each of many objects moves, from outlines with their names. Memory does not grow with the number of frames.
+/// Identifies the motion of many objects from their outlines. Memory does not grow with the number of frames.
 ///
 /// ```
 /// use freeform_motion::{Tracker, TrackerSettings};
@@ -75,7 +75,7 @@ struct Objects {
 }
 
 impl Tracker {
-    /// With no object yet.
+    /// A tracker without objects.
     ///
     /// # Errors
     /// A setting outside its range.
@@ -90,18 +90,18 @@ impl Tracker {
         &self.settings
     }
 
-    /// Takes the next outline of an object, which is new where its name is. Objects may come in any order; the times of each must increase. A frame
-    /// that cannot be used is rejected, with the reason in the observation, and the object goes on without it.
+    /// Takes the next outline of an object. A new name starts a new object. Objects may come in any order; the times of each object must
+    /// increase. A frame that cannot be used is rejected, with the reason in the observation.
     pub fn push(&mut self, frame: &OutlineFrame) -> Observation {
         self.object(&frame.object).push(frame)
     }
 
-    /// Takes note of a frame of an object whose points are no outline: it counts as rejected. The reason should name the frame.
+    /// Records a frame of an object whose points are not an outline. It counts as rejected. The reason should name the frame.
     pub fn reject(&mut self, object: &str, frame: u64, reason: String) -> Observation {
         self.object(object).reject(frame, reason)
     }
 
-    /// What is known of each object so far, in the order in which they first appeared.
+    /// The result for each object so far, in the order in which the objects first appeared.
     #[must_use]
     pub fn results(&self) -> Vec<ObjectResult> {
         self.objects.list.iter().map(|object| object.result(&self.settings)).collect()
@@ -112,7 +112,7 @@ impl Tracker {
         self.objects.list.iter().map(TrackedObject::name)
     }
 
-    /// Whether the motion of any object was seen to change.
+    /// Whether the motion of any object changed.
     #[must_use]
     pub fn motion_changed(&self) -> bool {
         self.objects.list.iter().any(TrackedObject::motion_changed)

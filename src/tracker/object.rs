@@ -4,15 +4,12 @@ use freeform_outline_io::OutlineFrame;
 use freeform_riccati::CameraScale;
 
 use super::{
-    contour_order::ContourOrder,
-    frame_ranges::FrameRanges,
-    identifier::Identifier,
-    observation::Observation,
-    rejection::{FrameRejection, RejectionCause},
-    result::ObjectResult,
+    contour_order::ContourOrder, identifier::Identifier, observation::Observation, result::ObjectResult,
     settings::TrackerSettings,
 };
-use crate::Warning;
+use crate::frame_ranges::FrameRanges;
+use crate::rejection::{FrameRejection, RejectionCause};
+use crate::warning::Warning;
 
 /// Rejected frames of an object that are kept with their reasons.
 const REJECTIONS_KEPT: usize = 10;
@@ -33,7 +30,7 @@ pub(super) struct TrackedObject {
 }
 
 impl TrackedObject {
-    /// One that nothing has been seen of.
+    /// A new object without frames.
     pub(super) fn new(name: String, identifier: Identifier, scale: Option<CameraScale>) -> Self {
         Self {
             name,

@@ -4,36 +4,36 @@ use freeform_curve_fit::Fit;
 use freeform_estimate::{MotionEstimate, MotionState};
 use freeform_outline_filter::{Ambiguity, Phase};
 
-use super::rejection::FrameRejection;
 use crate::Warning;
+use crate::rejection::FrameRejection;
 
-/// What one frame of one object gave.
+/// The result of one frame of one object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
     /// Name of the object.
     pub object: String,
     /// Number of the frame.
     pub frame: u64,
-    /// Time in seconds; `None` where the points are no outline.
+    /// Time in seconds; `None` if the points are not an outline.
     pub time: Option<f64>,
-    /// What the method was doing after the frame; `None` where it could not take the frame at all.
+    /// State of the method after the frame; `None` if the frame was not passed to the method.
     pub phase: Option<ObjectPhase>,
-    /// The motion as known after the frame, in space where a camera scale is given; all numbers are finite. `None` where it is not known.
+    /// The motion estimated after the frame, in space if a camera scale is given. All numbers are finite. `None` if it is not known.
     pub estimate: Option<MotionEstimate>,
-    /// Pose and motion with their joint covariance, in the image (motion filter). It stands at the time when they were last known, which is
-    /// before that of the frame while the object is lost.
+    /// Pose and motion with their joint covariance, in the image (motion filter). The state is the last one known: while the object is lost,
+    /// its time is before that of the frame.
     pub state: Option<MotionState>,
     /// The curve fitted to the outline (adaptive method).
     pub fit: Option<Fit>,
-    /// Root mean square distance of the points from the curve, or the noise of this frame (motion filter), in image lengths.
+    /// Adaptive method: root mean square distance of the points from the curve. Motion filter: noise of this frame. In image lengths.
     pub residual: Option<f64>,
     /// Squared innovation of pose and motion in units of its predicted covariance (motion filter).
     pub innovation: Option<f64>,
-    /// Turns that the outlines so far do not decide between (motion filter).
+    /// Turns between which the outlines so far do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
     /// Why the frame was not used; `None` where it was.
     pub rejection: Option<FrameRejection>,
-    /// What a user should know at once: [`Warning::PointsOutOfOrder`], with the first frame of an object that shows it.
+    /// An immediate warning: [`Warning::PointsOutOfOrder`], in the first such frame of an object.
     pub warning: Option<Warning>,
 }
 
@@ -45,7 +45,7 @@ impl Observation {
     }
 }
 
-/// What a method is doing with an object.
+/// The state of a method with an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ObjectPhase {
     /// Motion filter: no frame yet.

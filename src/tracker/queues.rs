@@ -97,9 +97,7 @@ impl Queues {
 
     /// Takes the next frame of the object at a position.
     pub(super) fn push(&mut self, position: usize, frame: NextFrame) {
-        while let Ok(done) = self.done.try_recv() {
-            self.take_home(done);
-        }
+        self.take_all_home();
         self.queues[position].waiting.push_back(frame);
         self.make_ready(position);
     }
@@ -111,6 +109,7 @@ impl Queues {
 
     /// Follows what waits longest, or waits for another thread to do so. Nothing is done where nothing waits.
     pub(super) fn help(&mut self) {
+        self.take_all_home();
         while let Some(position) = self.ready.pop_front() {
             self.queues[position].is_ready = false;
             self.send(position);
@@ -156,6 +155,13 @@ impl Queues {
         self.away += 1;
         // Received by this thread, if by no other.
         let _ = self.jobs.send(Job { position, object, frames });
+    }
+
+    /// Takes those home that are back, so that threads have work while this one follows an object itself.
+    fn take_all_home(&mut self) {
+        while let Ok(done) = self.done.try_recv() {
+            self.take_home(done);
+        }
     }
 
     fn take_home(&mut self, done: Done) {

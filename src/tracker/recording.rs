@@ -19,53 +19,53 @@ const POINTS_AHEAD: usize = 1 << 18;
 /// Outlines read ahead, however small.
 const OUTLINES_AHEAD: NonZero<usize> = NonZero::new(4096).expect("positive");
 
-/// What a recording holds next. `P` is what goes with an outline to whoever observes it, as the picture that it was seen in, and `G` a gap.
+/// An item of a recording. `P` is data that accompanies an outline to the observer, such as its picture. `G` describes a gap.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recorded<P, G> {
     /// An outline of an object.
     Outline(OutlineFrame, P),
-    /// Points that are no outline; the frame counts as rejected.
+    /// Points that are not an outline; the frame counts as rejected.
     NoOutline {
         /// Name of the object.
         object: String,
         /// Number of the frame.
         frame: u64,
-        /// Why it is none; should name the frame.
+        /// The reason; should name the frame.
         reason: String,
     },
-    /// Something without an object, which is handed on in its place.
+    /// An item without an object, such as a picture without an outline. It is passed on in order.
     Gap(G),
 }
 
-/// What a recording gave next, in its order.
+/// The result of an item of a recording, in the order of the recording.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "hardly any item is a gap, and items are not stored")]
 pub enum Followed<P, G> {
-    /// A frame of an object, with its outline and what went with that, where it has one.
+    /// A frame of an object, with its outline and the accompanying data, if it has an outline.
     Object(Observation, Option<(OutlineFrame, P)>),
-    /// What was recorded as a gap.
+    /// A gap of the recording.
     Gap(G),
 }
 
-/// How far a recording is read ahead, and on how many threads its objects are followed.
+/// How far a recording is read ahead, and the number of threads that follow its objects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReadAhead {
-    /// Threads, the one that reads among them. Each object is followed by one thread at a time.
+    /// Number of threads, including the one that reads. Each object is followed by one thread at a time.
     pub threads: NonZero<usize>,
-    /// Outlines read and not handed on, at most.
+    /// Largest number of outlines that are read and not yet passed on.
     pub outlines: NonZero<usize>,
-    /// Points of these outlines from which on no more are read.
+    /// Number of points of these outlines at which reading pauses.
     pub points: usize,
 }
 
 impl ReadAhead {
-    /// Every frame is handed on before the next one is read, on one thread.
+    /// Passes every frame on before the next one is read, on one thread.
     pub const FRAME_BY_FRAME: Self =
         Self { threads: NonZero::<usize>::MIN, outlines: NonZero::<usize>::MIN, points: 1 };
 }
 
 impl Default for ReadAhead {
-    /// As many threads as run side by side on this machine, and up to 4096 outlines with 262144 points, which are four megabytes.
+    /// One thread per core of this machine, and up to 4096 outlines with 262144 points (four megabytes).
     fn default() -> Self {
         let threads = available_parallelism().unwrap_or(NonZero::<usize>::MIN);
         Self { threads, outlines: OUTLINES_AHEAD, points: POINTS_AHEAD }
@@ -73,8 +73,8 @@ impl Default for ReadAhead {
 }
 
 impl Tracker {
-    /// Follows all outlines of a recording, its objects side by side on several threads, and hands on what each gave, in the order of the
-    /// recording, on this thread. The results are those of [`push`](Self::push), to the bit.
+    /// Follows all outlines of a recording, with different objects on different threads. Calls `observe` for each outline on this thread, in
+    /// the order of the recording. The results are bit-identical to those of [`push`](Self::push).
     ///
     /// ```
     /// use freeform_motion::{Tracker, TrackerSettings};
@@ -86,8 +86,8 @@ impl Tracker {
     /// let motion = RigidMotion { omega: 1.0, b1: 0.5, b2: 0.0 };
     /// let scene = Scene::new(BuiltInShape::Bird, motion, Camera::default());
     /// let settings = Settings { length: SequenceLength::Frames(20), ..Settings::default() };
-    /// let frames = Simulator::new(scene, settings)?.frames();
-    /// let outlines = frames.zip(0..).flat_map(|(seen, frame)| {
+    /// let simulator = Simulator::new(scene, settings)?;
+    /// let outlines = simulator.frames().zip(0..).flat_map(|(seen, frame)| {
     ///     // The same bird under two names.
     ///     ["left", "right"].map(|object| OutlineFrame { frame, time: seen.time, object: object.into(), outline: seen.outline.clone() })
     /// });
@@ -106,13 +106,13 @@ impl Tracker {
         let Ok(()) = self.follow_recording(recording, ReadAhead::default(), observe);
     }
 
-    /// Follows a recording in which outlines may be missing, and hands on what each of its items gave, in their order, on this thread.
+    /// Follows a recording in which outlines may be missing. Calls `observe` for each item on this thread, in the order of the recording.
     ///
     /// # Errors
-    /// That of `observe`, at which the reading ends. Objects may have taken some of the frames that were read ahead.
+    /// The first error of `observe`, which ends the reading. Objects may already have taken some of the frames read ahead.
     ///
     /// # Panics
-    /// If `recording` or `observe` does; the tracker is then as new.
+    /// If `recording` or `observe` panics. The tracker is then empty.
     pub fn follow_recording<P, G, E>(
         &mut self,
         recording: impl IntoIterator<Item = Recorded<P, G>>,

@@ -2,31 +2,32 @@ use freeform_estimate::{MotionEstimate, PointVelocity};
 use freeform_outline_filter::Ambiguity;
 use freeform_riccati::MotionModel;
 
-use super::{rejection::FrameRejection, settings::Method};
+use super::settings::Method;
 use crate::Warning;
+use crate::rejection::FrameRejection;
 
-/// What is known of an object after all its frames so far.
+/// The result for an object after all its frames so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObjectResult {
     /// Name of the object.
     pub object: String,
-    /// How its motion was identified.
+    /// The method of identification.
     pub method: Method,
-    /// Which motions were looked for.
+    /// The motion model.
     pub motion: MotionModel,
-    /// Frames taken, rejected ones included.
+    /// Number of frames, including rejected ones.
     pub frames: usize,
     /// Frames that were not used.
     pub frames_rejected: usize,
-    /// Why the first of them was not.
+    /// Why the first rejected frame was not used.
     pub first_rejection: Option<FrameRejection>,
-    /// The motion as it was last known, in space where a camera scale is given; all numbers are finite. `None` where none was found.
+    /// The last known motion, in space if a camera scale is given. All numbers are finite. `None` if no motion was found.
     pub estimate: Option<MotionEstimate>,
-    /// Velocity of the object's middle at the last frame, in space where a camera scale is given (motion filter). It may be known where
-    /// the angular velocity is not.
+    /// Velocity of the middle of the object in the last frame, in space if a camera scale is given (motion filter). It may be known while
+    /// the angular velocity is not observable, as for a circle.
     pub velocity: Option<PointVelocity>,
-    /// Turns that the outlines do not decide between (motion filter).
+    /// Turns between which the outlines do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
-    /// What a user should know of the result, the reason for others first.
+    /// Warnings on the result, causes before consequences.
     pub warnings: Vec<Warning>,
 }

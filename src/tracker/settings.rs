@@ -5,12 +5,12 @@ use freeform_riccati::{CameraScale, MotionModel};
 
 use crate::{PipelineError, PipelineSettings};
 
-/// Which motions a [`Tracker`](super::Tracker) looks for, and how.
+/// Settings of a [`Tracker`](super::Tracker): method, motion model and camera scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackerSettings {
-    /// How every object is identified, with the settings of the method.
+    /// The method for every object, with its settings.
     pub method: MethodSettings,
-    /// Camera scale f/Z0: where it is given, estimates and velocities are those in space, b divided by it (equations 23 and 24).
+    /// Camera scale f/Z0. If it is given, estimates and velocities are those in space: b divided by the scale (equations 23 and 24).
     pub scale: Option<CameraScale>,
 }
 
@@ -23,7 +23,7 @@ pub enum MethodSettings {
     Adaptive(Box<PipelineSettings>),
 }
 
-/// How motions are identified.
+/// A method of identification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// Outline, pose and motion estimated together, with standard deviations: [`MotionFilter`](freeform_outline_filter::MotionFilter).
@@ -32,7 +32,7 @@ pub enum Method {
     Adaptive,
 }
 
-/// Why a [`Tracker`](super::Tracker) could not be made.
+/// Why the settings of a [`Tracker`](super::Tracker) are refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TrackerError {
     /// The motion filter refuses its settings.
@@ -44,7 +44,7 @@ pub enum TrackerError {
 }
 
 impl TrackerSettings {
-    /// A method in image lengths, with default settings for a motion model.
+    /// Default settings of a method for a motion model, without a camera scale.
     #[must_use]
     pub fn new(method: Method, motion: MotionModel) -> Self {
         let method = match method {
@@ -58,7 +58,7 @@ impl TrackerSettings {
         Self { method, scale: None }
     }
 
-    /// Which motions are looked for.
+    /// The motion model.
     #[must_use]
     pub fn motion(&self) -> MotionModel {
         match &self.method {

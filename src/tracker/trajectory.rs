@@ -1,4 +1,4 @@
-//! Where every object was in every frame.
+//! The pose of every object in every frame.
 use std::collections::HashMap;
 
 use freeform_estimate::{MotionEstimate, MotionState, PoseParameter, ProcessNoise, SmootherError, smooth};
@@ -6,7 +6,7 @@ use freeform_riccati::{CameraScale, MotionModel};
 
 use super::{MethodSettings, Tracker, observation::Observation};
 
-/// Where every object was in every frame: one row per observation, in their order. Take the motion filter; the adaptive method tells no poses.
+/// The pose of every object in every frame: one row per observation, in their order. It needs the motion filter: the adaptive method gives no poses.
 ///
 /// ```
 /// use freeform_motion::{Tracker, TrackerSettings};
@@ -42,14 +42,15 @@ pub struct TrajectoryRow {
     pub time: Option<f64>,
     /// Whether the frame was used.
     pub accepted: bool,
-    /// What was known then, at a time up to that of the frame.
+    /// The state known then, at a time up to that of the frame.
     state: Option<MotionState>,
 }
 
 /// Pose and motion of an object in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseAndMotion {
-    /// The pose as [`MotionState::pose_parameters`] has it, but angles go on beyond half a turn from row to row of an object.
+    /// The pose parameters as in [`MotionState::pose_parameters`], except that angles are continuous from row to row of an object and may
+    /// exceed half a turn.
     pub pose: Vec<PoseParameter>,
     /// The motion.
     pub motion: MotionEstimate,
@@ -59,9 +60,9 @@ pub struct PoseAndMotion {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SmoothingError {
     /// The motion of an object changed.
-    #[error("the motion changed on the way, which the smoother takes for constant")]
+    #[error("the motion changed, and the smoother assumes a constant one")]
     MotionChanged,
-    /// The states do not go on from each other.
+    /// The states do not form one sequence.
     #[error(transparent)]
     States(#[from] SmootherError),
 }
@@ -77,7 +78,7 @@ impl TrajectoryRow {
 }
 
 impl Trajectory {
-    /// Adds what a frame of an object gave.
+    /// Adds the observation of a frame.
     pub fn take(&mut self, observation: &Observation) {
         self.rows.push(TrajectoryRow {
             object: observation.object.clone(),
@@ -88,13 +89,13 @@ impl Trajectory {
         });
     }
 
-    /// The rows, as they came.
+    /// The rows in the order of the observations.
     #[must_use]
     pub fn rows(&self) -> &[TrajectoryRow] {
         &self.rows
     }
 
-    /// Names of the pose's numbers in [`poses`](Self::poses), in their order.
+    /// Names of the pose parameters in [`poses`](Self::poses), in their order.
     #[must_use]
     pub fn pose_names(model: MotionModel) -> &'static [&'static str] {
         match model {
@@ -124,7 +125,7 @@ impl Trajectory {
     /// began with, when the motion was not known yet, gets its pose from the ones after it. `tracker` is the one that followed the objects.
     ///
     /// # Errors
-    /// A motion that was seen to change, which the smoother would take for constant; the rows stay as filtered.
+    /// The motion was seen to change, and the smoother assumes a constant one; the rows stay as filtered.
     pub fn smooth(&mut self, tracker: &Tracker) -> Result<(), SmoothingError> {
         if tracker.motion_changed() {
             return Err(SmoothingError::MotionChanged);

@@ -2,6 +2,7 @@
 mod arbitrary_input;
 mod checks;
 mod common;
+mod documents;
 mod hostile_geometry;
 mod observability;
 mod paper_experiments;

@@ -42,7 +42,7 @@ impl Failure {
         }
     }
 
-    /// The reason; empty where there is none to tell.
+    /// The reason; empty if there is nothing to print.
     pub(crate) fn text(&self) -> &str {
         match self {
             Self::Silent => "",

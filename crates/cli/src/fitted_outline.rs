@@ -13,7 +13,7 @@ pub(crate) struct FittedOutline {
     pub(crate) fit: Fit,
     /// In image coordinates.
     pub(crate) parts: Result<Parts, DecompositionError>,
-    /// Middles of the parts of the curve that lie beside the outline, where they have been looked for.
+    /// Middles of the stray parts of the curve, if they were searched for.
     pub(crate) stray_parts: Vec<Point2<f64>>,
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// One of an object that nothing is known of.
+    /// An empty history.
     pub(crate) fn of(object: String) -> Self {
         let (estimates, residuals, innovations, rejected) = Default::default();
         Self { object, start: None, estimates, residuals, innovations, rejected, latest: None }

@@ -2,37 +2,22 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
-use freeform_motion::curve_fit::PixelGrid;
-use freeform_motion::outline_io::{GrayImage, OutlineReader, PictureSequence, ReadError, ReadErrorKind};
-use freeform_motion::tracker::Recorded;
+use freeform_motion::outline_io::{OutlineReader, PictureSequence, ReadError, ReadErrorKind};
 
 use crate::args::PictureOptions;
 use crate::failure::{Failure, plain};
-use crate::left_out::Missing;
 use crate::picture_input::PictureInput;
+use crate::seen::Item;
 use crate::stdin::Stdin;
 use crate::truth::SimulatedMotion;
 
 /// Longest head of comment lines that is looked through for the truth, in bytes.
 const HEAD_LIMIT: u64 = 1 << 16;
 
-/// A picture that outlines were seen in.
-#[derive(Debug)]
-pub(crate) struct SeenIn {
-    pub(crate) frame: u64,
-    pub(crate) picture: GrayImage,
-    pub(crate) grid: PixelGrid,
-}
-
-/// The next thing in an input: an outline, with the picture that it was seen in, if it was; or a picture without an object, or one that
-/// cannot be read.
-pub(crate) type Item = Recorded<Option<Rc<SeenIn>>, Missing>;
-
 /// A sequence of outlines, open for reading.
 pub(crate) struct Input {
-    /// The file's name as it stands in messages.
+    /// The name of the file in messages.
     pub(crate) name: String,
     /// The motion that the head of the file says it was simulated with.
     pub(crate) truth: Option<SimulatedMotion>,
@@ -90,7 +75,7 @@ impl Input {
         }
         if let given @ [_, ..] = &options.given()[..] {
             let options = given.join(", ");
-            return Err(Failure::unusable(format_args!("{options}: for pictures, but {name} is none (read as CSV)")));
+            return Err(Failure::unusable(format_args!("{options}: only for pictures, but {name} was read as CSV")));
         }
         let head = comment_lines(&mut source).map_err(failed)?;
         let truth = String::from_utf8_lossy(&head)
@@ -135,7 +120,7 @@ impl Iterator for Input {
     }
 }
 
-/// An outline that is none lets the reading go on, any other error ends it.
+/// Points that are not an outline are an item; any other error ends the reading.
 fn rejected(error: ReadError) -> Result<Item, Failure> {
     let reason = error.to_string();
     match error.kind {

@@ -1,62 +1,10 @@
 //! Pictures that gave no outline.
-use std::mem::{Discriminant, discriminant};
-use std::rc::Rc;
-
-use freeform_motion::outline_io::{PictureErrorKind, TraceError};
 use freeform_motion::tracker::FrameRanges;
 
-use crate::failure::Failure;
-use crate::input::SeenIn;
+use crate::seen::{Missing, MissingKind};
 
 /// Pictures kept with their reasons.
 const PICTURES_KEPT: usize = 1000;
-
-/// A picture without an outline.
-#[derive(Debug)]
-pub(crate) struct Missing {
-    /// Its number in the sequence.
-    pub(crate) frame: u64,
-    pub(crate) reason: String,
-    /// What may help, where it is known.
-    pub(crate) hint: Option<&'static str>,
-    pub(crate) kind: MissingKind,
-    /// The picture, if it could be read.
-    pub(crate) seen_in: Option<Rc<SeenIn>>,
-}
-
-/// What kind of reason it is, whatever the numbers in it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum MissingKind {
-    Unreadable(Discriminant<PictureErrorKind>),
-    NothingFound(Discriminant<TraceError>),
-}
-
-impl From<&PictureErrorKind> for MissingKind {
-    fn from(kind: &PictureErrorKind) -> Self {
-        Self::Unreadable(discriminant(kind))
-    }
-}
-
-impl From<&TraceError> for MissingKind {
-    fn from(error: &TraceError) -> Self {
-        Self::NothingFound(discriminant(error))
-    }
-}
-
-impl Missing {
-    /// The reason, and what may help.
-    fn advice(&self) -> String {
-        self.hint.map_or_else(|| self.reason.clone(), |hint| format!("{}; {hint}", self.reason))
-    }
-
-    /// Why nothing was found, where this is all there is.
-    pub(crate) fn into_failure(self) -> Failure {
-        match self.seen_in {
-            Some(_) => Failure::no_result(self.advice()),
-            None => Failure::unusable(self.reason),
-        }
-    }
-}
 
 /// The pictures left out so far, with their reasons.
 #[derive(Debug, Default)]
@@ -87,7 +35,7 @@ pub(crate) struct MissingWarnings {
 #[derive(Debug)]
 struct SameKind {
     kind: MissingKind,
-    /// Reason of the second, which is told as it is where there is no third.
+    /// Reason of the second picture, printed in full if there is no third.
     second: Option<String>,
     count: u64,
     /// All but the first.
@@ -95,7 +43,7 @@ struct SameKind {
 }
 
 impl MissingWarnings {
-    /// Takes a picture; returns what is to be said of it now.
+    /// Takes a picture. Returns the warning to print now, if any.
     pub(crate) fn take(&mut self, missing: &Missing) -> Option<String> {
         let Some(same) = self.kinds.iter_mut().find(|same| same.kind == missing.kind) else {
             let (kind, others) = (missing.kind, FrameRanges::default());
@@ -108,7 +56,7 @@ impl MissingWarnings {
         None
     }
 
-    /// What is to be said in the end.
+    /// The warnings to print at the end.
     pub(crate) fn finish(self) -> impl Iterator<Item = String> {
         self.kinds.into_iter().filter_map(|same| match same.count {
             0 | 1 => None,
@@ -120,6 +68,8 @@ impl MissingWarnings {
 
 #[cfg(test)]
 mod tests {
+    use freeform_motion::outline_io::TraceError;
+
     use super::*;
 
     fn missing(frame: u64, error: TraceError) -> Missing {

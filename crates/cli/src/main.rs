@@ -1,5 +1,6 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
+mod command_line;
 mod commands;
 mod failure;
 mod fitted_outline;
@@ -14,6 +15,7 @@ mod picture_input;
 mod plot;
 mod progress;
 mod reader;
+mod seen;
 mod stdin;
 mod truth;
 

@@ -4,14 +4,14 @@ use freeform_motion::riccati::CameraScale;
 
 use crate::args::PictureOptions;
 
-/// Which velocity b is: that of the moving frame at a point, in a unit.
+/// The meaning of b: the velocity of the moving frame at a point, in a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MeaningOfB {
     pub(crate) point: &'static str,
     pub(crate) unit: String,
-    /// The unit as it stands in a table, that of its model where there is none of its own.
+    /// The unit in a table; `None` for the unit of the motion model.
     pub(crate) short_unit: Option<&'static str>,
-    /// What it was divided by.
+    /// The camera scale by which b was divided.
     pub(crate) scale: Option<CameraScale>,
 }
 

@@ -12,12 +12,11 @@ use freeform_motion::outline_io::{
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
-use crate::commands::{command_line_of_stdin, quoted};
+use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
-use crate::input::{Item, SeenIn};
-use crate::left_out::{Missing, MissingKind};
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::short;
+use crate::seen::{Item, Missing, MissingKind, SeenIn};
 
 /// Pictures that the running median is taken of.
 const MEDIAN_SIZE: usize = 25;

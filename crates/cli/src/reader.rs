@@ -6,10 +6,11 @@ use freeform_motion::Tracker;
 use freeform_motion::tracker::{Followed, ReadAhead};
 
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Item, SeenIn};
+use crate::input::Input;
 use crate::interrupt;
-use crate::left_out::{Missing, MissingWarnings};
+use crate::left_out::MissingWarnings;
 use crate::progress::{Progress, would_stand_in_output};
+use crate::seen::{Item, Missing, SeenIn};
 
 /// Outlines from pictures read ahead, which are held with their pictures.
 const OUTLINES_OF_PICTURES_AHEAD: NonZero<usize> = NonZero::new(32).expect("positive");

@@ -15,7 +15,7 @@ const AHEAD: usize = 4;
 /// How often Ctrl-C is looked for while nothing comes.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Standard input, read by a thread of its own since a read that waits cannot be called off.
+/// Standard input, read by a separate thread, since a waiting read cannot be cancelled.
 pub(crate) struct Stdin {
     chunks: Receiver<io::Result<Vec<u8>>>,
     chunk: Vec<u8>,

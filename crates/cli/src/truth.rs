@@ -5,7 +5,7 @@ use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
 
-/// The motion that simulated outlines were made with, as it stands in a comment at the head of their file:
+/// The true motion of simulated outlines, as stated in a comment at the head of their file:
 /// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SimulatedMotion {

@@ -1,6 +1,6 @@
 //! The least-squares leading form that is positive on the unit circle by at least a margin.
 use crate::{
-    contact::ContactProblem, error::FitError, interior_point::GramProblem, leading_form::CircleRange,
+    active_set::ActiveSetProblem, error::FitError, interior_point::GramProblem, leading_form::CircleRange,
     least_squares::TriangularSystem, monomials::monomial_index,
 };
 
@@ -19,23 +19,23 @@ pub(crate) fn constrain_leading_form(
     let first = monomial_index(degree, 0);
     let form = &mut coefficients[first..];
     let range = match degree {
-        2 => by_contacts_or::<3>(system, first, floor, form, GramProblem::<2, 3, 3>::solve_floor),
-        4 => by_contacts_or::<5>(system, first, floor, form, GramProblem::<3, 6, 5>::solve_floor),
-        6 => by_contacts_or::<7>(system, first, floor, form, GramProblem::<4, 10, 7>::solve_floor),
-        _ => by_contacts_or::<9>(system, first, floor, form, GramProblem::<5, 15, 9>::solve_floor),
+        2 => by_active_set_or::<3>(system, first, floor, form, GramProblem::<2, 3, 3>::solve_floor),
+        4 => by_active_set_or::<5>(system, first, floor, form, GramProblem::<3, 6, 5>::solve_floor),
+        6 => by_active_set_or::<7>(system, first, floor, form, GramProblem::<4, 10, 7>::solve_floor),
+        _ => by_active_set_or::<9>(system, first, floor, form, GramProblem::<5, 15, 9>::solve_floor),
     }?;
     system.solve_leading(first, coefficients);
     Ok(range)
 }
 
-fn by_contacts_or<const FORM: usize>(
+fn by_active_set_or<const FORM: usize>(
     system: &TriangularSystem,
     first: usize,
     floor: f64,
     form: &mut [f64],
     fallback: impl Fn(&TriangularSystem, usize, f64, &mut [f64]) -> Result<(), FitError>,
 ) -> Result<CircleRange, FitError> {
-    if let Some((solution, range)) = ContactProblem::<FORM>::new(system, first, floor).solve() {
+    if let Some((solution, range)) = ActiveSetProblem::<FORM>::new(system, first, floor).solve() {
         form.copy_from_slice(&solution);
         return Ok(range);
     }
@@ -71,7 +71,7 @@ mod tests {
         system
     }
 
-    /// Solves the same problem both ways; the contacts may give up.
+    /// Solves a problem with both methods; the active-set method may give up.
     fn both<const FORM: usize>(
         degree: Degree,
         seed: u32,
@@ -85,15 +85,15 @@ mod tests {
         let unconstrained = CircleRange::of(form);
         let floor = 0.9 * unconstrained.rms;
         assert!(unconstrained.minimum < floor, "the constraint is to be active");
-        let (contacts, range) = ContactProblem::<FORM>::new(&system, first, floor).solve()?;
+        let (by_active_set, range) = ActiveSetProblem::<FORM>::new(&system, first, floor).solve()?;
         assert!(range.minimum >= 0.999_999 * floor);
         interior(&system, first, floor, form).expect("the interior-point method ends");
-        let distance = form.iter().zip(&contacts).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let distance = form.iter().zip(&by_active_set).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         Some(distance / unconstrained.rms)
     }
 
     #[test]
-    fn contacts_and_the_interior_point_method_find_the_same_form_and_contacts_nearly_always_find_it() {
+    fn the_active_set_method_nearly_always_ends_and_finds_the_form_of_the_interior_point_method() {
         let count = 200;
         let mut worst = [0.0_f64; 3];
         let mut given_up = [0; 3];

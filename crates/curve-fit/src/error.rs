@@ -2,6 +2,9 @@ use thiserror::Error;
 
 use crate::degree::Degree;
 
+/// Largest absolute coordinate accepted, so that squares never overflow.
+pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
+
 /// Why a list of points is not an outline.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum OutlineError {
@@ -20,7 +23,7 @@ pub enum OutlineError {
         index: usize,
     },
     /// A coordinate is so large that its square would overflow.
-    #[error("point {index} has the coordinate {value:e}, beyond {limit:e}", limit = crate::outline::COORDINATE_LIMIT)]
+    #[error("point {index} has the coordinate {value:e}, beyond {limit:e}", limit = COORDINATE_LIMIT)]
     TooLarge {
         /// Position of the point in the list, counted from 0.
         index: usize,
@@ -108,7 +111,7 @@ pub enum FitError {
     },
     /// The outline does not tell its inside from its outside: it runs as much one way round as the other, as a line there
     /// and back or an even figure of eight does, or its normals cancel.
-    #[error("the outline has no inside: it runs as much one way round as the other")]
+    #[error("the outline has no inside: its signed area is zero")]
     NoInside,
     /// The leading form of the bounded fit could not be brought above its margin.
     #[error("the bounded fit did not converge in {iterations} iterations")]

@@ -63,7 +63,7 @@ impl Fit {
         &self.working
     }
 
-    /// The same, if it is closed and bounded.
+    /// The polynomial in working coordinates, if its curve is closed and bounded.
     #[must_use]
     pub fn bounded_working(&self) -> Option<BoundedPolynomial> {
         BoundedPolynomial::with_margin(self.working, self.diagnostics.boundedness_margin)

@@ -79,8 +79,8 @@ impl Fitter {
         self.solve().map(|solution| solution.coefficients)
     }
 
-    /// The same fit from the QR factorisation of the tall matrix: slower, as accurate as can be, and what
-    /// [`fit`](Self::fit) is tested against. Allocates.
+    /// Fits by the QR factorisation of the tall matrix. Slower than [`fit`](Self::fit), as accurate as possible, and the reference
+    /// of its tests. Allocates.
     ///
     /// # Errors
     /// As [`fit`](Self::fit).

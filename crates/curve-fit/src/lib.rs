@@ -1,11 +1,11 @@
 //! Implicit polynomial curves fitted to noisy outlines.
 //!
-//! An outline comes as ordered points without correspondence to anything. A [`Fitter`] turns it into an implicit
-//! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8, negative inside and positive outside, by the 3L method
-//! (three level sets: the data at 0, and the data moved along its normals at -1 and +1). The fit can be globally
-//! stabilised, or closed and bounded by construction. It is equivariant under similarities, that is turns, shifts and changes
-//! of scale: the fit of the moved outline is the moved fit. Under an affine map that stretches or shears it is not, since
-//! distances along normals are not kept.
+//! An outline consists of ordered points, without correspondence to other outlines. A [`Fitter`] fits an implicit
+//! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8 to it, negative inside and positive outside. The 3L method uses
+//! three level sets: the points at 0, and the points moved along their normals at -1 and +1. The fit can be globally
+//! stabilised, or closed and bounded by construction. The fit is equivariant under similarities (turns, shifts and changes of
+//! scale): the fit of the moved outline is the moved fit. It is not equivariant under an affine map that stretches or shears,
+//! which changes distances along normals.
 //!
 //! ```
 //! use freeform_curve_fit::{FitSettings, Fitter, Outline};
@@ -26,9 +26,9 @@
 //! assert!(f.evaluate(&Point2::new(2.0, 1.0)) > 0.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod active_set;
 mod bounded;
 mod bounded_polynomial;
-mod contact;
 mod degree;
 mod error;
 mod fit;

@@ -36,7 +36,7 @@ impl Moments {
         Self { total_degree, sums }
     }
 
-    /// The same as [`of`](Self::of), written for reading; a test holds the two together.
+    /// Moments by the plain definition, slower than [`of`](Self::of). A test compares the two.
     ///
     /// # Panics
     /// If `total_degree` exceeds 16.

@@ -36,7 +36,7 @@ const NO_AREA: f64 = 1e-9;
 /// The regression of [`outward_normals`] in buffers that are reused, for points that have been moved since they were taken.
 #[derive(Debug, Default, Clone)]
 pub struct NormalRegression {
-    /// Whether the area of the last outline told which side of it is the inside.
+    /// Whether the area of the last outline determined which side of it is the inside.
     pub(crate) has_inside: bool,
     /// Distance of every point to the one before it in its piece; 0 at an open beginning.
     steps: Vec<f64>,

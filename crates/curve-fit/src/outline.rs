@@ -1,10 +1,7 @@
 use nalgebra::{Affine2, Matrix2, Point2, Vector2};
 
-use crate::error::OutlineError;
+use crate::error::{COORDINATE_LIMIT, OutlineError};
 use crate::rectangle::Rectangle;
-
-/// Largest absolute coordinate accepted, so that squares never overflow.
-pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
 
 /// Two principal radii whose ratio is at most this are taken for points on one line.
 const COLLINEAR_RATIO: f64 = 1e-9;
@@ -155,7 +152,7 @@ impl Outline {
     }
 
     /// Area of the polygon through all points in order, gaps closed by straight lines: positive where they run
-    /// counter-clockwise in a y-up frame. Its sign tells on which side of an arc the inside lies.
+    /// counter-clockwise in a y-up frame. Its sign gives the side of an arc on which the inside lies.
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         signed_area(self.points())
@@ -180,7 +177,7 @@ impl Outline {
         Spread::of(self.points()).scatter.trace().sqrt()
     }
 
-    /// The same outline with every point moved by an affine map of the plane.
+    /// This outline with every point moved by an affine map of the plane.
     ///
     /// # Errors
     /// The map sends the points onto one line, to one point, or beyond the accepted range.

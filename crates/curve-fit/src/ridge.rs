@@ -13,7 +13,7 @@ pub fn rotation_invariant_ridge(degree: usize, data: &Moments) -> [f64; MAX_COEF
     ridge_of_radial_sums(degree, |d| (0..=d).map(|k| binomial(d, k) * data.get(2 * k, 2 * (d - k))).sum())
 }
 
-/// The same from `beta_d` itself.
+/// The diagonal of the ridge from the radial sums `beta_d`.
 pub(crate) fn ridge_of_radial_sums(degree: usize, beta: impl Fn(usize) -> f64) -> [f64; MAX_COEFFICIENTS] {
     let mut diagonal = [0.0; MAX_COEFFICIENTS];
     for d in 0..=degree {

@@ -10,7 +10,7 @@ pub enum RootError {
         /// Coefficients given, one more than the degree.
         count: usize,
     },
-    /// The coefficient of the highest power is zero, or so small beside another one that their ratio overflows.
+    /// The coefficient of the highest power is zero, or so small relative to another one that their ratio overflows.
     #[error("the leading coefficient {leading:e} is zero beside the largest one, {largest:e}")]
     VanishingLeadingCoefficient {
         /// Coefficient of the highest power of z.

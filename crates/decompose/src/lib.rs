@@ -6,7 +6,7 @@
 //! `f = c_4 prod_{i=1..4} (x + l_4i y + k_4i) + c_2 prod_{i=1,2} (x + l_2i y + k_2i) + c_0`
 //!
 //! Lines of closed and bounded curves come in complex conjugate pairs. The pairs meet in real points that move with the
-//! curve, and the values of f there tell which pair is which from frame to frame.
+//! curve. The values of f at these points identify the pairs from frame to frame.
 //!
 //! ```
 //! use freeform_curve_fit::{Degree, ImplicitPolynomial};
@@ -30,7 +30,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Nothing here allocates, except where roots have to be taken from a companion matrix because the iteration failed.
+//! Nothing here allocates, except if the iteration for the roots fails and the companion matrix is used.
 mod companion;
 mod condition;
 mod correspondence;
@@ -43,7 +43,6 @@ mod related_point;
 mod roots;
 mod rotation_chart;
 
-pub use companion::companion_roots;
 pub use condition::Condition;
 pub use correspondence::{Correspondence, Criterion, MAX_PAIRS, ORDERING_MARGIN};
 pub use decomposition::Decomposition;
@@ -51,7 +50,7 @@ pub use error::{CorrespondenceError, DecompositionError, RootError};
 pub use invariants::AffineInvariants;
 pub use line::Line;
 pub use related_point::{RelatedPoint, RelatedPoints};
-pub use roots::{Roots, binary_form_roots};
+pub use roots::{Roots, binary_form_roots, companion_roots};
 pub use rotation_chart::{from_rotation_chart, rotation_chart};
 
 #[cfg(doctest)]

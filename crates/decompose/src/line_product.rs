@@ -8,7 +8,7 @@ use crate::{
     rotation_chart::rotation_chart,
 };
 
-/// Leading coefficients below this fraction of what stands beside them count as zero.
+/// Leading coefficients below this fraction of the other coefficients count as zero.
 pub(crate) const MIN_LEADING: f64 = 1e-10;
 
 /// Two l whose chordal distance is below this count as one. At this distance about 4 digits are left of k.

@@ -111,7 +111,7 @@ impl RelatedPoints {
         result
     }
 
-    /// The same points with their values and [`beta`](Self::beta) multiplied by a factor; those that overflow are left
+    /// These points with their values and [`beta`](Self::beta) multiplied by a factor. Points whose values overflow are left
     /// out. The values of the monic polynomial of a moved curve are the old ones times `c_n(before) / c_n(after)`, with
     /// the leading coefficients `c_n` of [`Decomposition`] before and after [`Decomposition::moved`].
     #[must_use]

@@ -35,7 +35,7 @@ impl Roots {
     /// Joins approximate roots of the scaled form into exact conjugate pairs, polishes them and undoes the scaling.
     ///
     /// A root is real where its own conjugate is nearer than every other root's: no tolerance needed.
-    pub(crate) fn paired(form: &ScaledForm, approximate: [Complex<f64>; MAX_DEGREE]) -> Self {
+    fn paired(form: &ScaledForm, approximate: [Complex<f64>; MAX_DEGREE]) -> Self {
         let n = form.degree();
         let mut open = [true; MAX_DEGREE];
         let mut upper = [Complex::ZERO; MAX_DEGREE / 2];
@@ -94,13 +94,27 @@ pub fn binary_form_roots(coefficients: &[f64]) -> Result<Roots, RootError> {
         Err(residual) => {
             let degree = form.degree();
             let failure = RootError::NoConvergence { degree, iterations: MAX_ITERATIONS, residual };
-            companion_eigenvalues(&form).ok_or(failure)?
+            form.eigenvalues().ok_or(failure)?
         }
     };
     Ok(Roots::paired(&form, approximate))
 }
 
-pub(crate) fn check_form(coefficients: &[f64]) -> Result<(), RootError> {
+/// Roots of a binary form as eigenvalues of the companion matrix of the scaled polynomial. The result agrees with
+/// [`binary_form_roots`], which is tested against this function and falls back on it. This function is slower and allocates.
+///
+/// # Errors
+/// Those of [`binary_form_roots`].
+pub fn companion_roots(coefficients: &[f64]) -> Result<Roots, RootError> {
+    check_form(coefficients)?;
+    let form = ScaledForm::of(coefficients)?;
+    let Some(values) = form.eigenvalues() else {
+        return Err(RootError::NoConvergence { degree: form.degree(), iterations: 0, residual: f64::NAN });
+    };
+    Ok(Roots::paired(&form, values))
+}
+
+fn check_form(coefficients: &[f64]) -> Result<(), RootError> {
     if !matches!(coefficients.len(), 3 | 5 | 7 | 9) {
         return Err(RootError::UnsupportedDegree { count: coefficients.len() });
     }
@@ -109,7 +123,7 @@ pub(crate) fn check_form(coefficients: &[f64]) -> Result<(), RootError> {
 
 /// Monic polynomial in `u = z / scale` whose largest coefficient has the absolute value 1, so that all its roots lie
 /// within `|u| < 2`.
-pub(crate) struct ScaledForm {
+struct ScaledForm {
     /// `1, b_1, ..., b_n`, the coefficient of `u^n` first.
     b: [f64; MAX_DEGREE + 1],
     degree: usize,
@@ -117,7 +131,13 @@ pub(crate) struct ScaledForm {
 }
 
 impl ScaledForm {
-    pub(crate) fn of(coefficients: &[f64]) -> Result<Self, RootError> {
+    /// The roots in u as eigenvalues of the companion matrix; `None` where their iteration fails.
+    fn eigenvalues(&self) -> Option<[Complex<f64>; MAX_DEGREE]> {
+        let mut values = [Complex::ZERO; MAX_DEGREE];
+        companion_eigenvalues(&self.b[..=self.degree], &mut values[..self.degree]).then_some(values)
+    }
+
+    fn of(coefficients: &[f64]) -> Result<Self, RootError> {
         let degree = coefficients.len() - 1;
         let largest = coefficients.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
         let leading = coefficients[0];
@@ -138,13 +158,8 @@ impl ScaledForm {
         Ok(Self { b, degree, scale })
     }
 
-    pub(crate) const fn degree(&self) -> usize {
+    const fn degree(&self) -> usize {
         self.degree
-    }
-
-    /// `1, b_1, ..., b_n`.
-    pub(crate) fn coefficients(&self) -> &[f64] {
-        &self.b[..=self.degree]
     }
 
     /// Value, derivative, and a bound of the value's rounding error, by Horner's rule.
@@ -178,7 +193,7 @@ impl ScaledForm {
     fn aberth(&self) -> Result<[Complex<f64>; MAX_DEGREE], f64> {
         let mut z = [Complex::ZERO; MAX_DEGREE];
         // Roots at zero are known; the iteration would only creep towards several of them.
-        let n = self.degree - self.coefficients().iter().rev().take_while(|b| **b == 0.0).count();
+        let n = self.degree - self.b[..=self.degree].iter().rev().take_while(|b| **b == 0.0).count();
         let reduced = Self { b: self.b, degree: n, scale: self.scale };
         if n == 2 {
             [z[0], z[1]] = quadratic_roots(self.b[1], self.b[2]);

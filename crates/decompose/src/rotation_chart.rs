@@ -6,7 +6,7 @@ const J: Complex<f64> = Complex::I;
 /// The rotation chart `w = (l - j) / (l + j)` of the coefficient l of a line.
 ///
 /// Turning the image by phi counter-clockwise turns w by `2 phi` counter-clockwise, `w' = w exp(2 j phi)`, so `|w|` is a
-/// rotation invariant: 0 for `l = j` (the pair tells nothing about rotation), 1 for a real line. Lines with a positive
+/// rotation invariant: 0 for `l = j` (the pair contains no information on rotation), 1 for a real line. Lines with a positive
 /// imaginary part of l lie within `|w| < 1`. Infinite at `l = -j`.
 #[must_use]
 pub fn rotation_chart(l: Complex<f64>) -> Complex<f64> {

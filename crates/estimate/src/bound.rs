@@ -41,7 +41,7 @@ pub enum BoundError {
     InformationNotFinite,
 }
 
-/// A point of the boundary as it stands in the image, and the unit normal there (either way).
+/// A point of the boundary in the image, and the unit normal there (of either sign).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundaryPoint {
     /// The point, image lengths.
@@ -90,7 +90,7 @@ pub struct CramerRaoBound {
     information: DMatrix<f64>,
 }
 
-/// Covariance of the motion parameters, and which directions of them nothing is known of.
+/// Covariance of the motion parameters, and the directions in parameter space that are not observable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundCovariance {
     /// Smallest covariance of the parameters, in the order of the model, in their units; as if unobservable directions

@@ -1,7 +1,9 @@
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, Const, DMatrix, DVector, DefaultAllocator, Dim, OMatrix, OVector, allocator::Allocator};
 
-/// Below this fraction of the largest eigenvalue of the information, scaled to unit diagonal, nothing is known.
+/// Eigenvalues of the information, scaled to unit diagonal, below this fraction of the largest count as no information.
 const RANK_TOLERANCE: f64 = 1e-10;
+/// Added to a unit diagonal before it is factored.
+const ROUNDING: f64 = 1e-14;
 /// Share of a parameter in a direction without information from which on the parameter counts as unknown.
 const TOUCHED: f64 = 1e-4;
 
@@ -40,16 +42,43 @@ pub fn invert_information(information: &DMatrix<f64>) -> InverseInformation {
     InverseInformation { covariance, observable, rank }
 }
 
-/// Inverse of a positive definite information matrix, scaled to unit diagonal on the way, so that entries of different units, or
-/// known to very different precision, do no harm.
+/// Inverse of a positive definite matrix; see [`scaled_solution`]. `None` where it is not positive definite.
 #[must_use]
-pub fn invert_positive_definite(information: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let size = information.nrows();
-    let scale = unit_scale(information);
-    let scaled = DMatrix::from_fn(size, size, |i, j| information[(i, j)] * scale[i] * scale[j]);
+pub fn scaled_inverse<D: Dim>(matrix: &OMatrix<f64, D, D>) -> Option<OMatrix<f64, D, D>>
+where
+    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+{
+    let (scale, factor) = scaled_cholesky(matrix)?;
+    let inverse = factor.inverse();
+    let (rows, columns) = inverse.shape_generic();
+    Some(OMatrix::from_fn_generic(rows, columns, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+}
+
+/// Solution x of `matrix x = right` for a positive definite matrix, which is scaled to unit diagonal on the way, so that entries of
+/// different units, or known to very different precision, do no harm. `None` where it is not positive definite.
+#[must_use]
+pub fn scaled_solution<D: Dim>(matrix: &OMatrix<f64, D, D>, right: &OVector<f64, D>) -> Option<OVector<f64, D>>
+where
+    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+{
+    let (scale, factor) = scaled_cholesky(matrix)?;
+    Some(factor.solve(&right.component_mul(&scale)).component_mul(&scale))
+}
+
+/// Factor of a matrix that was scaled on both sides to unit diagonal, and the scale.
+fn scaled_cholesky<D: Dim>(matrix: &OMatrix<f64, D, D>) -> Option<(OVector<f64, D>, Cholesky<f64, D>)>
+where
+    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+{
+    let (rows, columns) = matrix.shape_generic();
+    let scale = OVector::from_fn_generic(rows, Const::<1>, |i, _| {
+        let entry = matrix[(i, i)];
+        if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 }
+    });
+    let mut scaled = OMatrix::from_fn_generic(rows, columns, |i, j| matrix[(i, j)] * scale[i] * scale[j]);
     // Directions that nothing is known of may come out a rounding below zero.
-    let inverse = (scaled + DMatrix::identity(size, size) * 1e-14).cholesky()?.inverse();
-    Some(DMatrix::from_fn(size, size, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+    (0..rows.value()).for_each(|i| scaled[(i, i)] += ROUNDING);
+    Some((scale, scaled.cholesky()?))
 }
 
 /// What brings the diagonal of a matrix to 1, from both sides.

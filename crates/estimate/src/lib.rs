@@ -1,10 +1,11 @@
-//! What every estimator of a motion of the plane speaks.
+//! Estimates of a motion of the plane, and what they share: parameters, states, smoothing, and the Cramer-Rao bound.
 //!
-//! - [`MotionEstimate`]: parameters with their standard deviations, those that nothing is known of named as such.
-//! - [`MotionState`]: pose and motion at one time with their joint covariance; [`PointVelocity`] of any point of the object; [`smooth`]
-//!   gives every state what all frames of a recording say of it.
+//! - [`MotionEstimate`]: parameters with their standard deviations, or marked as not observable.
+//! - [`MotionState`]: pose and motion at one time with their joint covariance; the velocity of any point of the object
+//!   ([`PointVelocity`]).
+//! - [`smooth`]: a fixed-interval smoother, which estimates every state from all frames of a recording.
 //! - [`ProcessNoise`]: how fast a motion may change.
-//! - [`CramerRaoBound`]: what no unbiased estimator can better.
+//! - [`CramerRaoBound`]: the smallest covariance of any unbiased estimator.
 //!
 //! Motions are rigid, similarity, affine or projective (`freeform_riccati::MotionModel`), in the fixed image frame.
 //!
@@ -12,7 +13,7 @@
 //! use freeform_estimate::MotionEstimate;
 //! use freeform_riccati::MotionModel;
 //!
-//! // An angular velocity that is known, and a velocity of which only one component is.
+//! // The angular velocity and the first component of the velocity are known, the second component is not.
 //! let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, 0.2, 0.0], Some(&[0.01, 0.002, 3.0])).with_unobservable(2);
 //! let known: Vec<_> = estimate.parameters().filter(|p| p.value.is_some()).map(|p| p.name).collect();
 //! assert_eq!(known, ["omega", "b1"]);
@@ -28,7 +29,7 @@ mod smoother;
 mod time;
 
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
-pub use information::{InverseInformation, invert_information, invert_positive_definite};
+pub use information::{InverseInformation, invert_information, scaled_inverse, scaled_solution};
 pub use motion_estimate::{MotionEstimate, ParameterEstimate};
 pub use motion_state::{MotionState, NormalisedState, PoseParameter};
 pub use observability::is_worth;

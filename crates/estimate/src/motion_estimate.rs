@@ -47,7 +47,7 @@ impl MotionEstimate {
         }
     }
 
-    /// The same with parameter `index` marked as one that the outlines tell nothing of.
+    /// This estimate with parameter `index` marked as not observable.
     ///
     /// # Panics
     /// If there is no such parameter.
@@ -102,10 +102,10 @@ impl MotionEstimate {
         is_known.then_some(generator)
     }
 
-    /// The same motion in other coordinates: those that `map`, a scaling and a shift, takes the present ones to.
+    /// This motion in other coordinates. `map`, a scaling and a shift, maps the present coordinates to the new ones.
     ///
     /// # Panics
-    /// If there are standard deviations: without covariances they cannot be carried over.
+    /// If there are standard deviations: they cannot be transformed without the covariances.
     #[must_use]
     pub fn in_coordinates(mut self, map: &Affine2<f64>) -> Self {
         assert!(self.standard_deviations.is_none(), "standard deviations alone cannot change coordinates");
@@ -114,8 +114,8 @@ impl MotionEstimate {
         self
     }
 
-    /// The same motion in space, seen by a scaled orthographic camera: b divided by f/Z0, c multiplied by it, and their
-    /// standard deviations with them (equations 23 and 24).
+    /// This motion in space, for a scaled orthographic camera: b and its standard deviations are divided by f/Z0, c and its
+    /// standard deviations are multiplied by it (equations 23 and 24).
     #[must_use]
     pub fn in_space(mut self, camera: CameraScale) -> Self {
         // Every parameter is multiplied by a number of its own, so that standard deviations change as values do.

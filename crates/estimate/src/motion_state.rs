@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Point2, Projective2};
 
 use crate::{motion_estimate::MotionEstimate, process_noise::ProcessNoise};
 
-/// Where an object is at one time and how it moves, with the joint covariance of both.
+/// Pose and motion of an object at one time, with their joint covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionState {
     pub(crate) model: MotionModel,
@@ -15,12 +15,12 @@ pub struct MotionState {
     pub(crate) motion: ParameterVector,
     /// Of the pose error xi, `g = exp(xi) g_hat`, then the motion.
     pub(crate) covariance: DMatrix<f64>,
-    /// The same where the outline is given.
+    /// This covariance if the outline is known exactly.
     pub(crate) within: DMatrix<f64>,
     pub(crate) observable: [bool; MAX_PARAMETERS],
 }
 
-/// One number of a pose, and how well it is known.
+/// One parameter of a pose with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseParameter {
     /// Name: see [`MotionState::pose_parameters`].
@@ -31,7 +31,7 @@ pub struct PoseParameter {
     pub standard_deviation: f64,
 }
 
-/// How errors of pose and motion go on over a step.
+/// The propagation of the errors of pose and motion over a step.
 pub(crate) struct Transition {
     pub(crate) flow: Matrix3<f64>,
     /// `F = [[Ad, V], [0, I]]`.
@@ -41,7 +41,7 @@ pub(crate) struct Transition {
     pub(crate) noise: DMatrix<f64>,
 }
 
-/// What a [`MotionState`] is made of, in coordinates that are centred on the first outline and divided by its radius.
+/// The parts of a [`MotionState`], in coordinates centred on the first outline and divided by its radius.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalisedState {
     /// The motion model, of k parameters.
@@ -52,15 +52,15 @@ pub struct NormalisedState {
     pub origin: Point2<f64>,
     /// RMS radius of the first outline, image lengths.
     pub radius: f64,
-    /// Map of the plane that has moved the first outline to where it is.
+    /// Map of the plane from the first outline to its present place.
     pub pose: Matrix3<f64>,
     /// Motion parameters, zeros behind the first k.
     pub motion: ParameterVector,
     /// Covariance of the pose error xi, `g = exp(xi) g_hat`, then the motion: 2 k by 2 k.
     pub covariance: DMatrix<f64>,
-    /// The same where the outline is given.
+    /// This covariance if the outline is known exactly.
     pub covariance_given_outline: DMatrix<f64>,
-    /// Which parameters of the motion something is known of.
+    /// Which parameters of the motion are observable.
     pub observable: [bool; MAX_PARAMETERS],
 }
 
@@ -85,7 +85,7 @@ impl MotionState {
         self.time
     }
 
-    /// The map of the image that has moved the first outline to where it is now.
+    /// The map of the image from the first outline to its present place.
     #[must_use]
     pub fn pose(&self) -> Projective2<f64> {
         let to_image = self.to_image();
@@ -176,7 +176,7 @@ impl MotionState {
         list
     }
 
-    /// The state at another time, in seconds, if the motion goes on; it may have changed at random meanwhile.
+    /// The state predicted for another time, in seconds, with process noise on the motion in between.
     #[must_use]
     pub fn predicted(&self, time: f64, noise: &ProcessNoise) -> Self {
         let Transition { flow, matrix, noise, .. } = self.transition(time - self.time, noise);

@@ -1,4 +1,4 @@
-/// Displacement, in object sizes (for a turn, in rad), beyond which the standard deviation of its cause says that nothing is known of it.
+/// Displacement, in object sizes (for a turn, in rad). A parameter is not observable if its standard deviation displaces the object by more.
 /// A quarter: beyond it outlines are no longer linear in the displacement, and a normal distribution says nothing.
 const WORTHLESS: f64 = 0.25;
 

@@ -3,10 +3,10 @@ use nalgebra::{Matrix2, Matrix2xX, Matrix3, Point2, Vector2, Vector3};
 
 use crate::motion_state::MotionState;
 
-/// How fast a point of the object moves at one time.
+/// Velocity of a point of the object at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointVelocity {
-    /// Where it is then, image coordinates.
+    /// Position of the point at that time, image coordinates.
     pub point: Point2<f64>,
     /// Its velocity, image lengths per second.
     pub velocity: Vector2<f64>,
@@ -21,7 +21,7 @@ impl PointVelocity {
         self.covariance.diagonal().map(|variance| variance.max(0.0).sqrt())
     }
 
-    /// As it is in space, seen by a scaled orthographic camera: point and velocity divided by f/Z0.
+    /// Point and velocity in space, for a scaled orthographic camera: both divided by f/Z0.
     #[must_use]
     pub fn in_space(self, camera: CameraScale) -> Self {
         let per_length = 1.0 / camera.value();
@@ -40,8 +40,8 @@ impl PointVelocity {
 }
 
 impl MotionState {
-    /// Velocity of the point of the object that was at `first` in the image of the first frame, with the errors of motion and pose that
-    /// go into it. Unobservable parameters are taken as they stand.
+    /// Velocity of the point of the object that was at `first` in the first frame, in image coordinates. Its covariance includes the
+    /// errors of motion and pose. Unobservable parameters enter with their present values.
     #[must_use]
     pub fn velocity_of(&self, first: &Point2<f64>) -> PointVelocity {
         let k = self.model.parameter_count();
@@ -70,7 +70,7 @@ impl MotionState {
     }
 }
 
-/// Velocity that a generator gives a point.
+/// Velocity of a point under the motion with this generator.
 #[must_use]
 pub fn velocity_at(generator: &Matrix3<f64>, point: &Point2<f64>) -> Vector2<f64> {
     let velocity = generator * point.to_homogeneous();

@@ -2,7 +2,7 @@ use freeform_riccati::{MAX_PARAMETERS, logarithm};
 use nalgebra::DVector;
 
 use crate::{
-    information::invert_positive_definite,
+    information::scaled_inverse,
     motion_state::{MotionState, Transition},
     process_noise::ProcessNoise,
 };
@@ -41,7 +41,7 @@ pub enum SmootherError {
 /// use freeform_riccati::MotionModel;
 /// use nalgebra::{DMatrix, Matrix3, Point2};
 ///
-/// // Two states of an object whose second frame tells much more than its first.
+/// // Two states of an object; the second frame contains much more information than the first.
 /// let state = |time: f64, omega: f64, variance: f64| NormalisedState {
 ///     model: MotionModel::Rigid,
 ///     time,
@@ -95,7 +95,7 @@ fn take_back(state: &mut MotionState, next: &MotionState, process_noise: &Proces
     let mut correction = DVector::zeros(2 * k);
     if noise.iter().any(|q| *q > 0.0) {
         let within = &matrix * &state.within * matrix.transpose() + &noise;
-        let Some(information) = invert_positive_definite(&within) else { return };
+        let Some(information) = scaled_inverse(&within) else { return };
         let drifted = &back * &noise * information;
         gain -= &drifted;
         let Some(difference) = state.pose.try_inverse().and_then(|inverse| logarithm(&(pose * inverse))) else {

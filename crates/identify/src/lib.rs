@@ -1,9 +1,9 @@
-//! The adaptive identifier of M. Unel and B. K. Ghosh, *Motion identification of planar free-form objects* (equations 19 to 22): a motion of
-//! the plane identified from complex lines `x + l y + k` that move with it.
+//! The adaptive identifier of M. Unel and B. K. Ghosh, *Motion identification of planar free-form objects* (equations 19 to 22). It
+//! identifies a motion of the plane from complex lines `x + l y + k` that move with the plane.
 //!
-//! A closed curve given by an implicit polynomial is a sum of products of such lines (`freeform_decompose`), and under a motion of the
-//! plane every line follows a Riccati equation (`freeform_riccati`) in which the motion parameters are linear. [`AdaptiveIdentifier`] takes
-//! the matched conjugate pairs of each frame and holds one of three laws ([`AdaptiveLaw`]). Motions are rigid, similarity or affine.
+//! The implicit polynomial of a closed curve is a sum of products of such lines (`freeform_decompose`). Under a motion of the plane every
+//! line follows a Riccati equation (`freeform_riccati`) that is linear in the motion parameters. [`AdaptiveIdentifier`] takes the matched
+//! conjugate pairs of lines of each frame and applies one of three laws ([`AdaptiveLaw`]). Motions are rigid, similarity or affine.
 //!
 //! ```
 //! use freeform_decompose::Line;

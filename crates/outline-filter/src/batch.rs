@@ -22,7 +22,7 @@ pub enum BatchError {
         /// What is wrong with it.
         error: FilterError,
     },
-    /// The motion filter, which gives the start, found the object in fewer than two frames.
+    /// The motion filter, which gives the initial motion, found the object in fewer than two frames.
     #[error("the object was found in fewer than two of {frames} frames")]
     NoStart {
         /// Frames given.
@@ -30,7 +30,7 @@ pub enum BatchError {
     },
 }
 
-/// The constant motion that all frames of a recording agree on.
+/// The constant motion that fits all frames of a recording best.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BatchEstimate {
     /// The motion in image units, with standard deviations.
@@ -39,23 +39,24 @@ pub struct BatchEstimate {
     pub covariance: DMatrix<f64>,
     /// Standard deviation of the noise on the points, image lengths.
     pub noise: f64,
-    /// Frames used, and not taken for wrong by the filter that gave the start.
+    /// Frames used: those that the filter for the initial motion did not reject.
     pub frames_used: usize,
-    /// Pieces that the outline was taken as, each with an offset of its own.
+    /// Number of pieces of the outline, each with its own offset.
     pub outline_pieces: usize,
-    /// Times that the outline was cut anew from all frames; 0 where that cannot be, as for a turn that is not seen, frames sampled alike or
-    /// an object found anew on the way: the motion is then that of the filter.
+    /// How often the outline was rebuilt from all frames. It is 0 if that is not possible: the turn is not observable, all frames have the
+    /// same sampling, or the object was lost and found again. The motion is then that of the filter.
     pub rounds: usize,
-    /// Whether the last of them changed the mean of their motions, which is the estimate, by little against the standard deviations.
+    /// Whether the last round changed the estimate, the mean of the motions of the rounds, by little compared with the standard deviations.
     pub converged: bool,
 }
 
-/// Estimates a constant motion from all frames at once.
+/// Estimates a constant motion from all frames together.
 ///
-/// The motion filter gives the start, and tells which frames show something else. Its outline is then cut anew from frames over the
-/// whole recording, aligned by the motion, and all frames are measured against that, until the mean of what this gives settles: points are
-/// given to pieces of an outline that all frames have made, and every frame is linearised at the motion of all. Work is linear in the points,
-/// and repeated for every round: this is the reference for recorded data, [`MotionFilter`] the way to keep up with a camera.
+/// The motion filter gives the initial motion and rejects frames that show something else. In each round the outline is then rebuilt from
+/// frames over the whole recording, aligned by the motion, and all frames are measured against it. Rounds are repeated until the mean of
+/// their motions settles. Points are associated with pieces of an outline built from all frames, and every frame is linearised at the joint
+/// motion. The work of a round is linear in the number of points. Use this estimator as the reference for recorded data, and
+/// [`MotionFilter`] for frames from a camera.
 ///
 /// ```
 /// use freeform_curve_fit::Outline;

@@ -1,21 +1,24 @@
-//! The motion filter: outline, pose and motion of a flat object estimated together from its outlines, frame by frame, near the Cramer-Rao
-//! bound from the third frame on, with standard deviations, and robust to hidden arcs, outliers and wrong frames.
+//! The motion filter. It estimates outline, pose and motion of a flat object together from its outlines, frame by frame, with standard
+//! deviations. Its errors are near the Cramer-Rao bound from the third frame on. It is robust to hidden arcs, outliers and wrong frames.
 //!
-//! The layers, from the top down; each sees only those below it:
+//! The layers, from top to bottom. Each layer uses only the layers below it:
 //!
 //! | layer | holds |
 //! |---|---|
 //! | `supervisor` | phases, restarts, hypotheses, changes of the motion: the only state machine |
 //! | `search` | global registration: related points, turns |
-//! | `track` | one object: a frame goes through it once, one way; growth and remapping of its map |
-//! | `update` | solve for a `Proposal`, judge it at the `Gate`, commit it |
+//! | `track` | one object: the steps of a frame; growth and remapping of the map |
+//! | `update` | solve for a `Proposal`, test it at the `Gate`, commit it |
 //! | `measurement` | frame, association, point-to-line residuals and Jacobians, noise |
 //! | `prediction` | step, process noise, shape process noise |
 //! | `map` | cells, contour, nearest-cell field, null directions |
 //! | `belief` | pose, motion, offsets, arrowhead information matrix |
 //! | `tuning` | every constant once, with its reason |
 //!
-//! [`MotionFilter`] keeps up with a camera; [`estimate_batch`] finds a constant motion from all frames of a recording at once.
+//! `docs/motion-filter.md` of the repository derives the equations, each with its code and test.
+//!
+//! [`MotionFilter`] processes frames one by one, as from a camera. [`estimate_batch`] estimates a constant motion from all frames of a
+//! recording together.
 //!
 //! ```
 //! use freeform_curve_fit::Outline;
@@ -25,7 +28,7 @@
 //! let mut filter = MotionFilter::new(FilterSettings::default())?;
 //! for frame in 0..30 {
 //!     let time = f64::from(frame) / 30.0;
-//!     // Points in their order along an egg that goes round the origin, clockwise by 1.5 rad/s.
+//!     // Points in order along an egg that turns clockwise about the origin at 1.5 rad/s.
 //!     let egg = (0..300).map(|i| {
 //!         let t = std::f64::consts::TAU * f64::from(i) / 300.0;
 //!         Rotation2::new(-1.5 * time) * Point2::new(1.0 + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
@@ -40,6 +43,8 @@
 //! ```
 mod batch;
 mod belief;
+#[cfg(test)]
+mod dense_filter;
 mod map;
 mod measurement;
 mod prediction;

@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use image::GrayImage;
 
-/// Part of the pictures kept that is replaced before the median is taken anew.
+/// Part of the pictures kept that is replaced before the median is computed again.
 const RENEWED_SHARE: usize = 5;
 
 /// What pictures are compared with, so that only what moves in front of it is an object.

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use nalgebra::Point2;
 
-use crate::csv_columns::{Column, Columns, Role};
+use crate::column::Column;
+use crate::csv_columns::{Columns, Role};
 use crate::csv_field::{frame_number, number, text};
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind};
@@ -26,7 +27,7 @@ use crate::outline_rows::OutlineRows;
 ///
 /// The reader is an iterator. An outline is returned as soon as the row after it has been read; no more than two rows,
 /// the present outline, and the last frame number and time of every object are held, so memory does not grow with the
-/// number of frames. After an error for which [`ReadError::is_recoverable`] is true the iterator goes on with the next
+/// number of frames. After an error for which [`ReadError::is_recoverable`] is true the iterator continues with the next
 /// outline, after any other it has ended. Outlines that are complete before the bad row are returned before the error;
 /// the one that the bad row interrupts is not returned.
 #[derive(Debug)]
@@ -62,7 +63,7 @@ impl OutlineReader<File> {
 }
 
 impl<R: Read> OutlineReader<R> {
-    /// Reads the header from a source; it needs no buffer of its own. The name stands in error messages.
+    /// Reads the header from a source; it need not be buffered. The name is used in error messages.
     ///
     /// # Errors
     /// The source cannot be read, is empty, or its header lacks a column or has one twice.

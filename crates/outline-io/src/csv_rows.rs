@@ -3,7 +3,8 @@ use std::io::{self, Chain, Cursor, Read};
 use csv::{ByteRecord, ReaderBuilder, Terminator};
 use nalgebra::Point2;
 
-use crate::csv_columns::{Column, HeaderError, Role};
+use crate::column::Column;
+use crate::csv_columns::{HeaderError, Role};
 use crate::csv_field::{leading_number, unquoted_length};
 use crate::csv_lines::{Lines, ROW_LIMIT};
 use crate::error::{Place, ReadError, ReadErrorKind};

@@ -3,7 +3,7 @@ use std::io::{self, Write};
 
 use freeform_curve_fit::Outline;
 
-use crate::csv_columns::Column;
+use crate::column::Column;
 use crate::csv_field::NUMBER_LIMIT;
 use crate::error::WriteError;
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};

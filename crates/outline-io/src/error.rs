@@ -4,7 +4,8 @@ use std::io;
 use freeform_curve_fit::OutlineError;
 use thiserror::Error;
 
-use crate::csv_columns::Column;
+use crate::column::Column;
+use crate::file_name::write_name;
 use crate::picture_error::{PictureError, TraceError};
 
 /// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40` or `name`.
@@ -33,14 +34,6 @@ impl fmt::Display for Place {
     }
 }
 
-/// Writes a file's name. It may hold line breaks; a message must stay one line.
-pub(crate) fn write_name(f: &mut fmt::Formatter<'_>, name: &str) -> fmt::Result {
-    name.chars().try_for_each(|character| match character.is_control() {
-        true => write!(f, "{}", character.escape_default()),
-        false => write!(f, "{character}"),
-    })
-}
-
 /// Outlines could not be read: where and why. Displays as one line.
 #[derive(Debug, Error)]
 #[error("{place}: {kind}")]
@@ -53,7 +46,7 @@ pub struct ReadError {
 }
 
 impl ReadError {
-    /// Whether reading goes on after this error. True for an outline that is no outline (one point, all points on one
+    /// Whether reading can continue after this error. True for an outline that is no outline (one point, all points on one
     /// line): the next call returns the next outline. False for a file that does not follow the format or cannot be
     /// read: nothing after this place can be trusted, and the reader has ended.
     #[must_use]

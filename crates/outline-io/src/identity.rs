@@ -33,8 +33,9 @@ pub enum Selection {
     /// The largest of the first picture, then the one nearest to where that is expected.
     Nearest,
     /// All, each with a name that it keeps: its place, predicted from its velocity, its area and the affine moment
-    /// invariants of its shape tell it in the next frame, so that all objects together fit best. Where objects touch and are one in the picture, that one is left
-    /// out; after more than 15 frames they are forgotten and it is an object of its own.
+    /// invariants of its shape tell it in the next frame, so that all objects together fit best. Where objects touch and
+    /// are one in the picture, that one is left out; after more than 15 frames they are forgotten, and the joint object counts
+    /// as a new one.
     All,
 }
 
@@ -61,7 +62,7 @@ struct Known {
 struct Difference {
     /// From the place expected, in diameters.
     distance: f64,
-    /// The same over the farthest accepted.
+    /// `distance` over the largest accepted distance.
     place: f64,
     /// Logarithm of the ratio of areas; `None` where one of them is clipped.
     growth: Option<f64>,

@@ -24,7 +24,9 @@ mod assignment;
 mod background;
 mod basins;
 mod channel;
+mod column;
 mod compressed_video;
+mod contrast;
 mod csv_columns;
 mod csv_field;
 mod csv_lines;
@@ -33,6 +35,7 @@ mod csv_rows;
 mod csv_writer;
 mod error;
 mod field;
+mod file_name;
 mod frame;
 mod gif_interval;
 mod identity;
@@ -56,7 +59,8 @@ mod y4m;
 pub use affine_moment_invariants::AffineMomentInvariants;
 pub use background::{Background, Difference};
 pub use channel::Channel;
-pub use csv_columns::Column;
+pub use column::Column;
+pub use contrast::Contrast;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
 pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, WriteError};
@@ -69,8 +73,9 @@ pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
 pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings, has_picture_extension, picture_files};
 pub use ring::Ring;
 pub use shape::read_shape;
+pub use threshold::Threshold;
 pub use trace::{TracedOutline, trace_mask, trace_objects};
-pub use trace_settings::{Clipping, Contrast, Smoothing, Threshold, TraceSettings};
+pub use trace_settings::{Clipping, Smoothing, TraceSettings};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -3,7 +3,7 @@ use std::collections::HashSet;
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline, OutlineError};
 use nalgebra::Point2;
 
-use crate::csv_columns::Column;
+use crate::column::Column;
 use crate::csv_field::quoted_start;
 use crate::error::ReadErrorKind;
 

@@ -5,7 +5,7 @@ use freeform_curve_fit::OutlineError;
 use image::ImageError;
 use thiserror::Error;
 
-use crate::error::write_name;
+use crate::file_name::write_name;
 
 /// A picture could not be read. Displays as one line: file, frame where the file has several, and reason.
 #[derive(Debug, Error)]
@@ -152,7 +152,7 @@ pub enum TraceError {
         threshold: f64,
     },
     /// The largest object is too small.
-    #[error("no object: the largest has {pixels} pixel(s), at least {needed} are asked for")]
+    #[error("no object: the largest has {pixels} pixel(s), at least {needed} are needed")]
     TooSmall {
         /// Pixels of the largest object.
         pixels: u64,
@@ -185,13 +185,13 @@ pub enum TraceError {
     #[error("no object: no closed ring stands out from the ground")]
     NoRing,
     /// No object is where the one of the frames before it should be.
-    #[error("no object where the one of the frames before should be, the nearest is {distance:.1} of its sizes away")]
+    #[error("no object at the predicted place: the nearest is {distance:.1} object sizes away")]
     NotNear {
         /// Distance from the place expected, in diameters of the object.
         distance: f64,
     },
     /// What is where the object of the frames before it should be differs too much in size.
-    #[error("where the object of the frames before should be is one of {ratio:.2} times its area")]
+    #[error("the object at the predicted place has {ratio:.2} times the area of the one followed")]
     OtherSize {
         /// Its area over that of the object.
         ratio: f64,

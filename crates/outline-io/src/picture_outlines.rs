@@ -3,11 +3,12 @@ use std::collections::VecDeque;
 use image::GrayImage;
 
 use crate::background::{Background, Difference, RunningMedian};
+use crate::contrast::Contrast;
 use crate::identity::{Identities, Selection};
 use crate::picture_error::{PictureError, TraceError};
 use crate::picture_sequence::PictureFrame;
 use crate::trace::{TracedOutline, trace_objects};
-use crate::trace_settings::{Contrast, TraceSettings};
+use crate::trace_settings::TraceSettings;
 
 /// How outlines are found in a sequence of pictures.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,7 +28,7 @@ pub struct PictureSettings {
 pub struct TracedFrame {
     /// The picture as it was read.
     pub frame: PictureFrame,
-    /// The names of the objects and their outlines, or why there are none.
+    /// The names of the objects and their outlines, or the reason for their absence.
     pub objects: Result<Vec<(u64, TracedOutline)>, TraceError>,
 }
 

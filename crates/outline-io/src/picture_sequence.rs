@@ -17,7 +17,7 @@ const DEFAULT_RATE: f64 = 30.0;
 /// Longest picture or animation read from a stream, in bytes.
 const STREAM_LIMIT: u64 = 1 << 30;
 
-/// Longest beginning of a file that tells its format.
+/// Number of bytes at the beginning of a file that identify its format.
 const MAGIC_LENGTH: usize = 16;
 
 /// Extensions of the files that a folder is searched for.
@@ -48,7 +48,7 @@ pub struct SequenceSettings {
 
 /// The pictures of files, folders, animations, videos or a stream, one after the other; one is in memory at a time.
 ///
-/// A picture that cannot be read is an error item, after which the sequence goes on with the next file. Its number is
+/// A picture that cannot be read is an error item, after which the sequence continues with the next file. Its number is
 /// not given to another picture. All pictures have the size of the first.
 pub struct PictureSequence {
     settings: SequenceSettings,

@@ -1,17 +1,16 @@
 use image::GrayImage;
 
 use crate::basins::{Basin, basins};
+use crate::contrast::{Contrast, signal};
 use crate::field::Field;
 use crate::morphology::{dilated, eroded};
 use crate::object_mask::fill_holes;
 use crate::picture_error::TraceError;
-use crate::threshold::signal;
-use crate::trace_settings::Contrast;
 
 /// Widest ring expected where none is given, as a share of the shorter side of the picture.
 const WIDTH_SHARE: f64 = 1.0 / 60.0;
 
-/// The same, at least, in pixels.
+/// Smallest value of that width, in pixels.
 const LEAST_WIDTH: f64 = 4.0;
 
 /// Standard deviation of the smoothing before rings are looked for, in pixels.
@@ -27,7 +26,7 @@ const CLEAR_SHARE: f64 = 0.5;
 /// object cuts off has more.
 const EDGE_SHARE: f64 = 0.6;
 
-/// An object that is told from the ground by a line around it only.
+/// A line around an object that otherwise looks like the background.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ring {
     /// Whether the line is lighter or darker than the ground and the object.

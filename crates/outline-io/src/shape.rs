@@ -5,7 +5,8 @@ use std::path::Path;
 use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
-use crate::csv_columns::{Column, Columns, require};
+use crate::column::Column;
+use crate::csv_columns::{Columns, require};
 use crate::csv_field::number;
 use crate::csv_reader::OutlineReader;
 use crate::csv_rows::Rows;
@@ -16,7 +17,7 @@ use crate::picture::read_picture;
 use crate::trace::trace_mask;
 use crate::trace_settings::TraceSettings;
 
-/// Longest beginning of a file that tells a picture format.
+/// Number of bytes at the beginning of a file that identify a picture format.
 const MAGIC_LENGTH: u64 = 16;
 
 /// Reads one closed outline to use as a shape: from a picture, the outer outline of its largest object with the default

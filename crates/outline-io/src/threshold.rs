@@ -1,11 +1,22 @@
 use image::GrayImage;
 
+use crate::contrast::{Contrast, signal};
 use crate::picture_error::TraceError;
-use crate::trace_settings::{Contrast, Threshold};
 
 /// Least difference of the medians of ground and objects, in robust standard deviations of the ground: Otsu's method splits
 /// pure noise into halves 2.3 of them apart and an even gradient into halves 2.7 apart.
 const STANDS_OUT: f64 = 3.0;
+
+/// The grey value that parts objects from the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Threshold {
+    /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
+    /// its two values.
+    #[default]
+    Automatic,
+    /// A grey value of the picture, above 0 and up to 255.
+    Level(f64),
+}
 
 /// The grey values that tell an object from its ground, on a scale where the object is lighter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,14 +29,6 @@ pub(crate) struct Levels {
     pub(crate) object: f64,
     /// Whether the picture has only two grey values, as masks do.
     pub(crate) two_valued: bool,
-}
-
-/// Grey value on a scale where the object is lighter.
-pub(crate) fn signal(value: u8, contrast: Contrast) -> u8 {
-    match contrast {
-        Contrast::LightOnDark => value,
-        Contrast::DarkOnLight => u8::MAX - value,
-    }
 }
 
 impl Levels {

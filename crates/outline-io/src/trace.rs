@@ -4,12 +4,13 @@ use image::GrayImage;
 use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
+use crate::contrast::{Contrast, signal};
 use crate::field::{Field, blur_reach};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
-use crate::threshold::{Levels, level_in_picture, signal};
-use crate::trace_settings::{Clipping, Contrast, TraceSettings};
+use crate::threshold::{Levels, level_in_picture};
+use crate::trace_settings::{Clipping, TraceSettings};
 
 /// The outline of an object in a picture.
 #[derive(Debug, Clone, PartialEq)]

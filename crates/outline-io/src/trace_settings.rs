@@ -1,39 +1,19 @@
 use freeform_curve_fit::PixelGrid;
 use nalgebra::{Point2, Vector2};
 
+use crate::contrast::Contrast;
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
-use crate::threshold::Levels;
+use crate::threshold::{Levels, Threshold};
 
 /// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
 const MASK_SIGMA: f64 = 1.0;
 
-/// The same for pictures of more grey values, in pixels.
+/// Standard deviation of the smoothing of pictures with more grey values, in pixels.
 const GREY_SIGMA: f64 = 0.5;
 
 /// Largest standard deviation of the smoothing, in pixels.
 const SIGMA_LIMIT: f64 = 100.0;
-
-/// Whether objects are lighter or darker than the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Contrast {
-    /// Light objects, as in masks.
-    #[default]
-    LightOnDark,
-    /// Dark objects.
-    DarkOnLight,
-}
-
-/// The grey value that parts objects from the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Threshold {
-    /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
-    /// its two values.
-    #[default]
-    Automatic,
-    /// A grey value of the picture, above 0 and up to 255.
-    Level(f64),
-}
 
 /// How much the picture is smoothed before its outline is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -71,7 +51,7 @@ pub struct TraceSettings {
     pub clipping: Clipping,
     /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
     pub y_up: bool,
-    /// A line around the object by whose outer edge it is told, in place of contrast, threshold and smoothing.
+    /// A line around the object, whose outer edge is traced. Replaces contrast, threshold and smoothing.
     pub ring: Option<Ring>,
     /// Height of a pixel in the length unit of the outline.
     pub pixel_size: f64,

@@ -64,9 +64,9 @@ pub(crate) struct VideoReader<R> {
     width: u32,
     height: u32,
     layout: Layout,
-    /// Frames per second, if the header tells.
+    /// Frames per second, if the header states them.
     pub(crate) frame_rate: Option<f64>,
-    /// Width of a pixel over its height, if the header tells.
+    /// Width of a pixel over its height, if the header states it.
     pub(crate) pixel_aspect: Option<f64>,
     channel: Channel,
     buffer: Vec<u8>,

@@ -3,7 +3,7 @@ use nalgebra::{Complex, Matrix3, RowVector3};
 /// Norm beyond which no digit of an exponential is left in f64: a turn by 1e15 rad has lost its phase.
 const MEANINGFUL_NORM: f64 = 1e15;
 
-/// `expm(m)`; all NaN where `m` is not finite or so large that nothing could be told. Where the last row of `m` is zero,
+/// `expm(m)`; all NaN if `m` is not finite or too large for any accuracy. Where the last row of `m` is zero,
 /// that of the result is exactly `(0, 0, 1)`.
 pub(crate) fn exponential(m: &Matrix3<f64>) -> Matrix3<f64> {
     // The library scales by powers of two until the norm is small, which for an infinite norm never ends.

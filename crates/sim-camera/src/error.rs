@@ -2,16 +2,16 @@ use freeform_curve_fit::OutlineError;
 use freeform_riccati::DynamicsError;
 use thiserror::Error;
 
-use crate::shapes::BuiltInShape;
-
 /// Why something is not a shape.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ShapeError {
     /// No built-in shape has this name.
-    #[error("no shape is called \"{name}\"; the shapes are {}", known_names())]
+    #[error("no shape is called \"{name}\"; the shapes are {}", known.join(", "))]
     UnknownName {
         /// The name asked for.
         name: String,
+        /// The names that there are.
+        known: Vec<&'static str>,
     },
     /// The points are not a closed outline.
     #[error("the polygon is not a shape: {0}")]
@@ -24,10 +24,6 @@ pub enum ShapeError {
         /// Largest distance between two of its points.
         diameter: f64,
     },
-}
-
-fn known_names() -> String {
-    BuiltInShape::ALL.map(BuiltInShape::name).join(", ")
 }
 
 /// Why a simulation cannot be run.

@@ -28,7 +28,7 @@ enum Kind {
 }
 
 impl Motion {
-    /// The same motion all the time.
+    /// A constant motion.
     #[must_use]
     pub fn constant(motion: impl Into<AffineMotion>) -> Self {
         Self { kind: Kind::Constant(motion.into()) }
@@ -72,7 +72,8 @@ impl Motion {
         self.try_flow(from, to).unwrap_or_else(|_| Affine2::from_matrix_unchecked(Matrix3::repeat(f64::NAN)))
     }
 
-    /// The same. It need not be finite: a constant motion can carry the plane off beyond what numbers can hold.
+    /// As `flow`, but an error if the motion cannot be integrated. The map may contain numbers that are not finite: a constant
+    /// motion can carry the plane beyond the range of numbers.
     ///
     /// # Errors
     /// A varying motion that is not finite at some time between the two, or too rough to be integrated.

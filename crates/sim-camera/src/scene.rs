@@ -26,7 +26,7 @@ impl Scene {
         Self { shape: shape.into(), motion: motion.into(), camera, initial_pose: Affine2::identity() }
     }
 
-    /// The same scene with the object starting where `pose` maps the shape to in the image.
+    /// This scene with another initial pose: `pose` maps the shape to its place in the first image.
     #[must_use]
     pub fn with_initial_pose(mut self, pose: Affine2<f64>) -> Self {
         self.initial_pose = pose;

@@ -48,14 +48,14 @@ impl Shape {
         Ok(shape)
     }
 
-    /// The same shape under another name.
+    /// This shape with another name.
     #[must_use]
     pub fn with_name(mut self, name: impl Into<String>) -> Self {
         self.name = Cow::Owned(name.into());
         self
     }
 
-    /// The same shape at unit size: area centroid at the origin, diameter 1.
+    /// This shape at unit size: area centroid at the origin, diameter 1.
     #[must_use]
     pub fn normalised(&self) -> Self {
         let scale = 1.0 / self.diameter();

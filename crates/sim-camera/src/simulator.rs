@@ -30,7 +30,7 @@ pub struct Frame {
 /// What was done to a frame, for judging an estimator; not for its eyes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Corruption {
-    /// The object shown in place of the true one.
+    /// The object shown instead of the true one.
     pub wrong_shape: Option<BuiltInShape>,
     /// The arc out of view.
     pub hidden: Option<HiddenArc>,

@@ -19,37 +19,37 @@ Examples:
   freeform evaluate --suite --shape masks/*.png --output accuracy.md
   freeform evaluate --suite arc --runs 5 --method filter
 
-What is printed, for each shape and pooled over shapes and parameters:
+Output, for each shape, and pooled over shapes and parameters:
   RMSE      root mean square error of a parameter, in the image
-  bound     the Cramer-Rao bound: the smallest standard deviation of any unbiased estimator, the
-            shape being known and the initial pose not; only points count that are visible, no
-            outliers, of the right object
+  bound     the Cramer-Rao bound: the smallest standard deviation of any unbiased estimator, if
+            the shape is known and the initial pose is not; counts only points that are visible,
+            not outliers, and on the right object
   ratio     RMSE over bound; pooled: root mean square of error over bound
   bias      mean error, and its standard error
-  coverage  how often the 95 % interval (1.96 standard deviations either side) held the truth
-  lost      runs without an estimate, or with one that leads the outline astray: moved from its
-            true place in the first frame over the whole sequence, it ends more than a quarter of
-            its root mean square radius off (root mean square); they count in no other column
+  coverage  share of 95 % intervals (1.96 standard deviations each side) that contain the truth
+  lost      runs without an estimate, or with one that moves the outline from its true place in
+            the first frame to more than a quarter of its root mean square radius from its true
+            place in the last frame (root mean square); they count in no other column
   rejected  share of the frames that were not used
-  us/frame  mean time of a frame on one core, search for the object and final fit included";
+  us/frame  mean time per frame on one core, including search for the object and final fit";
 
-/// Monte Carlo of the identification: errors against the Cramer-Rao bound, beside two baselines.
+/// Measure the accuracy by Monte Carlo simulation: errors relative to the Cramer-Rao bound, with two baselines.
 ///
-/// Simulates many sequences of each shape, identifies the motion in each by every method, and prints how far off they are.
-/// Baselines: area moments, and iterated closest points to the first frame. The same seed gives the same numbers whatever
-/// the number of threads, times aside.
+/// Simulates many sequences of each shape, identifies the motion in each with every method, and prints statistics of the
+/// errors. The baselines are area moments, and iterated closest points to the first frame. The same seed gives the same
+/// numbers for any number of threads, except for the times.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct EvaluateArgs {
-    /// Built-in shapes, CSV polygons or pictures of masks (PNG), as 'simulate' takes them [default: bird; --suite: added
-    /// to its six]
+    /// Built-in shapes, CSV polygons or mask pictures (PNG), as for 'simulate' [default: bird; with --suite: added to its
+    /// six shapes]
     #[arg(long, value_name = "NAME|FILE", num_args = 1..)]
     pub(crate) shape: Vec<String>,
 
     #[command(flatten)]
     pub(crate) motion_in_space: TrueMotionArgs,
 
-    /// Family of motions that is identified; it must hold the true one [default: rigid, affine with --affine]
+    /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine]
     #[arg(long, value_enum)]
     pub(crate) motion: Option<MotionChoice>,
 
@@ -84,25 +84,24 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "COUNT", value_parser = at_least_one, default_value_t = 50)]
     pub(crate) runs: usize,
 
-    /// Everything random follows from it
+    /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// The methods that are evaluated
+    /// Methods to evaluate
     #[arg(long, value_parser = methods(), value_delimiter = ',', default_values = ["filter", "moments", "icp"])]
     pub(crate) method: Vec<Method>,
 
-    /// Evaluate the start in place of the motion: two frames, a turn uniform within 60 degrees and a shift uniform up to
-    /// half the object's size between them
+    /// Evaluate the start instead of the motion: how often the pose in the second of two frames is found
     ///
-    /// Prints the share of runs in which the second pose was found: the turn to 6 degrees, the centre to a tenth of the
-    /// object's size.
+    /// Between the two frames the turn is uniform within 60 degrees and the shift uniform up to half the size of the
+    /// object. The pose is found if the turn is right to 6 degrees and the centre to a tenth of the size.
     #[arg(long, conflicts_with_all = ["omega", "b", "affine", "scale", "frames", "seconds", "fps", "wrong_frames"])]
     pub(crate) acquisition: bool,
 
     /// Evaluate the settings of docs/accuracy.md, or those whose name contains TEXT, and print Markdown
     ///
-    /// Shapes: bird, glider, phone, van, shoe and hat, and those of --shape. Acquisition takes ten times --runs.
+    /// Shapes: bird, glider, phone, van, shoe and hat, and those of --shape. Acquisition has ten times as many runs as --runs.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "",
           conflicts_with_all = ["omega", "b", "affine", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
                                 "noise", "occlusion", "outliers", "wrong_frames", "acquisition"])]
@@ -112,11 +111,11 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
     pub(crate) threads: Option<usize>,
 
-    /// Leave out the times, so that the same seed gives the same output
+    /// Do not print times, so that the same seed gives the same output
     #[arg(long)]
     pub(crate) no_timing: bool,
 
-    /// How the result is printed [default: table; --suite: markdown]
+    /// Format of the result [default: table; --suite: markdown]
     #[arg(long, value_enum)]
     pub(crate) format: Option<EvaluateFormat>,
 
@@ -127,14 +126,14 @@ pub(crate) struct EvaluateArgs {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SamplingChoice {
-    /// Every point anywhere, as the bound assumes
+    /// Every point anywhere on the outline, as the bound assumes
     Independent,
-    /// One point in each of equal stretches; can beat the bound slightly
+    /// One point on each of equally long pieces; can be slightly better than the bound
     Stratified,
 }
 
 impl SamplingChoice {
-    /// As the simulator knows it.
+    /// The setting of the simulator.
     pub(crate) fn sampling(self) -> Sampling {
         match self {
             Self::Independent => Sampling::Independent,

@@ -14,10 +14,10 @@ Examples:
   freeform fit outlines.csv --method gs3l --kappa 1e-5 --format json
   freeform fit mask.png --svg curve.svg";
 
-/// Fit a curve to every outline and take it apart into lines.
+/// Fit a curve to every outline and decompose it into lines.
 ///
-/// Prints for each outline: the coefficients a_ij of x^i y^j, whether the curve is closed and bounded, how far the points
-/// lie from it, the complex lines x + l y + k of every level, the related points that move with the curve, and its affine
+/// Prints for each outline: the coefficients a_ij of x^i y^j, whether the curve is closed and bounded, the distances of the
+/// points from it, the complex lines x + l y + k of every level, the related points that move with the curve, and its affine
 /// invariants.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("fit")))]
@@ -33,11 +33,11 @@ pub(crate) struct FitArgs {
     #[command(flatten)]
     pub(crate) options: FitOptions,
 
-    /// How the result is printed
+    /// Format of the result
     #[arg(long, value_enum, default_value_t = FitFormat::Table)]
     pub(crate) format: FitFormat,
 
-    /// Draw the first frame (or that of --frame): points, fitted curves and related points
+    /// Draw the first frame (or the one of --frame): points, fitted curves and related points
     #[arg(long, value_name = "FILE")]
     pub(crate) svg: Option<PathBuf>,
 
@@ -52,7 +52,7 @@ pub(crate) struct FitOptions {
     #[arg(long, value_name = "N", value_parser = degree, default_value = "4")]
     pub(crate) degree: Degree,
 
-    /// Which least-squares problem is solved
+    /// Method of the fit
     #[arg(long, value_enum, default_value_t = FitMethod::Bounded)]
     pub(crate) method: FitMethod,
 
@@ -60,7 +60,7 @@ pub(crate) struct FitOptions {
     #[arg(long, value_name = "WEIGHT", value_parser = not_negative)]
     pub(crate) kappa: Option<f64>,
 
-    /// Smallest leading form on the unit circle, a fraction in (0, 0.9] (bounded) [default: 0.02]
+    /// Smallest value of the leading form on the unit circle, in (0, 0.9]; for bounded [default: 0.02]
     #[arg(long, value_name = "FRACTION", value_parser = positive)]
     pub(crate) margin: Option<f64>,
 
@@ -71,12 +71,12 @@ pub(crate) struct FitOptions {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FitMethod {
-    /// Plain 3L: follows the data best, may be unbounded
+    /// Plain 3L: follows the points most closely; the curve may be unbounded
     #[value(name = "3l")]
     ThreeLevel,
-    /// Globally stabilised 3L: bounded curves are likely
+    /// Globally stabilised 3L: the curve is likely to be bounded
     Gs3l,
-    /// 3L under a constraint: closed and bounded by construction
+    /// 3L with a constraint: the curve is closed and bounded by construction
     Bounded,
 }
 
@@ -102,10 +102,10 @@ impl FitOptions {
             },
         };
         if self.kappa.is_some() && self.method == FitMethod::ThreeLevel {
-            return Err(Failure::unusable("--kappa goes with --method gs3l or bounded, not 3l"));
+            return Err(Failure::unusable("--kappa is for --method gs3l or bounded, not 3l"));
         }
         if self.margin.is_some() && self.method != FitMethod::Bounded {
-            return Err(Failure::unusable("--margin goes with --method bounded only"));
+            return Err(Failure::unusable("--margin is for --method bounded only"));
         }
         let default = FitSettings::default();
         Ok(FitSettings { degree: self.degree, method, offset: self.offset.unwrap_or(default.offset), ..default })

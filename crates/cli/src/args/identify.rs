@@ -21,9 +21,8 @@ Examples:
   freeform identify outlines.csv --trajectory poses.csv --smooth
   freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
 
-INPUT has a header frame,time,x,y and optional columns object and arc. Rows of one outline follow each other along the \
-contour. Where it begins with the comment lines of 'freeform simulate', the truth in them is shown beside \
-the result.";
+A CSV file has a header frame,time,x,y and optional columns object and arc. The rows of an outline follow the contour. \
+If the file begins with the comment lines of 'freeform simulate', the true motion in them is printed next to the result.";
 
 /// Identify the motion of every object in a sequence of outlines.
 #[derive(Debug, Args)]
@@ -36,34 +35,35 @@ pub(crate) struct IdentifyArgs {
     #[command(flatten)]
     pub(crate) options: TrackOptions,
 
-    /// The true parameters (OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2), as they should be printed
+    /// The true parameters (OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2), in the units of the result
     ///
-    /// Shown beside the result and in figures; takes no part in the identification.
+    /// They are shown next to the result and in figures, and are not used in the identification.
     #[arg(long, value_name = "LIST", value_parser = motion, allow_hyphen_values = true)]
     pub(crate) truth: Option<AffineMotion>,
 
-    /// How the result is printed
+    /// Format of the result
     #[arg(long, value_enum, default_value_t = IdentifyFormat::Table)]
     pub(crate) format: IdentifyFormat,
 
-    /// The same as --format json
+    /// Short for --format json
     #[arg(long, conflicts_with = "format")]
     pub(crate) json: bool,
 
-    /// Write one row per frame with the parameters as identified so far
+    /// Write one row per frame with the parameters identified up to that frame
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trace: Option<PathBuf>,
 
     /// Write one row per object and frame with its pose and motion, and their standard deviations
     ///
-    /// The pose is told since the first frame: rigid, angle (rad, positive where omega is), x and y, where the middle of the
-    /// points of the first outline is now; similarity, scale before them; affine, the matrix m11, m12, m21, m22, x and y. Empty
-    /// where the motion is not known: in the first frame, in one that the object was found again in, while it is lost, and in a
-    /// frame that is no outline; in frames rejected while it is followed, where it is predicted to be. Not with the adaptive method.
+    /// The pose is relative to the first frame. Rigid: angle (rad, positive if omega is), x and y, the present position of the
+    /// mean of the points of the first outline. Similarity: scale, then these. Affine: the matrix m11, m12, m21, m22, then x
+    /// and y. The fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found
+    /// again, while it is lost, and in a frame that is not an outline. In a rejected frame they are the prediction. Not
+    /// available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 
-    /// Let all frames, also later ones, take part in every row of the trajectory
+    /// Estimate every row of the trajectory from all frames, also later ones
     #[arg(long, requires = "trajectory")]
     pub(crate) smooth: bool,
 
@@ -71,18 +71,18 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "FILE")]
     pub(crate) svg: Option<PathBuf>,
 
-    /// Write a self-contained report
+    /// Write a self-contained report as HTML
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
 
     /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
     ///
-    /// Drawings of an earlier run are removed from the folder; a folder with pictures of the same names that freeform has not
-    /// drawn is refused.
+    /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
+    /// drawings that freeform did not draw.
     #[arg(long, value_name = "DIR|FILE.gif")]
     pub(crate) overlay: Option<PathBuf>,
 
-    /// Say nothing but errors beside the result
+    /// Print only the result and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
 
@@ -98,15 +98,15 @@ Examples:
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
 Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
-generator and reason (why the frame was not accepted, else null). Phases of the filter: acquiring, \
-tracking, lost; of the adaptive method: start, adapt.
+generator and reason (why the frame was not accepted, or null). The phases are acquiring, tracking and lost for the \
+filter, start and adapt for the adaptive method.
 
-A line is written and flushed as soon as its frame is complete. At the end of the input the command ends with status 0, \
-or 1 if no frame could be used. A frame that is no outline gives a line with accepted false and its reason, and a picture \
-without an object a warning; a line of CSV that does not follow the format ends the command with status 2 after all lines \
-before it. Ctrl-C ends it after the line being written.";
+A line is written and flushed as soon as its frame is complete. At the end of the input the exit status is 0, or 1 if no \
+frame could be used. If the points of a frame are not an outline, its line has accepted false and the reason. A picture \
+without an object gives a warning. A malformed line of CSV ends the command with status 2, after the output for all \
+frames before it. Ctrl-C ends the command after the current line.";
 
-/// Identify as a stream: one line of JSON per object and frame as soon as the frame is complete.
+/// Identify the motion in a stream: one line of JSON per object and frame, as soon as the frame is complete.
 ///
 /// A frame is complete when the row after it has been read. Memory does not grow with the number of frames.
 #[derive(Debug, Args)]
@@ -121,12 +121,12 @@ pub(crate) struct TrackArgs {
 
     /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
     ///
-    /// Drawings of an earlier run are removed from the folder; a folder with pictures of the same names that freeform has not
-    /// drawn is refused.
+    /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
+    /// drawings that freeform did not draw.
     #[arg(long, value_name = "DIR|FILE.gif")]
     pub(crate) overlay: Option<PathBuf>,
 
-    /// Say nothing but errors
+    /// Print only results and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
 
@@ -134,10 +134,10 @@ pub(crate) struct TrackArgs {
     pub(crate) pictures: PictureOptions,
 }
 
-/// What is identified and how.
+/// Options of the identification, shared by several commands.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct TrackOptions {
-    /// Family of motions
+    /// Family of motions to identify
     #[arg(long, value_enum, default_value_t = MotionChoice::Rigid)]
     pub(crate) motion: MotionChoice,
 
@@ -145,17 +145,17 @@ pub(crate) struct TrackOptions {
     #[arg(long, value_parser = MethodParser, default_value = "filter")]
     pub(crate) method: IdentifyMethod,
 
-    /// Degree of the fitted polynomial: 2, 4, 6 or 8; the filter fits none [default: 4]
+    /// Degree of the fitted polynomial: 2, 4, 6 or 8; not used by the filter [default: 4]
     #[arg(long, value_name = "N", value_parser = degree)]
     pub(crate) degree: Option<Degree>,
 
-    /// Camera scale f/Z0: b is divided by it, so that it is the velocity in space
+    /// Camera scale f/Z0; b is divided by it, which gives the velocity in space
     #[arg(long, value_name = "F_OVER_Z0", value_parser = camera_scale)]
     pub(crate) scale: Option<CameraScale>,
 }
 
 impl TrackOptions {
-    /// What they ask of a tracker.
+    /// The settings of a tracker with these options.
     pub(crate) fn tracker_settings(&self) -> TrackerSettings {
         let settings = TrackerSettings::new(self.method.into(), self.motion.model());
         let method = match (settings.method, self.degree) {
@@ -168,7 +168,7 @@ impl TrackOptions {
         TrackerSettings { method, scale: self.scale }
     }
 
-    /// Degree of the curve that is drawn where the method fits none.
+    /// Degree of the curve that is drawn if the method fits none.
     pub(crate) fn degree_drawn(&self) -> Degree {
         self.degree.unwrap_or(FitSettings::default().degree)
     }
@@ -196,7 +196,7 @@ impl MotionChoice {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum IdentifyMethod {
-    /// Outline, pose and motion estimated together, with standard deviations
+    /// The motion filter: outline, pose and motion estimated together, with standard deviations
     Filter,
     /// The paper's adaptive identifier on the lines of the fitted curve
     Adaptive,
@@ -211,7 +211,7 @@ impl From<IdentifyMethod> for Method {
     }
 }
 
-/// Reads a method, and says of the one that was retired what takes its place.
+/// Reads a method. For the method that was removed, the error names its replacement.
 #[derive(Debug, Clone)]
 struct MethodParser;
 
@@ -220,8 +220,8 @@ impl TypedValueParser for MethodParser {
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<IdentifyMethod, clap::Error> {
         if value == "curve" {
-            let text = "--method curve: the whole-curve filter was retired; take --method filter (the default), which \
-                        is nearer to the bound in every setting\n";
+            let text = "--method curve: the whole-curve filter was removed; use --method filter (the default), which \
+                        is more accurate in every setting\n";
             return Err(clap::Error::raw(ErrorKind::InvalidValue, text));
         }
         EnumValueParser::new().parse_ref(command, arg, value)

@@ -32,14 +32,14 @@ Examples:
   freeform simulate --seconds 5 | freeform identify - --format json
   freeform outline mask-*.png --fps 25 | freeform identify -
 
-Exit status: 0 done; 1 input understood but no result; 2 wrong usage or unreadable input.
-See 'freeform COMMAND --help' for more on a command.";
+Exit status: 0 done; 1 input understood, but no result; 2 wrong usage or unreadable input.
+'freeform COMMAND --help' describes a command and its options.";
 
-/// Finds how a flat free-form object moves from nothing but its outlines.
+/// Finds how a flat free-form object moves, from its outlines alone.
 ///
-/// The motion is x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2. A filter estimates it together with the outline and its
-/// pose; or, as in the paper, an implicit polynomial is fitted to every outline, taken apart into complex lines, and the
-/// motion identified from how the lines move.
+/// The motion is x' = a1 x + a2 y + b1, y' = a3 x + a4 y + b2. The motion filter estimates it together with the outline and
+/// the pose. The adaptive method is that of the paper: it fits an implicit polynomial to every outline, decomposes it into
+/// complex lines, and identifies the motion from the motion of the lines.
 #[derive(Debug, Parser)]
 #[command(name = "freeform", version, after_help = EXAMPLES, arg_required_else_help = true, args_override_self = true, max_term_width = 100)]
 pub(crate) struct Cli {
@@ -67,16 +67,16 @@ Examples:
   freeform demo
   freeform demo --out bird";
 
-/// The main job with nothing to prepare: simulate a flying bird, identify its motion, write a report.
+/// Simulate a flying bird, identify its motion and write a report; needs no input.
 ///
 /// Simulates the flight bird of the paper (omega = pi/2 rad/s, b = (-3, 4), f/Z0 = 0.1, noise 0.005, 30 s at 30
-/// frames/s), identifies its motion by the filter and, for comparison, by the adaptive law of the paper, and prints what
-/// was found beside the truth. The folder then holds report.html, outlines.csv, curve.svg, trace.csv and parameters.svg
-/// (filter), trace-adaptive.csv and parameters-adaptive.svg (adaptive).
+/// frames/s). Identifies its motion with the motion filter and, for comparison, with the adaptive law of the paper. Prints
+/// the results next to the truth. The folder then contains report.html, outlines.csv, curve.svg, trace.csv and
+/// parameters.svg (filter), trace-adaptive.csv and parameters-adaptive.svg (adaptive).
 #[derive(Debug, Args)]
 #[command(after_help = DEMO_EXAMPLES)]
 pub(crate) struct DemoArgs {
-    /// Folder for the files; it is made where it does not exist
+    /// Folder for the files; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "freeform-demo")]
     pub(crate) out: PathBuf,
 }

@@ -13,8 +13,8 @@ Examples:
 
 /// Trace outlines in pictures and video, as CSV.
 ///
-/// Each picture is one frame. The outer outline of its largest object, or of all, is traced to a fraction of a pixel, its
-/// holes filled; what the edge of the picture clips becomes open arcs. y runs upwards from the lower edge.
+/// Each picture is one frame. The outer outline of its largest object, or of all objects, is traced to a fraction of a
+/// pixel; holes are filled. An object clipped by the edge of the picture gives open arcs. y runs upwards from the lower edge.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("outline")))]
 pub(crate) struct OutlineArgs {
@@ -28,12 +28,12 @@ pub(crate) struct OutlineArgs {
 
     /// Draw the outlines on every picture: a folder for PNG files, or FILE.gif
     ///
-    /// Drawings of an earlier run are removed from the folder; a folder with pictures of the same names that freeform has not
-    /// drawn is refused.
+    /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
+    /// drawings that freeform did not draw.
     #[arg(long, value_name = "DIR|FILE.gif")]
     pub(crate) overlay: Option<PathBuf>,
 
-    /// Say nothing but errors
+    /// Print only results and errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
 

@@ -8,17 +8,17 @@ use super::values::{not_negative, positive};
 /// Smallest object where none is given, in pixels.
 const SMALLEST_OBJECT: u64 = 64;
 
-/// What the help of a command that takes pictures says of them.
+/// The paragraph on pictures in the help of a command.
 pub(crate) fn picture_inputs(command: &str) -> String {
     format!(
         "Pictures: PNG, JPEG, TIFF, BMP, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted pattern, in \
-         natural order (frame-9 before frame-10). Any other video comes through a pipe:\n  {}\nA picture that cannot be read, \
-         has another size than the first, or shows no object is named in a warning and left out.",
+         natural order (frame-9 before frame-10). Convert any other video through a pipe:\n  {}\nA picture that cannot be \
+         read, differs in size from the first, or shows no object is left out with a warning.",
         through_ffmpeg("video.mp4", &format!("freeform {command} -"))
     )
 }
 
-/// The command that hands on a video which is not read directly to one that reads standard input.
+/// A pipe that decodes a video with ffmpeg for a command that reads standard input.
 pub(crate) fn through_ffmpeg(video: &str, command: &str) -> String {
     format!("ffmpeg -loglevel error -i {video} -f yuv4mpegpipe -pix_fmt yuv420p - | {command}")
 }
@@ -27,35 +27,35 @@ pub(crate) fn through_ffmpeg(video: &str, command: &str) -> String {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Pictures")]
 pub(crate) struct PictureOptions {
-    /// Frames per second [default: what a video or animation says, else 30]
+    /// Frames per second [default: that of the video or animation, else 30]
     #[arg(long, value_parser = positive)]
     pub(crate) fps: Option<f64>,
 
-    /// The object is darker than the ground
+    /// The object is darker than the background
     #[arg(long, conflicts_with = "light")]
     pub(crate) dark: bool,
 
-    /// The object is lighter than the ground; the default without a background
+    /// The object is lighter than the background; the default without --background
     #[arg(long)]
     pub(crate) light: bool,
 
-    /// Grey value that parts object and ground, up to 255 [default: by Otsu's method in each picture]
+    /// Grey value between object and background, up to 255 [default: by Otsu's method in each picture]
     #[arg(long, value_name = "LEVEL", value_parser = positive)]
     pub(crate) threshold: Option<f64>,
 
-    /// What is looked at of a colour picture
+    /// Channel of a colour picture that is used
     #[arg(long, value_enum, default_value_t = ChannelChoice::Luminance)]
     pub(crate) channel: ChannelChoice,
 
-    /// Take what differs from a picture without objects, or from 'median', the median of the latest 25 pictures
+    /// Find objects by their difference from a picture without objects, or from 'median', the median of the latest 25 pictures
     #[arg(long, value_name = "FILE|median", conflicts_with = "ring")]
     pub(crate) background: Option<PathBuf>,
 
-    /// A line around the object tells it from a ground of its own colour; the outline is the line's outer edge
+    /// Find the object by a line around it, if it has the colour of the background; the outline is the outer edge of the line
     #[arg(long, value_enum, conflicts_with_all = ["threshold", "dark", "light", "smoothing"])]
     pub(crate) ring: Option<RingChoice>,
 
-    /// Widest line expected around the object, in pixels [default: a sixtieth of the picture's shorter side]
+    /// Largest expected width of that line, in pixels [default: a sixtieth of the shorter side of the picture]
     #[arg(long, value_name = "PIXELS", value_parser = positive, requires = "ring")]
     pub(crate) ring_width: Option<f64>,
 
@@ -63,7 +63,7 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_name = "PIXELS", value_parser = not_negative)]
     pub(crate) smoothing: Option<f64>,
 
-    /// Smallest object, in pixels
+    /// Area of the smallest object, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = SMALLEST_OBJECT)]
     pub(crate) min_area: u64,
 
@@ -71,11 +71,11 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_enum, default_value_t = ObjectsChoice::Largest)]
     pub(crate) objects: ObjectsChoice,
 
-    /// Height of a pixel in the length unit wanted
+    /// Height of a pixel in the unit of length of the result
     #[arg(long, value_name = "LENGTH", value_parser = positive, default_value_t = 1.0)]
     pub(crate) pixel_size: f64,
 
-    /// Width of a pixel over its height [default: what a video says, else 1]
+    /// Width of a pixel over its height [default: that of the video, else 1]
     #[arg(long, value_name = "RATIO", value_parser = positive)]
     pub(crate) pixel_aspect: Option<f64>,
 
@@ -83,13 +83,13 @@ pub(crate) struct PictureOptions {
     #[arg(long, overrides_with = "y_down")]
     pub(crate) y_up: bool,
 
-    /// y runs downwards from the upper edge of the picture; a positive omega then turns anticlockwise on it
+    /// y runs downwards from the upper edge of the picture; a positive omega then turns anticlockwise in the picture
     #[arg(long)]
     pub(crate) y_down: bool,
 }
 
 impl PictureOptions {
-    /// Names of the options that ask for something else than the defaults.
+    /// Names of the options that differ from the defaults.
     pub(crate) fn given(&self) -> Vec<&'static str> {
         let options = [
             ("--fps", self.fps.is_some()),
@@ -111,12 +111,12 @@ impl PictureOptions {
         options.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
     }
 
-    /// Whether all objects are taken, so that their names tell them apart.
+    /// Whether all objects are taken.
     pub(crate) fn follows_all(&self) -> bool {
         self.objects == ObjectsChoice::All
     }
 
-    /// The options as a report lists them.
+    /// Names and values of the options, for a report.
     pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
         let found = match (self.ring, &self.background, self.threshold) {
             (Some(RingChoice::Dark), ..) => "by a dark ring, its outer edge".to_owned(),
@@ -165,9 +165,9 @@ impl ChannelChoice {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum RingChoice {
-    /// A line darker than what is on both sides of it
+    /// A line darker than both of its sides
     Dark,
-    /// A line lighter than what is on both sides of it
+    /// A line lighter than both of its sides
     Light,
 }
 
@@ -182,11 +182,11 @@ impl RingChoice {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ObjectsChoice {
-    /// The largest of each picture
+    /// The largest object of each picture
     Largest,
-    /// The largest of the first picture, then the one nearest to where it is expected
+    /// The largest object of the first picture, then the one nearest to its predicted place
     Nearest,
-    /// All; each keeps its number from picture to picture
+    /// All objects; each keeps its number from picture to picture
     All,
 }
 

@@ -13,20 +13,20 @@ Examples:
   freeform reproduce --only open --starts 200
   freeform reproduce --seconds 5 --starts 5 --repeats 1
 
-The folder then holds index.html, which shows everything with captions and settings, and beside it every figure as SVG, \
-and the numbers behind every figure and table as CSV.";
+The folder then contains index.html, which shows everything with captions and settings, every figure as SVG, and the \
+numbers behind every figure and table as CSV.";
 
 /// Make the figures and experiments of the paper, and measure what it leaves open.
 ///
-/// Fig. 1 shows the ten objects with their closed quartics, Fig. 2 the boomerang with its line factors, Figs. 3, 5 and 7
-/// the objects along their motion, Figs. 4, 6 and 8 the estimated parameters against time, each beside a comparison of
-/// the laws and the motion filter. 'open' are tables of what the paper leaves open (noise, frame rate, camera scale,
-/// line pair, gains, curve fit, initial values); 'affine' and 'changing' extend the experiments to affine motion and to
-/// motion that changes slowly.
+/// Fig. 1 shows the ten objects with their closed quartics. Fig. 2 shows the boomerang with its line factors. Figs. 3, 5
+/// and 7 show the objects along their motion. Figs. 4, 6 and 8 show the estimated parameters against time, each with a
+/// comparison of the laws and the motion filter. 'open' gives tables of what the paper leaves open: noise, frame rate,
+/// camera scale, line pair, gains, curve fit, initial values. 'affine' and 'changing' extend the experiments to affine
+/// motion and to motion that changes slowly.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct ReproduceArgs {
-    /// Folder for the files; it is made where it does not exist
+    /// Folder for the files; created if it does not exist
     #[arg(long, value_name = "DIR", default_value = "freeform-paper")]
     pub(crate) out: PathBuf,
 
@@ -42,16 +42,16 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000), default_value_t = 50)]
     pub(crate) starts: u32,
 
-    /// Noise sequences that each row of a table is the median of
+    /// Noise sequences per row of a table; the row is their median
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value_t = 3)]
     pub(crate) repeats: u32,
 
-    /// All random numbers follow from it
+    /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
 }
 
-/// What the figures of the paper may be called besides their numbers.
+/// Alternative names of the figures of the paper.
 const FIGURES: [&str; 8] = ["fig1", "fig2", "fig3", "fig4", "fig5", "fig6", "fig7", "fig8"];
 
 /// Figures and tables by their names.

@@ -14,17 +14,17 @@ Examples:
 
 Shapes: plane, van, glass_vase, cd_box, shoe, car, vase, glider, phone, hat, bird, boomerang, circle, ellipse, square.
 
-The first lines of the output are comments that hold the command and the true motion; 'freeform identify' shows the \
-truth beside what it finds.";
+The first lines of the output are comments with the command and the true motion. 'freeform identify' prints this truth \
+next to its result.";
 
 /// Make outlines of a moving object as CSV.
 ///
-/// The object is of unit size in the image (the largest distance between two of its points is 1) and starts at the origin.
-/// Its points are drawn anew in every frame. The motion is that in space: the image moves with b times f/Z0.
+/// The object has unit size in the image (the largest distance between two of its points is 1) and starts at the origin.
+/// Each frame has new random points of the outline. The motion is given in space: the image moves with b times f/Z0.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct SimulateArgs {
-    /// A built-in shape, or a file: a CSV polygon with columns x and y, or a picture (PNG) of a mask
+    /// A built-in shape, or a file: a CSV polygon with columns x and y, or a mask picture (PNG)
     ///
     /// An outline from a file is centred and scaled to unit size.
     #[arg(long, value_name = "NAME|FILE", default_value = "bird")]
@@ -48,7 +48,7 @@ pub(crate) struct SimulateArgs {
     #[command(flatten)]
     pub(crate) disturbance: DisturbanceArgs,
 
-    /// Everything random follows from it
+    /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
 

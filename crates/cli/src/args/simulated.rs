@@ -1,4 +1,4 @@
-//! What is simulated, wherever it is.
+//! Options of the simulation, shared by several commands.
 use clap::Args;
 use freeform_motion::riccati::{AffineMotion, RigidMotion};
 use freeform_motion::sim_camera::{Camera, SimulationError};
@@ -17,7 +17,7 @@ pub(crate) struct TrueMotionArgs {
     #[arg(long, value_name = "B1,B2", value_parser = pair, allow_hyphen_values = true, default_value = "-3,4")]
     b: [f64; 2],
 
-    /// An affine motion in place of --omega and --b
+    /// An affine motion instead of --omega and --b
     #[arg(long, value_name = "A1,A2,A3,A4,B1,B2", value_parser = affine, allow_hyphen_values = true,
           conflicts_with_all = ["omega", "b"])]
     affine: Option<AffineMotion>,
@@ -34,7 +34,7 @@ impl TrueMotionArgs {
         self.affine.unwrap_or_else(|| rigid.into())
     }
 
-    /// Whether it was given as an affine motion.
+    /// Whether the motion was given by --affine.
     pub(crate) const fn is_affine(&self) -> bool {
         self.affine.is_some()
     }
@@ -51,11 +51,11 @@ pub(crate) struct DisturbanceArgs {
     #[arg(long, value_name = "SIGMA", value_parser = not_negative, default_value_t = 0.005)]
     pub(crate) noise: f64,
 
-    /// Share of the outline that is missing, at a random place in every frame
+    /// Share of the outline that is hidden, at a random place in every frame
     #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
     pub(crate) occlusion: f64,
 
-    /// Share of the points that are wrong
+    /// Share of the points that are outliers
     #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
     pub(crate) outliers: f64,
 }

@@ -1,4 +1,4 @@
-//! Values of options that are more than one word or number.
+//! Parsers of the values of options.
 use freeform_motion::curve_fit::Degree;
 use freeform_motion::riccati::{AffineMotion, CameraScale, RigidMotion, SimilarityMotion};
 
@@ -19,7 +19,7 @@ pub(crate) fn camera_scale(text: &str) -> Result<CameraScale, String> {
     CameraScale::new(positive(text)?).map_err(|error| error.to_string())
 }
 
-/// The length of an experiment: a second or more.
+/// The length of an experiment in seconds, at least 1.
 pub(crate) fn run_length(text: &str) -> Result<f64, String> {
     let value = positive(text)?;
     if value >= 1.0 {

@@ -8,10 +8,10 @@ use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Sim
 use freeform_motion::tracker::{Method, ObjectResult, Observation};
 use freeform_motion::{PipelineSettings, Tracker};
 
-use super::command_line;
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
 use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::fitted_outline::FittedOutline;
 use crate::history::History;
@@ -148,7 +148,7 @@ impl Identification {
         Ok(observation)
     }
 
-    /// Writes the trace and the figure, and tells what a user should know.
+    /// Writes the trace and the figure, and prints the warnings.
     fn finish(self, figure: &Path, truth: &AffineMotion) -> Result<Found, Failure> {
         let Self { options, tracker, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;

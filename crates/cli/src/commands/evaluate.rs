@@ -74,7 +74,7 @@ fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
     let default = if args.motion_in_space.is_affine() { MotionChoice::Affine } else { MotionChoice::Rigid };
     let model = args.motion.unwrap_or(default).model();
     if model.parameters_of_motion(&motion).is_none() {
-        return Err(Failure::unusable(format_args!("--motion {model} does not hold the motion of --affine")));
+        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --affine")));
     }
     let of_seconds = |seconds: &f64| {
         let length = SequenceLength::Seconds(*seconds);

@@ -6,10 +6,11 @@ use freeform_motion::tracker::FrameRanges;
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
 use crate::fitted_outline::FittedOutline;
-use crate::input::{Input, Item};
-use crate::left_out::{Missing, MissingWarnings};
+use crate::input::Input;
+use crate::left_out::MissingWarnings;
 use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
 use crate::progress::Progress;
+use crate::seen::{Item, Missing};
 
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
@@ -81,7 +82,9 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     reasons.extend(warnings.finish());
     reasons.iter().for_each(|reason| warn(reason));
     if let Collected { with_stray_parts: with @ 1.., count, .. } = collected {
-        warn(&format!("{with} of {count} curve(s) have a part beside the outline, where the polynomial is zero too"));
+        warn(&format!(
+            "{with} of {count} curve(s) have a stray part away from the outline, where the polynomial is zero too"
+        ));
     }
     if args.format == FitFormat::Json {
         write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;

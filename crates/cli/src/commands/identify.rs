@@ -8,8 +8,8 @@ use freeform_motion::riccati::AffineMotion;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
-use super::command_line;
 use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
 use crate::input::Input;
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let model = args.options.motion.model();
     if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
-        warn(&format!("{origin}: no {model} motion, nothing is compared with it"));
+        warn(&format!("{origin} is not a {model} motion, so it is not shown"));
     }
     let mut files = Files::create(args)?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
@@ -103,16 +103,16 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     failure.map_or(Ok(()), Err)
 }
 
-/// Refuses options that do not go together.
+/// Refuses options that cannot be combined.
 fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
-        return Err(Failure::unusable("--trajectory: the adaptive method tells no poses, use --method filter"));
+        return Err(Failure::unusable("--trajectory: the adaptive method gives no poses; use --method filter"));
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
-        warn("--degree: the motion filter fits no polynomial, the degree is only that of the curve drawn");
+        warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
     }
     Ok(())
 }
@@ -155,7 +155,7 @@ impl<'a> Files<'a> {
         Ok(())
     }
 
-    /// Puts the files in their places; those that there is nothing to put into are not written.
+    /// Moves the files to their destinations. A file without content is not written.
     fn finish(self, tracker: &Tracker, truth: Option<&AffineMotion>, results: &[ObjectResult]) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
@@ -178,7 +178,7 @@ impl<'a> Files<'a> {
             if args.smooth {
                 match trajectory.smooth(tracker) {
                     Err(changed @ SmoothingError::MotionChanged) => {
-                        warn(&format!("--smooth: {changed}; the poses are as filtered"));
+                        warn(&format!("--smooth: {changed}; the poses are not smoothed"));
                     }
                     smoothed => smoothed.map_err(Failure::unusable)?,
                 }
@@ -240,7 +240,7 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
     }
 }
 
-/// The settings as a report lists them.
+/// Names and values of the settings, for a report.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
     let scale = options.scale.map_or_else(|| "none: b in the image".to_owned(), |scale| scale.to_string());
     let mut listed = vec![("Input", input.to_owned()), ("Motion model", options.motion.model().to_string())];
@@ -258,7 +258,7 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
     listed
 }
 
-/// How curves are fitted, as a report lists it.
+/// Names and values of the settings of the curve fit, for a report.
 pub(crate) fn fit_settings(fit: &FitSettings) -> [(&'static str, String); 3] {
     let method = match fit.method {
         Method::ThreeLevel => "3L".to_owned(),

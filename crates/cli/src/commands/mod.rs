@@ -10,9 +10,7 @@ mod reproduce;
 mod simulate;
 mod track;
 
-use std::path::{Path, PathBuf};
-
-use crate::args::{Cli, Command, takes_next};
+use crate::args::{Cli, Command};
 use crate::failure::Failure;
 use crate::interrupt;
 
@@ -30,61 +28,5 @@ pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Reproduce(args) => reproduce::run(args),
         Command::Completions(args) => completions::run(args),
         Command::Man => man::run(),
-    }
-}
-
-/// The command line as it could be typed again.
-fn command_line() -> String {
-    typed(&arguments())
-}
-
-/// The command line as it could be typed again to read standard input in place of its inputs.
-pub(crate) fn command_line_of_stdin(inputs: &[PathBuf]) -> String {
-    typed(&with_stdin_for(inputs, &arguments()))
-}
-
-fn arguments() -> Vec<String> {
-    std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()).collect()
-}
-
-/// The arguments with `-` in the place of the first of these inputs, and without the others.
-fn with_stdin_for(inputs: &[PathBuf], arguments: &[String]) -> Vec<String> {
-    let is_value = |index: usize| index > 0 && takes_next(&arguments[index - 1]);
-    let is_input = |index: usize| !is_value(index) && inputs.iter().any(|input| input == Path::new(&arguments[index]));
-    let first = (0..arguments.len()).find(|&index| is_input(index));
-    let kept = (0..arguments.len()).filter(|&index| first == Some(index) || !is_input(index));
-    kept.map(|index| if first == Some(index) { "-".to_owned() } else { arguments[index].clone() }).collect()
-}
-
-fn typed(arguments: &[String]) -> String {
-    let arguments = arguments.iter().map(|argument| quoted(argument));
-    std::iter::once("freeform".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
-}
-
-/// An argument as it could be typed.
-pub(crate) fn quoted(argument: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
-    if !argument.is_empty() && argument.chars().all(is_plain) {
-        argument.to_owned()
-    } else {
-        format!("'{}'", argument.replace('\'', r"'\''"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn standard_input_takes_the_place_of_the_inputs_and_of_nothing_else() {
-        let piped = |inputs: &[&str], line: &str| {
-            let inputs: Vec<PathBuf> = inputs.iter().map(PathBuf::from).collect();
-            let arguments: Vec<String> = line.split(' ').map(str::to_owned).collect();
-            with_stdin_for(&inputs, &arguments).join(" ")
-        };
-        assert_eq!(piped(&["a.mp4"], "identify --quiet a.mp4 --fps 25"), "identify --quiet - --fps 25");
-        assert_eq!(piped(&["a.mp4", "b.mp4"], "outline a.mp4 b.mp4 -o a.mp4"), "outline - -o a.mp4");
-        assert_eq!(piped(&["1.png"], "track --background 1.png 1.png"), "track --background 1.png -");
-        assert_eq!(piped(&["<stdin>"], "track --dark"), "track --dark");
     }
 }

@@ -2,12 +2,13 @@ use freeform_motion::outline_io::{OutlineWriter, WriteError, WriterOptions};
 
 use crate::args::OutlineArgs;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Item};
+use crate::input::Input;
 use crate::interrupt;
-use crate::left_out::{Missing, MissingWarnings};
+use crate::left_out::MissingWarnings;
 use crate::output::{Sink, refuse_overwriting};
 use crate::overlay::{Drawn, Overlay};
 use crate::progress::Progress;
+use crate::seen::{Item, Missing};
 
 /// Traces the outlines of pictures and writes them.
 pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {

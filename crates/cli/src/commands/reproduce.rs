@@ -5,8 +5,8 @@ use std::path::Path;
 
 use freeform_experiments::paper::{Part, Reproduction, Section};
 
-use super::command_line;
 use crate::args::ReproduceArgs;
+use crate::command_line::command_line;
 use crate::failure::{Failure, plain};
 use crate::output::{Sink, WholeFile, table_text, write_page, write_section_files};
 use crate::progress::Progress;

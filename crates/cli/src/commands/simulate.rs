@@ -4,8 +4,8 @@ use std::path::Path;
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineWriter, WriteError, WriterOptions, read_shape};
 use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator};
 
-use super::command_line;
 use crate::args::{DisturbanceArgs, SimulateArgs};
+use crate::command_line::command_line;
 use crate::failure::Failure;
 use crate::output::Sink;
 use crate::progress::Progress;

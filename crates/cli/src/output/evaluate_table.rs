@@ -25,11 +25,11 @@ pub(super) const POOLED: &str = "pooled";
 /// Under which name the parameters appear together.
 pub(super) const ALL: &str = "all";
 
-/// What `evaluate` found, and how it is told.
+/// The result of `evaluate`, and how it is printed.
 #[derive(Debug)]
 pub(crate) struct Evaluated {
     pub(crate) report: Report,
-    /// Whether times are told.
+    /// Whether times are printed.
     pub(crate) timing: bool,
 }
 

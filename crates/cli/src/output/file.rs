@@ -219,7 +219,7 @@ pub(crate) fn refuse_overwriting(inputs: &[PathBuf], outputs: &[&Path]) -> Resul
     for (index, output) in outputs.iter().enumerate() {
         let is_device = output.exists() && !output.is_file();
         if outputs[..index].contains(output) && !is_device {
-            return Err(Failure::unusable(format_args!("{}: named for two outputs", output.display())));
+            return Err(Failure::unusable(format_args!("{}: given for two outputs", output.display())));
         }
     }
     Ok(())

@@ -11,7 +11,7 @@ use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::plot::{escape, panel_svg};
 
-/// Pictures left out that are told with their reasons.
+/// Number of left-out pictures that are listed with their reasons.
 const PICTURES_TOLD: usize = 10;
 
 const STYLE: &str = include_str!("report.css");

@@ -147,7 +147,7 @@ impl Serialize for Parameters<'_> {
     }
 }
 
-/// The parameters of an object that nothing was found of.
+/// The parameters of an object without a result.
 struct NoParameters<'a>(&'a ObjectResult);
 
 impl Serialize for NoParameters<'_> {

@@ -40,15 +40,24 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>
             let ([x, y], AffineMotion { a1, a2, a3, a4, b1, b2 }) = (velocity.point.into(), *motion);
             [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
         });
+        // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
+        // middle is only near that centre, and the true velocity differs between the two by the turn times their distance.
+        let kinds = model.parameter_kinds().iter();
+        let turn_is_known = kinds.zip(&found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
         rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
             let known = Some((velocity.velocity[i], Some(deviations[i])));
-            row([name, "-", unit_of_b("1/s")], known, truth.map(|truth| truth[i]))
+            let mut row =
+                row([name, "-", unit_of_b("1/s")], known, truth.filter(|_| turn_is_known).map(|truth| truth[i]));
+            if truth.is_some() && !turn_is_known {
+                row.extend(["-", "-"].map(str::to_owned));
+            }
+            row
         }));
     }
     rows
 }
 
-/// One row: a value with its standard deviation, or why there is none, and beside it the truth where that is known.
+/// One row: a value with its standard deviation, or why there is none, and the truth if it is known.
 fn row([name, unknown, unit]: [&str; 3], known: Option<(f64, Option<f64>)>, truth: Option<f64>) -> Vec<String> {
     let none = || "-".to_owned();
     let [value, deviation] = match known {
@@ -107,6 +116,33 @@ mod tests {
     use nalgebra::{Matrix2, Point2, Vector2};
 
     use super::*;
+
+    #[test]
+    fn no_truth_stands_beside_the_velocity_of_an_object_whose_turn_is_not_observable() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[0.0, 0.3, 0.4], Some(&[0.1, 0.01, 0.01]));
+        let velocity = PointVelocity {
+            point: Point2::new(0.001, 0.0),
+            velocity: Vector2::new(0.3, 0.4),
+            covariance: Matrix2::identity() * 1e-6,
+        };
+        let result = |estimate| ObjectResult {
+            object: "0".to_owned(),
+            method: Method::Filter,
+            motion: MotionModel::Rigid,
+            frames: 30,
+            frames_rejected: 0,
+            first_rejection: None,
+            estimate: Some(estimate),
+            velocity: Some(velocity),
+            ambiguity: None,
+            warnings: Vec::new(),
+        };
+        let truth = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 }.into();
+        let rows = |estimate| parameter_rows(&result(estimate), Some(&truth), &MeaningOfB::in_coordinates(None));
+        let truth_of_v1 = |rows: &[Vec<String>]| rows[3][4..].to_vec();
+        assert_eq!(truth_of_v1(&rows(estimate.with_unobservable(0))), ["-", "-"]);
+        assert_eq!(truth_of_v1(&rows(estimate))[0], "0.300000");
+    }
 
     #[test]
     fn the_table_has_a_line_per_parameter_and_says_what_is_not_observable() {

@@ -9,8 +9,8 @@ use super::lettering::write_words;
 use super::target::Target;
 use crate::failure::Failure;
 use crate::fitted_outline::Parts;
-use crate::input::SeenIn;
 use crate::output::refuse_drawing_beside;
+use crate::seen::SeenIn;
 
 const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
 const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);

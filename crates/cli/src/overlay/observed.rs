@@ -10,8 +10,8 @@ use crate::args::{PictureOptions, TrackOptions};
 use crate::failure::Failure;
 use crate::fitted_outline::FittedOutline;
 use crate::input::Input;
-use crate::left_out::Missing;
 use crate::reader::Event;
+use crate::seen::Missing;
 
 /// Draws what was identified of objects on the pictures that they were seen in.
 pub(crate) struct ObservedOverlay {

@@ -1,17 +1,22 @@
 use std::fmt::Write as _;
 
-use freeform_experiments::figure::{Curve, Look, Panel};
+use freeform_experiments::figure::{Curve, Look};
 
-use super::panel::{PanelSvg, class, crosses, dots, marks};
-use super::style::{escape, text_width};
+use super::curve_marks::{class, crosses, dots, marks};
+use super::text::{escape, text_width};
 
 /// Height of a row of the legend, in pixels.
 pub(super) const LEGEND_ROW: f64 = 20.0;
 
-/// One legend for several panels, at a place of some width, and its height. What has one name is one entry.
-pub(super) fn shared_legend(panels: &[Panel], left: f64, top: f64, width: f64) -> (String, f64) {
+/// One legend for the curves of several panels, at a place of some width, and its height. What has one name is one entry.
+pub(super) fn shared_legend<'a>(
+    curves: impl Iterator<Item = &'a Curve>,
+    left: f64,
+    top: f64,
+    width: f64,
+) -> (String, f64) {
     let mut entries: Vec<&Curve> = Vec::new();
-    for curve in panels.iter().map(PanelSvg).flat_map(PanelSvg::legend) {
+    for curve in curves {
         if entries.iter().all(|entry| entry.name != curve.name) {
             entries.push(curve);
         }
@@ -79,6 +84,8 @@ pub(super) fn draw_legend_row(svg: &mut String, curves: &[&Curve], mut left: f64
 
 #[cfg(test)]
 mod tests {
+    use freeform_experiments::figure::Panel;
+
     use super::*;
 
     fn curves(count: usize) -> Vec<Curve> {
@@ -101,7 +108,8 @@ mod tests {
         let mut first = Panel { curves: curves(2), ..Panel::default() };
         first.curves[1].runs.clear();
         let second = Panel { curves: curves(3), ..Panel::default() };
-        let (svg, _) = shared_legend(&[first, second], 0.0, 0.0, 1000.0);
+        let panels = [first, second];
+        let (svg, _) = shared_legend(panels.iter().flat_map(|panel| &panel.curves), 0.0, 0.0, 1000.0);
         assert_eq!([0, 1, 2].map(|k| svg.matches(&format!("the value {k}")).count()), [1, 1, 1]);
     }
 }

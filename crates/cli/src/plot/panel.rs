@@ -1,9 +1,10 @@
 use std::fmt::Write as _;
 
-use freeform_experiments::figure::{Curve, Look, Panel, SERIES};
+use freeform_experiments::figure::{Curve, Look, Panel};
 
+use super::curve_marks::{class, crosses, dots, marks};
 use super::legend::{LEGEND_ROW, draw_legend_row, legend_rows};
-use super::style::{escape, text_width};
+use super::text::{escape, text_width};
 use super::ticks::Ticks;
 
 /// Most points drawn of one line; of longer ones the lowest and highest of each stretch are.
@@ -11,25 +12,6 @@ const POINTS_DRAWN: usize = 3000;
 
 /// What stands beside the legend, in pixels: labels of the y axis and the right margin.
 const LEGEND_MARGINS: f64 = 80.0;
-
-/// The class that the style sheets draw a curve of this look by.
-pub(super) const fn class(look: Look) -> &'static str {
-    const SOLID: [&str; SERIES] = ["s s0", "s s1", "s s2", "s s3", "s s4", "s s5"];
-    const DASHED: [&str; SERIES] = ["s d s0", "s d s1", "s d s2", "s d s3", "s d s4", "s d s5"];
-    match look {
-        Look::FineDots => "dots fine",
-        Look::Faint => "faint",
-        Look::Series(colour) => SOLID[colour % SERIES],
-        Look::Dashed(colour) => DASHED[colour % SERIES],
-        Look::Line => "line",
-        Look::Truth => "truth",
-        Look::Reference => "reference",
-        Look::Band => "band",
-        Look::Dots => "dots",
-        Look::Crosses => "crosses",
-        Look::Marks => SOLID[1],
-    }
-}
 
 /// A panel as it is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -259,19 +241,6 @@ fn connected(pixels: &[[f64; 2]], end: &str) -> String {
         let _ = write!(path, "{}{x:.2} {y:.2}", if index == 0 { "M" } else { "L" });
     }
     path + end
-}
-
-pub(super) fn dots(pixels: &[[f64; 2]]) -> String {
-    // Lines of no length with round ends.
-    pixels.iter().map(|[x, y]| format!("M{x:.2} {y:.2}h0")).collect()
-}
-
-pub(super) fn crosses(pixels: &[[f64; 2]]) -> String {
-    pixels.iter().map(|[x, y]| format!("M{:.2} {:.2}l8 8m0 -8l-8 8", x - 4.0, y - 4.0)).collect()
-}
-
-pub(super) fn marks(pixels: &[[f64; 2]], from: f64, to: f64) -> String {
-    pixels.iter().map(|[x, _]| format!("M{x:.2} {from:.2}V{to:.2}")).collect()
 }
 
 /// At most [`POINTS_DRAWN`] points that look the same: the lowest and the highest of every stretch.

@@ -2,18 +2,7 @@ use freeform_experiments::figure::{Figure, Panel};
 
 use super::legend::shared_legend;
 use super::panel::{PanelSvg, Place};
-
-/// About the width of a text at the size of tick labels, in pixels. Fonts differ: it is that of wide ones.
-pub(crate) fn text_width(text: &str) -> f64 {
-    let width = |character: char| match character {
-        'i' | 'j' | 'l' | 'I' | ' ' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 3.6,
-        'f' | 'r' | 't' | '(' | ')' | '[' | ']' | '-' | '/' => 4.8,
-        'm' | 'w' | 'M' | 'W' | '%' => 11.0,
-        character if character.is_uppercase() => 8.6,
-        _ => 7.2,
-    };
-    text.chars().map(width).sum()
-}
+use super::text::escape;
 
 /// Colours and lines on white paper. All can be told apart by everyone (Okabe and Ito, 2008; the last three
 /// somewhat darker, for thin lines).
@@ -80,7 +69,12 @@ impl Svg<'_> {
             height = 28.0;
         }
         if self.0.shares_legend {
-            let (legend, legend_height) = shared_legend(&self.0.panels, LEFT, height, self.width() - 2.0 * LEFT);
+            let (legend, legend_height) = shared_legend(
+                self.0.panels.iter().map(PanelSvg).flat_map(PanelSvg::legend),
+                LEFT,
+                height,
+                self.width() - 2.0 * LEFT,
+            );
             svg.push_str(&legend);
             height += legend_height + 6.0;
         }
@@ -116,23 +110,6 @@ pub(crate) fn panel_svg(panel: &Panel, width: f64, height: f64) -> String {
 /// Panels below one another as a file of their own, on white paper.
 pub(crate) fn stacked_svg(panels: &[Panel], width: f64, panel_height: f64) -> String {
     Svg(&Figure { panels: panels.to_vec(), columns: 1, panel_size: [width, panel_height], ..Figure::default() }).file()
-}
-
-/// Text as it stands in SVG and HTML.
-pub(crate) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            other if other.is_control() && other != '\n' && other != '\t' => escaped.push('\u{fffd}'),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }
 
 #[cfg(test)]

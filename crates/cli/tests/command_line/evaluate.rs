@@ -177,7 +177,7 @@ fn wrong_usage_is_told_on_one_line() {
         ("--outliers=-0.1", "[0, 1)"),
         ("--method guess", "guess"),
         ("--motion round", "round"),
-        ("--motion rigid --affine 1,2,3,4,5,6", "does not hold"),
+        ("--motion rigid --affine 1,2,3,4,5,6", "does not contain"),
         ("--affine 300,0,0,300,0,0 --frames 120", "too large"),
         ("--suite nonsense", "affine, clean"),
         ("--suite --noise 0.1", "--noise"),

@@ -177,8 +177,8 @@ fn no_output_takes_the_place_of_a_picture_of_the_input_or_of_another_output() {
         (format!("outline {other} {pattern} --output {picture}"), file_of_input),
         (format!("fit {pattern} --svg {picture}"), file_of_input),
         (format!("outline {} --overlay {other}", folder.path().display()), file_of_input),
-        (format!("outline {pattern} --overlay {other} --output {other}"), "named for two outputs"),
-        (format!("identify {pattern} --overlay {other} --report {other}"), "named for two outputs"),
+        (format!("outline {pattern} --overlay {other} --output {other}"), "given for two outputs"),
+        (format!("identify {pattern} --overlay {other} --report {other}"), "given for two outputs"),
         // Not of the pattern: it may be drawn anew, and here is nothing to draw.
         (format!("outline {pattern} --overlay {other}"), "not a picture"),
     ] {
@@ -204,7 +204,7 @@ fn a_motion_that_changed_is_said_to_have_and_is_not_smoothed_as_if_it_were_const
     let changing = format!("frame,time,x,y\n{}", rows.map(turned).collect::<String>());
     let (plain, smooth) = (folder.path().join("plain.csv"), folder.path().join("smooth.csv"));
     let output = run(&format!("identify - --trajectory {}", plain.display()), &changing);
-    assert!(stderr(&output).contains("the motion changed on the way"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("the motion changed: the values"), "{}", stderr(&output));
     let output = run(&format!("identify - --smooth --trajectory {}", smooth.display()), &changing);
     assert!(stderr(&output).contains("--smooth: the motion changed"), "{}", stderr(&output));
     let read = |path| fs::read_to_string(path).expect("a trajectory");

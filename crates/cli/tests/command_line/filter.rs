@@ -128,7 +128,7 @@ fn an_object_that_was_given_up_keeps_its_motion_until_the_next_one_is_known() {
     let object = first_object(&document);
     let omega = object["parameters"]["omega"]["value"].as_f64().expect("a number");
     assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1, "{omega}");
-    for text in ["looked for again at the end", "begun anew 1 time"] {
+    for text in ["searched for at the end", "started again 1 time"] {
         assert!(warnings(object).iter().any(|warning| warning.contains(text)), "{text}: {:?}", warnings(object));
     }
     let document = json(&succeed("identify - --format json", &first_one_then_another(45)));

@@ -90,7 +90,7 @@ fn a_frame_that_is_not_there_has_no_result() {
 fn parts_of_the_curve_beside_the_outline_are_told() {
     let output = run("fit - --frame 0", &sequence("--shape glider --omega -1.047 --points 400"));
     assert!(stdout(&output).contains("\n  beside outline  1 part(s) of the curve, about ("), "{}", stdout(&output));
-    assert!(stderr(&output).contains("1 of 1 curve(s) have a part beside the outline"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("1 of 1 curve(s) have a stray part away from the outline"), "{}", stderr(&output));
     let document = json(&succeed("fit - --frame 0 --format json", &sequence("--shape bird")));
     assert_eq!(document["outlines"][0]["stray_parts"], json("[]"));
 }

@@ -103,7 +103,7 @@ fn a_truth_that_the_motion_model_does_not_hold_is_told_to_be_left_out() {
     let csv = sequence("--affine 0.1,0,0,0.1,0.2,0 --scale 1");
     let output = run("identify -", &csv);
     assert!(!stdout(&output).contains("truth"), "{}", stdout(&output));
-    assert!(stderr(&output).contains("warning: the truth in the file: no rigid motion"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("warning: the truth in the file is not a rigid motion"), "{}", stderr(&output));
     let output = run("identify - --motion similarity", &csv);
     assert!(stdout(&output).contains("truth") && stderr(&output).is_empty(), "{}", stderr(&output));
 }
@@ -297,10 +297,10 @@ fn outlines_of_pictures_follow_the_contour_however_deep_its_notches_are() {
 }
 
 #[test]
-fn the_method_that_was_retired_is_wrong_usage_with_a_word_on_what_to_take() {
+fn the_method_that_was_removed_is_wrong_usage_and_the_error_names_its_replacement() {
     for command in ["identify", "track"] {
         let output = run(&format!("{command} - --method curve"), &sequence(""));
         assert_eq!(output.status.code(), Some(2), "{command}");
-        assert!(stderr(&output).contains("take --method filter"), "{}", stderr(&output));
+        assert!(stderr(&output).contains("use --method filter"), "{}", stderr(&output));
     }
 }

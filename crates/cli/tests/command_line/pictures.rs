@@ -62,7 +62,7 @@ fn options_for_pictures_are_refused_where_the_input_is_none() {
     for command in ["identify", "track", "fit"] {
         let output = run(&format!("{command} - --fps 25 --pixel-size 0.5 --ring dark"), &sequence(""));
         assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{command}");
-        let expected = "--fps, --ring, --pixel-size: for pictures, but <stdin> is none (read as CSV)";
+        let expected = "--fps, --ring, --pixel-size: only for pictures, but <stdin> was read as CSV";
         assert!(stderr(&output).contains(expected), "{command}: {}", stderr(&output));
         // Of an input of nothing it is better said that it is empty.
         assert!(stderr(&run(&format!("{command} - --background median"), "")).contains("empty"));

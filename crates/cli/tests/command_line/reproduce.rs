@@ -141,29 +141,3 @@ fn the_pictures_of_the_documents_are_what_the_command_writes() {
         assert!(text == kept_text && !differs(), "{name}: make it anew as docs/paper.md or README.md says");
     }
 }
-
-fn sources(folder: &Path, all: &mut String) {
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() && path.file_name().is_some_and(|name| name != "target") {
-            sources(&path, all);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            all.push_str(&fs::read_to_string(path).expect("a source"));
-        }
-    }
-}
-
-#[test]
-fn every_test_that_the_documents_name_exists() {
-    let mut code = String::new();
-    ["crates", "tests", "src"].iter().for_each(|folder| sources(&root().join(folder), &mut code));
-    let document = fs::read_to_string(root().join("docs/paper.md")).expect("the document");
-    let quoted = document.split('`').skip(1).step_by(2);
-    let is_sentence =
-        |name: &&str| name.matches('_').count() > 3 && name.chars().all(|c| c.is_alphanumeric() || c == '_');
-    let names: Vec<_> = quoted.filter(is_sentence).collect();
-    assert!(names.len() > 25, "{names:?}");
-    for name in names {
-        assert!(code.contains(&format!("fn {name}(")), "no test {name}");
-    }
-}

@@ -94,7 +94,7 @@ fn every_object_is_smoothed_by_itself() {
 #[test]
 fn what_cannot_be_had_is_wrong_usage() {
     for (options, reason) in
-        [("--method adaptive --trajectory t.csv", "the adaptive method tells no poses"), ("--smooth", "--trajectory")]
+        [("--method adaptive --trajectory t.csv", "the adaptive method gives no poses"), ("--smooth", "--trajectory")]
     {
         let output = run(&format!("identify - {options}"), &sequence(""));
         assert_eq!(output.status.code(), Some(2), "{options}");

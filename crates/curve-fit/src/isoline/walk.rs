@@ -78,6 +78,7 @@ impl<I: Fn(Node) -> bool, J: Fn(Node) -> bool> Grid<I, J> {
         let across = [right[0] - left[0], right[1] - left[1]];
         let ahead = |[column, row]: Node| [column - across[1], row + across[0]];
         let (far_left, far_right) = (ahead(left), ahead(right));
+        // Both are in the grid, or neither.
         let is_in_grid =
             (0..self.columns as i64).contains(&far_left[0]) && (0..self.rows as i64).contains(&far_left[1]);
         if !is_in_grid {

@@ -42,7 +42,7 @@ pub struct RegistrationEstimator {
     rejected_in_a_row: usize,
 }
 
-/// Information of a pose of which nothing is known.
+/// Information of an unknown pose.
 const NOTHING: ParameterMatrix = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
 
 /// One frame brought onto the first.

@@ -73,7 +73,8 @@ impl Setting {
     }
 
     /// The Cramer-Rao bound: the smallest standard deviations of the parameters, 0 without noise. `None` where a parameter is not observable: the
-    /// outlines tell nothing of it, or so little that the best estimator would be off by [`NOTHING_KNOWN`].
+    /// outlines tell nothing of it, or so little that the best estimator would be off by a radian, or a length of a
+    /// unit object, over the whole sequence.
     ///
     /// From places spread evenly over the outline, each standing for its share of the points that inform: visible, no
     /// outliers, of the right object. Information is linear in the points, so that their expectation is enough.

@@ -14,7 +14,7 @@ pub(super) struct Outcome {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ParameterError {
     pub(super) error: f64,
-    /// As the method tells it.
+    /// As stated by the method.
     pub(super) deviation: Option<f64>,
 }
 

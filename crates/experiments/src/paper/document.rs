@@ -24,7 +24,7 @@ pub struct Drawing {
     pub caption: String,
     /// What is to be drawn.
     pub figure: Figure,
-    /// The same numbers; where curves are smoothed or thinned to be drawn, also as they are.
+    /// The numbers of the figure. If its curves are smoothed or thinned, also the original numbers.
     pub data: Table,
 }
 

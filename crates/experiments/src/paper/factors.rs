@@ -23,7 +23,7 @@ const FAR: f64 = 20.0;
 /// Related points further from the outline than this share of its extent are left out of the view.
 const VIEW: f64 = 0.75;
 
-/// The boomerang's outline with its quartic in image coordinates, taken apart.
+/// The outline of the boomerang with its quartic in image coordinates, decomposed.
 struct Boomerang {
     outline: Outline,
     fit: Fit,

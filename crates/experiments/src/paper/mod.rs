@@ -15,6 +15,7 @@ mod paper_figure;
 mod parameters;
 mod part;
 mod poses;
+mod relative_error;
 mod sequence;
 mod traces;
 mod track;

@@ -1,41 +1,11 @@
 //! How far a method is from the truth, and from when on it is near.
-use freeform_riccati::AffineMotion;
-
+use super::relative_error::{RelativeError, SETTLED_RATES, SETTLED_VELOCITY};
 use super::sequence::Sequence;
 use super::track::Track;
 use freeform_motion::significant;
 
-/// A motion has settled once the error of its rates (omega, or the matrix a) stays below this share of them...
-const SETTLED_RATES: f64 = 0.05;
-/// ... and that of its velocity b below this share of it.
-const SETTLED_VELOCITY: f64 = 0.10;
-
 /// Share of the run, at its end, that final errors are taken over.
 const FINAL_SHARE: f64 = 0.1;
-
-/// How far an estimate is from the truth.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RelativeError {
-    /// Norm of the error of the matrix (a1, a2; a3, a4) over its norm: for rigid motion that of omega over omega.
-    pub(super) rates: f64,
-    /// Length of the error of b over the length of b.
-    pub(super) velocity: f64,
-}
-
-impl RelativeError {
-    pub(super) fn of(found: &AffineMotion, truth: &AffineMotion) -> Self {
-        let rates = |m: &AffineMotion| nalgebra::Vector4::new(m.a1, m.a2, m.a3, m.a4);
-        let velocity = |m: &AffineMotion| nalgebra::Vector2::new(m.b1, m.b2);
-        Self {
-            rates: (rates(found) - rates(truth)).norm() / rates(truth).norm(),
-            velocity: (velocity(found) - velocity(truth)).norm() / velocity(truth).norm(),
-        }
-    }
-
-    fn is_settled(&self) -> bool {
-        self.rates < SETTLED_RATES && self.velocity < SETTLED_VELOCITY
-    }
-}
 
 /// What a run comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +13,7 @@ pub(super) struct Outcome {
     /// Root mean square relative error of the rates over the end of the run; infinite, as unknown, where a frame there
     /// has no estimate.
     pub(super) rates: f64,
-    /// The same of the velocity.
+    /// As `rates`, for the velocity.
     pub(super) velocity: f64,
     /// Time in seconds from which on every frame has an estimate that is settled; infinite where there is none.
     pub(super) settled: f64,
@@ -98,7 +68,7 @@ impl Outcome {
         [percent(self.rates), percent(self.velocity), settled]
     }
 
-    /// As a caption tells it; `rates` is what the rates of its motion are called, and `end` when the run ended.
+    /// The text for a caption; `rates` is the name of the rates of the motion, `end` the time of the end of the run.
     pub(super) fn in_words(&self, rates: &str, end: f64) -> String {
         let settled = match self.settled {
             never if never.is_infinite() => format!("not settled within {end:.0} s"),
@@ -111,7 +81,7 @@ impl Outcome {
     }
 }
 
-/// What each of several methods comes to, as a caption of errors tells it.
+/// The outcomes of several methods as text, for the caption of a figure of errors.
 pub(super) fn outcomes_in_words(tracks: &[(&str, Track)], sequence: &Sequence) -> String {
     let outcome = |(name, track): &(&str, Track)| match Outcome::of(track, sequence).cells() {
         [rates, ..] if rates == "-" => format!("{name}: unknown"),
@@ -152,6 +122,8 @@ mod tests {
     use freeform_riccati::CameraScale;
 
     use super::super::track::Moment;
+    use freeform_riccati::AffineMotion;
+
     use super::*;
 
     /// Omega off by some shares of itself, one frame a second; `None` for frames without an estimate.

@@ -5,7 +5,7 @@ use freeform_riccati::{AffineMotion, MotionModel};
 
 use super::curves::curve;
 use super::document::Table;
-use super::outcome::RelativeError;
+use super::relative_error::RelativeError;
 use super::sequence::Sequence;
 use super::track::Track;
 use crate::figure::{Curve, Figure, Look, Panel};

@@ -7,7 +7,7 @@ use freeform_riccati::{AffineMotion, CameraScale, ParameterKind};
 use freeform_sim_camera::Motion;
 
 use super::method::Method;
-use super::outcome::RelativeError;
+use super::relative_error::RelativeError;
 use super::sequence::Sequence;
 use crate::ExperimentError;
 

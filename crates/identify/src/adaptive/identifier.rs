@@ -37,7 +37,7 @@ pub struct AdaptiveIdentifier {
     followed: usize,
 }
 
-/// The laws that run side by side: one per candidate pair while the best is still to be told, one otherwise.
+/// The laws that run side by side: one per candidate pair until the best pair is known, then one.
 #[derive(Debug, Clone)]
 enum Laws {
     Three(Vec<RunningLaw<3>>),
@@ -217,7 +217,7 @@ impl AdaptiveIdentifier {
         }
     }
 
-    /// `|w| = |(l - j) / (l + j)|` of a pair, averaged over the frames: 0 where the pair tells nothing of rotation.
+    /// `|w| = |(l - j) / (l + j)|` of a pair, averaged over the frames: 0 if the pair contains no information on rotation.
     #[must_use]
     pub fn rotation_content(&self, pair: usize) -> f64 {
         self.qualities.get(pair).map_or(0.0, PairQuality::magnitude)

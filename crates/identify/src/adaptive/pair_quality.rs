@@ -1,6 +1,6 @@
 use freeform_decompose::{Line, rotation_chart};
 
-/// A pair tells of rotation where |w| exceeds its noise by this factor, per pair of the curve.
+/// A pair contains information on rotation if |w| exceeds its noise by this factor, per pair of the curve.
 ///
 /// The leading form of a circle has an m-fold root l = j, m pairs. Noise splits it: `w^m` is Gaussian about 0, so |w|^m
 /// follows Rayleigh's law, whose mean is 1.9 times its standard deviation, and |w| has a ratio of 3.6, 5.2 and 6.7
@@ -9,7 +9,7 @@ const NOISE_FACTOR: f64 = 3.0;
 /// With n second differences the noise may be underrated by a factor of about this over n.
 const FEW_FRAMES: f64 = 20.0;
 
-/// How much one conjugate pair tells about the motion, against how noisy it is.
+/// Information of one conjugate pair on the motion, relative to its noise.
 ///
 /// In the rotation chart `w = (l - j) / (l + j)` a rotation turns w about 0, so |w| is an invariant, noise is the same
 /// in every orientation, and `l = j (1 + w) / (1 - w)`. The noise is measured by second differences of |w| over time,

@@ -12,7 +12,7 @@ use super::{
     structured_law::{PairInput, StructuredLaw},
 };
 
-/// A line that turns further than this between two frames (radians) is not interpolated; the law starts anew from it.
+/// A line that turns further than this between two frames (radians) is not interpolated; the law restarts from it.
 const LARGEST_TURN: f64 = 0.5;
 /// X changes by at most about this fraction of itself in one step of the integration.
 const STEP_CHANGE: f64 = 0.1;

@@ -12,7 +12,7 @@ use crate::{
 pub(crate) struct NegativeLogLikelihood {
     pub(crate) squares: f64,
     points: f64,
-    /// The same, those with correlated errors counting for more.
+    /// Number of points, with a larger weight for points with correlated errors.
     weighted: f64,
 }
 
@@ -84,4 +84,34 @@ fn of_innovations(
     let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
     let squares = innovations.map(|innovation| innovation.map_or(tuning::UNKNOWN, square)).sum();
     NegativeLogLikelihood { squares, points, weighted: points * correlation }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn the_variance_of_a_difference_of_squares_is_that_of_points_that_share_half_their_noise() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let (points, runs) = (50, 2000);
+        let (mut sum, mut worse) = (0.0, 0);
+        for _ in 0..runs {
+            let mut poses =
+                [NegativeLogLikelihood { squares: 0.0, points: f64::from(points), weighted: f64::from(points) }; 2];
+            for _ in 0..points {
+                let shared = normal();
+                poses.iter_mut().for_each(|pose| pose.squares += 0.5 * (shared + normal()).powi(2));
+            }
+            sum += (poses[0].squares - poses[1].squares).powi(2);
+            worse += usize::from(poses[0].is_worse_than(&poses[1]));
+        }
+        let variance = sum / f64::from(runs * points);
+        assert!((variance / tuning::VARIANCE - 1.0).abs() < 0.1, "{variance}");
+        assert_eq!(worse, 0);
+    }
 }

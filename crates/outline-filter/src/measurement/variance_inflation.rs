@@ -23,3 +23,29 @@ impl VarianceInflation {
         self.variance = (self.mean_square / (1.0 + tuning::INFLATION_SIGNIFICANT * uncertainty)).max(1.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn cells_whose_points_scatter_more_than_the_noise_count_for_less_once_that_is_sure() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut after = |deviation: f64, points: usize| {
+            let mut inflation = VarianceInflation::NEW;
+            (0..points).for_each(|_| {
+                let residual: f64 = StandardNormal.sample(&mut rng);
+                inflation.take((deviation * residual).powi(2));
+            });
+            inflation.variance
+        };
+        let (usual, soon, later) = (after(1.0, 400), after(3.0, 4), after(3.0, 400));
+        assert!(usual < 1.1, "{usual}");
+        assert!(soon < 3.0, "{soon}");
+        assert!((5.0..10.0).contains(&later), "{later}");
+    }
+}

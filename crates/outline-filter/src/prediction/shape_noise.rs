@@ -91,3 +91,40 @@ impl ShapeNoise {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::dense_filter::{AGREES, DenseFilter, Problem};
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn shape_noise_adds_a_variance_to_every_offset_and_leaves_pose_and_motion_alone(mut problem in Problem::any()) {
+            let noise = ShapeNoise { variance: problem.rng.random_range(0.01..2.0), ..ShapeNoise::default() };
+            let belief = &mut problem.belief;
+            let mut dense = DenseFilter::of(&belief.information);
+            dense.add_shape_noise(noise.variance);
+            noise.forget_shape(belief);
+            let difference = dense.difference(&belief.information, |_, _| true);
+            prop_assert!(difference < AGREES, "{difference}");
+            let difference = dense.difference_of_marginal(&belief.marginal);
+            prop_assert!(difference < AGREES, "marginal {difference}");
+        }
+    }
+
+    #[test]
+    fn innovations_that_repeat_are_taken_for_a_changing_shape_and_independent_ones_are_not() {
+        let variance_after = |products: f64| {
+            let mut noise = ShapeNoise::default();
+            (0..60).for_each(|_| noise.take(products, 100.0, 100.0));
+            noise.variance
+        };
+        assert!(variance_after(50.0) > 0.0);
+        assert_eq!(variance_after(5.0), 0.0);
+        assert_eq!(variance_after(-50.0), 0.0);
+    }
+}

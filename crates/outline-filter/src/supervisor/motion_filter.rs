@@ -19,29 +19,29 @@ use crate::{
     update::{FrameMeasurement, Rejection},
 };
 
-/// What the filter is doing.
+/// The phase of the filter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// No frame yet.
     Waiting,
-    /// The outline is known, its motion is not: the next frame is searched for it.
+    /// The outline is known, its motion is not. The object is searched for in the next frame.
     Acquiring,
     /// Outline and motion are known and predict the next frame.
     Tracking,
-    /// Frames have not shown the object for a while; it is looked for in every one.
+    /// The object was not found in the last frames. It is searched for in every frame.
     Lost,
 }
 
-/// What became of one frame.
+/// The result of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterStep {
     /// Time of the frame in seconds.
     pub time: f64,
-    /// Phase after it.
+    /// Phase after the frame.
     pub phase: Phase,
-    /// What it said of the outline known; `None` where no outline or no pose was there to measure it against.
+    /// Comparison with the known outline; `None` if there was no outline or no pose to compare with.
     pub measurement: Option<FrameMeasurement>,
-    /// Why it was not used; `None` where it was.
+    /// Why the frame was not used; `None` if it was used.
     pub rejection: Option<Rejection>,
 }
 
@@ -67,10 +67,13 @@ struct Counts {
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
 ///
-/// The first frame starts a map of the outline, the second is found by related points and a search over turns without any guess, and from
-/// the third on motion, pose and outline are estimated together, at the Cramer-Rao bound of what outlines can tell. Frames that
-/// do not fit are rejected and counted; after a few of them the object is searched for again. Frames may be missing and
-/// come at uneven times.
+/// The first frame starts a map of the outline. The pose in the second frame is found by global registration, without an initial guess.
+/// From the third frame on, motion, pose and outline are estimated together, with errors near the Cramer-Rao bound. Frames that do not
+/// fit are rejected and counted; after a few of them the object is searched for again. Frames may be missing and may come at uneven
+/// times.
+///
+/// A turn is taken from the outline, never from the path of the object alone. For a circle the angular velocity is therefore not
+/// observable, also along an arc; [`velocity`](Self::velocity) is still known.
 ///
 /// ```
 /// use freeform_curve_fit::Outline;
@@ -139,7 +142,7 @@ impl MotionFilter {
     /// Takes the outline seen at a time in seconds.
     ///
     /// # Errors
-    /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter stays as it was.
+    /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
         TimeNotIncreasing::check(self.last_time, time)?;
         if self.track.is_none() {
@@ -239,14 +242,14 @@ impl MotionFilter {
         &self.settings
     }
 
-    /// What the filter is doing.
+    /// The phase of the filter.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// The motion as far as it is known, at the time of [`state`](Self::state); `None` before the second accepted frame, of those too
-    /// that begin anew with what shows the turn of an object at last.
+    /// The estimated motion, at the time of [`state`](Self::state). `None` before the second accepted frame, also after a restart of the
+    /// map by a frame that shows the turn of the object for the first time.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
         if matches!(self.phase, Phase::Waiting | Phase::Acquiring) {
@@ -257,8 +260,8 @@ impl MotionFilter {
         Some(doubts.filter(|(_, doubtful)| *doubtful).fold(estimate, |e, (j, _)| e.with_unobservable(j)))
     }
 
-    /// Pose and motion with their joint covariance, at the time that they stand at: that of the last frame accepted, or rejected while
-    /// tracking. `None` wherever [`estimate`](Self::estimate) is.
+    /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`
+    /// if [`estimate`](Self::estimate) is.
     #[must_use]
     pub fn state(&self) -> Option<MotionState> {
         let estimate = self.estimate()?;
@@ -267,9 +270,9 @@ impl MotionFilter {
         self.track.as_ref()?.state(self.track_time, observable)
     }
 
-    /// Velocity of the object's middle, the centre of its outline as far as that is known, at the time of [`state`](Self::state). It may be
-    /// known where the velocity `b` of the image origin is not, as that of a circle. `None` where it is not known, where the
-    /// motion is [ambiguous](Self::ambiguity), and wherever [`estimate`](Self::estimate) is.
+    /// Velocity of the middle of the object, which is the centre of its known outline, at the time of [`state`](Self::state). It may be
+    /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
+    /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
     pub fn velocity(&self) -> Option<PointVelocity> {
         if self.hypotheses.are_doubtful() {
@@ -278,21 +281,21 @@ impl MotionFilter {
         self.track.as_ref()?.velocity_of_middle(&self.state()?)
     }
 
-    /// The map of the image that has moved the outline of the first frame to where it was in the last frame accepted, or is predicted
-    /// after rejected ones; `None` before the first frame.
+    /// The map of the image from the outline of the first frame to its place in the last accepted frame; after rejected frames, to its
+    /// predicted place. `None` before the first frame.
     #[must_use]
     pub fn pose(&self) -> Option<Projective2<f64>> {
         self.track.as_ref().map(Track::pose)
     }
 
-    /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or where it is beyond any
-    /// number.
+    /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not
+    /// finite.
     #[must_use]
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         self.track.as_ref()?.covariance()
     }
 
-    /// The outline as it is known now, image coordinates: one point per cell of its map, in no particular order where the map has grown.
+    /// The outline as now known, image coordinates: one point per cell of its map. The points are not ordered if the map has grown.
     /// Empty before the first frame.
     pub fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.track.iter().flat_map(Track::outline_points)
@@ -314,28 +317,28 @@ impl MotionFilter {
         self.counts.accepted
     }
 
-    /// Frames that did not fit, one that a new track was begun from after others among them.
+    /// Frames that did not fit. A frame that starts a new track after others is included.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
         self.counts.rejected
     }
 
-    /// Turns in radians, anticlockwise where y points up, by which the object may just as well have come to the frame in which it was
-    /// last searched for and found, besides the one taken: no frame since then fits significantly worse. Of equals the smallest turn is
-    /// taken. Empty for outlines without symmetry. [`ambiguity`](Self::ambiguity) says whether they leave the motion in doubt.
+    /// The other hypotheses of the turn, in radians, anticlockwise if y points up: turns of the object, up to the frame in which it was last
+    /// searched for and found, that explain all frames since then about as well as the turn taken. Of equally good turns the smallest is
+    /// taken. Empty for outlines without symmetry. [`ambiguity`](Self::ambiguity) tells whether the motion is in doubt.
     #[must_use]
     pub fn rival_turns(&self) -> &[f64] {
         self.hypotheses.turns()
     }
 
-    /// Whether the innovations have shown the motion to change, so that the estimate is that of the last frame, not of all. Always
-    /// false where `FilterSettings::process_noise` announces changes.
+    /// Whether the innovations have shown a change of motion. The estimate is then that of the last frame, not of all frames. Always false
+    /// if `FilterSettings::process_noise` allows for changes.
     #[must_use]
     pub fn motion_changed(&self) -> bool {
         self.motion_changed
     }
 
-    /// Times the filter has given up an object and begun anew.
+    /// How often the filter has given up an object and started again.
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts

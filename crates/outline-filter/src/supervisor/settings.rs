@@ -6,17 +6,17 @@ use super::error::FilterError;
 /// Settings of a [`MotionFilter`](crate::MotionFilter).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterSettings {
-    /// Which motions are looked for.
+    /// The motion model.
     pub model: MotionModel,
-    /// How fast the motion may change, where that is known; zeros by default.
+    /// How fast the motion may change, if known; zeros by default.
     pub process_noise: ProcessNoise,
-    /// Whether changes of a motion without process noise are estimated from the innovations: none until there is evidence. `true` by
-    /// default; otherwise it is held for constant.
+    /// Whether the filter follows changes of a motion without process noise, as soon as the innovations show them. `true` by default;
+    /// if `false`, the motion is assumed constant.
     pub adaptive: bool,
     /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken, in (0, 1);
     /// 0.7 by default.
     pub smallest_agreement: f64,
-    /// Frames rejected in a row after which the object is looked for anew, at least 1; 2 by default.
+    /// Frames rejected in a row after which the object is searched for again, at least 1; 2 by default.
     pub patience: usize,
 }
 

@@ -71,11 +71,78 @@ impl Track {
 
 #[cfg(test)]
 mod tests {
+    use freeform_curve_fit::{OpenArc, OpenOutline};
     use freeform_riccati::MotionModel;
     use nalgebra::Point2;
 
     use super::*;
-    use crate::tuning::map::MOST_TIMES_SEEN;
+    use crate::{
+        dense_filter::{AGREES, DenseFilter},
+        measurement::Measurement,
+        tuning::map::MOST_TIMES_SEEN,
+    };
+
+    /// Three quarters of an outline that shows every model of motion, and all of it, in the same body frame.
+    fn part_and_whole() -> [Outline; 2] {
+        let point = |i: i32| {
+            let t = std::f64::consts::TAU * f64::from(i) / 320.0;
+            // The last term keeps residuals from being zero.
+            let r = 0.5
+                + 0.12 * (3.0 * t).cos()
+                + 0.08 * (2.0 * t).sin()
+                + 0.05 * (5.0 * t).cos()
+                + 0.002 * (31.0 * t).sin();
+            Point2::new(r * t.cos(), r * t.sin())
+        };
+        let arc = OpenArc::new((0..240).map(point).collect()).expect("an arc");
+        let part = Outline::Open(OpenOutline::new(vec![arc]).expect("an outline"));
+        [part, Outline::closed((0..320).map(point).collect()).expect("an outline")]
+    }
+
+    #[test]
+    fn new_cells_are_begun_as_the_dense_filter_begins_them_with_pose_and_motion_held() {
+        let [part, whole] = part_and_whole();
+        for model in MotionModel::ALL {
+            let mut frame = Frame::default();
+            let mut track = Track::begin(model, &part, &mut frame).expect("a track");
+            // Well known, so that the reference loses no digits.
+            let k = track.belief.parameter_count();
+            (0..k).for_each(|i| track.belief.information.dense[k + i][k + i] = 100.0);
+            // Ends that no point lies on have no information; the reference would divide by it.
+            track.belief.information.cells.iter_mut().for_each(|cell| cell.own = cell.own.max(1.0));
+            track.belief.marginal = track.belief.information.marginal();
+            let mut dense = DenseFilter::of(&track.belief.information);
+            // Otherwise something would be forgotten.
+            assert!(track.map.null_directions(model, &track.belief.pose).is_empty(), "{model:?}");
+            let first_new = track.map.cells().len();
+            frame.load(&whole, track.reference);
+            track.grow_along(frame.contours(&track.belief.pose), &mut frame);
+            let count = track.map.cells().len();
+            assert!(count > first_new + 10, "{model:?}: {first_new} and {count} cells");
+            let unseen = Measurement { cell: 0, residual: 0.0, by_offset: 1.0, jacobian: [0.0; 8], weight: 1.0 };
+            for cell in first_new..count {
+                let mut of_cell = frame.measurements.iter().filter(|m| m.cell == cell && m.weight > 0.0);
+                let first = of_cell.next();
+                dense.begin_cell(first.unwrap_or(&unseen));
+                of_cell.for_each(|m| dense.measure(m));
+                if first.is_none() {
+                    track.belief.information.cells[cell].own = 1.0;
+                }
+            }
+            let difference = dense.difference(&track.belief.information, |_, _| true);
+            assert!(difference < AGREES, "{model:?}: {difference}");
+            let difference = dense.difference_of_marginal(&track.belief.marginal);
+            assert!(difference < AGREES, "{model:?}: marginal {difference}");
+            // What is left out is next to nothing.
+            let step = |i: usize| dense.mean[i].abs() / (dense.covariance[(i, i)].sqrt() * track.noise.sigma);
+            assert!((0..2 * k).map(step).all(|step| step < 1e-3), "{model:?}");
+            let expected = dense.offsets_where_state_is_zero(first_new);
+            let size = expected.iter().fold(0.0, |size, offset| f64::max(size, offset.abs()));
+            for (found, expected) in track.belief.offsets[first_new..].iter().zip(expected) {
+                assert!((found - expected).abs() < AGREES * size, "{model:?}: {found} {expected}");
+            }
+        }
+    }
 
     #[test]
     fn a_map_that_wrong_poses_add_to_for_ever_stops_growing() {

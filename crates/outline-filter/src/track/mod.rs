@@ -3,6 +3,8 @@ mod comparison;
 mod estimate;
 mod first_pose;
 mod growth;
+#[cfg(test)]
+mod jacobians;
 mod remapping;
 #[cfg(test)]
 mod sides;

@@ -242,7 +242,7 @@ impl Track {
         Projective2::from_matrix_unchecked(to_image * self.belief.pose * inverse)
     }
 
-    /// The same where it is affine.
+    /// The pose as an affine map; `None` if it is not affine.
     pub(crate) fn affine_pose(&self) -> Option<Affine2<f64>> {
         nalgebra::try_convert(self.pose())
     }

@@ -8,51 +8,51 @@ use crate::{
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, update as tuning},
 };
 
-/// What one frame said of the outline known.
+/// Comparison of one frame with the known outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameMeasurement {
     /// Share of the points that lie on the known outline, of those that do not lie beyond its ends; in [0, 1].
     pub agreement: f64,
     /// Points that lie beyond the known ends of the outline.
     pub new_points: usize,
-    /// Squared innovation of the pose in units of its covariance: about the number of parameters in the mean, if the motion has gone
-    /// on as it was.
+    /// Squared innovation of the pose in units of its covariance. On average about the number of parameters, if the motion has not
+    /// changed.
     pub innovation: f64,
     /// Linearisations taken.
     pub iterations: usize,
-    /// Standard deviation of this frame's noise, image lengths; `None` where too few cells have been seen before.
+    /// Standard deviation of the noise of this frame, image lengths; `None` if too few cells have been seen before.
     pub noise: Option<f64>,
-    /// Robust spread of all points about the outline, those left out included, image lengths; infinite where there are none.
+    /// Robust spread of all points about the outline, including points left out, image lengths; infinite if there are none.
     pub spread: f64,
 }
 
 /// Why a [`MotionFilter`](crate::MotionFilter) has not used a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rejection {
-    /// Too few of its points lie on the outline known.
+    /// Too few points lie on the known outline.
     AgreementTooSmall {
-        /// Share of the points that do, in [0, 1].
+        /// Share of the points on the outline, in [0, 1].
         agreement: f64,
         /// Share needed, [`FilterSettings::smallest_agreement`](crate::FilterSettings::smallest_agreement).
         smallest: f64,
     },
-    /// The outline is there, but not where the motion of the frames before has it.
+    /// The frame shows the outline, but not at the place predicted by the motion.
     InnovationTooLarge {
         /// Squared innovation of the pose, as in [`FrameMeasurement::innovation`].
         innovation: f64,
-        /// Largest that is taken to go on.
+        /// Largest accepted value.
         largest: f64,
     },
-    /// The outline is there, but its points scatter about it more than those of other frames.
+    /// The frame shows the outline, but its points scatter about it more than those of other frames.
     NoiseTooLarge {
         /// Standard deviation of this frame's noise, image lengths.
         noise: f64,
     },
-    /// No pose was found that could be measured.
+    /// No pose was found.
     NotFound,
 }
 
-/// What a frame must be to be taken.
+/// Conditions for accepting a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Gate {
     /// Smallest share of points that agree.
@@ -64,10 +64,10 @@ pub(crate) struct Gate {
 }
 
 impl Gate {
-    /// Judges a frame by what it said.
+    /// Tests the measurement of a frame.
     ///
     /// # Errors
-    /// The first of the conditions that it does not meet.
+    /// The first condition that is not met.
     pub(crate) fn verdict(&self, measurement: &FrameMeasurement) -> Result<(), Rejection> {
         let FrameMeasurement { agreement, innovation, .. } = *measurement;
         let smallest = self.smallest_agreement;

@@ -84,3 +84,72 @@ fn inverse(matrix: &PoseMatrix) -> Option<PoseMatrix> {
     let inverse = (scaled + PoseMatrix::identity() * 1e-12).cholesky()?.inverse();
     Some(PoseMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        dense_filter::{DenseFilter, Problem, random_measurements},
+        measurement::Frame,
+        update::accumulate,
+    };
+
+    /// Log-likelihood, but for a constant, of an innovation.
+    fn log_likelihood(covariance: &DMatrix<f64>, innovation: &DVector<f64>) -> f64 {
+        let factor = covariance.clone().cholesky().expect("positive definite");
+        -0.5 * (factor.l().diagonal().map(f64::ln).sum() * 2.0 + innovation.dot(&factor.solve(innovation)))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        #[test]
+        fn the_innovation_of_the_pose_and_its_scores_are_those_of_its_likelihood(mut problem in Problem::any()) {
+            let (k, cells) = (problem.belief.parameter_count(), problem.belief.offsets.len());
+            let (middle, variance) = (Point2::new(0.3, -0.2), 0.3);
+            let measurements = random_measurements(&mut problem.rng, k, 0..cells, 6 * cells + 3 * k);
+            let belief = &problem.belief;
+            let mut dense = DenseFilter::of(&belief.information);
+            let of_pose = |dense: &DenseFilter| variance * dense.covariance.view((0, 0), (k, k)).clone_owned();
+            let before = of_pose(&dense);
+            measurements.iter().for_each(|m| dense.measure(m));
+            let gained = &before - of_pose(&dense);
+            let step = dense.mean.rows(0, k).clone_owned();
+            let mut frame = Frame { measurements, ..Frame::default() };
+            frame.clear_shifts(cells);
+            let mut work = belief.information.clone();
+            accumulate(&mut frame, &mut work, &StateVector::zeros());
+            let state = StateVector::from_fn(|i, _| if i < 2 * k { dense.mean[i] } else { 0.0 });
+            let found = belief.pose_innovation([&belief.marginal, &work.marginal()], &state, &middle, variance);
+
+            let by_gained = gained.clone().try_inverse().expect("a frame that shows the pose");
+            let squared = step.dot(&(&by_gained * &step));
+            prop_assert!((found.squared / squared - 1.0).abs() < 1e-4, "{} {squared}", found.squared);
+            let covariance = &before * &by_gained * &before;
+            let innovation = &before * &by_gained * &step;
+            let by_change = centred_change(belief.model, &belief.pose, &middle).expect("a pose");
+            let growth_of = |kind: usize| {
+                let of_kind = belief.model.parameter_kinds().iter().map(|k| f64::from(u8::from(kind_index(*k) == kind)));
+                let picked = DMatrix::from_diagonal(&DVector::from_iterator(k, of_kind));
+                let by_change = by_change.view((0, 0), (k, k));
+                by_change * picked * by_change.transpose() * belief.memory.step.powi(3)
+            };
+            let inverse = covariance.clone().try_inverse().expect("positive definite");
+            let fisher = |growth: &DMatrix<f64>| 0.5 * (&inverse * growth * &inverse * growth).trace();
+            for kind in 0..2 {
+                let growth = growth_of(kind);
+                let step = 1e-4 / fisher(&growth).sqrt();
+                let likelihood = |size: f64| log_likelihood(&(&covariance + size * &growth), &innovation);
+                let slope = (likelihood(step) - likelihood(-step)) / (2.0 * step);
+                let unit = fisher(&growth).sqrt() * (1.0 + squared);
+                prop_assert!((slope - found.gradient[kind]).abs() < 1e-3 * unit, "{slope} {:?}", found.gradient);
+                prop_assert!((found.fisher[kind] / fisher(&growth) - 1.0).abs() < 1e-3);
+            }
+            let both = fisher(&(growth_of(0) + growth_of(1)));
+            prop_assert!((found.fisher_of_both / both - 1.0).abs() < 1e-3);
+        }
+    }
+}

@@ -21,7 +21,7 @@ pub(crate) struct Proposal {
     pub(crate) pose: Matrix3<f64>,
     /// Information on pose and motion with the frame, the outline given.
     pub(crate) dense: [[f64; STATE]; STATE],
-    /// The same with the offsets eliminated.
+    /// Information on pose and motion with the frame, the offsets eliminated.
     pub(crate) marginal: StateMatrix,
     /// Linearisations taken.
     pub(crate) iterations: usize,
@@ -97,6 +97,81 @@ impl Frame {
         for measurement in self.measurements.iter_mut().filter(|m| m.cell != NO_CELL) {
             let along: f64 = (0..k).map(|i| measurement.jacobian[i] * step[i]).sum();
             measurement.residual -= along + measurement.by_offset * self.values[measurement.cell];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        dense_filter::{AGREES, DenseFilter, Problem, random_measurements},
+        measurement::NoiseModel,
+        prediction::ShapeNoise,
+        update::commit,
+    };
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn a_linear_update_is_that_of_the_dense_filter(mut problem in Problem::any()) {
+            let (k, cells) = (problem.belief.parameter_count(), problem.belief.offsets.len());
+            let belief = &mut problem.belief;
+            let mut dense = DenseFilter::of(&belief.information);
+            let measurements = random_measurements(&mut problem.rng, k, 0..cells, 3 * cells);
+            measurements.iter().for_each(|m| dense.measure(m));
+
+            let mut frame = Frame { measurements, ..Frame::default() };
+            frame.clear_shifts(cells);
+            let mut work = belief.information.clone();
+            let right = accumulate(&mut frame, &mut work, &StateVector::zeros());
+            let reduced = reduce(&work, &frame.right, right);
+            let state = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
+            frame.take_step(&work.cells, &state, &state, k);
+            frame.cells.clone_from(&work.cells);
+            let marginal = work.marginal();
+            let proposal = Proposal { state, pose: belief.pose, dense: work.dense, marginal, iterations: 1 };
+            let (motion, offsets) = (belief.motion, belief.offsets.clone());
+            let (mut noise, mut shape) = (NoiseModel::new(1.0), ShapeNoise::default());
+            noise.resize(cells);
+            shape.resize(cells);
+            commit(&proposal, &mut frame, (belief, &mut noise, &mut shape));
+
+            let difference = dense.difference(&belief.information, |_, _| true);
+            prop_assert!(difference < AGREES, "{difference}");
+            let difference = dense.difference_of_marginal(&belief.marginal);
+            prop_assert!(difference < AGREES, "marginal {difference}");
+            let size = dense.mean.amax();
+            let pose = (0..k).map(|i| state[i]);
+            let moved = pose.chain((0..k).map(|i| belief.motion[i] - motion[i]));
+            let moved = moved.chain(belief.offsets.iter().zip(&offsets).map(|(after, before)| after - before));
+            for (found, expected) in moved.zip(dense.mean.iter()) {
+                prop_assert!((found - expected).abs() < AGREES * size, "{found} {expected}");
+            }
+        }
+
+        /// Measurements are the same whichever step their residuals were taken after.
+        #[test]
+        fn a_second_linearisation_at_the_same_place_changes_nothing(mut problem in Problem::any()) {
+            let (k, cells) = (problem.belief.parameter_count(), problem.belief.offsets.len());
+            let measurements = random_measurements(&mut problem.rng, k, 0..cells, 3 * cells);
+            let mut frame = Frame { measurements, ..Frame::default() };
+            frame.clear_shifts(cells);
+            let mut state = StateVector::zeros();
+            let mut steps = Vec::new();
+            for _ in 0..2 {
+                let mut work = problem.belief.information.clone();
+                let right = accumulate(&mut frame, &mut work, &state);
+                let reduced = reduce(&work, &frame.right, right);
+                let next = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
+                frame.take_step(&work.cells, &(next - state), &next, k);
+                steps.push((next - state).amax());
+                state = next;
+            }
+            prop_assert!(steps[1] < AGREES * steps[0], "{steps:?}");
         }
     }
 }

@@ -154,6 +154,7 @@ impl FromStr for BuiltInShape {
             other => other.to_owned(),
         };
         let found = Self::ALL.into_iter().find(|shape| letters(shape.name()) == wanted);
-        found.ok_or_else(|| ShapeError::UnknownName { name: name.to_owned() })
+        found
+            .ok_or_else(|| ShapeError::UnknownName { name: name.to_owned(), known: Self::ALL.map(Self::name).to_vec() })
     }
 }

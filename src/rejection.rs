@@ -2,7 +2,7 @@ use std::{error::Error, fmt};
 
 use freeform_outline_filter::{FilterError, Rejection};
 
-use crate::PipelineError;
+use crate::pipeline_error::PipelineError;
 
 /// Why a frame of an object was not used.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,13 +18,13 @@ pub struct FrameRejection {
 /// Reasons not to use a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RejectionCause {
-    /// The points are no outline; the text, which names the frame, comes from whoever has read them.
+    /// The points are not an outline. The text comes from the reader and names the frame.
     NoOutline(String),
-    /// It does not fit what the motion filter knows of the object.
+    /// The frame does not fit the object as the motion filter knows it.
     NotAccepted(Rejection),
-    /// The motion filter could not take it.
+    /// Error of the motion filter.
     Filter(FilterError),
-    /// The pipeline could not take it.
+    /// Error of the pipeline.
     Pipeline(PipelineError),
 }
 

@@ -1,4 +1,5 @@
-//! The least-squares leading form that is at least a floor on the unit circle, from the directions where it touches it.
+//! The least-squares leading form that is nowhere below a floor on the unit circle, by an active-set method: Newton steps on
+//! the directions where the form touches the floor.
 //!
 //! Over the coefficients c of the form the problem is `min |W c - w|^2 / 2` with `phi(t)' c >= floor` for all directions t,
 //! `phi = (cos^n, cos^(n-1) sin, ..., sin^n)`. At the solution finitely many constraints are active, at most n/2:
@@ -12,21 +13,21 @@ use crate::{
 };
 
 /// Half the degree of an octic.
-const MAX_CONTACTS: usize = 4;
-/// Times that a contact may be added or dropped.
+const MAX_ACTIVE: usize = 4;
+/// How often a constraint may be added to the active set or dropped from it.
 const MAX_ROUNDS: usize = 8;
 const MAX_ITERATIONS: usize = 20;
-/// Radians by which a contact may turn in one iteration.
+/// Radians by which an active direction may turn in one iteration.
 const LARGEST_TURN: f64 = 0.2;
-/// Radians: contacts that turn by less in an iteration have arrived, as the next one would turn them by the square of it.
-const ARRIVED: f64 = 1e-9;
-/// Radians: contacts that are closer are one, or about to be one, and their equations nearly singular.
+/// Radians: active directions that turn by less in an iteration have converged, as the next turn would be the square of it.
+const CONVERGED: f64 = 1e-9;
+/// Radians: closer active directions are one direction, or about to become one, and their equations are nearly singular.
 const CLOSEST: f64 = 0.02;
 /// Fraction of the floor by which the form may stay under it, through rounding.
 const TOLERANCE: f64 = 1e-11;
 
 /// The problem in the coordinates `W c`, where distances are plain.
-pub(crate) struct ContactProblem<const FORM: usize> {
+pub(crate) struct ActiveSetProblem<const FORM: usize> {
     /// `W^-1`, upper triangular.
     unwhiten: SMatrix<f64, FORM, FORM>,
     /// The unconstrained solution w.
@@ -36,13 +37,13 @@ pub(crate) struct ContactProblem<const FORM: usize> {
 
 /// Directions where the form touches the floor, and their multipliers.
 #[derive(Clone, Copy)]
-struct Contacts {
+struct ActiveSet {
     count: usize,
-    directions: [[f64; 2]; MAX_CONTACTS],
-    multipliers: [f64; MAX_CONTACTS],
+    directions: [[f64; 2]; MAX_ACTIVE],
+    multipliers: [f64; MAX_ACTIVE],
 }
 
-impl<const FORM: usize> ContactProblem<FORM> {
+impl<const FORM: usize> ActiveSetProblem<FORM> {
     /// For the leading form that starts at coefficient `first`.
     pub(crate) fn new(system: &TriangularSystem, first: usize, floor: f64) -> Self {
         let mut unwhiten = SMatrix::<f64, FORM, FORM>::zeros();
@@ -57,12 +58,12 @@ impl<const FORM: usize> ContactProblem<FORM> {
         Self { unwhiten, target: SVector::from_fn(|i, _| system.right()[first + i]), floor }
     }
 
-    /// The form and its range; `None` where the iteration does not end in a point that is certainly the solution.
+    /// The form and its range; `None` if the iteration does not end in a point that is certainly the solution.
     pub(crate) fn solve(&self) -> Option<([f64; FORM], CircleRange)> {
-        let mut contacts = self.first_contact();
+        let mut active = self.first_active_set();
         for _ in 0..MAX_ROUNDS {
-            let solution = self.touch(&mut contacts)?;
-            if contacts.drop_pulling() {
+            let solution = self.touch(&mut active)?;
+            if active.drop_negative() {
                 continue;
             }
             let form: [f64; FORM] = (self.unwhiten * solution).into();
@@ -71,13 +72,13 @@ impl<const FORM: usize> ContactProblem<FORM> {
             if lowest.value >= self.floor * (1.0 - TOLERANCE) {
                 return Some((form, samples.range_above(lowest.value)));
             }
-            contacts.add(lowest.direction)?;
+            active.add(lowest.direction)?;
         }
         None
     }
 
-    /// The single constraint that holds the form furthest from the unconstrained solution.
-    fn first_contact(&self) -> Contacts {
+    /// The single constraint that moves the form furthest from the unconstrained solution.
+    fn first_active_set(&self) -> ActiveSet {
         let unconstrained: [f64; FORM] = (self.unwhiten * self.target).into();
         let force = |direction: [f64; 2], value: f64| {
             let missing = (self.floor - value).max(0.0);
@@ -91,35 +92,35 @@ impl<const FORM: usize> ContactProblem<FORM> {
                 best = (sample.direction, force);
             }
         }
-        let mut contacts = Contacts { count: 1, directions: [best.0; MAX_CONTACTS], multipliers: [0.0; MAX_CONTACTS] };
+        let mut active = ActiveSet { count: 1, directions: [best.0; MAX_ACTIVE], multipliers: [0.0; MAX_ACTIVE] };
         let first = self.whitened(&powers(best.0));
-        contacts.multipliers[0] = (self.floor - first.dot(&self.target)) / first.norm_squared();
-        contacts
+        active.multipliers[0] = (self.floor - first.dot(&self.target)) / first.norm_squared();
+        active
     }
 
-    /// Turns the contacts until the form touches the floor there; returns it in whitened coordinates.
-    fn touch(&self, contacts: &mut Contacts) -> Option<SVector<f64, FORM>> {
-        match contacts.count {
-            1 => self.newton::<1, 2>(contacts),
-            2 => self.newton::<2, 4>(contacts),
-            3 => self.newton::<3, 6>(contacts),
-            _ => self.newton::<4, 8>(contacts),
+    /// Turns the active directions until the form touches the floor there; returns the form in whitened coordinates.
+    fn touch(&self, active: &mut ActiveSet) -> Option<SVector<f64, FORM>> {
+        match active.count {
+            1 => self.newton::<1, 2>(active),
+            2 => self.newton::<2, 4>(active),
+            3 => self.newton::<3, 6>(active),
+            _ => self.newton::<4, 8>(active),
         }
     }
 
-    /// Newton's method for COUNT contacts, in UNKNOWNS = 2 COUNT turns and multipliers.
-    fn newton<const COUNT: usize, const UNKNOWNS: usize>(&self, contacts: &mut Contacts) -> Option<SVector<f64, FORM>>
+    /// Newton's method for COUNT active directions, in UNKNOWNS = 2 COUNT turns and multipliers.
+    fn newton<const COUNT: usize, const UNKNOWNS: usize>(&self, active: &mut ActiveSet) -> Option<SVector<f64, FORM>>
     where
         Const<UNKNOWNS>: DimMin<Const<UNKNOWNS>, Output = Const<UNKNOWNS>>,
     {
         for _ in 0..MAX_ITERATIONS {
-            // phi, phi' and phi'' at each contact, whitened.
+            // phi, phi' and phi'' at each active direction, whitened.
             let touched: [[SVector<f64, FORM>; 3]; COUNT] = std::array::from_fn(|k| {
-                let phi = powers(contacts.directions[k]);
+                let phi = powers(active.directions[k]);
                 let slope = derivative(&phi);
                 [self.whitened(&phi), self.whitened(&slope), self.whitened(&derivative(&slope))]
             });
-            let forces = touched.iter().zip(&contacts.multipliers).map(|([phi, ..], m)| phi * *m);
+            let forces = touched.iter().zip(&active.multipliers).map(|([phi, ..], m)| phi * *m);
             let solution = forces.fold(self.target, |sum, force| sum + force);
             let mut jacobian = SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros();
             let mut residual = SVector::<f64, UNKNOWNS>::zeros();
@@ -129,7 +130,7 @@ impl<const FORM: usize> ContactProblem<FORM> {
                 jacobian[(k, k)] = residual[COUNT + k];
                 jacobian[(COUNT + k, k)] = curvature.dot(&solution);
                 for (j, [other, other_slope, _]) in touched.iter().enumerate() {
-                    let multiplier = contacts.multipliers[j];
+                    let multiplier = active.multipliers[j];
                     jacobian[(k, j)] += multiplier * phi.dot(other_slope);
                     jacobian[(COUNT + k, j)] += multiplier * slope.dot(other_slope);
                     jacobian[(k, COUNT + j)] = phi.dot(other);
@@ -143,15 +144,15 @@ impl<const FORM: usize> ContactProblem<FORM> {
             }
             let length = (LARGEST_TURN / turn).min(1.0);
             for k in 0..COUNT {
-                contacts.directions[k] = turned_by(contacts.directions[k], -length * step[k]);
-                contacts.multipliers[k] -= length * step[COUNT + k];
+                active.directions[k] = turned_by(active.directions[k], -length * step[k]);
+                active.multipliers[k] -= length * step[COUNT + k];
             }
-            if turn < ARRIVED {
+            if turn < CONVERGED {
                 // What this last step changes is the square of it.
                 let correction = touched
                     .iter()
                     .enumerate()
-                    .map(|(k, [phi, slope, _])| -(phi * step[COUNT + k] + slope * (contacts.multipliers[k] * step[k])));
+                    .map(|(k, [phi, slope, _])| -(phi * step[COUNT + k] + slope * (active.multipliers[k] * step[k])));
                 return Some(correction.fold(solution, |sum, change| sum + change));
             }
         }
@@ -168,9 +169,9 @@ impl<const FORM: usize> ContactProblem<FORM> {
     }
 }
 
-impl Contacts {
-    /// Drops the contact that pulls the form down the most, if any does.
-    fn drop_pulling(&mut self) -> bool {
+impl ActiveSet {
+    /// Drops the constraint with the most negative multiplier, if there is one.
+    fn drop_negative(&mut self) -> bool {
         let multipliers = self.multipliers[..self.count].iter().enumerate();
         let Some((worst, &multiplier)) = multipliers.min_by(|a, b| a.1.total_cmp(b.1)) else { return false };
         if multiplier >= 0.0 || self.count == 1 {
@@ -182,11 +183,11 @@ impl Contacts {
         true
     }
 
-    /// Adds a direction, not yet pushing; `None` where that is too near another or one too many.
+    /// Adds a direction with multiplier 0; `None` if it is too near another one or the set is full.
     fn add(&mut self, direction: [f64; 2]) -> Option<()> {
         let [x, y] = direction;
         let is_near = |other: &[f64; 2]| (x * other[1] - y * other[0]).abs() < CLOSEST;
-        if self.count == MAX_CONTACTS || self.directions[..self.count].iter().any(is_near) {
+        if self.count == MAX_ACTIVE || self.directions[..self.count].iter().any(is_near) {
             return None;
         }
         self.directions[self.count] = direction;

@@ -1,0 +1,68 @@
+//! What is seen in an input: outlines in pictures, and pictures without one.
+use std::mem::{Discriminant, discriminant};
+use std::rc::Rc;
+
+use freeform_motion::curve_fit::PixelGrid;
+use freeform_motion::outline_io::{GrayImage, PictureErrorKind, TraceError};
+use freeform_motion::tracker::Recorded;
+
+use crate::failure::Failure;
+
+/// A picture that outlines were seen in.
+#[derive(Debug)]
+pub(crate) struct SeenIn {
+    pub(crate) frame: u64,
+    pub(crate) picture: GrayImage,
+    pub(crate) grid: PixelGrid,
+}
+
+/// The next thing in an input: an outline, with the picture that it was seen in, if it was; or a picture without an object, or one that
+/// cannot be read.
+pub(crate) type Item = Recorded<Option<Rc<SeenIn>>, Missing>;
+
+/// A picture without an outline.
+#[derive(Debug)]
+pub(crate) struct Missing {
+    /// Its number in the sequence.
+    pub(crate) frame: u64,
+    pub(crate) reason: String,
+    /// Advice, if there is any.
+    pub(crate) hint: Option<&'static str>,
+    pub(crate) kind: MissingKind,
+    /// The picture, if it could be read.
+    pub(crate) seen_in: Option<Rc<SeenIn>>,
+}
+
+/// The kind of reason, without its numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MissingKind {
+    Unreadable(Discriminant<PictureErrorKind>),
+    NothingFound(Discriminant<TraceError>),
+}
+
+impl From<&PictureErrorKind> for MissingKind {
+    fn from(kind: &PictureErrorKind) -> Self {
+        Self::Unreadable(discriminant(kind))
+    }
+}
+
+impl From<&TraceError> for MissingKind {
+    fn from(error: &TraceError) -> Self {
+        Self::NothingFound(discriminant(error))
+    }
+}
+
+impl Missing {
+    /// The reason, with advice.
+    pub(crate) fn advice(&self) -> String {
+        self.hint.map_or_else(|| self.reason.clone(), |hint| format!("{}; {hint}", self.reason))
+    }
+
+    /// The failure if no other picture gave an outline.
+    pub(crate) fn into_failure(self) -> Failure {
+        match self.seen_in {
+            Some(_) => Failure::no_result(self.advice()),
+            None => Failure::unusable(self.reason),
+        }
+    }
+}

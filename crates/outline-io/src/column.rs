@@ -1,0 +1,39 @@
+use std::fmt;
+
+/// A column of an outline file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    /// Frame number, a whole number from 0.
+    Frame,
+    /// Time in seconds.
+    Time,
+    /// First coordinate.
+    X,
+    /// Second coordinate.
+    Y,
+    /// Name of the object; optional.
+    Object,
+    /// Arc of an open outline; optional, empty for a closed one.
+    Arc,
+}
+
+impl Column {
+    /// The name in the header.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Frame => "frame",
+            Self::Time => "time",
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Object => "object",
+            Self::Arc => "arc",
+        }
+    }
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

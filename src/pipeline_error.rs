@@ -1,0 +1,29 @@
+use freeform_curve_fit::{FitError, SettingsError};
+use freeform_decompose::{CorrespondenceError, DecompositionError};
+use freeform_identify::IdentifyError;
+
+/// Why a frame gave nothing, or a pipeline could not be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PipelineError {
+    /// The settings of the fit are refused.
+    #[error("fit settings: {0}")]
+    FitSettings(#[from] SettingsError),
+    /// No curve could be fitted.
+    #[error("no fit: {0}")]
+    Fit(#[from] FitError),
+    /// The curve has no decomposition into lines.
+    #[error("no line decomposition: {0}")]
+    Decomposition(#[from] DecompositionError),
+    /// The lines could not be matched to those of the frame before.
+    #[error("lines not matched: {0}")]
+    Correspondence(#[from] CorrespondenceError),
+    /// The identifier refused its settings or the lines.
+    #[error("not identified: {0}")]
+    Identify(#[from] IdentifyError),
+    /// The fitted curve is not bounded, so that some of its lines are real.
+    #[error("the fitted curve is not bounded (margin {margin:.1e})")]
+    NotBounded {
+        /// Minimum of the leading form on the unit circle over its root mean square.
+        margin: f64,
+    },
+}
