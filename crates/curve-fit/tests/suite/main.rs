@@ -1,0 +1,7 @@
+//! One program for all of them, since each costs a link and its share of compiling.
+mod conic_solver;
+mod degenerate_input;
+mod equivariance;
+mod fitted_curve;
+mod hostile_geometry;
+mod support;
