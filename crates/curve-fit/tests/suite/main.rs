@@ -1,4 +1,5 @@
 //! One program for all of them, since each costs a link and its share of compiling.
+mod affine_normalisation;
 mod conic_solver;
 mod degenerate_input;
 mod equivariance;

@@ -2,5 +2,6 @@
 mod common;
 mod decomposition;
 mod hostile_curves;
+mod invariants;
 mod related_points;
 mod roots;

@@ -70,7 +70,8 @@ impl Study {
         let (mut hu, mut affine) = (Vec::new(), Vec::new());
         for shape in &self.shapes {
             let points = shape.sample(self.points, 0.0);
-            (hu.push(moments::hu(&points)), affine.push(moments::affine(&points)));
+            hu.push(moments::hu(&points));
+            affine.push(moments::affine(&points));
             recogniser.learn(shape.name(), &Outline::closed(points)?)?;
         }
         println!("| outline | right | none | wrong | named though unknown | Hu right | affine moments right |");

@@ -13,10 +13,10 @@ impl Moments {
         let [area, x, y] = [(0, 0), (1, 0), (0, 1)].map(|pq| integral(points, pq, Vector2::zeros()));
         let centre = Vector2::new(x / area, y / area);
         let mut moments = [[0.0; 4]; 4];
-        for p in 0..4 {
-            for q in 0..4 - p {
+        for (p, row) in moments.iter_mut().enumerate() {
+            for (q, moment) in row.iter_mut().enumerate().take(4 - p) {
                 let order = (p + q) as f64;
-                moments[p][q] = integral(points, (p, q), centre) / area / area.abs().powf(order / 2.0);
+                *moment = integral(points, (p, q), centre) / area / area.abs().powf(order / 2.0);
             }
         }
         Self(moments)

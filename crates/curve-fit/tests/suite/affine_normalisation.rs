@@ -1,12 +1,10 @@
 //! Affine-normalised fits move with their data under every affine map.
-mod support;
-
+use crate::support::{affine, any_star, any_visibility, closed, star};
 use freeform_curve_fit::{
     AreaMoments, Degree, Fit, FitError, FitSettings, Fitter, ImplicitPolynomial, Method, Normalise, Outline, Residuals,
 };
 use nalgebra::{Affine2, Matrix2, Point2, Rotation2, Vector2};
 use proptest::prelude::*;
-use support::{affine, any_star, any_visibility, closed, star};
 
 const METHODS: [Method; 3] = [
     Method::ThreeLevel,

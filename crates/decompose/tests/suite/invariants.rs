@@ -1,7 +1,5 @@
 //! Invariants of bounded and unbounded curves, and how uncertain they are.
-mod common;
-
-use common::{C, affine_maps, product, similarity};
+use crate::common::{C, affine_maps, product, similarity};
 use freeform_curve_fit::{Degree, ImplicitPolynomial, coefficient_count};
 use freeform_decompose::{
     AffineInvariants, CurveUncertainty, Decomposition, RelatedPoint, RelatedPoints, from_rotation_chart,
