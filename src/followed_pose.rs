@@ -59,7 +59,7 @@ impl FollowedPose {
         for _ in 0..STEPS {
             let (matches, median) = self.match_all(&pose, outline);
             let step = correction(&matches, ROBUST_MEDIANS * median.max(ROUNDING));
-            let Some(corrected) = step.and_then(|step| step.try_inverse()) else { break };
+            let Some(corrected) = step.and_then(nalgebra::Transform::try_inverse) else { break };
             pose *= corrected;
             if (corrected.matrix() - Matrix3::identity()).amax() < CONVERGED {
                 break;

@@ -143,7 +143,7 @@ fn the_distance_of_a_stretched_outline_from_its_curve_is_that_in_the_image() {
 fn a_frame_without_an_inverse_is_refused() {
     let outline = closed(star(&[(0.1, 0.0)], 100, 0.0, 1));
     let flat = affine(Matrix2::new(1.0, 2.0, 2.0, 4.0), Vector2::zeros());
-    let arcs = support::open(&star(&[(0.1, 0.0)], 100, 0.0, 1), &[0.0..0.6]);
+    let arcs = crate::support::open(&star(&[(0.1, 0.0)], 100, 0.0, 1), &[0.0..0.6]);
     for outline in [outline, arcs] {
         let refused = fitter(Degree::Quartic, METHODS[0]).fit_in(&outline, &flat);
         assert_eq!(refused.err(), Some(FitError::SingularNormalisation));

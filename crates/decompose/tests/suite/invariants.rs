@@ -6,7 +6,7 @@ use freeform_decompose::{
 };
 use nalgebra::{DMatrix, DVector, Vector2};
 use proptest::prelude::*;
-use rand::{RngExt as _, SeedableRng as _};
+use rand::SeedableRng as _;
 
 /// `prod |x + l y|^2` times the real lines x cos t + y sin t, plus terms of lower degree: unbounded, of either sign.
 fn unbounded(w: f64, turn: f64, real: [f64; 2], sign: f64, lower: &[f64]) -> ImplicitPolynomial {

@@ -100,7 +100,7 @@ proptest! {
         let w = [C::from_polar(radius, phase), C::from_polar(radius, -phase)];
         let mut lower = [0.0; 10];
         (lower[0], lower[2], lower[3], lower[7], lower[9]) = (-0.5, y, -conic, 0.4 * y, 0.3);
-        let symmetric = common::bounded_curve(Degree::Quartic, &w, &lower, 1.0);
+        let symmetric = crate::common::bounded_curve(Degree::Quartic, &w, &lower, 1.0);
         let first = symmetric.moved(&similarity(start, 1.0, Vector2::new(0.1, 0.2))).expect("regular");
         let map = similarity(turn, 1.0, Vector2::new(0.01, -0.02));
         let second = first.moved(&map).expect("regular");

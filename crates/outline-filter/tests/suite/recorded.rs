@@ -188,7 +188,7 @@ fn the_pose_is_told_in_the_numbers_of_its_model() {
         let parameters = filtered.last().expect("states").pose_parameters();
         assert_eq!(parameters.iter().map(|p| p.name).collect::<Vec<_>>().join(" "), names);
         let centre = frames[0].1.centroid();
-        let at = recording::map(&poses[14], &centre);
+        let at = crate::recording::map(&poses[14], &centre);
         let truth = |name| match name {
             "angle" => (poses[14][(0, 1)] - poses[14][(1, 0)]).atan2(poses[14][(0, 0)] + poses[14][(1, 1)]),
             "scale" => poses[14].fixed_view::<2, 2>(0, 0).determinant().sqrt(),
