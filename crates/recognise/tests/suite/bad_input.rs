@@ -32,10 +32,7 @@ fn an_outline_that_encloses_no_region_is_refused() {
             Point2::new(s, s * c)
         })
         .collect();
-    let line = (0..200).map(|k| Point2::new(circle(k).0, 2.0 * circle(k).0)).collect();
-    for points in [eight, line] {
-        assert_eq!(refusal(&Outline::closed(points).expect("an outline")), RecogniseError::NoRegion);
-    }
+    assert_eq!(refusal(&Outline::closed(eight).expect("an outline")), RecogniseError::NoRegion);
 }
 
 #[test]

@@ -48,14 +48,14 @@ fn a_distance_that_noise_explains_gives_the_name_and_one_that_it_does_not_gives_
 
 #[test]
 fn frames_add_up_whatever_their_order_and_make_the_answer_surer() {
-    let frames = [frame(&[Some(0.015), Some(0.2)]), frame(&[Some(0.012), Some(0.1)]), frame(&[Some(0.013), None])];
+    let frames = [frame(&[Some(0.011), Some(0.2)]), frame(&[Some(0.009), Some(0.1)]), frame(&[Some(0.01), None])];
     let backwards: Vec<_> = frames.iter().rev().cloned().collect();
     let (one, all, reversed) = (told(&frames[..1]), told(&frames), told(&backwards));
     assert_eq!((one.known, all.known, reversed.known), (Some(0), Some(0), Some(0)));
     assert!((all.probability - reversed.probability).abs() < 1e-12);
     assert!(all.probability > one.probability, "{} {}", all.probability, one.probability);
     let distance = all.candidates[0].distance.expect("compared");
-    let expected = ((0.015_f64.powi(2) + 0.012_f64.powi(2) + 0.013_f64.powi(2)) / 3.0).sqrt();
+    let expected = ((0.011_f64.powi(2) + 0.009_f64.powi(2) + 0.01_f64.powi(2)) / 3.0).sqrt();
     assert!((distance - expected).abs() < 1e-12);
 }
 

@@ -4,7 +4,7 @@ use freeform_recognise::{RecogniseSettings, Recogniser};
 use freeform_sim_camera::BuiltInShape;
 use nalgebra::{Affine2, Matrix2, Matrix3, Point2, Rotation2, Vector2};
 use proptest::prelude::*;
-use rand::{RngExt as _, SeedableRng as _};
+use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
 /// One of each kind that an affine map does not take to another: an ellipse is a circle, a square a box.
