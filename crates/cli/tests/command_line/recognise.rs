@@ -1,3 +1,7 @@
+use freeform_motion::curve_fit::{Outline, PixelGrid};
+use freeform_motion::sim_camera::{BuiltInShape, Mask};
+use nalgebra::{Matrix2, Point2, Vector2};
+
 use crate::support::{file, json, run, stderr, stdout, succeed};
 
 /// One outline of a shape, as a file.
@@ -62,4 +66,33 @@ fn a_known_outline_that_is_missing_or_open_is_unusable() {
     let output = run(&format!("recognise - --known {open}"), &seen);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("open.csv"), "{}", stderr(&output));
+}
+
+/// A shape as a mask, moved by a matrix on its unit-size points (y up), 200 pixels to the unit.
+fn mask(folder: &tempfile::TempDir, name: &str, shape: BuiltInShape, linear: Matrix2<f64>) -> String {
+    let points = shape.shape().sample(800, 0.0);
+    let outline =
+        Outline::closed(points.iter().map(|p| Point2::from(linear * p.coords)).collect()).expect("an outline");
+    let grid = PixelGrid::new([150.0, 150.0], Point2::origin(), Vector2::new(0.005, -0.005));
+    let mask = Mask::of_outline(&outline, [300, 300], &grid).expect("a mask");
+    let path = folder.path().join(name);
+    image::GrayImage::from_raw(300, 300, mask.grey).expect("300 x 300").save(&path).expect("a picture");
+    path.display().to_string()
+}
+
+#[test]
+fn masks_serve_as_known_outlines_and_pictures_as_those_that_are_seen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let shapes = [BuiltInShape::Plane, BuiltInShape::Hat, BuiltInShape::Phone];
+    let known = shapes.map(|shape| mask(&folder, &format!("{shape}.png"), shape, Matrix2::identity()));
+    let sheared = Matrix2::new(0.8, 0.5, -0.6, 0.7);
+    let seen = mask(&folder, "seen.png", BuiltInShape::Phone, sheared);
+    let document = json(&succeed(&format!("recognise {seen} --format json --known {}", known.join(" ")), ""));
+    let object = &document["objects"][0];
+    assert_eq!(object["name"], known[2].as_str(), "{object}");
+    assert!(object["probability"].as_f64().expect("a number") > 0.9, "{object}");
+    for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let found = object["map"][row][column].as_f64().expect("a number");
+        assert!((found - sheared[(row, column)]).abs() < 0.02, "{object}");
+    }
 }
