@@ -31,6 +31,7 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod followed_pose;
 mod frame_ranges;
 mod number;
 mod pipeline;
@@ -46,6 +47,7 @@ pub use freeform_estimate as estimate;
 pub use freeform_identify as identify;
 pub use freeform_outline_filter as outline_filter;
 pub use freeform_outline_io as outline_io;
+pub use freeform_recognise as recognise;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use number::significant;

@@ -1,4 +1,4 @@
-use freeform_curve_fit::{Fit, FitSettings, Fitter, Method, Normalisation, Outline};
+use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Normalise, Outline};
 use freeform_decompose::{
     Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
 };
@@ -8,6 +8,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Affine2, Point2, Translation2};
 
 use crate::{
+    followed_pose::FollowedPose,
     pipeline_error::PipelineError,
     settling::Settling,
     warning::{MANY_REJECTED, Warning},
@@ -46,6 +47,24 @@ impl Default for PipelineSettings {
     }
 }
 
+impl PipelineSettings {
+    /// The settings for a family of motions. For affine motion outlines are fitted affine-normalised, since the lines of other fits
+    /// do not follow it, and the law is filtered least squares: over six parameters the structured law takes minutes to
+    /// settle for outlines whose lines excite it little. An outline moved to its circle of inertia needs less of a ridge, and a
+    /// larger margin keeps the lines of slender ones, whose curve is bounded by it alone, apart.
+    #[must_use]
+    pub fn for_model(model: MotionModel) -> Self {
+        let mut settings = Self::default();
+        settings.identify.model = model;
+        if model == MotionModel::Affine {
+            settings.fit.normalise = Normalise::Affine;
+            settings.identify.law = AdaptiveLaw::FilteredLeastSquares;
+            settings.fit.method = Method::Bounded { margin: 0.7, ridge_weight: 0.003 };
+        }
+        settings
+    }
+}
+
 /// What one frame gave.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameResult {
@@ -73,6 +92,8 @@ pub struct Pipeline {
     /// From the coordinates that the identifier had at the start to its present ones.
     identifier_from_start: Translation2<f64>,
     last: Option<MatchedFrame>,
+    /// Of an object that is followed affinely.
+    pose: Option<FollowedPose>,
     frames: usize,
     frames_rejected: usize,
     counts: Counts,
@@ -108,6 +129,7 @@ impl Pipeline {
             identifier_from_start: Translation2::identity(),
             settings,
             last: None,
+            pose: None,
             frames: 0,
             frames_rejected: 0,
             counts: Counts::default(),
@@ -129,7 +151,7 @@ impl Pipeline {
     }
 
     fn take(&mut self, time: f64, outline: &Outline) -> Result<FrameResult, PipelineError> {
-        let fit = self.fitter.fit(outline)?;
+        let (fit, pose) = self.fit(time, outline)?;
         let Some(curve) = fit.bounded_working() else {
             return Err(PipelineError::NotBounded { margin: fit.diagnostics().boundedness_margin });
         };
@@ -148,6 +170,7 @@ impl Pipeline {
         self.identifier.step(time, &lines[..count])?;
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
+        self.remember_pose(time, outline, normalisation, pose);
         self.counts.take(correspondence.as_ref());
         let start_from_identifier = nalgebra::convert(self.identifier_from_start.inverse());
         let at_start = self.identifier.estimate().map(|estimate| estimate.in_coordinates(&start_from_identifier));
@@ -156,10 +179,55 @@ impl Pipeline {
         Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
     }
 
-    /// Sets up the identifier in coordinates centred on the first outline.
+    /// Fits a curve to an outline. Arcs of one that is followed affinely have no area moments to normalise them by: they are brought
+    /// to the pose at which they lie on the outline of the frames before, which fills in what is hidden. Where that was
+    /// never seen whole, they are fitted in its coordinates as they are. Also returns the pose, if it was looked for.
+    fn fit(&mut self, time: f64, outline: &Outline) -> Result<(Fit, Option<Affine2<f64>>), FitError> {
+        let arcs = match (self.settings.fit.normalise, outline) {
+            (Normalise::Affine, Outline::Open(arcs)) => arcs,
+            _ => return Ok((self.fitter.fit(outline)?, None)),
+        };
+        let Some(followed) = &self.pose else {
+            // The first frame: any coordinates will do that later frames are brought to.
+            let first = Normalisation::similarity(outline.centroid(), outline.rms_radius());
+            return Ok((self.fitter.fit_in(outline, &first.image_from_working())?, None));
+        };
+        let pose = followed.found(outline, &self.flow(followed.seconds_until(time)));
+        let fit = match followed.completed(arcs, &pose) {
+            Some(whole) => self.fitter.fit(&Outline::Closed(whole)),
+            None => self.fitter.fit_in(outline, &pose),
+        };
+        Ok((fit?, Some(pose)))
+    }
+
+    fn remember_pose(
+        &mut self,
+        time: f64,
+        outline: &Outline,
+        normalisation: &Normalisation,
+        pose: Option<Affine2<f64>>,
+    ) {
+        match (&mut self.pose, pose) {
+            _ if self.settings.fit.normalise == Normalise::Similarity => {}
+            (Some(followed), Some(pose)) => followed.at(time, pose),
+            (followed, _) => *followed = Some(FollowedPose::new(time, outline, normalisation)),
+        }
+    }
+
+    /// How the motion as identified so far moves the image in so many seconds; not at all before it is known.
+    fn flow(&self, seconds: f64) -> Affine2<f64> {
+        let flow = |estimate: MotionEstimate| estimate.model().flow(estimate.values(), seconds).into_inner();
+        self.identified().map_or(Affine2::identity(), |estimate| Affine2::from_matrix_unchecked(flow(estimate)))
+    }
+
+    /// Sets up the identifier in coordinates centred on the first outline and, where the motion is affine, moved to its circle of
+    /// inertia: the slopes of lines of a slender object swing far out.
     fn start_at(&mut self, first: &Normalisation) -> Result<Affine2<f64>, IdentifyError> {
-        let unit = Normalisation { centre: first.centre, radius: first.radius / RMS_RADIUS };
-        let map = unit.image_from_working();
+        let unit = Normalisation { radius: first.radius / RMS_RADIUS, ..*first };
+        let map = match self.settings.identify.model {
+            MotionModel::Affine => unit.image_from_working(),
+            _ => Normalisation::similarity(unit.centre, unit.radius).image_from_working(),
+        };
         let AdaptiveSettings { model, initial_values, .. } = &self.settings.identify;
         if !initial_values.is_empty() {
             let moved = MotionEstimate::new(*model, initial_values, None).in_coordinates(&map.inverse());
@@ -202,8 +270,7 @@ impl Pipeline {
     /// outlines tell nothing are marked unobservable: all of them for a circle.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
-        let map = self.image_from_identifier.as_ref();
-        let identified = map.and_then(|map| self.identifier.estimate().map(|estimate| estimate.in_coordinates(map)));
+        let identified = self.identified();
         if self.frames < 2 || 2 * self.counts.without_separate_lines <= self.frames {
             return identified;
         }
@@ -212,6 +279,12 @@ impl Pipeline {
         let nothing = [0.0; MotionModel::MAX_PARAMETERS];
         let estimate = identified.unwrap_or_else(|| MotionEstimate::new(model, &nothing[..count], None));
         Some((0..count).fold(estimate, MotionEstimate::with_unobservable))
+    }
+
+    /// What the identifier says, in the image frame.
+    fn identified(&self) -> Option<MotionEstimate> {
+        let map = self.image_from_identifier.as_ref()?;
+        Some(self.identifier.estimate()?.in_coordinates(map))
     }
 
     /// The identifier, for its diagnostics. Its estimate is in its own coordinates, not in those of the image.
@@ -261,7 +334,9 @@ impl Pipeline {
         {
             warnings.push(Warning::MayNotHaveSettled { seconds });
         }
-        if self.settings.identify.model == MotionModel::Affine && self.identifier.intervals_followed() > 0 {
+        let PipelineSettings { fit, identify } = &self.settings;
+        let is_biased = identify.model == MotionModel::Affine && fit.normalise == Normalise::Similarity;
+        if is_biased && self.identifier.intervals_followed() > 0 {
             warnings.push(Warning::AffineBias);
         }
         warnings

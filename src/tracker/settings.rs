@@ -49,11 +49,7 @@ impl TrackerSettings {
     pub fn new(method: Method, motion: MotionModel) -> Self {
         let method = match method {
             Method::Filter => MethodSettings::Filter(FilterSettings { model: motion, ..FilterSettings::default() }),
-            Method::Adaptive => {
-                let mut settings = PipelineSettings::default();
-                settings.identify.model = motion;
-                MethodSettings::Adaptive(Box::new(settings))
-            }
+            Method::Adaptive => MethodSettings::Adaptive(Box::new(PipelineSettings::for_model(motion))),
         };
         Self { method, scale: None }
     }

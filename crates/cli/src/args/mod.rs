@@ -5,6 +5,7 @@ mod fit;
 mod identify;
 mod outline;
 mod pictures;
+mod recognise;
 mod reproduce;
 mod simulate;
 mod simulated;
@@ -21,6 +22,7 @@ pub(crate) use identify::{
 };
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{PictureOptions, through_ffmpeg};
+pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
@@ -58,6 +60,7 @@ pub(crate) enum Command {
     Identify(IdentifyArgs),
     Track(TrackArgs),
     Outline(OutlineArgs),
+    Recognise(RecogniseArgs),
     Evaluate(EvaluateArgs),
     Reproduce(ReproduceArgs),
     Completions(CompletionsArgs),

@@ -6,10 +6,13 @@ mod fit;
 mod identify;
 mod man;
 mod outline;
+mod recognise;
 mod reproduce;
 mod simulate;
 mod stress;
 mod track;
+
+pub(crate) use recognise::RecognisedObject;
 
 use crate::args::{Cli, Command};
 use crate::failure::Failure;
@@ -25,6 +28,7 @@ pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Identify(args) => identify::run(args),
         Command::Track(args) => track::run(args),
         Command::Outline(args) => outline::run(args),
+        Command::Recognise(args) => recognise::run(args),
         Command::Evaluate(args) => evaluate::run(args),
         Command::Reproduce(args) => reproduce::run(args),
         Command::Completions(args) => completions::run(args),

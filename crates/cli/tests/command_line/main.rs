@@ -1,14 +1,17 @@
 //! The contract of the command line, tested on the binary itself.
 mod bad_input;
+mod browser;
 mod evaluate;
 mod files;
 mod filter;
 mod fit;
+mod guides;
 mod help;
 mod identify;
 mod outline;
 mod pictures;
 mod real_pictures;
+mod recognise;
 mod reproduce;
 mod simulate;
 mod support;

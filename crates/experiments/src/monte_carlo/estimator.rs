@@ -1,6 +1,5 @@
 use freeform_curve_fit::Outline;
 use freeform_estimate::MotionEstimate;
-use freeform_identify::AdaptiveSettings;
 use freeform_motion::{Pipeline, PipelineSettings};
 use freeform_outline_filter::{FilterSettings, MotionFilter};
 use freeform_riccati::MotionModel;
@@ -69,10 +68,7 @@ impl Estimator {
                 let filter = MotionFilter::new(FilterSettings { model, ..FilterSettings::default() })?;
                 Self::Filter { filter: Box::new(filter), last_known: None }
             }
-            Method::Adaptive => {
-                let identify = AdaptiveSettings { model, ..AdaptiveSettings::default() };
-                Self::Adaptive(Box::new(Pipeline::new(PipelineSettings { identify, ..PipelineSettings::default() })?))
-            }
+            Method::Adaptive => Self::Adaptive(Box::new(Pipeline::new(PipelineSettings::for_model(model))?)),
             Method::Moments => Self::Moments(Box::new(AreaMomentEstimator::new(model)?)),
             Method::Icp => Self::Registration(Box::new(RegistrationEstimator::new(model))),
         })

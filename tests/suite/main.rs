@@ -1,0 +1,11 @@
+//! One program for all of them, since each costs a link and its share of compiling.
+mod arbitrary_input;
+mod checks;
+mod common;
+mod documents;
+mod hostile_geometry;
+mod observability;
+mod paper_experiments;
+mod robustness;
+mod soak;
+mod tracker;
