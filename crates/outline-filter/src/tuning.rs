@@ -299,7 +299,7 @@ pub(crate) mod supervisor {
     /// Squared innovation of one frame beyond which a lost object has not gone on as it was.
     pub(crate) const LARGEST_INNOVATION: f64 = 80.0;
     /// Steps over which a parameter must be known at least, however fast the motion changes.
-    pub(crate) const STEPS_KNOWN: f64 = 30.0;
+    pub(crate) const STEPS_KNOWN: f64 = 10.0;
 }
 
 /// The batch estimator.
@@ -321,6 +321,8 @@ pub(crate) mod dynamics {
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
     /// twenty frames, six, two, and none.
     pub(crate) const LEVELS: [f64; 4] = [1e-6, 1e-3, 1.0, 1e3];
+    /// As these, where the velocity of the middle alone changes.
+    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-5, 1e-2];
     /// Probability that an interval of 95 % leaves out.
     pub(crate) const LEFT_OUT: f64 = 0.05;
     /// Deviations of a pose that an acceleration which begins moves the object by in a step.

@@ -19,7 +19,7 @@ fn first_object(document: &Value) -> &Value {
 }
 
 fn warnings(object: &Value) -> Vec<&str> {
-    object["warnings"].as_array().expect("a list").iter().map(|text| text.as_str().expect("text")).collect()
+    object["warnings"].as_array().expect("a list").iter().map(|w| w["message"].as_str().expect("text")).collect()
 }
 
 #[test]

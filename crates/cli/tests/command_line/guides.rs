@@ -66,7 +66,7 @@ fn run_guide(guide: &str) -> String {
 #[test]
 fn get_started_runs() {
     let printed = run_guide("get-started.md");
-    assert!(printed.contains("truth") && printed.contains("freeform.identify/1"), "{printed}");
+    assert!(printed.contains("truth") && printed.contains("freeform.identify/2"), "{printed}");
 }
 
 #[test]

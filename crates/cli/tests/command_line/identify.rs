@@ -13,13 +13,13 @@ fn keys(value: &Value) -> Vec<&str> {
 fn the_json_has_the_fields_of_the_contract_and_says_what_b_is_and_what_was_left_out() {
     let csv = sequence("");
     let document = json(&succeed("identify - --format json --scale 0.1", &csv));
-    assert_eq!(document["schema"], "freeform.identify/1");
+    assert_eq!(document["schema"], "freeform.identify/2");
     assert_eq!(keys(&document), ["b", "left_out", "objects", "schema"]);
     assert_eq!(keys(&document["b"]), ["point", "scale", "unit"]);
     assert_eq!(keys(&document["left_out"]), ["count", "pictures"]);
     let object = &document["objects"][0];
     let fields = ["frames", "frames_rejected", "generator", "method", "motion", "object", "parameters", "warnings"];
-    let mut with_later_ones = [&["ambiguity", "velocity"][..], &fields].concat();
+    let mut with_later_ones = [&["ambiguity", "dynamics", "velocity"][..], &fields].concat();
     with_later_ones.sort_unstable();
     assert_eq!(keys(object), with_later_ones);
     assert_eq!((&object["ambiguity"], keys(&object["velocity"])), (&Value::Null, vec!["point", "std", "value"]));
@@ -146,7 +146,7 @@ fn frames_that_are_no_outline_are_counted_and_the_rest_is_used() {
     let object = &json(&stdout(&output))["objects"][0];
     assert_eq!((&object["frames"], &object["frames_rejected"]), (&17.into(), &2.into()));
     let warnings = object["warnings"].as_array().expect("a list");
-    assert!(warnings.iter().any(|warning| warning.as_str().is_some_and(|text| text.contains("frame 21"))));
+    assert!(warnings.iter().any(|warning| warning["message"].as_str().is_some_and(|text| text.contains("frame 21"))));
     assert_eq!(stderr(&output).lines().filter(|line| line.contains("rejected")).count(), 2);
 }
 

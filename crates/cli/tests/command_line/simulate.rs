@@ -12,7 +12,7 @@ fn the_head_holds_the_truth_and_the_rows_follow_the_header() {
     let csv = sequence("--omega -1.5 --b -1,2 --scale 0.5 --fps 10");
     let lines: Vec<&str> = csv.lines().collect();
     assert!(lines[0].starts_with("# freeform simulate"), "{}", lines[0]);
-    assert_eq!(lines[1], "# truth omega=-1.5 b1=-1 b2=2 scale=0.5 v1=-1.836890253049479 v2=1.2693624337455106");
+    assert_eq!(lines[1], "# truth omega=-1.5 b1=-1 b2=2 scale=0.5 v1=-1.954620561699749 v2=1.0860287564243212");
     assert_eq!(lines[2], "frame,time,x,y");
     assert_eq!(lines.len(), 3 + 5 * 120);
     assert!(lines[3].starts_with("0,0,"));

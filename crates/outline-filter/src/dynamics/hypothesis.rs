@@ -17,14 +17,19 @@ pub(super) enum Course {
     ConstantGenerator,
     /// The velocity of the middle stays.
     ConstantVelocity,
-    /// The accelerations change at random; level of their density, in variances of a pose per fifth power of a step.
-    Accelerating(f64),
+    /// The accelerations change at random.
+    Accelerating {
+        /// Level of their density, in variances of a pose per fifth power of a step.
+        level: f64,
+        /// Whether the rates do as well, or the velocity of the middle alone, as of an object that spins while it falls.
+        rates: bool,
+    },
 }
 
 impl Course {
     /// Whether accelerations are part of the state.
     pub(super) fn has_accelerations(self) -> bool {
-        matches!(self, Self::Accelerating(_))
+        matches!(self, Self::Accelerating { .. })
     }
 }
 
@@ -75,24 +80,20 @@ impl Hypothesis {
     pub(super) fn predict(&mut self, step: &Step<'_>) -> bool {
         let (model, k, dt) = (step.model, step.model.parameter_count(), step.seconds);
         let rates = k - 2;
-        let entry = |at: usize| self.mean.as_slice()[at * k..(at + 1) * k].to_vec();
+        let entry = |at: usize| CentredVector::from_fn(|j, _| if j < k { self.mean[at * k + j] } else { 0.0 });
         let [error, motion, acceleration] = [entry(0), entry(1), entry(2)];
-        let (a, v) = parts(&model.generator(&motion));
-        let w = parts(&model.generator(&acceleration)).1;
-        let of_rates = |rates_of: &[f64], seconds: f64| {
-            let mut only = rates_of.to_vec();
-            only[rates..].fill(0.0);
-            parts(&model.flow(&only, seconds).into_inner()).0
+        let (a, v) = parts(&model.generator(&motion.as_slice()[..k]));
+        let w = parts(&model.generator(&acceleration.as_slice()[..k])).1;
+        let of_rates = |of: &CentredVector, seconds: f64| {
+            let only = CentredVector::from_fn(|j, _| if j < rates { of[j] } else { 0.0 });
+            parts(&model.flow(&only.as_slice()[..k], seconds).into_inner()).0
         };
         let (turn, shift, later) = match self.course {
             Course::ConstantGenerator => {
-                let (turn, shift) = parts(&model.flow(&motion, dt).into_inner());
+                let (turn, shift) = parts(&model.flow(&motion.as_slice()[..k], dt).into_inner());
                 (turn, shift, turn * v)
             }
-            _ => {
-                let mean: Vec<f64> = motion.iter().zip(&acceleration).map(|(u, a)| u + 0.5 * dt * a).collect();
-                (of_rates(&mean, dt), v * dt + 0.5 * dt * dt * w, v + dt * w)
-            }
+            _ => (of_rates(&(motion + 0.5 * dt * acceleration), dt), v * dt + 0.5 * dt * dt * w, v + dt * w),
         };
         let Some(before) = step.to.linear().try_inverse() else { return false };
         let relative = turn * of_rates(&error, 1.0) * step.from.linear() * before;
@@ -105,9 +106,9 @@ impl Hypothesis {
         }
         (self.mean[k - 2], self.mean[k - 1]) = (centre.x, centre.y);
         (self.mean[2 * k - 2], self.mean[2 * k - 1]) = (later.x, later.y);
-        self.covariance = transition * self.covariance * transition.transpose();
-        if let Course::Accelerating(level) = self.course {
-            for j in 0..k {
+        self.covariance = propagated(&transition, &self.covariance, self.size(k));
+        if let Course::Accelerating { level, rates: all } = self.course {
+            for j in if all { 0 } else { rates }..k {
                 let density = level * step.pose_variance[j] / dt.powi(5);
                 for (row, column, factor) in [
                     (0, 0, dt.powi(5) / 20.0),
@@ -170,7 +171,7 @@ impl Hypothesis {
                 }
             }
             Course::ConstantVelocity => {}
-            Course::Accelerating(_) => {
+            Course::Accelerating { .. } => {
                 for j in 0..k {
                     f[(j, 2 * k + j)] = 0.5 * dt * dt;
                     f[(k + j, 2 * k + j)] = dt;
@@ -205,11 +206,13 @@ impl Hypothesis {
                 },
             );
         self.mean += columns * pulled;
-        self.covariance -= columns * weight * columns.transpose();
-        for i in 0..n {
-            for j in 0..i {
-                let mean = 0.5 * (self.covariance[(i, j)] + self.covariance[(j, i)]);
-                (self.covariance[(i, j)], self.covariance[(j, i)]) = (mean, mean);
+        let gain = columns * weight;
+        for j in 0..n {
+            for i in 0..=j {
+                let less: f64 =
+                    (0..k).map(|l| 0.5 * (gain[(i, l)] * columns[(j, l)] + gain[(j, l)] * columns[(i, l)])).sum();
+                let left = self.covariance[(i, j)] - less;
+                (self.covariance[(i, j)], self.covariance[(j, i)]) = (left, left);
             }
         }
         let mut standardised = CentredVector::zeros();
@@ -239,13 +242,34 @@ impl Hypothesis {
     pub(super) fn move_middle(&mut self, model: MotionModel, from: &CentredPose, to: &CentredPose) {
         let k = model.parameter_count();
         let apart = map_point(&from.pose, &to.middle) - from.centre();
-        let motion = self.mean.as_slice()[k..2 * k].to_vec();
-        let carried = parts(&model.generator(&motion)).0 * apart;
+        let carried = parts(&model.generator(&self.mean.as_slice()[k..2 * k])).0 * apart;
         self.mean[2 * k - 2] += carried.x;
         self.mean[2 * k - 1] += carried.y;
-        let acceleration = self.mean.as_slice()[2 * k..3 * k].to_vec();
-        let carried = parts(&model.generator(&acceleration)).0 * apart;
+        let carried = parts(&model.generator(&self.mean.as_slice()[2 * k..3 * k])).0 * apart;
         self.mean[3 * k - 2] += carried.x;
         self.mean[3 * k - 1] += carried.y;
     }
+}
+
+/// `F P F'` over the first `n` entries, in place of the whole.
+fn propagated(f: &EntryMatrix, p: &EntryMatrix, n: usize) -> EntryMatrix {
+    let mut half = EntryMatrix::zeros();
+    for j in 0..n {
+        for l in 0..n {
+            let entry = p[(l, j)];
+            if entry != 0.0 {
+                (0..n).for_each(|i| half[(i, j)] += f[(i, l)] * entry);
+            }
+        }
+    }
+    let mut whole = EntryMatrix::zeros();
+    for l in 0..n {
+        for j in 0..n {
+            let entry = f[(j, l)];
+            if entry != 0.0 {
+                (0..n).for_each(|i| whole[(i, j)] += half[(i, l)] * entry);
+            }
+        }
+    }
+    whole
 }

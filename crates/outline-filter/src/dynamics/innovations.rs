@@ -29,7 +29,7 @@ impl Default for InnovationSeries {
             last: CentredVector::zeros(),
             squares: CentredVector::zeros(),
             products: CentredVector::zeros(),
-            blocks: Vec::new(),
+            blocks: Vec::with_capacity(tuning::BLOCKS),
             length: 1,
             filled: 0,
         }
@@ -48,7 +48,10 @@ impl InnovationSeries {
         self.frames += 1;
         if self.filled == self.length || self.blocks.is_empty() {
             if self.blocks.len() == tuning::BLOCKS {
-                self.blocks = self.blocks.chunks(2).map(|pair| pair.iter().sum()).collect();
+                for i in 0..tuning::BLOCKS / 2 {
+                    self.blocks[i] = self.blocks[2 * i] + self.blocks[2 * i + 1];
+                }
+                self.blocks.truncate(tuning::BLOCKS / 2);
                 self.length *= 2;
             }
             self.blocks.push(CentredVector::zeros());

@@ -15,14 +15,21 @@ use crate::{
     update::PoseMeasurement,
 };
 
+/// Hypotheses at most.
+const MOST: usize = 2 + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
+
+type Weights = [f64; MOST];
+
 /// Hypotheses of how the motion goes on, each with a state of its own, and their probabilities.
 #[derive(Debug, Clone)]
 pub(crate) struct DynamicsFilter {
     model: MotionModel,
     setting: Dynamics,
     hypotheses: Vec<Hypothesis>,
-    /// In the same order.
-    weights: Vec<f64>,
+    /// Those of the step before, while they are mixed.
+    before: Vec<Hypothesis>,
+    /// In the same order; zeros behind them.
+    weights: Weights,
     /// What the errors of all poses are taken from.
     reference: CentredPose,
     /// Variance of a pose as one frame tells it.
@@ -50,18 +57,23 @@ impl DynamicsFilter {
         let (mean, covariance) = centred(&change, summary, k);
         let pose_variance =
             CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
-        let levels = tuning::LEVELS.map(Course::Accelerating);
+        let all = tuning::LEVELS.map(|level| Course::Accelerating { level, rates: true });
+        let of_velocity = tuning::LEVELS_OF_VELOCITY.map(|level| Course::Accelerating { level, rates: false });
+        let accelerating = all.into_iter().chain(of_velocity);
         let courses: Vec<Course> = match setting {
-            Dynamics::Auto => [Course::ConstantGenerator, Course::ConstantVelocity].into_iter().chain(levels).collect(),
+            Dynamics::Auto => {
+                [Course::ConstantGenerator, Course::ConstantVelocity].into_iter().chain(accelerating).collect()
+            }
             Dynamics::Generator => vec![Course::ConstantGenerator],
             Dynamics::Velocity => vec![Course::ConstantVelocity],
-            Dynamics::Accelerating => levels.to_vec(),
+            Dynamics::Accelerating => accelerating.collect(),
         };
         let mut filter = Self {
             model,
             setting,
-            hypotheses: Vec::new(),
-            weights: Vec::new(),
+            hypotheses: Vec::with_capacity(MOST),
+            before: Vec::with_capacity(MOST),
+            weights: [0.0; MOST],
             reference,
             pose_variance,
             series: InnovationSeries::default(),
@@ -70,7 +82,7 @@ impl DynamicsFilter {
         for course in courses {
             let mut hypothesis = Hypothesis { course, mean, covariance };
             if course.has_accelerations() {
-                let prior = acceleration_prior(&pose_variance, seconds);
+                let prior = course.acceleration_prior(&pose_variance, k, seconds);
                 // The motion known so far is the mean over the step: half of it ago.
                 for j in 0..k {
                     let (u, a) = (k + j, 2 * k + j);
@@ -80,11 +92,11 @@ impl DynamicsFilter {
                     hypothesis.covariance[(a, u)] = 0.5 * seconds * prior[j];
                 }
             }
-            filter.weights.push(match course {
+            filter.weights[filter.hypotheses.len()] = match course {
                 Course::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
                 Course::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
-                Course::Accelerating(_) => tuning::PRIOR_OF_EACH_LEVEL,
-            });
+                Course::Accelerating { .. } => tuning::PRIOR_OF_EACH_LEVEL,
+            };
             filter.hypotheses.push(hypothesis);
         }
         filter.normalise();
@@ -96,8 +108,8 @@ impl DynamicsFilter {
         if sum > 0.0 && sum.is_finite() {
             self.weights.iter_mut().for_each(|weight| *weight /= sum);
         } else {
-            let equal = 1.0 / self.weights.len() as f64;
-            self.weights.fill(equal);
+            let count = self.hypotheses.len();
+            self.weights[..count].fill(1.0 / count as f64);
         }
     }
 
@@ -140,29 +152,38 @@ impl DynamicsFilter {
         if count < 2 {
             return;
         }
-        let prior = acceleration_prior(&self.pose_variance, seconds);
+        let k = self.model.parameter_count();
         let stays = 1.0 - tuning::TRANSITION * (count - 1) as f64;
-        let before = self.hypotheses.clone();
-        let weights = self.weights.clone();
+        self.before.clone_from(&self.hypotheses);
+        let weights = self.weights;
         for (to, hypothesis) in self.hypotheses.iter_mut().enumerate() {
             let share = |from: usize| weights[from] * if from == to { stays } else { tuning::TRANSITION };
             let total: f64 = (0..count).map(share).sum();
             let course = hypothesis.course;
-            let sources: Vec<(f64, Entries, EntryMatrix)> = (0..count)
-                .map(|from| (share(from) / total, from))
-                .filter(|(part, _)| *part > tuning::LEAST_SHARE)
-                .map(|(part, from)| {
-                    let (mean, covariance) = converted(&before[from], course, self.model, &prior);
-                    (part, mean, covariance)
-                })
-                .collect();
-            let sum: f64 = sources.iter().map(|(part, ..)| part).sum();
-            let mean = sources.iter().fold(Entries::zeros(), |mean, (part, x, _)| mean + x * (*part / sum));
-            let mut covariance = EntryMatrix::zeros();
-            for (part, x, p) in &sources {
-                let apart = x - mean;
-                covariance += (p + apart * apart.transpose()) * (*part / sum);
+            let prior = course.acceleration_prior(&self.pose_variance, k, seconds);
+            let sources =
+                || (0..count).map(|from| (from, share(from) / total)).filter(|(_, part)| *part > tuning::LEAST_SHARE);
+            let sum: f64 = sources().map(|(_, part)| part).sum();
+            let mut mean = Entries::zeros();
+            for (from, part) in sources() {
+                let source = &self.before[from];
+                (0..3 * k).for_each(|i| mean[i] += source.mean_as(course, self.model, i) * (part / sum));
             }
+            let mut covariance = EntryMatrix::zeros();
+            for (from, part) in sources() {
+                let (source, part) = (&self.before[from], part / sum);
+                let mut apart = Entries::zeros();
+                (0..3 * k).for_each(|i| apart[i] = source.mean_as(course, self.model, i) - mean[i]);
+                let known = if source.course.shares_accelerations_with(course) { 3 * k } else { 2 * k };
+                for j in 0..3 * k {
+                    for i in 0..3 * k {
+                        let own = if i < known && j < known { source.covariance[(i, j)] } else { 0.0 };
+                        covariance[(i, j)] += part * (own + apart[i] * apart[j]);
+                    }
+                }
+                (known..3 * k).for_each(|i| covariance[(i, i)] += part * prior[i - 2 * k]);
+            }
+            course.keep_to(&mut mean, &mut covariance, k);
             (hypothesis.mean, hypothesis.covariance) = (mean, covariance);
             self.weights[to] = total;
         }
@@ -187,12 +208,12 @@ impl DynamicsFilter {
             self.pose_variance[j] += tuning::VARIANCE_GAIN * (variance - self.pose_variance[j]);
         }
         let measurement = CentredMeasurement { information, deviation };
-        let mut logarithms = Vec::with_capacity(self.hypotheses.len());
-        let mut standardised = Vec::with_capacity(self.hypotheses.len());
-        for hypothesis in &mut self.hypotheses {
+        let mut logarithms = [f64::NEG_INFINITY; MOST];
+        let mut standardised = [None; MOST];
+        for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {
             let innovation = hypothesis.update(&measurement, self.model);
-            logarithms.push(innovation.map_or(f64::NEG_INFINITY, |i| i.log_likelihood));
-            standardised.push(innovation.map(|i| i.standardised));
+            logarithms[number] = innovation.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
+            standardised[number] = innovation.map(|i| i.standardised);
         }
         let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if !largest.is_finite() {
@@ -219,7 +240,7 @@ impl DynamicsFilter {
             match hypothesis.course {
                 Course::ConstantGenerator => weights.generator += weight,
                 Course::ConstantVelocity => weights.velocity += weight,
-                Course::Accelerating(_) => weights.accelerating += weight,
+                Course::Accelerating { .. } => weights.accelerating += weight,
             }
         }
         weights
@@ -237,8 +258,8 @@ impl DynamicsFilter {
 
     /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
     fn least_weight(&self) -> f64 {
-        let mut sorted = self.weights.clone();
-        sorted.sort_by(f64::total_cmp);
+        let mut sorted = self.weights;
+        sorted.sort_unstable_by(f64::total_cmp);
         let mut sum = 0.0;
         sorted
             .into_iter()
@@ -254,35 +275,39 @@ impl DynamicsFilter {
     pub(crate) fn combined(&self, given: Option<&Summary>) -> Option<Summary> {
         let (model, k) = (self.model, self.model.parameter_count());
         let change = self.reference.from_parameters(model);
-        let mut parts: Vec<(f64, Entries, EntryMatrix)> = Vec::with_capacity(self.hypotheses.len());
-        let least = self.least_weight();
-        for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
-            if *weight < least {
-                continue;
-            }
-            let replaced = given.filter(|_| hypothesis.course == Course::ConstantGenerator);
-            if let Some(summary) = replaced {
+        let of_given = match given {
+            None => None,
+            Some(summary) => {
                 let (mut mean, covariance) = centred(&change, summary, k);
-                let off = summary.pose * self.reference.pose.try_inverse()?;
-                let off = model.motion_between(&off, 1.0)?;
+                let off = model.motion_between(&(summary.pose * self.reference.pose.try_inverse()?), 1.0)?;
                 let moved = change * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(off);
                 (0..k).for_each(|j| mean[j] = moved[j]);
-                parts.push((*weight, mean, covariance));
-            } else {
-                parts.push((*weight, hypothesis.mean, hypothesis.covariance));
+                Some((mean, covariance))
             }
-        }
-        let sum: f64 = parts.iter().map(|(weight, ..)| weight).sum();
+        };
+        let least = self.least_weight();
+        let parts = || {
+            let weighted = self.hypotheses.iter().zip(&self.weights).filter(|(_, weight)| **weight >= least);
+            weighted.map(|(hypothesis, weight)| match &of_given {
+                Some((mean, covariance)) if hypothesis.course == Course::ConstantGenerator => {
+                    (*weight, mean, covariance)
+                }
+                _ => (*weight, &hypothesis.mean, &hypothesis.covariance),
+            })
+        };
+        let sum: f64 = parts().map(|(weight, ..)| weight).sum();
         // As long as a constant generator is the most probable its own estimate is the best there is; the others only widen it.
-        let is_given = given.is_some() && self.weights().generator > tuning::LIKELY;
-        let mean = match parts.first() {
-            Some((_, mean, _)) if is_given => *mean,
-            _ => parts.iter().fold(Entries::zeros(), |mean, (weight, x, _)| mean + x * (*weight / sum)),
+        let mean = match &of_given {
+            Some((mean, _)) if self.weights().generator > tuning::LIKELY => *mean,
+            _ => parts().fold(Entries::zeros(), |mean, (weight, x, _)| mean + x * (weight / sum)),
         };
         let mut covariance = EntryMatrix::zeros();
-        for (weight, x, p) in &parts {
-            let apart = x - mean;
-            covariance += (p + apart * apart.transpose()) * (*weight / sum);
+        for (weight, x, p) in parts() {
+            for j in 0..2 * k {
+                for i in 0..2 * k {
+                    covariance[(i, j)] += (weight / sum) * (p[(i, j)] + (x[i] - mean[i]) * (x[j] - mean[j]));
+                }
+            }
         }
         let to = self.reference.to_parameters(model)?;
         let large = |at: usize| {
@@ -323,38 +348,60 @@ impl DynamicsFilter {
     }
 }
 
-/// Variances of accelerations of which nothing is known yet: such that a step moves the object by some deviations of a pose.
-fn acceleration_prior(pose_variance: &CentredVector, seconds: f64) -> CentredVector {
-    pose_variance * (tuning::FIRST_ACCELERATION / (seconds * seconds)).powi(2)
+impl Course {
+    /// Variances of accelerations of which nothing is known yet: such that a step moves the object by some deviations of a pose.
+    fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
+        let unit = (tuning::FIRST_ACCELERATION / (seconds * seconds)).powi(2);
+        let first = match self {
+            Self::Accelerating { rates: true, .. } => 0,
+            Self::Accelerating { rates: false, .. } => k - 2,
+            _ => k,
+        };
+        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
+    }
+
+    /// Whether what another course knows of accelerations is of use to this one.
+    fn shares_accelerations_with(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Accelerating { rates, .. }, Self::Accelerating { rates: wanted, .. }) => rates || !wanted,
+            _ => false,
+        }
+    }
+
+    /// Leaves only what this course has.
+    fn keep_to(self, mean: &mut Entries, covariance: &mut EntryMatrix, k: usize) {
+        let (from, to) = match self {
+            Self::Accelerating { rates: true, .. } => return,
+            Self::Accelerating { rates: false, .. } => (2 * k, 3 * k - 2),
+            _ => (2 * k, 3 * k),
+        };
+        for i in from..to {
+            mean[i] = 0.0;
+            for j in 0..3 * k {
+                (covariance[(i, j)], covariance[(j, i)]) = (0.0, 0.0);
+            }
+        }
+    }
 }
 
-/// The state of a hypothesis as one of another course has it; `prior` are the variances of accelerations that it knows nothing of.
-fn converted(hypothesis: &Hypothesis, to: Course, model: MotionModel, prior: &CentredVector) -> (Entries, EntryMatrix) {
-    let k = model.parameter_count();
-    let (mut mean, mut covariance) = (hypothesis.mean, hypothesis.covariance);
-    let is_of_same_kind = match (hypothesis.course, to) {
-        (Course::Accelerating(_), Course::Accelerating(_)) => true,
-        (from, to) => from == to,
-    };
-    if is_of_same_kind {
-        return (mean, covariance);
-    }
-    for i in 2 * k..3 * k {
-        mean[i] = 0.0;
-        for j in 0..3 * k {
-            (covariance[(i, j)], covariance[(j, i)]) = (0.0, 0.0);
+impl Hypothesis {
+    /// An entry of the state as one of another course has it.
+    fn mean_as(&self, to: Course, model: MotionModel, entry: usize) -> f64 {
+        let k = model.parameter_count();
+        if entry < 2 * k || self.course.shares_accelerations_with(to) {
+            return self.mean[entry];
         }
-    }
-    if to.has_accelerations() {
-        if hypothesis.course == Course::ConstantGenerator {
+        let is_velocity = entry >= 3 * k - 2;
+        match self.course {
             // Along an arc the velocity of the middle turns all the time.
-            let (a, v) = parts(&model.generator(&mean.as_slice()[k..2 * k]));
-            let w = a * v;
-            (mean[3 * k - 2], mean[3 * k - 1]) = (w.x, w.y);
+            Course::ConstantGenerator if is_velocity => {
+                let (a, v) = parts(&model.generator(&self.mean.as_slice()[k..2 * k]));
+                (a * v)[entry + 2 - 3 * k]
+            }
+            Course::Accelerating { .. } if is_velocity => self.mean[entry],
+            _ => 0.0,
         }
-        (0..k).for_each(|j| covariance[(2 * k + j, 2 * k + j)] = prior[j]);
     }
-    (mean, covariance)
 }
 
 /// Motion and covariance of a summary about the middle.
