@@ -17,7 +17,7 @@ const TURNS: [f64; 5] = [0.2, 0.3, 0.4, 0.45, 0.5];
 pub(in crate::stress) fn kinds() -> Vec<Kind> {
     let mut kinds = Vec::new();
     let mut add = |name: String, explanation: String, recipe: Recipe| {
-        kinds.push(Kind::new(Class::Symmetry, name, explanation, recipe))
+        kinds.push(Kind::new(Class::Symmetry, name, explanation, recipe));
     };
     for (teeth, percent, points) in GEARS {
         for share in TURNS {
