@@ -12,7 +12,7 @@ Examples:
   freeform simulate --shape glider --omega -1.0472 --b 0,4 --seconds 20 --output glider.csv
   freeform simulate --shape mask.png --affine 0.1,1,-1,-0.1,0.2,0 --scale 1 --noise 0.002
   freeform simulate --shape circle --dynamics velocity --omega 2 --velocity 10,0
-  freeform simulate --shape hat --dynamics accelerating --velocity 3,8 --acceleration 0,0,-9.81 --seconds 1.5
+  freeform simulate --dynamics accelerating --velocity 3,8 --acceleration 0,0,-9.81
   freeform simulate --dynamics oscillating --omega 1 --velocity 2,0 --period 3 --amplitude 0.5
   freeform simulate --occlusion 0.2 --outliers 0.05 --seed 7 | freeform identify -
 

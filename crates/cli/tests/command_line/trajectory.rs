@@ -19,7 +19,8 @@ fn number(rows: &[Vec<String>], row: usize, column: &str) -> f64 {
 #[test]
 fn the_trajectory_has_one_row_per_object_and_frame_with_pose_and_motion() {
     let rows = trajectory("", &(sequence("") + "20,5.0,1,1\n"));
-    let header = "object,frame,time,accepted,segment,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std";
+    let header =
+        "object,frame,time,accepted,segment,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std";
     assert_eq!(rows[0].join(","), header);
     assert_eq!(rows.len(), 1 + 16);
     assert!(rows.iter().all(|row| row.len() == rows[0].len()));

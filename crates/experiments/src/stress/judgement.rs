@@ -136,7 +136,7 @@ impl Outcome {
 /// Whether a stated value with this error in deviations is wrong.
 fn is_wrong(error: f64) -> bool {
     // Not a number is no right one either.
-    !(error.abs() <= WRONG)
+    error.is_nan() || error.abs() > WRONG
 }
 
 /// An error in standard deviations; infinite where something is stated as exact and is not.

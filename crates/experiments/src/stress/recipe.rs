@@ -61,10 +61,12 @@ pub(super) enum Sensing {
 }
 
 /// What the pixels of a picture tell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Depth {
-    /// The share of the pixel that is covered, in 256 steps.
+    /// The share of the pixel that is covered, in 256 steps; the outline is where half of it is.
     Grey,
+    /// The same, with the outline at another grey value.
+    GreyAt(f64),
     /// Whether at least half of it is covered.
     Binary,
 }

@@ -1,6 +1,6 @@
 //! The frames of one run, and the truth.
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline, PixelGrid};
-use freeform_motion::outline_io::{GrayImage, TraceSettings, trace_mask};
+use freeform_motion::outline_io::{GrayImage, Threshold, TraceSettings, trace_mask};
 use freeform_sim_camera::{Mask, Shape};
 use nalgebra::{Point2, Rotation2, Vector2};
 use rand::{Rng, RngExt as _};
@@ -154,7 +154,11 @@ impl<'a> Sequence<'a> {
         let mask = Mask::of_outline(&outline, [width, height], &grid).ok()?;
         let mask = if depth == Depth::Binary { mask.binary() } else { mask };
         let picture = GrayImage::from_raw(u32::try_from(width).ok()?, u32::try_from(height).ok()?, mask.grey)?;
-        let settings = TraceSettings { pixel_size: 1.0 / pixels, ..TraceSettings::default() };
+        let threshold = match depth {
+            Depth::Grey | Depth::Binary => Threshold::default(),
+            Depth::GreyAt(level) => Threshold::Level(level),
+        };
+        let settings = TraceSettings { pixel_size: 1.0 / pixels, threshold, ..TraceSettings::default() };
         let traced = trace_mask(&picture, &settings).ok()?;
         let points = traced.outline.points().map(|p| (p + corner) * self.recipe.length_unit).collect();
         Outline::closed(points).ok()

@@ -99,7 +99,7 @@ fn share(are: impl Iterator<Item = bool>) -> Option<f64> {
 /// Of sorted numbers; of an even count the mean of both in the middle.
 fn median(sorted: &[f64]) -> Option<f64> {
     let upper = sorted.get(sorted.len() / 2)?;
-    let lower = if sorted.len() % 2 == 0 { sorted.get(sorted.len() / 2 - 1)? } else { upper };
+    let lower = if sorted.len().is_multiple_of(2) { sorted.get(sorted.len() / 2 - 1)? } else { upper };
     Some(if lower == upper { *upper } else { 0.5 * (lower + upper) })
 }
 

@@ -55,7 +55,12 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
                     ..of(Body::Gear { teeth: 20, amplitude: 0.1 })
                 },
             ),
-            ("12 points", "12 points a frame", points(12)),
+            (
+                "12 points",
+                "12 points a frame of a smooth contour, errors of 0.2 %",
+                Recipe { body: Body::Blob, noise: 0.002, ..points(12) },
+            ),
+            ("25 points", "25 points a frame", points(25)),
             ("40 points", "40 points a frame", points(40)),
             ("100 points", "100 points a frame", points(100)),
             ("1500 points", "1500 points a frame", points(1500)),

@@ -65,6 +65,11 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
             ),
             ("grey disc of 120 pixels, rolling", "the same of 120 pixels", traced(rolling(), 120.0, Depth::Grey)),
             (
+                "grey disc of 60 pixels, rolling, outline at 218",
+                "traced at the grey value 218 of 255, where the ripples are larger",
+                traced(rolling(), 60.0, Depth::GreyAt(218.0)),
+            ),
+            (
                 "black and white disc of 60 pixels, rolling",
                 "traced in masks of two values",
                 traced(rolling(), 60.0, Depth::Binary),
@@ -113,6 +118,16 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
                 "three lobes of 0.5 %",
                 "the same with waves of 0.5 %",
                 straight(Body::Lobes { lobes: 3, amplitude: 0.005 }),
+            ),
+            (
+                "egg of 1 %, noise of 0.05 %",
+                "the egg of 1 % with errors of 0.05 %",
+                Recipe { noise: 0.0005, ..straight(Body::Egg { amplitude: 0.01 }) },
+            ),
+            (
+                "ellipse of eccentricity 0.3, noise of 0.05 %",
+                "spins at 2 rad/s and runs straight, errors of 0.05 %",
+                Recipe { noise: 0.0005, ..ellipse(0.3) },
             ),
             (
                 "egg of 1 %",

@@ -17,7 +17,7 @@ const TURNS: [f64; 5] = [0.2, 0.3, 0.4, 0.45, 0.5];
 pub(in crate::stress) fn kinds() -> Vec<Kind> {
     let mut kinds = Vec::new();
     let mut add = |name: String, explanation: String, recipe: Recipe| {
-        kinds.push(Kind::new(Class::Symmetry, name, explanation, recipe))
+        kinds.push(Kind::new(Class::Symmetry, name, explanation, recipe));
     };
     for (teeth, percent, points) in GEARS {
         for share in TURNS {
@@ -38,6 +38,11 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
     let travelling = Recipe { points: 600, ..turning(Body::Gear { teeth: 20, amplitude: 0.15 }, 20, 0.4, 0.3) };
     let explanation = "the gear of 20 teeth turns by 0.4 of a pitch per frame and runs straight".to_owned();
     add("gear of 20 teeth, 0.4 of a pitch, travelling".to_owned(), explanation, travelling);
+    for share in [0.45, 0.5] {
+        let explanation =
+            format!("an object without symmetry turns about its middle by {share} of a full turn per frame");
+        add(format!("object, {share} of a turn"), explanation, turning(Body::Object, 1, share, 0.0));
+    }
     let half = Recipe { body: Body::Ellipse { eccentricity: 0.8 }, ..turning(Body::Circle, 2, 0.45, 0.0) };
     let explanation = "turns about its middle by 0.45 of half a turn per frame".to_owned();
     add("ellipse, 0.45 of half a turn".to_owned(), explanation, half);
