@@ -75,8 +75,9 @@ pub(crate) mod null_space {
     pub(crate) const LEAST_STEPS: usize = 3;
     /// Turn, in rad, of a unit step in a direction that counts as turning.
     pub(crate) const HOLDS_TURN: f64 = 0.3;
-    /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.
-    pub(crate) const TAKES_PART: f64 = 0.01;
+    /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it: what is not seen may be
+    /// of any size, so that this is rounding alone.
+    pub(crate) const TAKES_PART: f64 = 1e-6;
     /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
     /// over the frames of a recording, and leaves seven digits to the solution.
     pub(crate) const HOLDING: f64 = 1e9;
@@ -373,7 +374,11 @@ pub(crate) mod family {
     /// Deviations beyond which a motion that is left out is there. A warning that is always there is none.
     pub(crate) const SIGNIFICANT: f64 = 5.0;
     /// Share of the noise of a point that a displacement must have to matter.
-    pub(crate) const MATTERS: f64 = 0.05;
+    pub(crate) const MATTERS: f64 = 0.03;
+    /// Displacement, in squares of the noise, that noise itself makes where the outline bends, by frames that are told by straight cells.
+    pub(crate) const OF_NOISE: f64 = 3.0;
+    /// Frames after which a map is known well enough to be compared with.
+    pub(crate) const MAP_KNOWN: usize = 4;
     /// Mean square, in variances, of a change of shape that has no direction.
     pub(crate) const SHAPE_CHANGES: f64 = 4.0;
     /// Frames looked at: all of the first so many, and then every so many.
@@ -385,6 +390,9 @@ pub(crate) mod family {
 pub(crate) mod symmetry {
     /// Largest order that is looked for. An outline that has this one as well, or the one before, is as good as round.
     pub(crate) const LARGEST_ORDER: usize = 72;
+    /// Mean square of the innovations of a turned outline, in those of the outline as it is, up to which it is symmetric within its
+    /// noise: noise and straight cells make as much of one, and a tooth that is missing much more.
+    pub(crate) const AS_GOOD: f64 = 1.5;
     /// Turns on either side of none that are tried of a symmetric outline.
     pub(crate) const TRIED: usize = 2;
     /// Turns that differ by less than this share of the angle of symmetry are the same.

@@ -47,12 +47,13 @@ impl FamilyTests {
             return None;
         }
         let n = self.frames as f64;
+        let least = tuning::MATTERS * sigma + tuning::OF_NOISE * sigma * sigma;
         let mut clearest: Option<(usize, f64)> = None;
         let mut displacement = 0.0;
         for i in 0..LEFT_OUT {
             let evidence = self.series.drift(i, LEFT_OUT).abs();
             let size = (self.squares[i] / n).sqrt();
-            if evidence > tuning::SIGNIFICANT && size > tuning::MATTERS * sigma {
+            if evidence > tuning::SIGNIFICANT && size > least {
                 displacement += size * size;
                 if clearest.is_none_or(|(_, most)| evidence > most) {
                     clearest = Some((i, evidence));
@@ -70,7 +71,7 @@ impl FamilyTests {
         let worst = (0..LEFT_OUT).map(|i| (self.series.mean_square(i), (self.squares[i] / n).sqrt()));
         let (evidence, size) = worst.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let most = 1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt();
-        let is_shape = evidence > most.max(tuning::SHAPE_CHANGES) && size > tuning::MATTERS * sigma;
+        let is_shape = evidence > most.max(tuning::SHAPE_CHANGES) && size > least;
         is_shape.then_some((WrongFamily::Shape, size))
     }
 }

@@ -256,6 +256,12 @@ impl DynamicsFilter {
         self.series.spread(self.model.parameter_count())
     }
 
+    /// Mean square of the innovations, at least 1: how much larger than the model's errors are.
+    pub(crate) fn widening(&self) -> f64 {
+        let k = self.model.parameter_count();
+        (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
+    }
+
     /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
     fn least_weight(&self) -> f64 {
         let mut sorted = self.weights;

@@ -15,7 +15,8 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
         .chain((2..=tuning::LARGEST_ORDER).map(|n| turned(track, pose, std::f64::consts::TAU / n as f64)))
         .collect();
     let likelihoods = track.compared(outline, &poses, frame);
-    let order = (2..=tuning::LARGEST_ORDER).rev().find(|n| !likelihoods[n - 1].is_worse_than(&likelihoods[0]));
+    let order =
+        (2..=tuning::LARGEST_ORDER).rev().find(|n| likelihoods[n - 1].is_within(tuning::AS_GOOD, &likelihoods[0]));
     order.filter(|n| *n < tuning::LARGEST_ORDER - 1).unwrap_or(1)
 }
 

@@ -1,4 +1,6 @@
 //! Hypotheses: turns that explain the frames as well as the one taken, followed until a frame decides.
+use std::f64::consts::{PI, TAU};
+
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
 
@@ -29,6 +31,16 @@ struct Hypothesis {
     /// While it is followed.
     track: Option<Track>,
     likelihood: NegativeLogLikelihood,
+    ground: Ground,
+}
+
+/// Why a turn may have been another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ground {
+    /// It explains the frames so far as well, and is followed until a frame decides.
+    Likeness,
+    /// The outline has a symmetry: no frame will decide, and the path of the object must not.
+    Symmetry,
 }
 
 /// All others, and what the one taken is compared with them by.
@@ -45,7 +57,7 @@ pub(super) struct Hypotheses {
 impl Hypotheses {
     /// Of an outline with a symmetry of some order, takes the smallest turn of all that are not significantly worse than the best.
     pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize) -> (Option<Candidate>, Self) {
-        let pitch = std::f64::consts::TAU / symmetry as f64;
+        let pitch = TAU / symmetry as f64;
         let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
         candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
         let Some(best) = candidates.first().map(|c| c.likelihood) else { return (None, Self::default()) };
@@ -65,9 +77,26 @@ impl Hypotheses {
             likelihood: taken.as_ref().map_or_else(NegativeLogLikelihood::default, |c| c.likelihood),
             ..Self::default()
         };
+        if symmetry > 1 && taken.is_some() {
+            let wrapped = |turn: f64| (turn + PI).rem_euclid(TAU) - PI;
+            let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| wrapped(all.taken + step * pitch)).into();
+            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+            turns.retain(|turn| (turn - all.taken).abs() > different_turn);
+            for turn in turns {
+                all.turns.push(turn);
+                let likelihood = NegativeLogLikelihood::default();
+                all.list.push(Hypothesis { likelihood, track: None, ground: Ground::Symmetry });
+            }
+        }
+        let off_symmetry = |turn: f64| {
+            let steps = (turn - all.taken) / pitch;
+            symmetry == 1 || (steps - steps.round()).abs() > SAME
+        };
+        let others: Vec<Candidate> = others.filter(|candidate| off_symmetry(candidate.turn)).collect();
         for candidate in others {
             all.turns.push(candidate.turn);
-            all.list.push(Hypothesis { likelihood: candidate.likelihood, track: Some(candidate.track) });
+            let (likelihood, track) = (candidate.likelihood, Some(candidate.track));
+            all.list.push(Hypothesis { likelihood, track, ground: Ground::Likeness });
         }
         (taken, all)
     }
@@ -98,6 +127,9 @@ impl Hypotheses {
     pub(super) fn doubts(&self, estimate: &MotionEstimate) -> [bool; MAX_PARAMETERS] {
         let mut doubts = [false; MAX_PARAMETERS];
         for hypothesis in (0..self.list.len()).filter(|i| self.is_doubtful(*i)).map(|i| &self.list[i]) {
+            if hypothesis.ground == Ground::Symmetry {
+                return [true; MAX_PARAMETERS];
+            }
             let Some(other) = hypothesis.track.as_ref().and_then(Track::estimate) else { continue };
             for ((doubt, parameter), other) in doubts.iter_mut().zip(estimate.parameters()).zip(other.values()) {
                 let known = parameter.value.zip(parameter.standard_deviation);

@@ -4,6 +4,7 @@ use super::{
     settings::FilterSettings,
 };
 use crate::{
+    dynamics::DynamicsFilter,
     measurement::Frame,
     track::{Comparison, Outcome, Track},
     tuning::update::SUDDEN,
@@ -44,7 +45,9 @@ pub(super) fn advance(
     comparison: Comparison,
 ) -> Outcome {
     predict(settings, track, history, seconds);
-    let outcome = measured(settings, (track, frame), &mut history.change, known, comparison);
+    // Errors that are larger than the model's, such as those of a camera that shakes, are no change of the motion.
+    let widening = history.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening);
+    let outcome = measured(settings, (track, frame), &mut history.change, (known, widening), comparison);
     take(history, &outcome);
     outcome
 }
@@ -54,7 +57,7 @@ fn measured(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
     change: &mut MotionChange,
-    known: Known,
+    (known, widening): (Known, f64),
     comparison: Comparison,
 ) -> Outcome {
     let parameters = track.model().parameter_count();
@@ -65,7 +68,7 @@ fn measured(
     if !settings.finds_changes() && known == Known::ShowsObject {
         return track.update(frame, &anywhere, comparison);
     }
-    let as_before = Gate { largest_innovation: Some(largest_innovation(track)), ..anywhere };
+    let as_before = Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere };
     let mut outcome = track.update(frame, &as_before, comparison);
     if !settings.finds_changes() {
         return outcome;

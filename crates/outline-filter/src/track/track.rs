@@ -198,7 +198,8 @@ impl Track {
         let mut found = None;
         if verdict.is_ok() {
             self.frames += 1;
-            if self.frames <= family::ALL_OF_THE_FIRST || self.frames.is_multiple_of(family::EVERY) {
+            let is_looked_at = self.frames <= family::ALL_OF_THE_FIRST || self.frames.is_multiple_of(family::EVERY);
+            if self.frames > family::MAP_KNOWN && is_looked_at {
                 let at = CentredPose { pose: proposal.pose, middle: self.map.middle() };
                 found = misfit(&self.belief, frame, &at, variance.sqrt());
             }
