@@ -172,7 +172,7 @@ impl fmt::Display for Warning {
             Self::Lost => f.write_str("the object was lost at the end"),
             Self::Reacquiring { last_known } => write!(
                 f,
-                "the object was lost and searched for at the end; this is its motion at {} s",
+                "the object was lost and searched for at the end; its motion was last known at {} s",
                 significant(*last_known, 4)
             ),
             Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),

@@ -139,7 +139,12 @@ impl FilteredObject {
             Err(error) => return Step { rejected_because: Some(RejectionCause::Filter(error)), ..Step::default() },
         };
         let estimate = self.filter.estimate();
-        self.last_known = estimate.map(|estimate| (time, estimate)).or(self.last_known);
+        if let Some(estimate) = estimate {
+            // Of a lost object nothing is stated, but when something was.
+            let is_stated = estimate.parameters().any(|p| p.value.is_some());
+            let since = self.last_known.filter(|_| !is_stated && self.filter.phase() == Phase::Lost);
+            self.last_known = Some((since.map_or(time, |(since, _)| since), estimate));
+        }
         Step {
             phase: Some(step.phase.into()),
             estimate,

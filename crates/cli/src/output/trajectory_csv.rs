@@ -13,8 +13,10 @@ pub(crate) fn write_trajectory(
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
     let names = || Trajectory::pose_names(model).iter().chain(model.parameter_names());
-    let mut header: Vec<String> = ["object", "frame", "time", "accepted", "segment"].map(str::to_owned).into();
+    let mut header: Vec<String> = ["object", "frame", "time", "accepted"].map(str::to_owned).into();
     header.extend(names().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
+    // The last column, so that those before it are where they always were.
+    header.push("segment".to_owned());
     writer.write_record(&header).map_err(io::Error::from)?;
     for (row, known) in trajectory.rows().iter().zip(trajectory.poses(scale)) {
         let mut fields = vec![
@@ -22,7 +24,6 @@ pub(crate) fn write_trajectory(
             row.frame.to_string(),
             row.time.map_or_else(String::new, |time| time.to_string()),
             row.accepted.to_string(),
-            row.segment.to_string(),
         ];
         match known {
             Some(PoseAndMotion { pose, motion }) => {
@@ -32,6 +33,7 @@ pub(crate) fn write_trajectory(
             }
             None => fields.extend(std::iter::repeat_n(String::new(), 2 * names().count())),
         }
+        fields.push(row.segment.to_string());
         writer.write_record(&fields).map_err(io::Error::from)?;
     }
     writer.flush()

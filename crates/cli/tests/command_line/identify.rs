@@ -28,7 +28,9 @@ fn the_json_has_the_fields_of_the_contract_and_says_what_b_is_and_what_was_left_
     assert_eq!(keys(&object["parameters"]), ["b1", "b2", "omega"]);
     for (name, unit) in [("omega", "rad/s"), ("b1", "1/s"), ("b2", "1/s")] {
         let parameter = &object["parameters"][name];
-        assert_eq!(keys(parameter), ["observable", "std", "unit", "value"]);
+        let fields = ["observable", "std", "std_random", "std_systematic", "unit", "value"];
+        let with_aliases = ["aliases", "observable", "std", "std_random", "std_systematic", "unit", "value"];
+        assert_eq!(keys(parameter), if name == "omega" { &with_aliases[..] } else { &fields[..] });
         assert!(parameter["value"].is_f64() && parameter["observable"] == true && parameter["unit"] == unit);
     }
     let generator = &object["generator"];

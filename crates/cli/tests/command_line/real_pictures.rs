@@ -17,7 +17,7 @@ fn data(name: &str) -> Option<String> {
 fn used(trajectory: &str) -> Vec<(usize, impl Fn(&str) -> f64 + use<>)> {
     let mut rows = trajectory.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let header = rows.next().expect("a header");
-    let rows = rows.filter(|row| row[3] == "true" && !row[5].is_empty());
+    let rows = rows.filter(|row| row[3] == "true" && !row[4].is_empty());
     rows.map(|row| {
         let header = header.clone();
         let frame = row[1].parse().expect("a frame");
