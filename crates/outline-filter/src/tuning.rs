@@ -75,9 +75,11 @@ pub(crate) mod null_space {
     pub(crate) const LEAST_STEPS: usize = 3;
     /// Turn, in rad, of a unit step in a direction that counts as turning.
     pub(crate) const HOLDS_TURN: f64 = 0.3;
-    /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it: what is not seen may be
-    /// of any size, so that this is rounding alone.
-    pub(crate) const TAKES_PART: f64 = 1e-6;
+    /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.
+    pub(crate) const TAKES_PART: f64 = 0.01;
+    /// As that, of a velocity in a direction that turns: what is not seen of a turn may be half a circle in a frame, so that this is
+    /// rounding alone.
+    pub(crate) const TURNS_WITH: f64 = 1e-6;
     /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
     /// over the frames of a recording, and leaves seven digits to the solution.
     pub(crate) const HOLDING: f64 = 1e9;
@@ -313,8 +315,8 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Probability of each change from one hypothesis to another in a frame.
-    pub(crate) const TRANSITION: f64 = 0.001;
+    /// Probability of each change from one hypothesis to another in a frame: a thousandth for all of them together.
+    pub(crate) const TRANSITION: f64 = 0.000_15;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
     pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.9;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.07;
@@ -393,6 +395,8 @@ pub(crate) mod symmetry {
     /// Mean square of the innovations of a turned outline, in those of the outline as it is, up to which it is symmetric within its
     /// noise: noise and straight cells make as much of one, and a tooth that is missing much more.
     pub(crate) const AS_GOOD: f64 = 1.5;
+    /// Share of the angle of symmetry that a turn between frames may lie off a multiple of it for the turns to be the same.
+    pub(crate) const OFF_MULTIPLE: f64 = 0.2;
     /// Turns on either side of none that are tried of a symmetric outline.
     pub(crate) const TRIED: usize = 2;
     /// Turns that differ by less than this share of the angle of symmetry are the same.

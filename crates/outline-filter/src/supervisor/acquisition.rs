@@ -41,7 +41,7 @@ impl MotionFilter {
         let nearest = candidates.iter().max_by(|a, b| agreement(a).total_cmp(&agreement(b)))?.outcome;
         let lost = self.phase == Phase::Lost;
         candidates.retain(|candidate| candidate.outcome.is_accepted());
-        let (taken, others) = Hypotheses::among(candidates, self.symmetry);
+        let (taken, others) = Hypotheses::among(candidates, self.symmetry, seconds);
         self.hypotheses = others;
         let outcome = taken.as_ref().map_or(nearest, |candidate| candidate.outcome);
         if taken.is_some() {

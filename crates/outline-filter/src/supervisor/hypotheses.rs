@@ -11,7 +11,10 @@ use super::{
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
     track::{Comparison, Outcome, Track},
-    tuning::{hypotheses as tuning, symmetry::SAME},
+    tuning::{
+        hypotheses as tuning,
+        symmetry::{OFF_MULTIPLE, SAME},
+    },
     update::Gate,
 };
 
@@ -52,11 +55,14 @@ pub(super) struct Hypotheses {
     taken: f64,
     likelihood: NegativeLogLikelihood,
     frames: usize,
+    /// Angle of symmetry, rad, and the time that the turns were made in, in units of the filter.
+    pitch: f64,
+    acquired_over: f64,
 }
 
 impl Hypotheses {
     /// Of an outline with a symmetry of some order, takes the smallest turn of all that are not significantly worse than the best.
-    pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize) -> (Option<Candidate>, Self) {
+    pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
         let pitch = TAU / symmetry as f64;
         let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
         candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
@@ -75,6 +81,8 @@ impl Hypotheses {
         let mut all = Self {
             taken: taken.as_ref().map_or(0.0, |c| c.turn),
             likelihood: taken.as_ref().map_or_else(NegativeLogLikelihood::default, |c| c.likelihood),
+            pitch,
+            acquired_over: seconds,
             ..Self::default()
         };
         if symmetry > 1 && taken.is_some() {
@@ -84,8 +92,11 @@ impl Hypotheses {
             turns.retain(|turn| (turn - all.taken).abs() > different_turn);
             for turn in turns {
                 all.turns.push(turn);
-                let likelihood = NegativeLogLikelihood::default();
-                all.list.push(Hypothesis { likelihood, track: None, ground: Ground::Symmetry });
+                let found =
+                    others.as_slice().iter().find(|candidate| wrapped(candidate.turn - turn).abs() < different_turn);
+                let likelihood = found.map_or_else(NegativeLogLikelihood::default, |candidate| candidate.likelihood);
+                let track = found.map(|candidate| candidate.track.clone());
+                all.list.push(Hypothesis { likelihood, track, ground: Ground::Symmetry });
             }
         }
         let off_symmetry = |turn: f64| {
@@ -160,7 +171,11 @@ impl Hypotheses {
         let mut outcome = outcome;
         self.frames += 1;
         self.likelihood.add(&outcome.likelihood);
+        if outcome.is_accepted() {
+            self.compare_intervals(seconds);
+        }
         for index in (0..self.list.len()).rev() {
+            let ground = self.list[index].ground;
             let Some(other) = &mut self.list[index].track else { continue };
             other.predict(seconds);
             other.add_process_noise(&settings.process_noise, seconds);
@@ -170,18 +185,26 @@ impl Hypotheses {
             other.take_spread(found.measurement.spread);
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
-            if found.is_accepted() && (!outcome.is_accepted() || self.likelihood.is_worse_than(&of_other)) {
+            let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);
+            if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 if let Some(other) = &mut self.list[index].track {
                     std::mem::swap(other, track);
                 }
                 std::mem::swap(&mut self.likelihood, &mut self.list[index].likelihood);
                 std::mem::swap(&mut self.taken, &mut self.turns[index]);
-                if !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood) {
-                    self.remove(index);
+                let is_worse = !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood);
+                match ground {
+                    Ground::Likeness if is_worse => self.remove(index),
+                    Ground::Symmetry if is_worse => self.list[index].track = None,
+                    _ => {}
                 }
                 outcome = found;
             } else if outcome.is_accepted() && (!found.is_accepted() || of_other.is_worse_than(&self.likelihood)) {
-                self.remove(index);
+                match ground {
+                    Ground::Likeness => self.remove(index),
+                    // Its path is no evidence.
+                    Ground::Symmetry => self.list[index].track = None,
+                }
             }
         }
         if self.frames >= tuning::FOLLOWED {
@@ -192,6 +215,18 @@ impl Hypotheses {
             }
         }
         outcome
+    }
+
+    /// Leaves out turns of a symmetric outline that are no multiple of its angle apart over another interval between frames.
+    fn compare_intervals(&mut self, seconds: f64) {
+        for index in (0..self.list.len()).rev() {
+            if self.list[index].ground == Ground::Symmetry {
+                let apart = (self.turns[index] - self.taken) * seconds / (self.acquired_over * self.pitch);
+                if (apart - apart.round()).abs() > OFF_MULTIPLE {
+                    self.remove(index);
+                }
+            }
+        }
     }
 
     /// Cuts the maps of all hypotheses anew; those that cannot be are none any more.

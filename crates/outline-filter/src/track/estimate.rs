@@ -7,7 +7,10 @@ use super::Track;
 use crate::{
     belief::{STATE, scaled_inverse},
     dynamics::{CentredVector, Dynamics, DynamicsFilter, LARGEST, Summary},
-    tuning::{null_space::TAKES_PART, supervisor::STEPS_KNOWN},
+    tuning::{
+        null_space::{TAKES_PART, TURNS_WITH},
+        supervisor::STEPS_KNOWN,
+    },
     update::{hold, with_hold},
 };
 
@@ -185,8 +188,14 @@ impl Track {
             });
             let sizes: Vec<f64> = sizes.collect();
             let largest = sizes.iter().copied().fold(0.0, f64::max);
-            for (blind, size) in blind.iter_mut().zip(sizes) {
-                *blind |= size > TAKES_PART * largest;
+            let turns = model
+                .parameter_names()
+                .iter()
+                .zip(&sizes)
+                .any(|(name, size)| *name == "omega" && *size > 0.5 * largest);
+            for ((blind, size), kind) in blind.iter_mut().zip(sizes).zip(model.parameter_kinds()) {
+                let least = if turns && *kind == ParameterKind::Velocity { TURNS_WITH } else { TAKES_PART };
+                *blind |= size > least * largest;
             }
         }
         blind
