@@ -390,11 +390,13 @@ pub(crate) mod family {
 
 /// Symmetry of outlines.
 pub(crate) mod symmetry {
-    /// Largest order that is looked for. An outline that has this one as well, or the one before, is as good as round.
+    /// Largest order that is looked for.
     pub(crate) const LARGEST_ORDER: usize = 72;
     /// Mean square of the innovations of a turned outline, in those of the outline as it is, up to which it is symmetric within its
     /// noise: noise and straight cells make as much of one, and a tooth that is missing much more.
     pub(crate) const AS_GOOD: f64 = 1.5;
+    /// As [`AS_GOOD`], that half of a turn of a symmetry must exceed.
+    pub(crate) const HALF_IS_WORSE: f64 = 2.0;
     /// Share of the angle of symmetry that a turn between frames may lie off a multiple of it for the turns to be the same.
     pub(crate) const OFF_MULTIPLE: f64 = 0.2;
     /// Turns on either side of none that are tried of a symmetric outline.

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Rotation2};
 use crate::{measurement::Frame, track::Track, tuning::symmetry as tuning};
 
 /// Order of the symmetry of an outline: the largest n for which the known outline turned by the n-th part of a circle explains a frame
-/// as well as it does in its pose; 1 where there is none, and where the outline is as good as round.
+/// as well as it does in its pose, and half of that turn does not; 1 where there is none, and where the outline is as good as round.
 pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f64>, frame: &mut Frame) -> usize {
     if track.turn_is_unseen() {
         return 1;
@@ -15,9 +15,15 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
         .chain((2..=tuning::LARGEST_ORDER).map(|n| turned(track, pose, std::f64::consts::TAU / n as f64)))
         .collect();
     let likelihoods = track.compared(outline, &poses, frame);
-    let order =
-        (2..=tuning::LARGEST_ORDER).rev().find(|n| likelihoods[n - 1].is_within(tuning::AS_GOOD, &likelihoods[0]));
-    order.filter(|n| *n < tuning::LARGEST_ORDER - 1).unwrap_or(1)
+    let as_good = |n: &usize| likelihoods[n - 1].is_within(tuning::AS_GOOD, &likelihoods[0]);
+    let found: Vec<usize> = (2..=tuning::LARGEST_ORDER).rev().filter(as_good).collect();
+    // Turns that are too small for the frame to show are no symmetry: half of one of a symmetry is seen.
+    let halves: Vec<_> = std::iter::once(*pose)
+        .chain(found.iter().map(|n| turned(track, pose, std::f64::consts::PI / *n as f64)))
+        .collect();
+    let likelihoods = track.compared(outline, &halves, frame);
+    let seen = |at: &usize| !likelihoods[at + 1].is_within(tuning::HALF_IS_WORSE, &likelihoods[0]);
+    (0..found.len()).find(seen).map_or(1, |at| found[at])
 }
 
 /// A pose turned by an angle, anticlockwise where y points up, about the object's middle.
