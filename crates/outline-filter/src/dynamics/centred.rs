@@ -33,12 +33,12 @@ impl CentredPose {
     }
 
     /// Parameters about the image origin by those about the middle.
-    pub(crate) fn to_parameters(self, model: MotionModel) -> Option<SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>> {
+    pub(crate) fn about_origin(self, model: MotionModel) -> Option<SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>> {
         centred_change(model, &self.pose, &self.middle)
     }
 
     /// Parameters about the middle by those about the image origin.
-    pub(crate) fn from_parameters(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
+    pub(crate) fn about_middle(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
         let (k, centre) = (model.parameter_count(), self.centre());
         let shift = |x: f64, y: f64| Matrix3::new(1.0, 0.0, x, 0.0, 1.0, y, 0.0, 0.0, 1.0);
         let change = model.adjoint(&shift(-centre.x, -centre.y), &shift(centre.x, centre.y));
@@ -68,7 +68,7 @@ impl Summary {
     ) -> Option<Self> {
         let k = model.parameter_count();
         let at = CentredPose { pose: self.pose, middle: *middle };
-        let (to, from) = (at.to_parameters(model)?, at.from_parameters(model));
+        let (to, from) = (at.about_origin(model)?, at.about_middle(model));
         let blocks = |m: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>| {
             StateMatrix::from_fn(
                 |i, j| {

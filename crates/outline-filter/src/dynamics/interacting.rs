@@ -53,7 +53,7 @@ impl DynamicsFilter {
             return None;
         }
         let reference = CentredPose { pose: summary.pose, middle };
-        let change = reference.from_parameters(model);
+        let change = reference.about_middle(model);
         let (mean, covariance) = centred(&change, summary, k);
         let pose_variance =
             CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
@@ -132,8 +132,8 @@ impl DynamicsFilter {
 
     /// Takes it that nothing happens in null directions of the reference pose.
     fn hold(&mut self, null: &[NullDirection]) {
-        let Some(to) = self.reference.to_parameters(self.model).filter(|_| !null.is_empty()) else { return };
-        let (from, k) = (self.reference.from_parameters(self.model), self.model.parameter_count());
+        let Some(to) = self.reference.about_origin(self.model).filter(|_| !null.is_empty()) else { return };
+        let (from, k) = (self.reference.about_middle(self.model), self.model.parameter_count());
         for NullDirection { direction, dual } in null {
             let direction = from * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*direction);
             let dual = to.transpose() * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*dual);
@@ -193,7 +193,7 @@ impl DynamicsFilter {
     /// Takes what an accepted frame tells of the pose: the error of the reference pose.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
         let k = self.model.parameter_count();
-        let Some(to) = self.reference.to_parameters(self.model) else { return };
+        let Some(to) = self.reference.about_origin(self.model) else { return };
         let information = to.transpose() * measured.information * to;
         let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
         let pulled = to.transpose() * measured.pulled;
@@ -280,7 +280,7 @@ impl DynamicsFilter {
     /// outline as well.
     pub(crate) fn combined(&self, given: Option<&Summary>) -> Option<Summary> {
         let (model, k) = (self.model, self.model.parameter_count());
-        let change = self.reference.from_parameters(model);
+        let change = self.reference.about_middle(model);
         let of_given = match given {
             None => None,
             Some(summary) => {
@@ -315,7 +315,7 @@ impl DynamicsFilter {
                 }
             }
         }
-        let to = self.reference.to_parameters(model)?;
+        let to = self.reference.about_origin(model)?;
         let large = |at: usize| {
             nalgebra::SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 })
         };
@@ -340,7 +340,7 @@ impl DynamicsFilter {
         let (model, k) = (self.model, self.model.parameter_count());
         let Some(inverse) = self.reference.pose.try_inverse() else { return false };
         let Some(moved) = model.motion_between(&(pose * inverse), 1.0) else { return false };
-        let moved = self.reference.from_parameters(model) * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(moved);
+        let moved = self.reference.about_middle(model) * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(moved);
         let apart = to.centre() - self.reference.centre();
         for hypothesis in &mut self.hypotheses {
             for j in 0..k - 2 {
