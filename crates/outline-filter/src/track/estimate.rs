@@ -188,11 +188,7 @@ impl Track {
             });
             let sizes: Vec<f64> = sizes.collect();
             let largest = sizes.iter().copied().fold(0.0, f64::max);
-            let turns = model
-                .parameter_names()
-                .iter()
-                .zip(&sizes)
-                .any(|(name, size)| *name == "omega" && *size > 0.5 * largest);
+            let turns = self.turn_is_unseen();
             for ((blind, size), kind) in blind.iter_mut().zip(sizes).zip(model.parameter_kinds()) {
                 let least = if turns && *kind == ParameterKind::Velocity { TURNS_WITH } else { TAKES_PART };
                 *blind |= size > least * largest;
