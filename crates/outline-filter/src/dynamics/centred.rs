@@ -77,18 +77,35 @@ impl Summary {
             )
         };
         let (to, from) = (blocks(&to), blocks(&from));
-        let mut centred = from * self.covariance * from.transpose();
+        let mut centred = carried(&from, &self.covariance, 2 * k);
         for i in 0..(2 * k).min(STATE) {
             for j in 0..2 * k {
                 centred[(i, j)] *= factors[i % k] * factors[j % k];
             }
             centred[(i, i)] += added[i / k][i % k].powi(2);
         }
-        let mut covariance = to * centred * to.transpose();
+        let mut covariance = carried(&to, &centred, 2 * k);
         // Beyond the state the diagonal is one, as everywhere.
         (2 * k..STATE).for_each(|i| covariance[(i, i)] = 1.0);
         Some(Self { covariance, ..*self })
     }
+}
+
+/// `F P F'` over the first `n` entries; zeros beyond them.
+pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>, n: usize) -> SMatrix<f64, N, N> {
+    let times = |a: &SMatrix<f64, N, N>, b: &SMatrix<f64, N, N>| {
+        let mut product = SMatrix::<f64, N, N>::zeros();
+        for j in 0..n {
+            for l in 0..n {
+                let entry = b[(l, j)];
+                if entry != 0.0 {
+                    (0..n).for_each(|i| product[(i, j)] += a[(i, l)] * entry);
+                }
+            }
+        }
+        product
+    };
+    times(&times(f, p), &f.transpose())
 }
 
 /// Linear part of a generator and its velocity.

@@ -2,7 +2,7 @@
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, about_origin, parts};
+use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, about_origin, carried, parts};
 
 /// Pose, motion and accelerations of the largest model.
 pub(super) const ENTRIES: usize = 3 * LARGEST;
@@ -106,7 +106,7 @@ impl Hypothesis {
         }
         (self.mean[k - 2], self.mean[k - 1]) = (centre.x, centre.y);
         (self.mean[2 * k - 2], self.mean[2 * k - 1]) = (later.x, later.y);
-        self.covariance = propagated(&transition, &self.covariance, self.size(k));
+        self.covariance = carried(&transition, &self.covariance, self.size(k));
         if let Course::Accelerating { level, rates: all } = self.course {
             for j in if all { 0 } else { rates }..k {
                 let density = level * step.pose_variance[j] / dt.powi(5);
@@ -249,27 +249,4 @@ impl Hypothesis {
         self.mean[3 * k - 2] += carried.x;
         self.mean[3 * k - 1] += carried.y;
     }
-}
-
-/// `F P F'` over the first `n` entries, in place of the whole.
-fn propagated(f: &EntryMatrix, p: &EntryMatrix, n: usize) -> EntryMatrix {
-    let mut half = EntryMatrix::zeros();
-    for j in 0..n {
-        for l in 0..n {
-            let entry = p[(l, j)];
-            if entry != 0.0 {
-                (0..n).for_each(|i| half[(i, j)] += f[(i, l)] * entry);
-            }
-        }
-    }
-    let mut whole = EntryMatrix::zeros();
-    for l in 0..n {
-        for j in 0..n {
-            let entry = f[(j, l)];
-            if entry != 0.0 {
-                (0..n).for_each(|i| whole[(i, j)] += half[(i, l)] * entry);
-            }
-        }
-    }
-    whole
 }

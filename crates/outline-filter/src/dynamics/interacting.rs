@@ -3,7 +3,7 @@ use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::SMatrix;
 
 use super::{
-    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, parts},
+    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, parts},
     hypothesis::{CentredMeasurement, Course, Entries, EntryMatrix, Hypothesis, Step},
     innovations::InnovationSeries,
     setting::{Dynamics, DynamicsWeights},
@@ -329,7 +329,7 @@ impl DynamicsFilter {
                     if i < 2 * k && j < 2 * k && (i < k) == (j < k) { to[(i % k, j % k)] } else { 0.0 }
                 },
             );
-        let mut covariance = blocks * both * blocks.transpose();
+        let mut covariance = carried(&blocks, &both, 2 * k);
         (2 * k..STATE).for_each(|i| covariance[(i, i)] = 1.0);
         pose.iter().all(|e| e.is_finite()).then_some(Summary { pose, motion: motion.into(), covariance })
     }
@@ -425,7 +425,7 @@ fn centred(
                 if i < 2 * k && j < 2 * k && (i < k) == (j < k) { change[(i % k, j % k)] } else { 0.0 }
             },
         );
-    let moved = blocks * summary.covariance * blocks.transpose();
+    let moved = carried(&blocks, &summary.covariance, 2 * k);
     let covariance = EntryMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
     (mean, covariance)
 }
