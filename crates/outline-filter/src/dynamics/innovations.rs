@@ -63,6 +63,11 @@ impl InnovationSeries {
         self.filled += 1;
     }
 
+    /// Frames taken.
+    pub(crate) fn frames(&self) -> usize {
+        self.frames
+    }
+
     /// Factors, at least 1, by which the deviations of k parameters about the middle are to be widened.
     pub(crate) fn spread(&self, k: usize) -> CentredVector {
         let mut factors = CentredVector::from_element(1.0);

@@ -121,13 +121,10 @@ pub struct MotionFilter {
     pub(super) landmarks: Option<Landmarks>,
     /// In units of time, as all times here.
     last_time: f64,
-    /// Seconds.
-    pub(super) time_unit: f64,
-    time_unit_is_chosen: bool,
+    /// Seconds; one until it is chosen.
+    time_unit: Option<f64>,
     /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
     pub(super) symmetry: usize,
-    /// Seconds to that frame.
-    pub(super) acquired_over: f64,
     /// Time that the track stands at.
     pub(super) track_time: f64,
     counts: Counts,
@@ -152,10 +149,8 @@ impl MotionFilter {
             track: None,
             landmarks: None,
             last_time: f64::NEG_INFINITY,
-            time_unit: 1.0,
-            time_unit_is_chosen: false,
+            time_unit: None,
             symmetry: 1,
-            acquired_over: 0.0,
             track_time: 0.0,
             counts: Counts::default(),
             history: MotionHistory::default(),
@@ -171,9 +166,9 @@ impl MotionFilter {
     /// # Errors
     /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
-        TimeNotIncreasing::check(self.last_time * self.time_unit, time)?;
+        TimeNotIncreasing::check(self.last_time * self.seconds_per_unit(), time)?;
         self.choose_time_unit(time);
-        let (seconds, time) = (time, time / self.time_unit);
+        let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
             self.start(time, outline)?;
             self.counts.accepted += 1;
@@ -208,25 +203,27 @@ impl MotionFilter {
     /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
     fn choose_time_unit(&mut self, time: f64) {
         let interval = time - self.last_time;
-        if self.time_unit_is_chosen || self.track.is_none() || !interval.is_finite() {
+        if self.time_unit.is_some() || self.track.is_none() || !interval.is_finite() {
             return;
         }
         let unit = interval.log2().round().exp2();
-        if unit.is_normal() && (1.0 / unit).is_normal() {
-            self.time_unit = unit;
-            self.last_time /= unit;
-            self.track_time /= unit;
-            self.window.divide_times(unit);
-            self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
-        }
-        self.time_unit_is_chosen = true;
+        let unit = if unit.is_normal() && (1.0 / unit).is_normal() { unit } else { 1.0 };
+        self.time_unit = Some(unit);
+        self.last_time /= unit;
+        self.track_time /= unit;
+        self.window.divide_times(unit);
+        self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
+    }
+
+    fn seconds_per_unit(&self) -> f64 {
+        self.time_unit.unwrap_or(1.0)
     }
 
     /// Begins a track with a first frame.
     fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
         let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
         let mut track = Track::begin(self.settings.model, outline, &mut self.frame).ok_or(too_few)?;
-        track.set_time_unit(self.time_unit);
+        track.set_time_unit(self.seconds_per_unit());
         self.landmarks = Landmarks::of(outline);
         self.symmetry = 1;
         self.begin_window(time, outline, &track);
@@ -385,10 +382,9 @@ impl MotionFilter {
         let names = self.settings.model.parameter_names();
         let omega = names.iter().position(|name| *name == "omega");
         let known = omega.and_then(|j| self.estimate()?.parameters().nth(j)?.value);
-        let Some(omega) = known.filter(|_| self.acquired_over > 0.0) else { return Vec::new() };
-        let turn = self.hypotheses.taken();
+        let Some(omega) = known else { return Vec::new() };
         // Omega is positive clockwise where y points up, turns the other way.
-        self.hypotheses.turns().iter().map(|rival| omega - (rival - turn) / self.acquired_over).collect()
+        self.hypotheses.rates_apart().map(|apart| omega - apart / self.seconds_per_unit()).collect()
     }
 
     /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`
