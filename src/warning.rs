@@ -141,6 +141,7 @@ impl Warning {
             Self::WrongFamily { family: WrongFamily::Growth, .. } => "wrong_family_growth",
             Self::WrongFamily { family: WrongFamily::Shear, .. } => "wrong_family_shear",
             Self::WrongFamily { family: WrongFamily::Perspective, .. } => "wrong_family_perspective",
+            Self::WrongFamily { family: WrongFamily::RollingShutter, .. } => "wrong_family_rolling_shutter",
             Self::WrongFamily { family: WrongFamily::Shape, .. } => "wrong_family_shape",
             Self::Aliases { .. } => "aliases",
             Self::Diverged => "diverged",
@@ -231,10 +232,14 @@ fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: M
             f,
             "the outlines change as in perspective, which a {motion} motion does not do: check lens and tilt of the camera"
         ),
+        WrongFamily::RollingShutter => f.write_str(
+            "the outlines are slanted by their own motion, as by a camera that reads its rows one after the other (a rolling \
+             shutter): velocities may be off by some percent",
+        ),
         WrongFamily::Shape => write!(
             f,
-            "the outlines change their shape from frame to frame in ways that no {motion} motion does: the object may bend, or \
-             the camera distort it or read its rows one after the other"
+            "the outlines change their shape in ways that no {motion} motion does: the object may bend, the lens distort it, or \
+             light and shadow move its edges"
         ),
     }
 }

@@ -318,9 +318,9 @@ pub(crate) mod dynamics {
     /// Probability of each change from one hypothesis to another in a frame: a thousandth for all of them together.
     pub(crate) const TRANSITION: f64 = 0.000_15;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
-    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.9;
-    pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.07;
-    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.01;
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
+    pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.046;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.004;
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
     /// twenty frames, six, two, and none.
     pub(crate) const LEVELS: [f64; 4] = [1e-6, 1e-3, 1.0, 1e3];
@@ -328,6 +328,8 @@ pub(crate) mod dynamics {
     pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-5, 1e-2];
     /// Probability that an interval of 95 % leaves out.
     pub(crate) const LEFT_OUT: f64 = 0.05;
+    /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
+    pub(crate) const REACH: f64 = 0.26;
     /// Deviations of a pose that an acceleration which begins moves the object by in a step.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
     /// Share of a hypothesis below which it counts for nothing.
@@ -339,10 +341,9 @@ pub(crate) mod dynamics {
     pub(crate) const VARIANCE_GAIN: f64 = 0.1;
     /// What makes a measurement of the pose solvable along what it says nothing of.
     pub(crate) const SINGULAR: f64 = 1e-9;
-    /// A hypothesis more probable than all others together.
-    pub(crate) const LIKELY: f64 = 0.5;
-    /// The object is expected where all hypotheses take it as soon as a constant generator is less probable than this...
-    pub(crate) const LEADS_FROM: f64 = 0.1;
+    /// While a constant generator is more probable than this, which is what an interval of 95 % leaves out, its own estimate is stated, and
+    /// widened by the others; then the object is expected where all hypotheses take it...
+    pub(crate) const LEADS_FROM: f64 = LEFT_OUT;
     /// ...until it is as probable as this.
     pub(crate) const LEADS_UNTIL: f64 = 0.9;
 }
@@ -355,6 +356,8 @@ pub(crate) mod innovations {
     pub(crate) const BLOCKS: usize = 64;
     /// Cosines that the long-run variance is told from.
     pub(crate) const COSINES: usize = 8;
+    /// Cosines that changes are slow up to.
+    pub(crate) const SLOW: usize = 4;
     /// Half width of a 95 % interval of Student's distribution for eight degrees of freedom over that of a normal one, 2.306 / 1.960.
     pub(crate) const STUDENT: f64 = 1.177;
     /// Fewest frames that say something of dependence.

@@ -14,7 +14,9 @@ pub enum WrongFamily {
     Shear,
     /// They change as in perspective.
     Perspective,
-    /// They change their shape in other ways: bending, a lens, rows of the picture taken one after the other.
+    /// They are slanted by their own motion, as rows of a picture are that are read one after the other.
+    RollingShutter,
+    /// They change their shape in other ways: bending, a lens, edges that light or shadow moves.
     Shape,
 }
 
@@ -26,6 +28,8 @@ pub(crate) struct FamilyTests {
     squares: CentredVector,
     /// Means in their deviations, signs left out, as the last frame has left them.
     evidence: [f64; LEFT_OUT],
+    /// Of what changes slowly, in deviations of what is white.
+    slow: [f64; LEFT_OUT],
 }
 
 impl FamilyTests {
@@ -36,6 +40,7 @@ impl FamilyTests {
         let displacement = long(&misfit.displacement);
         self.series.take(&long(&misfit.standardised), LEFT_OUT);
         self.evidence = std::array::from_fn(|i| self.series.drift(i, LEFT_OUT).abs());
+        self.slow = std::array::from_fn(|i| self.series.slow_part(i));
         self.squares += displacement.component_mul(&displacement);
     }
 
@@ -63,14 +68,16 @@ impl FamilyTests {
             let family = match i {
                 0 => WrongFamily::Growth,
                 1 | 2 => WrongFamily::Shear,
-                _ => WrongFamily::Perspective,
+                3 | 4 => WrongFamily::Perspective,
+                _ => WrongFamily::RollingShutter,
             };
             return Some((family, displacement.sqrt()));
         }
-        let worst = (0..LEFT_OUT).map(|i| (self.series.mean_square(i), (self.squares[i] / n).sqrt()));
-        let (evidence, size) = worst.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let most = 1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt();
-        let is_shape = evidence > most.max(tuning::SHAPE_CHANGES) && size > least;
-        is_shape.then_some((WrongFamily::Shape, size))
+        // Changes to and fro: of a mean square that noise does not have, or slow.
+        let most = (1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt()).max(tuning::SHAPE_CHANGES);
+        let changes =
+            (0..LEFT_OUT).filter(|i| self.series.mean_square(*i) > most || self.slow[*i] > tuning::SIGNIFICANT);
+        let size = changes.map(|i| (self.squares[i] / n).sqrt()).max_by(f64::total_cmp)?;
+        (size > least).then_some((WrongFamily::Shape, size))
     }
 }

@@ -110,6 +110,26 @@ impl InnovationSeries {
         sum / (n * variance.max(1.0)).sqrt()
     }
 
+    /// How much larger the slow part of one component is than that of a white series of unit variance, in deviations: of the sum of the
+    /// squares of its mean and first cosines, by Fisher's approximation of the chi-square distribution.
+    pub(crate) fn slow_part(&self, j: usize) -> f64 {
+        let count = self.blocks.len();
+        if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
+            return 0.0;
+        }
+        let n = self.frames as f64;
+        let sum: f64 = (0..=tuning::SLOW)
+            .map(|c| {
+                let angle = std::f64::consts::PI * c as f64 / count as f64;
+                let terms =
+                    self.blocks.iter().enumerate().map(|(t, block)| block[j] * (angle * (t as f64 + 0.5)).cos());
+                let projected: f64 = terms.sum();
+                projected * projected * if c == 0 { 1.0 } else { 2.0 } / n
+            })
+            .sum();
+        (2.0 * sum).sqrt() - (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt()
+    }
+
     /// Correlation of neighbours in time, over k components.
     fn correlation(&self, k: usize) -> f64 {
         let (squares, products): (f64, f64) =

@@ -251,16 +251,19 @@ impl DynamicsFilter {
             })
         };
         let sum: f64 = parts().map(|(weight, ..)| weight).sum();
-        // As long as a constant generator is the most probable its own estimate is the best there is; the others only widen it.
+        // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
         let mean = match &of_given {
-            Some((mean, _)) if self.weights().generator > tuning::LIKELY => *mean,
+            Some((mean, _)) => *mean,
             _ => parts().fold(Entries::zeros(), |mean, (weight, x, _)| mean + x * (weight / sum)),
         };
         let mut covariance = EntryMatrix::zeros();
+        // Where one of them is stated, its interval reaches the others that are not left out.
+        let others = 1.0 - self.weights().generator / sum;
+        let reach = if of_given.is_some() && others > 0.0 { (tuning::REACH / others).max(1.0) } else { 1.0 };
         for (weight, x, p) in parts() {
             for j in 0..2 * k {
                 for i in 0..2 * k {
-                    covariance[(i, j)] += (weight / sum) * (p[(i, j)] + (x[i] - mean[i]) * (x[j] - mean[j]));
+                    covariance[(i, j)] += (weight / sum) * (p[(i, j)] + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
                 }
             }
         }

@@ -62,7 +62,7 @@ pub(super) struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Of an outline with a symmetry of some order, takes the smallest turn of all that are not significantly worse than the best.
+    /// Of an outline with a symmetry of some order, 1 where there is none, takes the smallest turn of all that are not significantly worse than the best.
     pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
         let pitch = TAU / symmetry as f64;
         let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
@@ -86,10 +86,16 @@ impl Hypotheses {
             acquired_over: seconds,
             ..Self::default()
         };
-        if symmetry > 1 && taken.is_some() {
-            let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| wrapped(all.taken + step * pitch)).into();
-            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
-            turns.retain(|turn| (turn - all.taken).abs() > different_turn);
+        if taken.is_some() {
+            let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| all.taken + step * pitch).into();
+            if symmetry > 1 {
+                turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
+                turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+                turns.retain(|turn| (turn - all.taken).abs() > different_turn);
+            } else {
+                // A whole turn more or less looks the same; where it is surely the larger one it is not named.
+                turns.retain(|turn| is_doubtful(*turn, all.taken));
+            }
             for turn in turns {
                 all.turns.push(turn);
                 let found =
@@ -136,7 +142,7 @@ impl Hypotheses {
     }
 
     fn is_doubtful(&self, index: usize) -> bool {
-        self.turns[index].abs() < tuning::SURELY_SMALLER * self.taken.abs()
+        is_doubtful(self.turns[index], self.taken)
     }
 
     /// The parameters in which the motion of a doubtful hypothesis differs from an estimate.
@@ -250,4 +256,9 @@ impl Hypotheses {
         self.list.remove(index);
         self.turns.remove(index);
     }
+}
+
+/// Whether a turn cannot be taken for granted against another.
+fn is_doubtful(other: f64, taken: f64) -> bool {
+    other.abs() < tuning::SURELY_SMALLER * taken.abs()
 }

@@ -1,4 +1,4 @@
-//! What a frame says of motions that the model leaves out: growth, stretch, skew, perspective. Score tests of what is left out (C. R. Rao,
+//! What a frame says of motions that the model leaves out: growth, stretch, skew, perspective, a rolling shutter. Score tests of what is left out (C. R. Rao,
 //! Large sample tests of statistical hypotheses, 1948).
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point};
 use nalgebra::{Matrix3, Point2, SMatrix, SVector};
@@ -9,8 +9,8 @@ use crate::{
     tuning::family as tuning,
 };
 
-/// Motions that may be left out: growth, stretch, skew, and two of perspective.
-pub(crate) const LEFT_OUT: usize = 5;
+/// Motions that may be left out: growth, stretch, skew, two of perspective, and that of rows which are read one after the other.
+pub(crate) const LEFT_OUT: usize = 6;
 
 type LeftOutVector = SVector<f64, LEFT_OUT>;
 
@@ -27,7 +27,8 @@ pub(crate) struct Misfit {
 fn has(model: MotionModel) -> [bool; LEFT_OUT] {
     let (growth, shear, perspective) =
         (model != MotionModel::Rigid, model >= MotionModel::Affine, model >= MotionModel::Projective);
-    [growth, shear, shear, perspective, perspective]
+    // The slant of a rolling shutter is a shear.
+    [growth, shear, shear, perspective, perspective, shear]
 }
 
 /// Entries of the equations: those of the pose, and behind them those of what is left out.
@@ -47,6 +48,7 @@ pub(crate) fn misfit(
         return None;
     }
     let (centre, scale) = (map_point(pose, middle), 1.0 / belief.scale());
+    let generator = model.generator(&belief.motion[..k]);
     let mut gram = SMatrix::<f64, ENTRIES, ENTRIES>::zeros();
     let mut right = SVector::<f64, ENTRIES>::zeros();
     let mut total = 0.0;
@@ -66,7 +68,10 @@ pub(crate) fn misfit(
         let along = nx * d.x + ny * d.y;
         let mut row = SVector::<f64, ENTRIES>::zeros();
         (0..k).for_each(|i| row[i] = m.jacobian[i]);
-        let left_out = [along, nx * d.x - ny * d.y, nx * d.y + ny * d.x, d.x * along, d.y * along];
+        // A row is seen later the further it is from that of the middle; the outline has moved on meanwhile.
+        let velocity = generator * p.to_homogeneous();
+        let meanwhile = d.y * (nx * velocity.x + ny * velocity.y);
+        let left_out = [along, nx * d.x - ny * d.y, nx * d.y + ny * d.x, d.x * along, d.y * along, meanwhile];
         for (i, value) in left_out.into_iter().enumerate() {
             row[MAX_PARAMETERS + i] = if is_had[i] { 0.0 } else { value };
         }
