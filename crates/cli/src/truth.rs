@@ -1,23 +1,24 @@
 use std::fmt;
 
-use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
+use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion, RigidMotion};
 
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
 
 /// The true motion of simulated outlines, as stated in a comment at the head of their file:
-/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`.
+/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`, projective ones with `c1=0.01
+/// c2=0.02` before the scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SimulatedMotion {
-    /// In space: image velocities over the scale.
-    pub(crate) motion: AffineMotion,
+    /// In space: image velocities over the scale, c times the scale.
+    pub(crate) motion: ProjectiveMotion,
     /// Camera scale f/Z0.
     pub(crate) scale: CameraScale,
 }
 
 impl SimulatedMotion {
     /// The motion in the image, b divided by the scale of the one who asks, if any.
-    pub(crate) fn seen_at(&self, scale: Option<CameraScale>) -> AffineMotion {
+    pub(crate) fn seen_at(&self, scale: Option<CameraScale>) -> ProjectiveMotion {
         self.motion.in_image(self.scale).in_space(scale.unwrap_or_default())
     }
 
@@ -31,8 +32,12 @@ impl SimulatedMotion {
         };
         let (b1, b2) = (value("b1")?, value("b2")?);
         let motion = match value("omega") {
-            Some(omega) => AffineMotion { a1: 0.0, a2: omega, a3: -omega, a4: 0.0, b1, b2 },
-            None => AffineMotion { a1: value("a1")?, a2: value("a2")?, a3: value("a3")?, a4: value("a4")?, b1, b2 },
+            Some(omega) => RigidMotion { omega, b1, b2 }.into(),
+            None => {
+                let [a1, a2, a3, a4] = [value("a1")?, value("a2")?, value("a3")?, value("a4")?];
+                let [c1, c2] = ["c1", "c2"].map(|name| value(name).unwrap_or(0.0));
+                ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }
+            }
         };
         let scale = CameraScale::new(value("scale")?).ok()?;
         Some(Self { motion, scale })
@@ -42,13 +47,17 @@ impl SimulatedMotion {
 impl fmt::Display for SimulatedMotion {
     /// The comment line without its `#`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let AffineMotion { a1, a2, a3, a4, b1, b2 } = self.motion;
+        let ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 } = self.motion;
         f.write_str(MARK)?;
         match MotionModel::Rigid.parameters_of_motion(&self.motion) {
             Some(_) => write!(f, "omega={a2}")?,
             None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
         }
-        write!(f, " b1={b1} b2={b2} scale={}", self.scale)
+        write!(f, " b1={b1} b2={b2}")?;
+        if self.motion.as_affine().is_none() {
+            write!(f, " c1={c1} c2={c2}")?;
+        }
+        write!(f, " scale={}", self.scale)
     }
 }
 
@@ -58,10 +67,11 @@ mod tests {
 
     #[test]
     fn a_motion_written_as_a_comment_reads_back_to_the_last_bit() {
-        let rigid = AffineMotion { a1: 0.0, a2: 0.1 + 0.2, a3: -(0.1 + 0.2), a4: 0.0, b1: -3.0, b2: 1e-17 };
-        let affine = AffineMotion { a1: 0.3, ..rigid };
+        let rigid: ProjectiveMotion = RigidMotion { omega: 0.1 + 0.2, b1: -3.0, b2: 1e-17 }.into();
+        let affine = ProjectiveMotion { a1: 0.3, ..rigid };
+        let projective = ProjectiveMotion { c1: 0.1 + 0.2, c2: -1e-17, ..rigid };
         let scale = CameraScale::new(0.1).expect("a scale");
-        for motion in [rigid, affine] {
+        for motion in [rigid, affine, projective] {
             let written = SimulatedMotion { motion, scale };
             assert_eq!(SimulatedMotion::parse(&written.to_string()), Some(written));
         }
@@ -76,11 +86,11 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_of_the_one_who_asks_divides_the_velocity_only() {
-        let motion = AffineMotion { a2: 2.0, a3: -2.0, b1: -3.0, b2: 4.0, ..AffineMotion::default() };
+    fn the_scale_of_the_one_who_asks_divides_the_velocity_and_multiplies_the_perspective() {
+        let motion = ProjectiveMotion { c1: 0.1, ..RigidMotion { omega: 2.0, b1: -3.0, b2: 4.0 }.into() };
         let half = CameraScale::new(0.5).expect("a scale");
         let truth = SimulatedMotion { motion, scale: half };
-        assert_eq!(truth.seen_at(None), AffineMotion { b1: -1.5, b2: 2.0, ..motion });
+        assert_eq!(truth.seen_at(None), ProjectiveMotion { b1: -1.5, b2: 2.0, c1: 0.2, ..motion });
         assert_eq!(truth.seen_at(Some(half)), motion);
     }
 }

@@ -49,7 +49,8 @@ pub(crate) struct EvaluateArgs {
     #[command(flatten)]
     pub(crate) motion_in_space: TrueMotionArgs,
 
-    /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine]
+    /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine,
+    /// projective with --projective]
     #[arg(long, value_enum)]
     pub(crate) motion: Option<MotionChoice>,
 
@@ -96,14 +97,14 @@ pub(crate) struct EvaluateArgs {
     ///
     /// Between the two frames the turn is uniform within 60 degrees and the shift uniform up to half the size of the
     /// object. The pose is found if the turn is right to 6 degrees and the centre to a tenth of the size.
-    #[arg(long, conflicts_with_all = ["omega", "b", "affine", "scale", "frames", "seconds", "fps", "wrong_frames"])]
+    #[arg(long, conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "frames", "seconds", "fps", "wrong_frames"])]
     pub(crate) acquisition: bool,
 
     /// Evaluate the settings of docs/accuracy.md, or those whose name contains TEXT, and print Markdown
     ///
     /// Shapes: bird, glider, phone, van, shoe and hat, and those of --shape. Acquisition has ten times as many runs as --runs.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "",
-          conflicts_with_all = ["omega", "b", "affine", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
+          conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
                                 "noise", "occlusion", "outliers", "wrong_frames", "acquisition"])]
     pub(crate) suite: Option<String>,
 

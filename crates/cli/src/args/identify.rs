@@ -6,7 +6,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, Args, Command, ValueEnum};
 use freeform_motion::TrackerSettings;
 use freeform_motion::curve_fit::{Degree, FitSettings};
-use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
+use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion};
 use freeform_motion::tracker::{Method, MethodSettings};
 
 use super::pictures::{PictureOptions, picture_inputs};
@@ -35,11 +35,12 @@ pub(crate) struct IdentifyArgs {
     #[command(flatten)]
     pub(crate) options: TrackOptions,
 
-    /// The true parameters (OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2), in the units of the result
+    /// The true parameters (OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2 or A1,...,B2,C1,C2), in the units of the
+    /// result
     ///
     /// They are shown next to the result and in figures, and are not used in the identification.
     #[arg(long, value_name = "LIST", value_parser = motion, allow_hyphen_values = true)]
-    pub(crate) truth: Option<AffineMotion>,
+    pub(crate) truth: Option<ProjectiveMotion>,
 
     /// Format of the result
     #[arg(long, value_enum, default_value_t = IdentifyFormat::Table)]
@@ -182,6 +183,8 @@ pub(crate) enum MotionChoice {
     Similarity,
     /// a1, a2, a3, a4, b1, b2
     Affine,
+    /// a1, a2, a3, a4, b1, b2, c1, c2
+    Projective,
 }
 
 impl MotionChoice {
@@ -190,6 +193,7 @@ impl MotionChoice {
             Self::Rigid => MotionModel::Rigid,
             Self::Similarity => MotionModel::Similarity,
             Self::Affine => MotionModel::Affine,
+            Self::Projective => MotionModel::Projective,
         }
     }
 }

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::identify::MotionChoice;
 use super::simulated::{DisturbanceArgs, TrueMotionArgs};
 use super::values::positive;
 
@@ -10,6 +11,7 @@ Examples:
   freeform simulate > outlines.csv
   freeform simulate --shape glider --omega -1.0472 --b 0,4 --seconds 20 --output glider.csv
   freeform simulate --shape mask.png --affine 0.1,1,-1,-0.1,0.2,0 --scale 1 --noise 0.002
+  freeform simulate --motion projective --projective 0,1.6,-1.6,0,-3,4,-0.015,0.02
   freeform simulate --occlusion 0.2 --outliers 0.05 --seed 7 | freeform identify -
 
 Shapes: plane, van, glass_vase, cd_box, shoe, car, vase, glider, phone, hat, bird, boomerang, circle, ellipse, square.
@@ -32,6 +34,10 @@ pub(crate) struct SimulateArgs {
 
     #[command(flatten)]
     pub(crate) motion_in_space: TrueMotionArgs,
+
+    /// Family of motions that must hold the motion [default: any]
+    #[arg(long, value_enum)]
+    pub(crate) motion: Option<MotionChoice>,
 
     /// Frames per second
     #[arg(long, value_parser = positive, default_value_t = 30.0)]

@@ -1,6 +1,6 @@
 //! Parsers of the values of options.
 use freeform_motion::curve_fit::Degree;
-use freeform_motion::riccati::{AffineMotion, CameraScale, RigidMotion, SimilarityMotion};
+use freeform_motion::riccati::{AffineMotion, CameraScale, ProjectiveMotion, RigidMotion, SimilarityMotion};
 
 /// A finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
@@ -73,14 +73,23 @@ pub(crate) fn affine(text: &str) -> Result<AffineMotion, String> {
     }
 }
 
-/// The parameters of a rigid, similarity or affine motion.
-pub(crate) fn motion(text: &str) -> Result<AffineMotion, String> {
+/// `A1,A2,A3,A4,B1,B2,C1,C2`.
+pub(crate) fn projective(text: &str) -> Result<ProjectiveMotion, String> {
+    match list(text)?[..] {
+        [a1, a2, a3, a4, b1, b2, c1, c2] => Ok(ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }),
+        ref other => Err(format!("expected A1,A2,A3,A4,B1,B2,C1,C2, found {} number(s)", other.len())),
+    }
+}
+
+/// The parameters of a rigid, similarity, affine or projective motion.
+pub(crate) fn motion(text: &str) -> Result<ProjectiveMotion, String> {
     match list(text)?[..] {
         [omega, b1, b2] => Ok(RigidMotion { omega, b1, b2 }.into()),
         [sigma, omega, b1, b2] => Ok(SimilarityMotion { sigma, omega, b1, b2 }.into()),
-        [a1, a2, a3, a4, b1, b2] => Ok(AffineMotion { a1, a2, a3, a4, b1, b2 }),
+        [a1, a2, a3, a4, b1, b2] => Ok(AffineMotion { a1, a2, a3, a4, b1, b2 }.into()),
+        [a1, a2, a3, a4, b1, b2, c1, c2] => Ok(ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }),
         ref other => Err(format!(
-            "expected OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2, found {} number(s)",
+            "expected OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2 or A1,...,B2,C1,C2, found {} number(s)",
             other.len()
         )),
     }

@@ -3,7 +3,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{OutlineFrame, WriteError};
-use freeform_motion::riccati::AffineMotion;
+use freeform_motion::riccati::ProjectiveMotion;
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 use freeform_motion::tracker::{Method, ObjectResult, Observation};
 use freeform_motion::{PipelineSettings, Tracker};
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
 fn print(
     sink: &mut Sink,
     [filter, adaptive]: [&Found; 2],
-    truth: &AffineMotion,
+    truth: &ProjectiveMotion,
     b: &MeaningOfB,
     folder: &Path,
 ) -> io::Result<()> {
@@ -149,7 +149,7 @@ impl Identification {
     }
 
     /// Writes the trace and the figure, and prints the warnings.
-    fn finish(self, figure: &Path, truth: &AffineMotion) -> Result<Found, Failure> {
+    fn finish(self, figure: &Path, truth: &ProjectiveMotion) -> Result<Found, Failure> {
         let Self { options, tracker, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
         WholeFile::write(figure, &parameter_figure(&histories, options.motion.model(), Some(truth)))?;

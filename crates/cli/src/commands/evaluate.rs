@@ -71,10 +71,10 @@ fn named_by_file(shape: Shape, path: &str, others: &[Shape]) -> Shape {
 fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
     let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
     let motion = camera.image_motion(&args.motion_in_space.motion());
-    let default = if args.motion_in_space.is_affine() { MotionChoice::Affine } else { MotionChoice::Rigid };
-    let model = args.motion.unwrap_or(default).model();
+    let family = args.motion_in_space.family();
+    let model = args.motion.map_or(family, MotionChoice::model);
     if model.parameters_of_motion(&motion).is_none() {
-        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --affine")));
+        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --{family}")));
     }
     let of_seconds = |seconds: &f64| {
         let length = SequenceLength::Seconds(*seconds);

@@ -4,7 +4,7 @@ use std::path::Path;
 use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::riccati::AffineMotion;
+use freeform_motion::riccati::ProjectiveMotion;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
@@ -156,7 +156,12 @@ impl<'a> Files<'a> {
     }
 
     /// Moves the files to their destinations. A file without content is not written.
-    fn finish(self, tracker: &Tracker, truth: Option<&AffineMotion>, results: &[ObjectResult]) -> Result<(), Failure> {
+    fn finish(
+        self,
+        tracker: &Tracker,
+        truth: Option<&ProjectiveMotion>,
+        results: &[ObjectResult],
+    ) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
         let not_written = |options: &[(&str, bool)], reason: &str| {
@@ -199,7 +204,7 @@ impl<'a> Files<'a> {
 fn print(
     args: &IdentifyArgs,
     results: &[ObjectResult],
-    truth: Option<&AffineMotion>,
+    truth: Option<&ProjectiveMotion>,
     b: &MeaningOfB,
     left_out: &LeftOut,
     has_pictures: bool,

@@ -1,7 +1,7 @@
 use freeform_experiments::figure::{Curve, Look, Panel};
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
-use freeform_motion::riccati::{AffineMotion, MotionModel};
+use freeform_motion::riccati::{MotionModel, ProjectiveMotion};
 use nalgebra::Point2;
 
 use super::number::short;
@@ -67,7 +67,7 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
 }
 
 /// The parameters of all objects against time, as a file.
-pub(crate) fn parameter_figure(histories: &[History], model: MotionModel, truth: Option<&AffineMotion>) -> String {
+pub(crate) fn parameter_figure(histories: &[History], model: MotionModel, truth: Option<&ProjectiveMotion>) -> String {
     let several = histories.len() > 1;
     let panels = histories.iter().flat_map(|history| {
         let prefix = if several { format!("Object {}: ", history.object) } else { String::new() };
@@ -81,7 +81,7 @@ pub(crate) fn parameter_panels(
     history: &History,
     prefix: &str,
     model: MotionModel,
-    truth: Option<&AffineMotion>,
+    truth: Option<&ProjectiveMotion>,
 ) -> Vec<Panel> {
     let truth = truth.and_then(|motion| model.parameters_of_motion(motion));
     let names = model.parameter_names().iter().zip(model.units()).enumerate();

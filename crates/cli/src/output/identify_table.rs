@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use freeform_motion::riccati::{AffineMotion, ParameterKind};
+use freeform_motion::riccati::{ParameterKind, ProjectiveMotion};
 use freeform_motion::significant;
 use freeform_motion::tracker::ObjectResult;
 
@@ -13,7 +13,11 @@ use crate::meaning_of_b::MeaningOfB;
 pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
 
 /// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
-pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>, b: &MeaningOfB) -> Vec<Vec<String>> {
+pub(crate) fn parameter_rows(
+    result: &ObjectResult,
+    truth: Option<&ProjectiveMotion>,
+    b: &MeaningOfB,
+) -> Vec<Vec<String>> {
     let model = result.motion;
     let truth = truth.and_then(|motion| Some((motion, model.parameters_of_motion(motion)?)));
     let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
@@ -36,10 +40,7 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>
         .collect();
     if let Some(velocity) = &result.velocity {
         let deviations = velocity.standard_deviations();
-        let truth = truth.map(|(motion, _)| {
-            let ([x, y], AffineMotion { a1, a2, a3, a4, b1, b2 }) = (velocity.point.into(), *motion);
-            [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
-        });
+        let truth = truth.map(|(motion, _)| <[f64; 2]>::from(motion.velocity(&velocity.point)));
         // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
         // middle is only near that centre, and the true velocity differs between the two by the turn times their distance.
         let kinds = model.parameter_kinds().iter();
@@ -86,7 +87,7 @@ fn error_text(value: f64, truth: f64) -> String {
 pub(crate) fn write_identify_table(
     sink: &mut impl Write,
     results: &[ObjectResult],
-    truth: Option<&AffineMotion>,
+    truth: Option<&ProjectiveMotion>,
     b: &MeaningOfB,
 ) -> io::Result<()> {
     for (index, result) in results.iter().enumerate() {
