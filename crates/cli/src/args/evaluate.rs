@@ -89,8 +89,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// Methods to evaluate
-    #[arg(long, value_parser = methods(), value_delimiter = ',', default_values = ["filter", "moments", "icp"])]
+    /// Methods to evaluate [default: filter,moments,icp; for projective motion, which moments do not have, filter,icp]
+    #[arg(long, value_parser = methods(), value_delimiter = ',')]
     pub(crate) method: Vec<Method>,
 
     /// Evaluate the start instead of the motion: how often the pose in the second of two frames is found

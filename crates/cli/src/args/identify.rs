@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Args, Command, ValueEnum};
-use freeform_motion::TrackerSettings;
 use freeform_motion::curve_fit::{Degree, FitSettings};
 use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion};
 use freeform_motion::tracker::{Method, MethodSettings};
+use freeform_motion::{Rectification, TrackerSettings};
 
 use super::pictures::{PictureOptions, picture_inputs};
-use super::values::{camera_scale, degree, motion};
+use super::values::{camera_scale, degree, motion, rectification};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -19,6 +19,7 @@ Examples:
   freeform simulate --seconds 5 | freeform identify - --format json
   freeform identify 'frames/*.jpg' --ring dark --fps 15 --overlay drawn
   freeform identify outlines.csv --trajectory poses.csv --smooth
+  freeform identify frames/ --rectify plane.txt
   freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
 
 A CSV file has a header frame,time,x,y and optional columns object and arc. The rows of an outline follow the contour. \
@@ -58,7 +59,7 @@ pub(crate) struct IdentifyArgs {
     ///
     /// The pose is relative to the first frame. Rigid: angle (rad, positive if omega is), x and y, the present position of the
     /// mean of the points of the first outline. Similarity: scale, then these. Affine: the matrix m11, m12, m21, m22, then x
-    /// and y. The fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found
+    /// and y; projective also m31 and m32. The fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found
     /// again, while it is lost, and in a frame that is not an outline. In a rejected frame they are the prediction. Not
     /// available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
@@ -153,6 +154,14 @@ pub(crate) struct TrackOptions {
     /// Camera scale f/Z0; b is divided by it, which gives the velocity in space
     #[arg(long, value_name = "F_OVER_Z0", value_parser = camera_scale)]
     pub(crate) scale: Option<CameraScale>,
+
+    /// Map from the picture to the plane that the objects move in: nine numbers, row by row, or a file of them
+    ///
+    /// For a camera that looks at a table or a floor from aside. A rigid motion in the plane then has its three parameters, in the
+    /// unit of the plane. 'freeform rectify' finds the map from four points.
+    #[arg(long, value_name = "FILE|H11,...,H33", value_parser = rectification, allow_hyphen_values = true,
+          conflicts_with = "scale")]
+    pub(crate) rectify: Option<Rectification>,
 }
 
 impl TrackOptions {
@@ -166,7 +175,7 @@ impl TrackOptions {
             }
             (method, _) => method,
         };
-        TrackerSettings { method, scale: self.scale }
+        TrackerSettings { method, scale: self.scale, rectification: self.rectify }
     }
 
     /// Degree of the curve that is drawn if the method fits none.

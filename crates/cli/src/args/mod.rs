@@ -5,6 +5,7 @@ mod identify;
 mod outline;
 mod pictures;
 mod recognise;
+mod rectify;
 mod reproduce;
 mod simulate;
 mod simulated;
@@ -20,6 +21,7 @@ pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionCh
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{PictureOptions, through_ffmpeg};
 pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
+pub(crate) use rectify::RectifyArgs;
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
@@ -58,6 +60,7 @@ pub(crate) enum Command {
     Track(TrackArgs),
     Outline(OutlineArgs),
     Recognise(RecogniseArgs),
+    Rectify(RectifyArgs),
     Evaluate(EvaluateArgs),
     Reproduce(ReproduceArgs),
     Completions(CompletionsArgs),

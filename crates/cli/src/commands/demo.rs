@@ -45,8 +45,13 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let camera = Settings { fps: 30.0, length, noise: PaperExperiment::NOISE, ..Settings::default() };
     let simulator = Simulator::new(scene, camera).map_err(Failure::unusable)?;
     let truth = SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale }.seen_at(Some(scale));
-    let by_filter =
-        TrackOptions { motion: MotionChoice::Rigid, method: IdentifyMethod::Filter, degree: None, scale: Some(scale) };
+    let by_filter = TrackOptions {
+        motion: MotionChoice::Rigid,
+        method: IdentifyMethod::Filter,
+        degree: None,
+        scale: Some(scale),
+        rectify: None,
+    };
     let by_adaptive_law = TrackOptions { method: IdentifyMethod::Adaptive, ..by_filter.clone() };
 
     let mut filter = Identification::new(by_filter.clone(), &folder.join(TRACE))?;

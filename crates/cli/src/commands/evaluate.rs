@@ -2,7 +2,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use freeform_experiments::monte_carlo::{AcquisitionSetting, Setting, Study, suite};
+use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, Setting, Study, suite};
+use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{BuiltInShape, SequenceLength, Settings, Shape};
 
 use super::simulate::shape;
@@ -54,7 +55,13 @@ fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
         None if args.acquisition => (Vec::new(), vec![acquisition(args)], args.runs),
         None => (settings(args)?, Vec::new(), args.runs),
     };
-    let (methods, runs, seed) = (args.method.clone(), args.runs, args.seed);
+    let is_projective = settings.iter().any(|setting| setting.model == MotionModel::Projective);
+    let methods = match (args.method.is_empty(), is_projective) {
+        (false, _) => args.method.clone(),
+        (true, false) => vec![Method::Filter, Method::Moments, Method::Icp],
+        (true, true) => vec![Method::Filter, Method::Icp],
+    };
+    let (runs, seed) = (args.runs, args.seed);
     Ok(Study { shapes, settings, acquisitions, methods, runs, acquisition_runs, seed })
 }
 

@@ -62,6 +62,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let is_found = results.iter().any(|result| result.estimate.is_some());
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
     let b = match input.pictures() {
+        _ if args.options.rectify.is_some() => MeaningOfB::in_plane(),
         Some(pictures) => pictures.meaning_of_b(args.options.scale),
         None => MeaningOfB::in_coordinates(args.options.scale),
     };
@@ -88,7 +89,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         for result in results.iter().filter(|_| !args.quiet) {
             result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
-        print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
+        print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures() || args.options.rectify.is_some())
     } else {
         // The failure has the other reasons.
         for result in results.iter().filter(|_| !args.quiet) {
@@ -207,14 +208,14 @@ fn print(
     truth: Option<&ProjectiveMotion>,
     b: &MeaningOfB,
     left_out: &LeftOut,
-    has_pictures: bool,
+    says_b: bool,
 ) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let format = if args.json { IdentifyFormat::Json } else { args.format };
     let written = match format {
         IdentifyFormat::Table => {
             let table = write_identify_table(&mut sink, results, truth, b);
-            table.and_then(|()| if has_pictures { writeln!(sink, "b: {b}") } else { Ok(()) })
+            table.and_then(|()| if says_b { writeln!(sink, "b: {b}") } else { Ok(()) })
         }
         IdentifyFormat::Json => write_identify_json(&mut sink, results, b, left_out),
         IdentifyFormat::Csv => write_parameters(&mut sink, results),
@@ -260,6 +261,9 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
         MethodSettings::Adaptive(settings) => listed.extend(fit_settings(&settings.fit)),
     }
     listed.push(("Camera scale f/Z0", scale));
+    if options.rectify.is_some() {
+        listed.push(("Coordinates", "of the plane that --rectify leads to".to_owned()));
+    }
     listed
 }
 

@@ -2,6 +2,7 @@
 //! curves moved as a whole.
 mod alpha_beta;
 mod decomposition;
+mod homography;
 mod integrate;
 mod lift;
 mod lines;
