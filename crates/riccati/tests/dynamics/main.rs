@@ -7,4 +7,5 @@ mod integrate;
 mod lift;
 mod lines;
 mod motions;
+mod plane_in_space;
 mod support;
