@@ -75,6 +75,7 @@ impl TrackedObject {
             innovation: step.innovation,
             ambiguity: step.ambiguity,
             rejection,
+            segment: self.identifier.restarts(),
             warning: self.contour_order.look_at(frame).cloned(),
         }
     }
@@ -99,6 +100,7 @@ impl TrackedObject {
             innovation: None,
             ambiguity: None,
             rejection,
+            segment: self.identifier.restarts(),
             warning: None,
         }
     }
@@ -154,6 +156,8 @@ impl TrackedObject {
             estimate,
             velocity: velocity.filter(freeform_estimate::PointVelocity::is_finite),
             ambiguity: self.identifier.ambiguity(),
+            aliases: self.identifier.aliases(),
+            dynamics: self.identifier.dynamics(),
             warnings,
         }
     }

@@ -1,10 +1,11 @@
 //! Projective motion through the whole chain.
 use freeform_motion::{
-    Pipeline, PipelineSettings, Tracker, TrackerSettings,
+    Pipeline, PipelineSettings, Tracker, TrackerSettings, Warning,
+    outline_filter::FilterSettings,
     outline_io::OutlineFrame,
     riccati::{MotionModel, ProjectiveMotion},
     sim_camera::{BuiltInShape, Camera, Occlusion, Scene, SequenceLength, Settings, Simulator},
-    tracker::Method,
+    tracker::{MethodSettings, ObjectResult},
 };
 
 /// A turntable that is tilted: its generator has the eigenvalues 0 and +-1.59 j.
@@ -51,21 +52,49 @@ fn a_fifth_of_the_outline_may_be_hidden_under_projective_motion() {
     assert!(errors.iter().all(|error| *error < 0.1), "{errors:?}");
 }
 
+/// What the motion filter makes of a second.
+fn filtered(settings: FilterSettings, shape: BuiltInShape) -> ObjectResult {
+    let settings = TrackerSettings { method: MethodSettings::Filter(settings), ..TrackerSettings::default() };
+    let mut tracker = Tracker::new(settings).expect("good settings");
+    for frame in simulator(shape, 1.0, 0.002, 0.0).frames() {
+        let (number, time, object) = (frame.index as u64, frame.time, "0".to_owned());
+        tracker.push(&OutlineFrame { frame: number, time, object, outline: frame.outline });
+    }
+    tracker.results().remove(0)
+}
+
+#[test]
+fn perspective_is_told_of_by_an_affine_motion_and_part_of_a_projective_one() {
+    for shape in [BuiltInShape::Bird, BuiltInShape::Van] {
+        let found = |model| filtered(FilterSettings { model, ..FilterSettings::default() }, shape);
+        let affine = found(MotionModel::Affine).warnings;
+        let is_told = |warning: &Warning| warning.code() == "wrong_family_perspective";
+        assert!(affine.iter().any(is_told), "{shape}: {affine:?}");
+        let projective = found(MotionModel::Projective);
+        assert!(projective.warnings.is_empty(), "{shape}: {:?}", projective.warnings);
+        assert!(projective.dynamics.is_none() && projective.aliases.is_empty());
+    }
+}
+
+#[test]
+fn an_uncertain_edge_widens_the_deviations_of_all_eight_parameters() {
+    let found = |edge_uncertainty| {
+        let settings = FilterSettings { model: MotionModel::Projective, edge_uncertainty, ..FilterSettings::default() };
+        filtered(settings, BuiltInShape::Bird).estimate.expect("a motion")
+    };
+    let [certain, uncertain] = [0.0, 0.002].map(found);
+    for (p, q) in certain.parameters().zip(uncertain.parameters()) {
+        assert_eq!(p.value, q.value, "{}", p.name);
+        let [without, with] = [p, q].map(|p| p.standard_deviation.expect("by the filter"));
+        assert!(with > 1.05 * without, "{}: {with} {without}", p.name);
+    }
+}
+
 #[test]
 fn the_motion_filter_holds_the_eight_parameters_within_their_deviations() {
     for shape in [BuiltInShape::Bird, BuiltInShape::Van] {
-        let settings = TrackerSettings::new(Method::Filter, MotionModel::Projective);
-        let mut tracker = Tracker::new(settings).expect("default settings");
-        for frame in simulator(shape, 1.0, 0.002, 0.0).frames() {
-            let outline = frame.outline;
-            tracker.push(&OutlineFrame {
-                frame: frame.index as u64,
-                time: frame.time,
-                object: "0".to_owned(),
-                outline,
-            });
-        }
-        let estimate = tracker.results().remove(0).estimate.expect("a motion");
+        let result = filtered(FilterSettings { model: MotionModel::Projective, ..FilterSettings::default() }, shape);
+        let estimate = result.estimate.expect("a motion");
         for (p, truth) in estimate.parameters().zip(truth()) {
             let (value, deviation) = (p.value.expect("observable"), p.standard_deviation.expect("by the filter"));
             assert!((value - truth).abs() < 4.5 * deviation, "{shape} {}: {value} +- {deviation}, {truth}", p.name);

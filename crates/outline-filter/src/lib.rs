@@ -8,6 +8,7 @@
 //! | `supervisor` | phases, restarts, hypotheses, changes of the motion: the only state machine |
 //! | `search` | global registration: related points, turns |
 //! | `track` | one object: the steps of a frame; growth and remapping of the map |
+//! | `dynamics` | hypotheses of how the motion goes on, side by side |
 //! | `update` | solve for a `Proposal`, test it at the `Gate`, commit it |
 //! | `measurement` | frame, association, point-to-line residuals and Jacobians, noise |
 //! | `prediction` | step, process noise, shape process noise |
@@ -45,6 +46,7 @@ mod batch;
 mod belief;
 #[cfg(test)]
 mod dense_filter;
+mod dynamics;
 mod map;
 mod measurement;
 mod prediction;
@@ -55,7 +57,8 @@ mod tuning;
 mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
-pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase};
+pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
+pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated};
 pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]

@@ -4,6 +4,7 @@ use freeform_riccati::{AffineMotion, DynamicsError, FlowIntegrator, ProjectiveMo
 use nalgebra::{Matrix3, Projective2};
 
 use crate::error::SimulationError;
+use crate::trajectory::{Dynamics, Trajectory};
 
 /// Longest step of the integrator for a varying motion, in seconds: changes shorter than that can be missed.
 const LONGEST_STEP: f64 = 1.0 / 64.0;
@@ -24,6 +25,7 @@ enum Kind {
     Constant(ProjectiveMotion),
     /// Start of each phase in seconds, from 0 and increasing, and its motion.
     Piecewise(Vec<(f64, ProjectiveMotion)>),
+    Trajectory(Trajectory),
     Varying(Arc<Generator>),
 }
 
@@ -57,12 +59,24 @@ impl Motion {
         Self { kind: Kind::Varying(Arc::new(move |time| generator(time).into())) }
     }
 
+    /// Whether the motion is known to be the same at all times.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        match &self.kind {
+            Kind::Constant(_) => true,
+            Kind::Trajectory(trajectory) => trajectory.dynamics() == Dynamics::Generator,
+            Kind::Piecewise(phases) => phases.len() == 1,
+            Kind::Varying(_) => false,
+        }
+    }
+
     /// The motion at a time in seconds.
     #[must_use]
     pub fn at(&self, time: f64) -> ProjectiveMotion {
         match &self.kind {
             Kind::Constant(motion) => *motion,
             Kind::Piecewise(phases) => phases[phases.partition_point(|(start, _)| *start <= time).max(1) - 1].1,
+            Kind::Trajectory(trajectory) => trajectory.motion(time).into(),
             Kind::Varying(generator) => generator(time),
         }
     }
@@ -88,6 +102,10 @@ impl Motion {
                 let steps = spans.filter(|(start, end, _)| start < end).map(|(start, end, m)| m.flow(end - start));
                 steps.fold(Projective2::identity(), |flow, step| step * flow)
             }
+            Kind::Trajectory(trajectory) => match trajectory.dynamics() {
+                Dynamics::Generator => nalgebra::convert(trajectory.motion(0.0).flow(to - from)),
+                _ => nalgebra::convert(trajectory.pose(to) * trajectory.pose(from).inverse()),
+            },
             Kind::Varying(generator) => {
                 let integrator = FlowIntegrator::new(TOLERANCE)?.with_longest_step(LONGEST_STEP)?;
                 integrator.flow(|time| generator(time).generator(), from, to)?.map
@@ -114,11 +132,18 @@ impl From<RigidMotion> for Motion {
     }
 }
 
+impl From<Trajectory> for Motion {
+    fn from(trajectory: Trajectory) -> Self {
+        Self { kind: Kind::Trajectory(trajectory) }
+    }
+}
+
 impl fmt::Debug for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
             Kind::Constant(motion) => f.debug_tuple("Constant").field(motion).finish(),
             Kind::Piecewise(phases) => f.debug_tuple("Piecewise").field(phases).finish(),
+            Kind::Trajectory(trajectory) => trajectory.fmt(f),
             Kind::Varying(_) => f.write_str("Varying(..)"),
         }
     }

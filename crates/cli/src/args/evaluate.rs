@@ -18,6 +18,7 @@ Examples:
   freeform evaluate --acquisition --shape bird van --runs 200 --format json
   freeform evaluate --suite --shape masks/*.png --output accuracy.md
   freeform evaluate --suite arc --runs 5 --method filter
+  freeform evaluate --suite stress --kinds round/ --runs 10
 
 Output, for each shape, and pooled over shapes and parameters:
   RMSE      root mean square error of a parameter, in the image
@@ -81,9 +82,9 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
     pub(crate) wrong_frames: f64,
 
-    /// Sequences of each shape and length
-    #[arg(long, value_name = "COUNT", value_parser = at_least_one, default_value_t = 50)]
-    pub(crate) runs: usize,
+    /// Sequences of each shape and length, or of each kind [default: 50; --suite stress: 20]
+    #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
+    pub(crate) runs: Option<usize>,
 
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
@@ -103,10 +104,22 @@ pub(crate) struct EvaluateArgs {
     /// Evaluate the settings of docs/accuracy.md, or those whose name contains TEXT, and print Markdown
     ///
     /// Shapes: bird, glider, phone, van, shoe and hat, and those of --shape. Acquisition has ten times as many runs as --runs.
+    ///
+    /// 'stress' is another suite, that of docs/honesty.md: more than a hundred kinds of sequences that are not what an estimator
+    /// expects, in the classes plain, noise, family, dynamics, round and symmetry. A table tells how often a stated value was more
+    /// than four standard deviations off without a word, how often nothing was stated, and how often the 95 % intervals held.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "",
           conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
                                 "noise", "occlusion", "outliers", "wrong_frames", "acquisition"])]
     pub(crate) suite: Option<String>,
+
+    /// With --suite stress: only kinds whose class and name, as in 'noise/camera shake', contain TEXT
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) kinds: Option<String>,
+
+    /// With --suite stress: list the kinds and what they are
+    #[arg(long)]
+    pub(crate) list: bool,
 
     /// Number of threads [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
@@ -116,7 +129,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long)]
     pub(crate) no_timing: bool,
 
-    /// Format of the result [default: table; --suite: markdown]
+    /// Format of the result [default: table; --suite: markdown; --suite stress: table]
     #[arg(long, value_enum)]
     pub(crate) format: Option<EvaluateFormat>,
 

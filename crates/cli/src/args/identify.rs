@@ -5,12 +5,13 @@ use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Args, Command, ValueEnum};
 use freeform_motion::curve_fit::{Degree, FitSettings};
+use freeform_motion::outline_filter::{Dynamics, FilterSettings};
 use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion};
 use freeform_motion::tracker::{Method, MethodSettings};
 use freeform_motion::{Rectification, TrackerSettings};
 
 use super::pictures::{PictureOptions, picture_inputs};
-use super::values::{camera_scale, degree, motion, rectification};
+use super::values::{camera_scale, degree, length, motion, rectification};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -162,6 +163,21 @@ pub(crate) struct TrackOptions {
     #[arg(long, value_name = "FILE|H11,...,H33", value_parser = rectification, allow_hyphen_values = true,
           conflicts_with = "scale")]
     pub(crate) rectify: Option<Rectification>,
+
+    /// What is assumed of how the motion goes on from frame to frame; not used by the adaptive method, nor for projective
+    /// motion
+    ///
+    /// With 'auto', the three others are followed side by side and weighted by their probabilities. With 'generator', the path of an
+    /// object tells its turn also if its outline does not, as for a disc on a turntable.
+    #[arg(long, value_enum, default_value_t = DynamicsChoice::Auto)]
+    pub(crate) dynamics: DynamicsChoice,
+
+    /// How far a side of the outline may lie off in all frames, such as by a shadow, in the unit of the outlines, or of the
+    /// plane with --rectify
+    ///
+    /// It widens the standard deviations. The part that comes from it is also given by itself, as std_systematic.
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) edge_uncertainty: Option<f64>,
 }
 
 impl TrackOptions {
@@ -173,6 +189,11 @@ impl TrackOptions {
                 settings.fit.degree = degree;
                 MethodSettings::Adaptive(settings)
             }
+            (MethodSettings::Filter(settings), _) => MethodSettings::Filter(FilterSettings {
+                dynamics: self.dynamics.into(),
+                edge_uncertainty: self.edge_uncertainty.unwrap_or(0.0),
+                ..settings
+            }),
             (method, _) => method,
         };
         TrackerSettings { method, scale: self.scale, rectification: self.rectify }
@@ -203,6 +224,29 @@ impl MotionChoice {
             Self::Similarity => MotionModel::Similarity,
             Self::Affine => MotionModel::Affine,
             Self::Projective => MotionModel::Projective,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DynamicsChoice {
+    /// The three below side by side
+    Auto,
+    /// Constant generator: the velocity of the middle turns with the object
+    Generator,
+    /// Constant angular velocity, and a constant velocity of the middle
+    Velocity,
+    /// Nearly constant accelerations
+    Accelerating,
+}
+
+impl From<DynamicsChoice> for Dynamics {
+    fn from(choice: DynamicsChoice) -> Self {
+        match choice {
+            DynamicsChoice::Auto => Self::Auto,
+            DynamicsChoice::Generator => Self::Generator,
+            DynamicsChoice::Velocity => Self::Velocity,
+            DynamicsChoice::Accelerating => Self::Accelerating,
         }
     }
 }
@@ -249,7 +293,7 @@ impl TypedValueParser for MethodParser {
 pub(crate) enum IdentifyFormat {
     /// For reading
     Table,
-    /// One JSON object, schema freeform.identify/1
+    /// One JSON object, schema freeform.identify/2
     Json,
     /// One row per object and parameter
     Csv,

@@ -1,4 +1,5 @@
 //! What can be asked for on the command line.
+mod dynamics;
 mod evaluate;
 mod fit;
 mod identify;
@@ -17,7 +18,9 @@ use clap::{Args, CommandFactory, FromArgMatches as _, Parser, Subcommand, error:
 
 pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat};
 pub(crate) use fit::{FitArgs, FitFormat};
-pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
+pub(crate) use identify::{
+    DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions,
+};
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{PictureOptions, through_ffmpeg};
 pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};

@@ -60,6 +60,29 @@ fn list(text: &str) -> Result<Vec<f64>, String> {
     text.split(',').map(finite).collect()
 }
 
+/// As many numbers as there are names, such as `VX,VY`.
+pub(crate) fn numbers<const N: usize>(
+    names: &'static str,
+) -> impl Fn(&str) -> Result<[f64; N], String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let list = list(text)?;
+        let count = list.len();
+        list.try_into().map_err(|_| format!("expected {names}, found {count} number(s)"))
+    }
+}
+
+/// A length that is not negative.
+pub(crate) fn length(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value >= 0.0 { Ok(value) } else { Err(format!("{text} is negative")) }
+}
+
+/// A share of a whole, up to all of it.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err(format!("{text} is not in [0, 1]")) }
+}
+
 /// `B1,B2`.
 pub(crate) fn pair(text: &str) -> Result<[f64; 2], String> {
     let list = list(text)?;

@@ -14,17 +14,23 @@ use crate::output::{
 };
 use crate::progress::Progress;
 
+/// Sequences of each shape and length where none are asked for.
+const RUNS: usize = 50;
+
 /// Simulates, identifies and prints.
 pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
+    if args.suite.as_deref() == Some(super::stress::NAME) {
+        return super::stress::run(args);
+    }
+    let misplaced = [("--kinds", args.kinds.is_some()), ("--list", args.list)];
+    if let Some((option, _)) = misplaced.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(Failure::unusable(format_args!("{option} is for --suite stress")));
+    }
     let study = study(args)?;
     study.check().map_err(Failure::of_experiment)?;
     // The output is refused before the work, not after it.
     let sink = Sink::open(&args.output)?;
-    let mut pool = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = args.threads {
-        pool = pool.num_threads(threads);
-    }
-    let pool = pool.build().map_err(Failure::unusable)?;
+    let pool = thread_pool(args)?;
     let progress = Progress::of_runs(study.run_count() as u64);
     let report = pool.install(|| study.run(&|| progress.advance())).map_err(Failure::of_experiment)?;
     drop(progress);
@@ -32,6 +38,15 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         return Err(Failure::no_result("every run of every method was lost"));
     }
     write(args, &Evaluated { report, timing: !args.no_timing }, sink)
+}
+
+/// As many threads as asked for.
+pub(super) fn thread_pool(args: &EvaluateArgs) -> Result<rayon::ThreadPool, Failure> {
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = args.threads {
+        pool = pool.num_threads(threads);
+    }
+    pool.build().map_err(Failure::unusable)
 }
 
 fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
@@ -47,13 +62,14 @@ fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
         }
         shapes.push(shape);
     }
+    let runs = args.runs.unwrap_or(RUNS);
     let (settings, acquisitions, acquisition_runs) = match &args.suite {
         Some(text) => {
             let (settings, acquisitions) = suite::containing(text).map_err(Failure::of_experiment)?;
-            (settings, acquisitions, suite::ACQUISITION_RUNS.saturating_mul(args.runs))
+            (settings, acquisitions, suite::ACQUISITION_RUNS.saturating_mul(runs))
         }
-        None if args.acquisition => (Vec::new(), vec![acquisition(args)], args.runs),
-        None => (settings(args)?, Vec::new(), args.runs),
+        None if args.acquisition => (Vec::new(), vec![acquisition(args)], runs),
+        None => (settings(args)?, Vec::new(), runs),
     };
     let is_projective = settings.iter().any(|setting| setting.model == MotionModel::Projective);
     let methods = match (args.method.is_empty(), is_projective) {
@@ -61,7 +77,7 @@ fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
         (true, false) => vec![Method::Filter, Method::Moments, Method::Icp],
         (true, true) => vec![Method::Filter, Method::Icp],
     };
-    let (runs, seed) = (args.runs, args.seed);
+    let seed = args.seed;
     Ok(Study { shapes, settings, acquisitions, methods, runs, acquisition_runs, seed })
 }
 

@@ -4,11 +4,10 @@ use std::path::Path;
 use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::riccati::ProjectiveMotion;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
-use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
@@ -23,6 +22,7 @@ use crate::output::{
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
 use crate::reader::{Event, Pace, follow};
+use crate::truth::Truth;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
@@ -30,9 +30,14 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
-    let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
+    let of_file = input.truth.filter(|_| args.truth.is_none());
+    if !args.quiet && of_file.is_some() && args.options.rectify.is_some() {
+        warn("the truth in the file is that in the picture, not in the plane of --rectify, so it is not shown");
+    }
+    let of_file = of_file.filter(|_| args.options.rectify.is_none());
+    let truth = args.truth.map(Truth::from).or_else(|| of_file.map(|truth| truth.seen_at(args.options.scale)));
     let model = args.options.motion.model();
-    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth).is_none()) {
+    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth.motion).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
         warn(&format!("{origin} is not a {model} motion, so it is not shown"));
     }
@@ -115,6 +120,11 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
         warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
     }
+    if args.options.dynamics != DynamicsChoice::Auto && args.options.motion == MotionChoice::Projective && !args.quiet {
+        warn(
+            "--dynamics: not used for projective motion, whose generator is taken for constant until it is seen to change",
+        );
+    }
     Ok(())
 }
 
@@ -157,12 +167,7 @@ impl<'a> Files<'a> {
     }
 
     /// Moves the files to their destinations. A file without content is not written.
-    fn finish(
-        self,
-        tracker: &Tracker,
-        truth: Option<&ProjectiveMotion>,
-        results: &[ObjectResult],
-    ) -> Result<(), Failure> {
+    fn finish(self, tracker: &Tracker, truth: Option<&Truth>, results: &[ObjectResult]) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
         let not_written = |options: &[(&str, bool)], reason: &str| {
@@ -205,7 +210,7 @@ impl<'a> Files<'a> {
 fn print(
     args: &IdentifyArgs,
     results: &[ObjectResult],
-    truth: Option<&ProjectiveMotion>,
+    truth: Option<&Truth>,
     b: &MeaningOfB,
     left_out: &LeftOut,
     says_b: bool,

@@ -10,6 +10,7 @@ mod recognise;
 mod rectify;
 mod reproduce;
 mod simulate;
+mod stress;
 mod track;
 
 pub(crate) use recognise::RecognisedObject;

@@ -40,8 +40,7 @@ pub(crate) fn write_sequence(
     mut observe: impl FnMut(&OutlineFrame) -> Result<(), Failure>,
 ) -> Result<(), SequenceError> {
     let write = |error| SequenceError::Write(WriteError::Io(error));
-    let truth =
-        SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale: simulator.scene().camera().scale() };
+    let truth = SimulatedMotion::of(simulator);
     writeln!(sink, "# {}", command_line()).and_then(|()| writeln!(sink, "# {truth}")).map_err(write)?;
     let arc_column = simulator.settings().occlusion.fraction > 0.0;
     // Objects have about unit size in the image; far below the noise there is nothing to tell.
@@ -60,13 +59,14 @@ pub(crate) fn write_sequence(
 
 fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
     let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
-    let motion = args.motion_in_space.motion();
+    let given = args.motion_in_space.motion();
     if let Some(model) = args.motion.map(MotionChoice::model)
-        && model.parameters_of_motion(&motion).is_none()
+        && model.parameters_of_motion(&given).is_none()
     {
-        let given = args.motion_in_space.family();
-        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --{given}")));
+        let family = args.motion_in_space.family();
+        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --{family}")));
     }
+    let motion = args.dynamics.motion(&args.motion_in_space)?;
     let scene = Scene::new(shape(&args.shape)?, motion, camera);
     let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
     let settings = Settings {

@@ -15,6 +15,8 @@ mod identify_table;
 mod number;
 mod page;
 mod recognised;
+mod stress_json;
+mod stress_table;
 mod trajectory_csv;
 mod velocity;
 
@@ -34,4 +36,6 @@ pub(crate) use identify_table::write_identify_table;
 pub(crate) use number::short;
 pub(crate) use page::{write_page, write_section_files};
 pub(crate) use recognised::{write_recognised_json, write_recognised_table};
+pub(crate) use stress_json::{write_kinds_json, write_stress_json};
+pub(crate) use stress_table::{write_kinds, write_kinds_markdown, write_stress_markdown, write_stress_table};
 pub(crate) use trajectory_csv::write_trajectory;

@@ -66,7 +66,7 @@ fn run_guide(guide: &str) -> String {
 #[test]
 fn get_started_runs() {
     let printed = run_guide("get-started.md");
-    assert!(printed.contains("truth") && printed.contains("freeform.identify/1"), "{printed}");
+    assert!(printed.contains("truth") && printed.contains("freeform.identify/2"), "{printed}");
 }
 
 #[test]
@@ -90,4 +90,18 @@ fn reading_uncertainties_runs() {
 #[test]
 fn each_crate_runs() {
     run_guide("each-crate.md");
+}
+
+#[test]
+fn honesty_runs_and_explains_every_kind_of_the_suite() {
+    assert!(run_guide("honesty.md").contains("disc rolling"));
+    let output = Command::new(assert_cmd::cargo::cargo_bin("freeform"))
+        .args(["evaluate", "--suite", "stress", "--list", "--format", "markdown"])
+        .output()
+        .expect("the binary runs");
+    let listed = String::from_utf8(output.stdout).expect("UTF-8");
+    let document = std::fs::read_to_string(docs().join("honesty.md")).expect("the document");
+    for line in listed.lines() {
+        assert!(document.contains(line), "docs/honesty.md lacks: {line}");
+    }
 }

@@ -1,4 +1,6 @@
 //! Hypotheses: turns that explain the frames as well as the one taken, followed until a frame decides.
+use std::f64::consts::{PI, TAU};
+
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
 
@@ -9,7 +11,10 @@ use super::{
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
     track::{Comparison, Outcome, Track},
-    tuning::hypotheses as tuning,
+    tuning::{
+        hypotheses as tuning,
+        symmetry::{OFF_MULTIPLE, SAME},
+    },
     update::Gate,
 };
 
@@ -29,6 +34,16 @@ struct Hypothesis {
     /// While it is followed.
     track: Option<Track>,
     likelihood: NegativeLogLikelihood,
+    ground: Ground,
+}
+
+/// Why a turn may have been another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ground {
+    /// It explains the frames so far as well, and is followed until a frame decides.
+    Likeness,
+    /// The outline has a symmetry: no frame will decide, and the path of the object must not.
+    Symmetry,
 }
 
 /// All others, and what the one taken is compared with them by.
@@ -40,18 +55,23 @@ pub(super) struct Hypotheses {
     taken: f64,
     likelihood: NegativeLogLikelihood,
     frames: usize,
+    /// Angle of symmetry, rad, and the time that the turns were made in, in units of the filter.
+    pitch: f64,
+    acquired_over: f64,
 }
 
 impl Hypotheses {
-    /// Takes the smallest turn of all that are not significantly worse than the best.
-    pub(super) fn among(mut candidates: Vec<Candidate>) -> (Option<Candidate>, Self) {
+    /// Of an outline with a symmetry of some order, takes the smallest turn of all that are not significantly worse than the best.
+    pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
+        let pitch = TAU / symmetry as f64;
+        let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
         candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
         let Some(best) = candidates.first().map(|c| c.likelihood) else { return (None, Self::default()) };
         candidates.retain(|candidate| !candidate.likelihood.is_worse_than(&best));
         // The best of those with one turn stands for them.
         let mut different: Vec<Candidate> = Vec::new();
         for candidate in candidates {
-            if different.iter().all(|other| apart(other.turn, candidate.turn)) {
+            if different.iter().all(|other| apart(other.turn, candidate.turn, different_turn)) {
                 different.push(candidate);
             }
         }
@@ -61,11 +81,33 @@ impl Hypotheses {
         let mut all = Self {
             taken: taken.as_ref().map_or(0.0, |c| c.turn),
             likelihood: taken.as_ref().map_or_else(NegativeLogLikelihood::default, |c| c.likelihood),
+            pitch,
+            acquired_over: seconds,
             ..Self::default()
         };
+        if symmetry > 1 && taken.is_some() {
+            let wrapped = |turn: f64| (turn + PI).rem_euclid(TAU) - PI;
+            let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| wrapped(all.taken + step * pitch)).into();
+            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+            turns.retain(|turn| (turn - all.taken).abs() > different_turn);
+            for turn in turns {
+                all.turns.push(turn);
+                let found =
+                    others.as_slice().iter().find(|candidate| wrapped(candidate.turn - turn).abs() < different_turn);
+                let likelihood = found.map_or_else(NegativeLogLikelihood::default, |candidate| candidate.likelihood);
+                let track = found.map(|candidate| candidate.track.clone());
+                all.list.push(Hypothesis { likelihood, track, ground: Ground::Symmetry });
+            }
+        }
+        let off_symmetry = |turn: f64| {
+            let steps = (turn - all.taken) / pitch;
+            symmetry == 1 || (steps - steps.round()).abs() > SAME
+        };
+        let others: Vec<Candidate> = others.filter(|candidate| off_symmetry(candidate.turn)).collect();
         for candidate in others {
             all.turns.push(candidate.turn);
-            all.list.push(Hypothesis { likelihood: candidate.likelihood, track: Some(candidate.track) });
+            let (likelihood, track) = (candidate.likelihood, Some(candidate.track));
+            all.list.push(Hypothesis { likelihood, track, ground: Ground::Likeness });
         }
         (taken, all)
     }
@@ -96,6 +138,9 @@ impl Hypotheses {
     pub(super) fn doubts(&self, estimate: &MotionEstimate) -> [bool; MAX_PARAMETERS] {
         let mut doubts = [false; MAX_PARAMETERS];
         for hypothesis in (0..self.list.len()).filter(|i| self.is_doubtful(*i)).map(|i| &self.list[i]) {
+            if hypothesis.ground == Ground::Symmetry {
+                return [true; MAX_PARAMETERS];
+            }
             let Some(other) = hypothesis.track.as_ref().and_then(Track::estimate) else { continue };
             for ((doubt, parameter), other) in doubts.iter_mut().zip(estimate.parameters()).zip(other.values()) {
                 let known = parameter.value.zip(parameter.standard_deviation);
@@ -126,7 +171,11 @@ impl Hypotheses {
         let mut outcome = outcome;
         self.frames += 1;
         self.likelihood.add(&outcome.likelihood);
+        if outcome.is_accepted() {
+            self.compare_intervals(seconds);
+        }
         for index in (0..self.list.len()).rev() {
+            let ground = self.list[index].ground;
             let Some(other) = &mut self.list[index].track else { continue };
             other.predict(seconds);
             other.add_process_noise(&settings.process_noise, seconds);
@@ -136,18 +185,26 @@ impl Hypotheses {
             other.take_spread(found.measurement.spread);
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
-            if found.is_accepted() && (!outcome.is_accepted() || self.likelihood.is_worse_than(&of_other)) {
+            let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);
+            if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 if let Some(other) = &mut self.list[index].track {
                     std::mem::swap(other, track);
                 }
                 std::mem::swap(&mut self.likelihood, &mut self.list[index].likelihood);
                 std::mem::swap(&mut self.taken, &mut self.turns[index]);
-                if !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood) {
-                    self.remove(index);
+                let is_worse = !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood);
+                match ground {
+                    Ground::Likeness if is_worse => self.remove(index),
+                    Ground::Symmetry if is_worse => self.list[index].track = None,
+                    _ => {}
                 }
                 outcome = found;
             } else if outcome.is_accepted() && (!found.is_accepted() || of_other.is_worse_than(&self.likelihood)) {
-                self.remove(index);
+                match ground {
+                    Ground::Likeness => self.remove(index),
+                    // Its path is no evidence.
+                    Ground::Symmetry => self.list[index].track = None,
+                }
             }
         }
         if self.frames >= tuning::FOLLOWED {
@@ -158,6 +215,18 @@ impl Hypotheses {
             }
         }
         outcome
+    }
+
+    /// Leaves out turns of a symmetric outline that are no multiple of its angle apart over another interval between frames.
+    fn compare_intervals(&mut self, seconds: f64) {
+        for index in (0..self.list.len()).rev() {
+            if self.list[index].ground == Ground::Symmetry {
+                let apart = (self.turns[index] - self.taken) * seconds / (self.acquired_over * self.pitch);
+                if (apart - apart.round()).abs() > OFF_MULTIPLE {
+                    self.remove(index);
+                }
+            }
+        }
     }
 
     /// Cuts the maps of all hypotheses anew; those that cannot be are none any more.
@@ -178,7 +247,7 @@ impl Hypotheses {
     }
 }
 
-fn apart(a: f64, b: f64) -> bool {
+fn apart(a: f64, b: f64, different: f64) -> bool {
     let turn = (a - b + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-    turn.abs() > tuning::DIFFERENT_TURN
+    turn.abs() > different
 }

@@ -12,5 +12,5 @@ mod window;
 
 pub use ambiguity::Ambiguity;
 pub use error::FilterError;
-pub use motion_filter::{FilterStep, MotionFilter, Phase};
+pub use motion_filter::{FilterStep, MotionFilter, Phase, Unstated};
 pub use settings::FilterSettings;

@@ -1,5 +1,10 @@
 //! How fast the motion changes, estimated from the innovations.
-use crate::{prediction::ByKind, tuning::motion_change as tuning, update::PoseInnovation};
+use crate::{
+    dynamics::{DynamicsFilter, FamilyTests},
+    prediction::ByKind,
+    tuning::motion_change as tuning,
+    update::PoseInnovation,
+};
 
 const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 
@@ -12,6 +17,22 @@ pub(crate) struct MotionChange {
     of_both: Evidence,
     /// Whether it has ever changed from one frame to the next by more than such variances tell.
     pub(crate) was_sudden: bool,
+}
+
+/// What is known of how a motion changes: by its innovations, and by hypotheses of its dynamics.
+#[derive(Debug, Clone, Default)]
+pub(super) struct MotionHistory {
+    pub(super) change: MotionChange,
+    /// None before the third frame, and where dynamics are not told.
+    pub(super) dynamics: Option<DynamicsFilter>,
+    pub(super) family: FamilyTests,
+}
+
+impl MotionHistory {
+    /// Whether the motion has been seen to change by more than a constant generator does.
+    pub(super) fn is_changing(&self) -> bool {
+        self.change.is_seen() || self.dynamics.as_ref().is_some_and(DynamicsFilter::leads)
+    }
 }
 
 /// One of them.

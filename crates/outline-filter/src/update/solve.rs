@@ -4,6 +4,7 @@ use nalgebra::Matrix3;
 use super::{
     hold::with_hold,
     normal_equations::{accumulate, reduce},
+    pose_measurement::PoseMeasurement,
 };
 use crate::{
     belief::{Arrowhead, CellInformation, STATE, StateMatrix, StateVector, scaled_solution},
@@ -23,6 +24,8 @@ pub(crate) struct Proposal {
     pub(crate) dense: [[f64; STATE]; STATE],
     /// Information on pose and motion with the frame, the offsets eliminated.
     pub(crate) marginal: StateMatrix,
+    /// What the frame tells of the pose by itself, in units of the noise; `None` in a proposal that is none yet.
+    pub(crate) pose_measurement: Option<PoseMeasurement>,
     /// Linearisations taken.
     pub(crate) iterations: usize,
 }
@@ -44,6 +47,7 @@ impl View<'_> {
             pose: belief.pose,
             dense: belief.information.dense,
             marginal: belief.marginal,
+            pose_measurement: None,
             iterations: 0,
         };
         let mut null = null.to_vec();
@@ -64,6 +68,7 @@ impl View<'_> {
             let reduced = reduce(&work, &frame.right, right);
             let solution = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
             let next = solution.filter(|next| next.iter().all(|e| e.is_finite()));
+            let pose_measurement = PoseMeasurement::of(&belief.information, &work, &right, &frame.right);
             if let Some(next) = next {
                 frame.take_step(&work.cells, &(next - proposal.state), &next, k);
             }
@@ -75,7 +80,8 @@ impl View<'_> {
                 return Err(proposal.iterations);
             }
             let iterations = proposal.iterations + 1;
-            proposal = Proposal { state: next, pose, dense: work.dense, marginal, iterations };
+            let pose_measurement = Some(pose_measurement);
+            proposal = Proposal { state: next, pose, dense: work.dense, marginal, pose_measurement, iterations };
             settled = step < tuning::SETTLED * self.noise.sigma;
         }
         Ok(proposal)
@@ -133,7 +139,14 @@ mod tests {
             frame.take_step(&work.cells, &state, &state, k);
             frame.cells.clone_from(&work.cells);
             let marginal = work.marginal();
-            let proposal = Proposal { state, pose: belief.pose, dense: work.dense, marginal, iterations: 1 };
+            let proposal = Proposal {
+                state,
+                pose: belief.pose,
+                dense: work.dense,
+                marginal,
+                pose_measurement: None,
+                iterations: 1,
+            };
             let (motion, offsets) = (belief.motion, belief.offsets.clone());
             let (mut noise, mut shape) = (NoiseModel::new(1.0), ShapeNoise::default());
             noise.resize(cells);

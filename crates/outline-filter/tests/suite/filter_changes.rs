@@ -121,7 +121,7 @@ fn an_object_that_spins_and_travels_keeps_its_pose_where_its_map_is_cut_from_man
             let found = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
             let (value, std) = (found.value.expect("known"), found.standard_deviation.expect("known"));
             let context = format!("{points} points, seed {seed}: {value} {std}, worst {worst}");
-            assert!((value - omega).abs() < 5.0 * std && std < 0.01 && worst < 0.05, "{context}");
+            assert!((value - omega).abs() < 5.0 * std && std < 0.03 && worst < 0.05, "{context}");
         }
     }
 }

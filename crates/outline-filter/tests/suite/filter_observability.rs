@@ -40,7 +40,10 @@ fn a_circle_at_rest_keeps_its_turn_unknown_and_its_place_known_whatever_the_nois
         for seed in 0..6 {
             let settings = Settings { noise, ..settings(30, seed) };
             let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, RigidMotion::default(), settings));
-            assert_eq!(observable(&run), [false, true, true], "noise {noise}, seed {seed}");
+            assert!(!observable(&run)[0], "noise {noise}, seed {seed}");
+            let velocity = run.velocity().expect("a velocity of the middle");
+            let std = velocity.standard_deviations().norm();
+            assert!(velocity.velocity.norm() < 5.0 * std && std < 0.1, "noise {noise}, seed {seed}: {velocity:?}");
             assert_eq!(run.frames_rejected(), 0, "noise {noise}, seed {seed}");
         }
     }
@@ -80,7 +83,7 @@ fn a_circle_of_points_at_even_angles_does_not_show_its_turn_either() {
             let outline = Outline::closed((0..300).map(&mut point).collect()).expect("an outline");
             resting.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
         }
-        assert_eq!(observable(&resting), [false, true, true], "{noise:?}, seed {seed}");
+        assert!(!observable(&resting)[0] && resting.velocity().is_some(), "{noise:?}, seed {seed}");
         assert_eq!(resting.frames_rejected(), 0, "{noise:?}, seed {seed}");
     }
 }
@@ -149,7 +152,7 @@ fn a_third_frame_at_another_distance_decides_between_the_turns_of_a_symmetric_ou
 }
 
 #[test]
-fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_decides() {
+fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_whatever_its_path() {
     let omega = |filter: &MotionFilter| filter.estimate().expect("an estimate").parameters().next().expect("omega");
     let turn = 50.0_f64.to_radians();
     let two = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0]);
@@ -159,11 +162,9 @@ fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_until_its_path_d
     let degrees = |turn: f64| turn.to_degrees().round();
     let rivals: Vec<f64> = ambiguity.rival_turns.iter().map(|turn| degrees(*turn)).collect();
     assert_eq!((degrees(ambiguity.turn), rivals), (40.0, vec![-50.0]));
-    // It moves along an arc, which no other turn would.
+    // It moves along an arc, which a constant generator with no other turn would. But wheels roll, and coins slide while they spin.
     let three = seen_at(BuiltInShape::Square, turn, 0.1, &[0.0, 1.0, 2.0]);
-    let stated = omega(&three).value.expect("decided");
-    assert!(three.ambiguity().is_none() && (stated - turn).abs() < 0.02, "{stated}");
-    assert!(three.ambiguity().is_none() && three.velocity().is_some());
+    assert!(three.ambiguity().is_some() && omega(&three).value.is_none(), "{:?}", three.rival_turns());
     // Nothing tells how often a square that stays in its place has turned, unless it is little.
     let in_place = seen_at(BuiltInShape::Square, turn, 0.0, &[0.0, 1.0, 2.0]);
     assert!(in_place.ambiguity().is_some() && omega(&in_place).value.is_none(), "{:?}", in_place.rival_turns());

@@ -3,3 +3,4 @@ mod raster;
 mod scene;
 mod shapes;
 mod simulation;
+mod trajectory;

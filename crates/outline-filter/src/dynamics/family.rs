@@ -1,0 +1,77 @@
+//! Whether the outlines move in ways that the family of motions does not have.
+use super::{centred::CentredVector, innovations::InnovationSeries};
+use crate::{
+    tuning::family as tuning,
+    update::{LEFT_OUT, Misfit},
+};
+
+/// What outlines do that their family of motions does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongFamily {
+    /// They grow or shrink.
+    Growth,
+    /// They are stretched or sheared: an affine motion, or a camera that looks from aside, or pixels that are not square.
+    Shear,
+    /// They change as in perspective.
+    Perspective,
+    /// They change their shape in other ways: bending, a lens, rows of the picture taken one after the other.
+    Shape,
+}
+
+/// Tests of what a family of motions leaves out, over frames.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct FamilyTests {
+    series: InnovationSeries,
+    /// Sum of signed displacements, and of their squares.
+    displacement: CentredVector,
+    squares: CentredVector,
+    frames: usize,
+}
+
+impl FamilyTests {
+    /// Takes what a frame says.
+    pub(crate) fn take(&mut self, misfit: &Misfit) {
+        let long =
+            |v: &nalgebra::SVector<f64, LEFT_OUT>| CentredVector::from_fn(|i, _| if i < LEFT_OUT { v[i] } else { 0.0 });
+        let displacement = long(&misfit.displacement);
+        self.series.take(&long(&misfit.standardised), LEFT_OUT);
+        self.displacement += displacement;
+        self.squares += displacement.component_mul(&displacement);
+        self.frames += 1;
+    }
+
+    /// What the outlines do beside their motion, beyond doubt, and the displacement that it makes of them, root mean square, normalised;
+    /// `sigma` is the deviation of the noise.
+    pub(crate) fn found(&self, sigma: f64) -> Option<(WrongFamily, f64)> {
+        if self.frames < tuning::FEWEST_FRAMES {
+            return None;
+        }
+        let n = self.frames as f64;
+        let least = tuning::MATTERS * sigma + tuning::OF_NOISE * sigma * sigma;
+        let mut clearest: Option<(usize, f64)> = None;
+        let mut displacement = 0.0;
+        for i in 0..LEFT_OUT {
+            let evidence = self.series.drift(i, LEFT_OUT).abs();
+            let size = (self.squares[i] / n).sqrt();
+            if evidence > tuning::SIGNIFICANT && size > least {
+                displacement += size * size;
+                if clearest.is_none_or(|(_, most)| evidence > most) {
+                    clearest = Some((i, evidence));
+                }
+            }
+        }
+        if let Some((i, _)) = clearest {
+            let family = match i {
+                0 => WrongFamily::Growth,
+                1 | 2 => WrongFamily::Shear,
+                _ => WrongFamily::Perspective,
+            };
+            return Some((family, displacement.sqrt()));
+        }
+        let worst = (0..LEFT_OUT).map(|i| (self.series.mean_square(i), (self.squares[i] / n).sqrt()));
+        let (evidence, size) = worst.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let most = 1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt();
+        let is_shape = evidence > most.max(tuning::SHAPE_CHANGES) && size > least;
+        is_shape.then_some((WrongFamily::Shape, size))
+    }
+}
