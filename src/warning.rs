@@ -220,22 +220,22 @@ impl fmt::Display for Warning {
 fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: MotionModel) -> fmt::Result {
     match family {
         WrongFamily::Growth => {
-            write!(f, "the outlines grow or shrink, which a {motion} motion does not: try --motion similarity")
+            write!(f, "the outlines grow or shrink, which {motion} motion does not: try --motion similarity")
         }
         WrongFamily::Shear => write!(
             f,
-            "the outlines are stretched or sheared, which a {motion} motion does not do: check the pixel aspect, try --rectify \
+            "the outlines are stretched or sheared, which {motion} motion does not do: check the pixel aspect, try --rectify \
              where the camera is tilted, or --motion affine"
         ),
         WrongFamily::Perspective => write!(
             f,
-            "the outlines change as in perspective, which a {motion} motion does not do: check the lens, try --rectify where the \
+            "the outlines change as in perspective, which {motion} motion does not do: check the lens, try --rectify where the \
              camera is tilted, or --motion projective"
         ),
         WrongFamily::Shape => write!(
             f,
             "the outlines change their shape from frame to frame in ways that no {motion} motion does: the object may bend, or \
-             the camera distort it or read its rows one after the other"
+             the camera look at it from aside (--rectify), distort it or read its rows one after the other"
         ),
     }
 }

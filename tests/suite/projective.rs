@@ -64,11 +64,11 @@ fn filtered(settings: FilterSettings, shape: BuiltInShape) -> ObjectResult {
 }
 
 #[test]
-fn perspective_is_told_of_by_an_affine_motion_and_part_of_a_projective_one() {
+fn that_affine_motion_leaves_perspective_out_is_told_and_projective_motion_leaves_nothing_out() {
     for shape in [BuiltInShape::Bird, BuiltInShape::Van] {
         let found = |model| filtered(FilterSettings { model, ..FilterSettings::default() }, shape);
         let affine = found(MotionModel::Affine).warnings;
-        let is_told = |warning: &Warning| warning.code() == "wrong_family_perspective";
+        let is_told = |warning: &Warning| matches!(warning, Warning::WrongFamily { motion: MotionModel::Affine, .. });
         assert!(affine.iter().any(is_told), "{shape}: {affine:?}");
         let projective = found(MotionModel::Projective);
         assert!(projective.warnings.is_empty(), "{shape}: {:?}", projective.warnings);

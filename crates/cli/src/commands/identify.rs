@@ -39,7 +39,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let model = args.options.motion.model();
     if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth.motion).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
-        warn(&format!("{origin} is not a {model} motion, so it is not shown"));
+        warn(&format!("{origin} is no {model} motion, so it is not shown"));
     }
     let mut files = Files::create(args)?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;

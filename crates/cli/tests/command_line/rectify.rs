@@ -1,6 +1,6 @@
 use nalgebra::{Matrix3, Point2, Projective2};
 
-use crate::support::{file, json, run, sequence, stderr, succeed};
+use crate::support::{file, json, run, sequence, stderr, stdout, succeed};
 
 /// A picture of a plane from aside, y upwards.
 fn picture_from_plane() -> Projective2<f64> {
@@ -54,6 +54,15 @@ fn a_rigid_motion_in_a_tilted_plane_is_found_in_the_plane_by_four_points() {
     }
     let table = succeed(&format!("identify - --rectify {}", numbers.join(",")), &outlines);
     assert!(table.contains("b: velocity at the origin of the plane, in lengths of the plane/s"), "{table}");
+}
+
+#[test]
+fn the_true_motion_in_the_picture_is_not_shown_beside_one_in_the_plane() {
+    let output = run("identify - --rectify 2,0,0,0,2,0,0,0,1", &sequence(""));
+    assert!(stderr(&output).contains("the truth in the file is that in the picture"), "{}", stderr(&output));
+    assert!(!stdout(&output).contains("truth"), "{}", stdout(&output));
+    let table = succeed("identify - --rectify 2,0,0,0,2,0,0,0,1 --truth 1.5708,-0.6,0.8", &sequence(""));
+    assert!(table.contains("truth") && table.contains("-0.600000"), "{table}");
 }
 
 #[test]
