@@ -383,6 +383,10 @@ pub(crate) mod family {
     pub(crate) const MAP_KNOWN: usize = 4;
     /// Mean square, in variances, of a change of shape that has no direction.
     pub(crate) const SHAPE_CHANGES: f64 = 4.0;
+    /// Share of a motion that is left out that must not be one of the model's on the outline for anything to be told of it.
+    pub(crate) const TOLD_APART: f64 = 1e-3;
+    /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.
+    pub(crate) const SINGULAR: f64 = 1e-9;
     /// Frames looked at: all of the first so many, and then every so many.
     pub(crate) const ALL_OF_THE_FIRST: usize = 16;
     pub(crate) const EVERY: usize = 4;

@@ -2,10 +2,7 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use crate::{
-    belief::{STATE, StateMatrix},
-    prediction::centred_change,
-};
+use crate::{belief::StateMatrix, prediction::centred_change};
 
 /// Most parameters of a model that dynamics are told for, those of affine motion.
 pub(crate) const LARGEST: usize = 6;
@@ -55,7 +52,7 @@ pub(crate) struct Summary {
     /// Body to image.
     pub(crate) pose: Matrix3<f64>,
     pub(crate) motion: ParameterVector,
-    /// Of the error of the pose, on the left, and of the motion.
+    /// Of the error of the pose, on the left, and of the motion; what lies beyond their entries says nothing.
     pub(crate) covariance: StateMatrix,
 }
 
@@ -72,52 +69,54 @@ impl Summary {
         let k = model.parameter_count();
         let at = CentredPose { pose: self.pose, middle: *middle };
         let (to, from) = (at.about_origin(model)?, at.about_middle(model));
-        let blocks = |m: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>| {
-            StateMatrix::from_fn(
-                |i, j| {
-                    if i < 2 * k && j < 2 * k && (i < k) == (j < k) { m[(i % k, j % k)] } else { 0.0 }
-                },
-            )
-        };
-        let (to, from) = (blocks(&to), blocks(&from));
-        let mut centred = carried(&from, &self.covariance, 2 * k);
-        for i in 0..(2 * k).min(STATE) {
+        let mut centred = carried(&of_both(&from, k), &self.covariance, 2 * k);
+        for i in 0..2 * k {
             for j in 0..2 * k {
                 centred[(i, j)] *= factors[i % k] * factors[j % k];
             }
             centred[(i, i)] += added[i / k][i % k].powi(2);
         }
-        let mut covariance = carried(&to, &centred, 2 * k);
-        // Beyond the state the diagonal is one, as everywhere.
-        (2 * k..STATE).for_each(|i| covariance[(i, i)] = 1.0);
-        Some(Self { covariance, ..*self })
+        Some(Self { covariance: carried(&of_both(&to, k), &centred, 2 * k), ..*self })
     }
 }
 
-/// `F P F'` over the first `n` entries; zeros beyond them.
-pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>, n: usize) -> SMatrix<f64, N, N> {
-    let times = |a: &SMatrix<f64, N, N>, b: &SMatrix<f64, N, N>| {
-        let mut product = SMatrix::<f64, N, N>::zeros();
-        for j in 0..n {
-            for l in 0..n {
-                let entry = b[(l, j)];
-                if entry != 0.0 {
-                    (0..n).for_each(|i| product[(i, j)] += a[(i, l)] * entry);
-                }
-            }
+/// A change of k parameters as one of the errors of pose and motion.
+pub(super) fn of_both(change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>, k: usize) -> StateMatrix {
+    let mut both = StateMatrix::zeros();
+    for j in 0..k {
+        for i in 0..k {
+            both[(i, j)] = change[(i, j)];
+            both[(k + i, k + j)] = change[(i, j)];
         }
-        product
-    };
-    times(&times(f, p), &f.transpose())
+    }
+    both
+}
+
+/// `F P F'` over the first `n` entries, of which a state has two or three for each parameter.
+pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>, n: usize) -> SMatrix<f64, N, N> {
+    match n {
+        6 => carried_sized::<N, 6>(f, p),
+        8 => carried_sized::<N, 8>(f, p),
+        9 => carried_sized::<N, 9>(f, p),
+        12 => carried_sized::<N, 12>(f, p),
+        _ => f * p * f.transpose(),
+    }
+}
+
+fn carried_sized<const N: usize, const S: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    let (f, p) = (f.fixed_view::<S, S>(0, 0).into_owned(), p.fixed_view::<S, S>(0, 0).into_owned());
+    let mut carried = SMatrix::<f64, N, N>::zeros();
+    carried.fixed_view_mut::<S, S>(0, 0).copy_from(&(f * p * f.transpose()));
+    carried
 }
 
 /// Linear part of a generator and its velocity.
-pub(crate) fn parts(generator: &Matrix3<f64>) -> (Matrix2<f64>, Vector2<f64>) {
+pub(super) fn parts(generator: &Matrix3<f64>) -> (Matrix2<f64>, Vector2<f64>) {
     (generator.fixed_view::<2, 2>(0, 0).into_owned(), generator.fixed_view::<2, 1>(0, 2).into_owned())
 }
 
-/// A linear map as a map of the plane about the origin.
-pub(crate) fn about_origin(linear: &Matrix2<f64>) -> Matrix3<f64> {
+/// A linear map as a map of the plane.
+pub(super) fn as_map(linear: &Matrix2<f64>) -> Matrix3<f64> {
     let mut map = Matrix3::identity();
     map.fixed_view_mut::<2, 2>(0, 0).copy_from(linear);
     map

@@ -22,10 +22,10 @@ pub enum WrongFamily {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FamilyTests {
     series: InnovationSeries,
-    /// Sum of signed displacements, and of their squares.
-    displacement: CentredVector,
+    /// Sum of squared displacements.
     squares: CentredVector,
-    frames: usize,
+    /// Means in their deviations, signs left out, as the last frame has left them.
+    evidence: [f64; LEFT_OUT],
 }
 
 impl FamilyTests {
@@ -35,23 +35,22 @@ impl FamilyTests {
             |v: &nalgebra::SVector<f64, LEFT_OUT>| CentredVector::from_fn(|i, _| if i < LEFT_OUT { v[i] } else { 0.0 });
         let displacement = long(&misfit.displacement);
         self.series.take(&long(&misfit.standardised), LEFT_OUT);
-        self.displacement += displacement;
+        self.evidence = std::array::from_fn(|i| self.series.drift(i, LEFT_OUT).abs());
         self.squares += displacement.component_mul(&displacement);
-        self.frames += 1;
     }
 
     /// What the outlines do beside their motion, beyond doubt, and the displacement that it makes of them, root mean square, normalised;
     /// `sigma` is the deviation of the noise.
     pub(crate) fn found(&self, sigma: f64) -> Option<(WrongFamily, f64)> {
-        if self.frames < tuning::FEWEST_FRAMES {
+        if self.series.frames() < tuning::FEWEST_FRAMES {
             return None;
         }
-        let n = self.frames as f64;
+        let n = self.series.frames() as f64;
         let least = tuning::MATTERS * sigma + tuning::OF_NOISE * sigma * sigma;
         let mut clearest: Option<(usize, f64)> = None;
         let mut displacement = 0.0;
         for i in 0..LEFT_OUT {
-            let evidence = self.series.drift(i, LEFT_OUT).abs();
+            let evidence = self.evidence[i];
             let size = (self.squares[i] / n).sqrt();
             if evidence > tuning::SIGNIFICANT && size > least {
                 displacement += size * size;

@@ -1,8 +1,8 @@
 //! One hypothesis of dynamics: pose, motion and accelerations about the object's middle, moved on and measured.
 use freeform_riccati::{MotionModel, map_point};
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
 
-use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, about_origin, carried, parts};
+use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts};
 
 /// Pose, motion and accelerations of the largest model.
 pub(super) const ENTRIES: usize = 3 * LARGEST;
@@ -72,7 +72,7 @@ pub(super) struct Step<'a> {
 
 impl Hypothesis {
     /// Number of entries in use.
-    fn size(&self, k: usize) -> usize {
+    pub(super) fn size(&self, k: usize) -> usize {
         if self.course.has_accelerations() { 3 * k } else { 2 * k }
     }
 
@@ -97,7 +97,7 @@ impl Hypothesis {
         };
         let Some(before) = step.to.linear().try_inverse() else { return false };
         let relative = turn * of_rates(&error, 1.0) * step.from.linear() * before;
-        let Some(off) = model.motion_between(&about_origin(&relative), 1.0) else { return false };
+        let Some(off) = model.motion_between(&as_map(&relative), 1.0) else { return false };
         let centre = step.from.centre() + Vector2::new(error[k - 2], error[k - 1]) + shift - step.to.centre();
         let transition = self.transition(step, (&turn, &a, &v, &later));
         for j in 0..rates {
@@ -139,7 +139,7 @@ impl Hypothesis {
         let (model, k, dt) = (step.model, step.model.parameter_count(), step.seconds);
         let rates = k - 2;
         let mut f = EntryMatrix::identity();
-        let map = about_origin(turn);
+        let map = as_map(turn);
         let back = map.try_inverse().unwrap_or(map);
         let carried = model.adjoint(&map, &back);
         for i in 0..rates {
@@ -183,15 +183,24 @@ impl Hypothesis {
 
     /// Compares a measurement of the pose with what was predicted, and takes it; `None` where the numbers do not allow it.
     pub(super) fn update(&mut self, measurement: &CentredMeasurement, model: MotionModel) -> Option<Innovation> {
-        let (k, n) = (model.parameter_count(), self.size(model.parameter_count()));
-        let information = &measurement.information;
-        let predicted = self.covariance.fixed_view::<LARGEST, LARGEST>(0, 0).into_owned();
-        let predicted = CentredMatrix::from_fn(|i, j| if i < k && j < k { predicted[(i, j)] } else { 0.0 });
-        let mut off = CentredVector::zeros();
-        (0..k).for_each(|j| off[j] = measurement.deviation[j] - self.mean[j]);
+        match model.parameter_count() {
+            3 => self.update_sized::<3>(measurement),
+            4 => self.update_sized::<4>(measurement),
+            _ => self.update_sized::<LARGEST>(measurement),
+        }
+    }
+
+    fn update_sized<const K: usize>(&mut self, measurement: &CentredMeasurement) -> Option<Innovation>
+    where
+        Const<K>: DimMin<Const<K>, Output = Const<K>>,
+    {
+        let n = self.size(K);
+        let information = measurement.information.fixed_view::<K, K>(0, 0).into_owned();
+        let predicted = self.covariance.fixed_view::<K, K>(0, 0).into_owned();
+        let off = measurement.deviation.fixed_rows::<K>(0) - self.mean.fixed_rows::<K>(0);
         // (I + W P)^-1 W, which is (W^-1 + P)^-1, also where W is singular.
-        let factor = (CentredMatrix::identity() + information * predicted).lu();
-        let weight = factor.solve(information)?;
+        let factor = (SMatrix::<f64, K, K>::identity() + information * predicted).lu();
+        let weight = factor.solve(&information)?;
         let determinant = factor.determinant();
         let pulled = weight * off;
         let squared = off.dot(&pulled);
@@ -199,24 +208,19 @@ impl Hypothesis {
             return None;
         }
         // By columns of the covariance of all entries with the pose.
-        let columns =
-            SMatrix::<f64, ENTRIES, LARGEST>::from_fn(
-                |i, j| {
-                    if i < n && j < k { self.covariance[(i, j)] } else { 0.0 }
-                },
-            );
+        let columns = self.covariance.fixed_columns::<K>(0).into_owned();
         self.mean += columns * pulled;
         let gain = columns * weight;
         for j in 0..n {
             for i in 0..=j {
                 let less: f64 =
-                    (0..k).map(|l| 0.5 * (gain[(i, l)] * columns[(j, l)] + gain[(j, l)] * columns[(i, l)])).sum();
+                    (0..K).map(|l| 0.5 * (gain[(i, l)] * columns[(j, l)] + gain[(j, l)] * columns[(i, l)])).sum();
                 let left = self.covariance[(i, j)] - less;
                 (self.covariance[(i, j)], self.covariance[(j, i)]) = (left, left);
             }
         }
         let mut standardised = CentredVector::zeros();
-        for j in 0..k {
+        for j in 0..K {
             // The variance of one entry, that of the measurement taken by itself.
             let own = information[(j, j)];
             if own > 0.0 {

@@ -63,6 +63,11 @@ impl InnovationSeries {
         self.filled += 1;
     }
 
+    /// Frames taken.
+    pub(crate) fn frames(&self) -> usize {
+        self.frames
+    }
+
     /// Factors, at least 1, by which the deviations of k parameters about the middle are to be widened.
     pub(crate) fn spread(&self, k: usize) -> CentredVector {
         let mut factors = CentredVector::from_element(1.0);
@@ -125,16 +130,23 @@ impl InnovationSeries {
         // Over blocks of L frames the correlation of neighbours is rho^L.
         let count = self.blocks.len();
         let of_block = rho.powi(self.length as i32);
-        let whitened: Vec<f64> = (0..count)
-            .map(|t| self.blocks[t][j] - if t > 0 { of_block * self.blocks[t - 1][j] } else { 0.0 })
-            .collect();
+        let whitened =
+            (0..count).map(|t| self.blocks[t][j] - if t > 0 { of_block * self.blocks[t - 1][j] } else { 0.0 });
         let cosines = tuning::COSINES.min(count.saturating_sub(first)).max(1);
-        let mut sum = 0.0;
-        for c in first..first + cosines {
-            let angle = std::f64::consts::PI * c as f64 / count as f64;
-            let projected: f64 = whitened.iter().enumerate().map(|(t, x)| x * (angle * (t as f64 + 0.5)).cos()).sum();
-            sum += 2.0 * projected * projected / count as f64;
+        let mut projected = [0.0; tuning::COSINES];
+        for (t, x) in whitened.enumerate() {
+            // cos((c + 1) u) = 2 cos(u) cos(c u) - cos((c - 1) u)
+            let step = (std::f64::consts::PI * (t as f64 + 0.5) / count as f64).cos();
+            let (mut before, mut cosine) = (1.0, step);
+            for _ in 1..first {
+                (before, cosine) = (cosine, 2.0 * step * cosine - before);
+            }
+            for sum in &mut projected[..cosines] {
+                *sum += x * cosine;
+                (before, cosine) = (cosine, 2.0 * step * cosine - before);
+            }
         }
+        let sum: f64 = projected[..cosines].iter().map(|p| 2.0 * p * p / count as f64).sum();
         // Sums over blocks have the variance of so many frames.
         let per_frame = sum / (cosines as f64 * self.length as f64);
         let recoloured = 1.0 - corrected.powi(self.length as i32);

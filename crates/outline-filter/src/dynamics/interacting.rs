@@ -3,17 +3,13 @@ use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::SMatrix;
 
 use super::{
-    centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, parts},
+    centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
     hypothesis::{CentredMeasurement, Course, Entries, EntryMatrix, Hypothesis, Step},
     innovations::InnovationSeries,
+    mixing::{Accelerations, mix},
     setting::{Dynamics, DynamicsWeights},
 };
-use crate::{
-    belief::{STATE, StateMatrix},
-    map::NullDirection,
-    tuning::dynamics as tuning,
-    update::PoseMeasurement,
-};
+use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
 
 /// Hypotheses at most.
 const MOST: usize = 2 + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
@@ -26,8 +22,6 @@ pub(crate) struct DynamicsFilter {
     model: MotionModel,
     setting: Dynamics,
     hypotheses: Vec<Hypothesis>,
-    /// Those of the step before, while they are mixed.
-    before: Vec<Hypothesis>,
     /// In the same order; zeros behind them.
     weights: Weights,
     /// What the errors of all poses are taken from.
@@ -72,7 +66,6 @@ impl DynamicsFilter {
             model,
             setting,
             hypotheses: Vec::with_capacity(MOST),
-            before: Vec::with_capacity(MOST),
             weights: [0.0; MOST],
             reference,
             pose_variance,
@@ -82,7 +75,7 @@ impl DynamicsFilter {
         for course in courses {
             let mut hypothesis = Hypothesis { course, mean, covariance };
             if course.has_accelerations() {
-                let prior = course.acceleration_prior(&pose_variance, k, seconds);
+                let prior = Accelerations::of(course).prior(&pose_variance, k, seconds);
                 // The motion known so far is the mean over the step: half of it ago.
                 for j in 0..k {
                     let (u, a) = (k + j, 2 * k + j);
@@ -121,7 +114,7 @@ impl DynamicsFilter {
             hypothesis.move_middle(self.model, &self.reference, &moved);
         }
         self.reference = moved;
-        self.mix(seconds);
+        mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
         let step =
             Step { model: self.model, seconds, from: &self.reference, to: pose, pose_variance: &self.pose_variance };
         let possible = self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step));
@@ -144,50 +137,6 @@ impl DynamicsFilter {
                 hypothesis.hold(&short(&direction), &short(&dual), k);
             }
         }
-    }
-
-    /// Takes every hypothesis to have been one of the others a step ago by chance.
-    fn mix(&mut self, seconds: f64) {
-        let count = self.hypotheses.len();
-        if count < 2 {
-            return;
-        }
-        let k = self.model.parameter_count();
-        let stays = 1.0 - tuning::TRANSITION * (count - 1) as f64;
-        self.before.clone_from(&self.hypotheses);
-        let weights = self.weights;
-        for (to, hypothesis) in self.hypotheses.iter_mut().enumerate() {
-            let share = |from: usize| weights[from] * if from == to { stays } else { tuning::TRANSITION };
-            let total: f64 = (0..count).map(share).sum();
-            let course = hypothesis.course;
-            let prior = course.acceleration_prior(&self.pose_variance, k, seconds);
-            let sources =
-                || (0..count).map(|from| (from, share(from) / total)).filter(|(_, part)| *part > tuning::LEAST_SHARE);
-            let sum: f64 = sources().map(|(_, part)| part).sum();
-            let mut mean = Entries::zeros();
-            for (from, part) in sources() {
-                let source = &self.before[from];
-                (0..3 * k).for_each(|i| mean[i] += source.mean_as(course, self.model, i) * (part / sum));
-            }
-            let mut covariance = EntryMatrix::zeros();
-            for (from, part) in sources() {
-                let (source, part) = (&self.before[from], part / sum);
-                let mut apart = Entries::zeros();
-                (0..3 * k).for_each(|i| apart[i] = source.mean_as(course, self.model, i) - mean[i]);
-                let known = if source.course.shares_accelerations_with(course) { 3 * k } else { 2 * k };
-                for j in 0..3 * k {
-                    for i in 0..3 * k {
-                        let own = if i < known && j < known { source.covariance[(i, j)] } else { 0.0 };
-                        covariance[(i, j)] += part * (own + apart[i] * apart[j]);
-                    }
-                }
-                (known..3 * k).for_each(|i| covariance[(i, i)] += part * prior[i - 2 * k]);
-            }
-            course.keep_to(&mut mean, &mut covariance, k);
-            (hypothesis.mean, hypothesis.covariance) = (mean, covariance);
-            self.weights[to] = total;
-        }
-        self.normalise();
     }
 
     /// Takes what an accepted frame tells of the pose: the error of the reference pose.
@@ -322,16 +271,8 @@ impl DynamicsFilter {
         };
         let (error, motion) = (to * large(0), to * large(1));
         let pose = model.flow(&error.as_slice()[..k], 1.0).into_inner() * self.reference.pose;
-        let both =
-            SMatrix::<f64, STATE, STATE>::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
-        let blocks =
-            StateMatrix::from_fn(
-                |i, j| {
-                    if i < 2 * k && j < 2 * k && (i < k) == (j < k) { to[(i % k, j % k)] } else { 0.0 }
-                },
-            );
-        let mut covariance = carried(&blocks, &both, 2 * k);
-        (2 * k..STATE).for_each(|i| covariance[(i, i)] = 1.0);
+        let both = StateMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
+        let covariance = carried(&of_both(&to, k), &both, 2 * k);
         pose.iter().all(|e| e.is_finite()).then_some(Summary { pose, motion: motion.into(), covariance })
     }
 
@@ -355,62 +296,6 @@ impl DynamicsFilter {
     }
 }
 
-impl Course {
-    /// Variances of accelerations of which nothing is known yet: such that a step moves the object by some deviations of a pose.
-    fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
-        let unit = (tuning::FIRST_ACCELERATION / (seconds * seconds)).powi(2);
-        let first = match self {
-            Self::Accelerating { rates: true, .. } => 0,
-            Self::Accelerating { rates: false, .. } => k - 2,
-            _ => k,
-        };
-        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
-    }
-
-    /// Whether what another course knows of accelerations is of use to this one.
-    fn shares_accelerations_with(self, other: Self) -> bool {
-        match (self, other) {
-            (Self::Accelerating { rates, .. }, Self::Accelerating { rates: wanted, .. }) => rates || !wanted,
-            _ => false,
-        }
-    }
-
-    /// Leaves only what this course has.
-    fn keep_to(self, mean: &mut Entries, covariance: &mut EntryMatrix, k: usize) {
-        let (from, to) = match self {
-            Self::Accelerating { rates: true, .. } => return,
-            Self::Accelerating { rates: false, .. } => (2 * k, 3 * k - 2),
-            _ => (2 * k, 3 * k),
-        };
-        for i in from..to {
-            mean[i] = 0.0;
-            for j in 0..3 * k {
-                (covariance[(i, j)], covariance[(j, i)]) = (0.0, 0.0);
-            }
-        }
-    }
-}
-
-impl Hypothesis {
-    /// An entry of the state as one of another course has it.
-    fn mean_as(&self, to: Course, model: MotionModel, entry: usize) -> f64 {
-        let k = model.parameter_count();
-        if entry < 2 * k || self.course.shares_accelerations_with(to) {
-            return self.mean[entry];
-        }
-        let is_velocity = entry >= 3 * k - 2;
-        match self.course {
-            // Along an arc the velocity of the middle turns all the time.
-            Course::ConstantGenerator if is_velocity => {
-                let (a, v) = parts(&model.generator(&self.mean.as_slice()[k..2 * k]));
-                (a * v)[entry + 2 - 3 * k]
-            }
-            Course::Accelerating { .. } if is_velocity => self.mean[entry],
-            _ => 0.0,
-        }
-    }
-}
-
 /// Motion and covariance of a summary about the middle.
 fn centred(
     change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
@@ -420,13 +305,7 @@ fn centred(
     let motion = change * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
     let mut mean = Entries::zeros();
     (0..k).for_each(|j| mean[k + j] = motion[j]);
-    let blocks =
-        StateMatrix::from_fn(
-            |i, j| {
-                if i < 2 * k && j < 2 * k && (i < k) == (j < k) { change[(i % k, j % k)] } else { 0.0 }
-            },
-        );
-    let moved = carried(&blocks, &summary.covariance, 2 * k);
+    let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
     let covariance = EntryMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
     (mean, covariance)
 }

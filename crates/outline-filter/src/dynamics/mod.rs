@@ -8,6 +8,7 @@ mod family;
 mod hypothesis;
 mod innovations;
 mod interacting;
+mod mixing;
 mod setting;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};

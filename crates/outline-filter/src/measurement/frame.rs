@@ -22,7 +22,7 @@ impl Reference {
         Self { origin: outline.centroid(), radius: outline.rms_radius(), time_unit: 1.0 }
     }
 
-    /// Motion parameters in image units from normalised ones, by a factor for each.
+    /// Units of time in a second: what a rate by the unit is multiplied by to be one by the second.
     pub(crate) fn per_second(&self) -> f64 {
         1.0 / self.time_unit
     }

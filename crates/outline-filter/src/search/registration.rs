@@ -1,11 +1,11 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point, pull_back};
-use nalgebra::{Matrix3, Point2, Rotation2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::{Landmarks, symmetry::turned};
+use super::Landmarks;
 use crate::{
     map::median,
     measurement::View,
-    track::Track,
+    track::{Track, turn_between, wrapped},
     tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning, symmetry as of_symmetry},
 };
 
@@ -80,7 +80,7 @@ pub(crate) fn register(
             let turn = first.turn + angle;
             let is_there = |h: &RegisteredPose| wrapped(h.turn - turn).abs() < of_symmetry::SAME * pitch;
             if !best.iter().any(is_there) {
-                let start = turned(track, &first.pose, angle);
+                let start = track.turned(&first.pose, angle);
                 best.push(refined(track, points, MotionModel::Rigid, &start, tuning::REFINEMENT_STEPS));
             }
         }
@@ -116,20 +116,6 @@ fn keep(list: &mut Vec<RegisteredPose>, count: usize) {
 
 fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {
     wrapped(a.turn - b.turn).abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < tuning::SAME_POSE
-}
-
-/// A turn between half a circle clockwise and half a circle anticlockwise.
-fn wrapped(turn: f64) -> f64 {
-    (turn + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI
-}
-
-/// The turn that takes one point to another.
-fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -> Matrix3<f64> {
-    let rotation = Rotation2::new(angle);
-    let shift = to - rotation * from;
-    let mut map = rotation.to_homogeneous();
-    (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
-    map
 }
 
 /// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals.

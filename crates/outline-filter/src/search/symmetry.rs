@@ -1,7 +1,6 @@
 //! Turns that bring an outline onto itself.
 use freeform_curve_fit::Outline;
-use freeform_riccati::map_point;
-use nalgebra::{Matrix3, Rotation2};
+use nalgebra::Matrix3;
 
 use crate::{measurement::Frame, track::Track, tuning::symmetry as tuning};
 
@@ -12,26 +11,16 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
         return 1;
     }
     let poses: Vec<_> = std::iter::once(*pose)
-        .chain((2..=tuning::LARGEST_ORDER).map(|n| turned(track, pose, std::f64::consts::TAU / n as f64)))
+        .chain((2..=tuning::LARGEST_ORDER).map(|n| track.turned(pose, std::f64::consts::TAU / n as f64)))
         .collect();
     let likelihoods = track.compared(outline, &poses, frame);
     let as_good = |n: &usize| likelihoods[n - 1].is_within(tuning::AS_GOOD, &likelihoods[0]);
     let found: Vec<usize> = (2..=tuning::LARGEST_ORDER).rev().filter(as_good).collect();
     // Turns that are too small for the frame to show are no symmetry: half of one of a symmetry is seen.
     let halves: Vec<_> = std::iter::once(*pose)
-        .chain(found.iter().map(|n| turned(track, pose, std::f64::consts::PI / *n as f64)))
+        .chain(found.iter().map(|n| track.turned(pose, std::f64::consts::PI / *n as f64)))
         .collect();
     let likelihoods = track.compared(outline, &halves, frame);
     let seen = |at: &usize| !likelihoods[at + 1].is_within(tuning::HALF_IS_WORSE, &likelihoods[0]);
     (0..found.len()).find(seen).map_or(1, |at| found[at])
-}
-
-/// A pose turned by an angle, anticlockwise where y points up, about the object's middle.
-pub(crate) fn turned(track: &Track, pose: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
-    let centre = map_point(pose, &track.centred_pose().middle);
-    let rotation = Rotation2::new(angle);
-    let shift = centre - rotation * centre;
-    let mut map = rotation.to_homogeneous();
-    (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
-    map * pose
 }

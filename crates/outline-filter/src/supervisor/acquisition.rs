@@ -44,9 +44,6 @@ impl MotionFilter {
         let (taken, others) = Hypotheses::among(candidates, self.symmetry, seconds);
         self.hypotheses = others;
         let outcome = taken.as_ref().map_or(nearest, |candidate| candidate.outcome);
-        if taken.is_some() {
-            self.acquired_over = seconds * self.time_unit;
-        }
         if let Some(taken) = taken {
             // Where a lost object is now says nothing of how it moves now.
             self.replace(taken.track, time, if lost { Phase::Acquiring } else { Phase::Tracking });

@@ -1,5 +1,5 @@
 //! Hypotheses: turns that explain the frames as well as the one taken, followed until a frame decides.
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
-    track::{Comparison, Outcome, Track},
+    track::{Comparison, Outcome, Track, wrapped},
     tuning::{
         hypotheses as tuning,
         symmetry::{OFF_MULTIPLE, SAME},
@@ -55,8 +55,9 @@ pub(super) struct Hypotheses {
     taken: f64,
     likelihood: NegativeLogLikelihood,
     frames: usize,
-    /// Angle of symmetry, rad, and the time that the turns were made in, in units of the filter.
+    /// Angle of symmetry, rad.
     pitch: f64,
+    /// Time that the turns were made in, in units of the filter.
     acquired_over: f64,
 }
 
@@ -71,7 +72,7 @@ impl Hypotheses {
         // The best of those with one turn stands for them.
         let mut different: Vec<Candidate> = Vec::new();
         for candidate in candidates {
-            if different.iter().all(|other| apart(other.turn, candidate.turn, different_turn)) {
+            if different.iter().all(|other| wrapped(other.turn - candidate.turn).abs() > different_turn) {
                 different.push(candidate);
             }
         }
@@ -86,7 +87,6 @@ impl Hypotheses {
             ..Self::default()
         };
         if symmetry > 1 && taken.is_some() {
-            let wrapped = |turn: f64| (turn + PI).rem_euclid(TAU) - PI;
             let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| wrapped(all.taken + step * pitch)).into();
             turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
             turns.retain(|turn| (turn - all.taken).abs() > different_turn);
@@ -118,6 +118,11 @@ impl Hypotheses {
 
     pub(super) fn taken(&self) -> f64 {
         self.taken
+    }
+
+    /// Rates of turning, per unit of time, by which the others differ from the one taken.
+    pub(super) fn rates_apart(&self) -> impl Iterator<Item = f64> + '_ {
+        self.turns.iter().map(|turn| (turn - self.taken) / self.acquired_over)
     }
 
     /// Turns of those that the smaller turn cannot be taken for granted against.
@@ -245,9 +250,4 @@ impl Hypotheses {
         self.list.remove(index);
         self.turns.remove(index);
     }
-}
-
-fn apart(a: f64, b: f64, different: f64) -> bool {
-    let turn = (a - b + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-    turn.abs() > different
 }

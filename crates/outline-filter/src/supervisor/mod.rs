@@ -7,10 +7,12 @@ mod initialisation;
 mod motion_change;
 mod motion_filter;
 mod settings;
+mod statement;
 mod tracking;
 mod window;
 
 pub use ambiguity::Ambiguity;
 pub use error::FilterError;
-pub use motion_filter::{FilterStep, MotionFilter, Phase, Unstated};
+pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use settings::FilterSettings;
+pub use statement::Unstated;

@@ -1,22 +1,24 @@
+use std::sync::OnceLock;
+
 use freeform_curve_fit::Outline;
-use freeform_estimate::{MotionEstimate, MotionState, PointVelocity, TimeNotIncreasing};
-use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{DMatrix, Point2, Projective2};
+use freeform_estimate::TimeNotIncreasing;
+use nalgebra::{Point2, Projective2};
 
 use super::{
     error::FilterError,
     hypotheses::Hypotheses,
     motion_change::MotionHistory,
     settings::FilterSettings,
+    statement::Statement,
     tracking::{Known, advance},
     window::InitialisationWindow,
 };
 use crate::{
-    dynamics::{CentredDeviations, DynamicsFilter, DynamicsWeights, Summary, WrongFamily},
+    dynamics::{DynamicsFilter, DynamicsWeights},
     measurement::Frame,
     search::Landmarks,
     track::{Outcome, Track},
-    tuning::{map::FEWEST_POINTS, statement, supervisor as tuning},
+    tuning::{map::FEWEST_POINTS, supervisor as tuning},
     update::{FrameMeasurement, Rejection},
 };
 
@@ -54,29 +56,15 @@ impl FilterStep {
     }
 }
 
-/// Why nothing is stated of a motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unstated {
-    /// The object is lost.
-    Lost,
-    /// Too large a share of the frames was rejected for the others to be trusted.
-    ManyRejected {
-        /// Frames rejected since the object was begun with.
-        rejected: usize,
-        /// All of them.
-        frames: usize,
-    },
-}
-
 /// How many frames became what.
 #[derive(Debug, Clone, Copy, Default)]
-struct Counts {
+pub(super) struct Counts {
     accepted: usize,
     rejected: usize,
     rejected_in_a_row: usize,
     /// Frames that the present track has taken, and that it has not.
-    taken: usize,
-    refused: usize,
+    pub(super) taken: usize,
+    pub(super) refused: usize,
     restarts: usize,
 }
 
@@ -121,22 +109,21 @@ pub struct MotionFilter {
     pub(super) landmarks: Option<Landmarks>,
     /// In units of time, as all times here.
     last_time: f64,
-    /// Seconds.
-    pub(super) time_unit: f64,
-    time_unit_is_chosen: bool,
+    /// Seconds; one until it is chosen.
+    time_unit: Option<f64>,
     /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
     pub(super) symmetry: usize,
-    /// Seconds to that frame.
-    pub(super) acquired_over: f64,
     /// Time that the track stands at.
     pub(super) track_time: f64,
-    counts: Counts,
+    pub(super) counts: Counts,
     pub(super) history: MotionHistory,
     /// Whether the motion of the present track has ever been seen to change.
     pub(super) motion_changed: bool,
     pub(super) hypotheses: Hypotheses,
     pub(super) window: InitialisationWindow,
     pub(super) frame: Frame,
+    /// What is stated after the last step, once it has been asked for.
+    pub(super) stated: OnceLock<Option<Statement>>,
 }
 
 impl MotionFilter {
@@ -152,10 +139,8 @@ impl MotionFilter {
             track: None,
             landmarks: None,
             last_time: f64::NEG_INFINITY,
-            time_unit: 1.0,
-            time_unit_is_chosen: false,
+            time_unit: None,
             symmetry: 1,
-            acquired_over: 0.0,
             track_time: 0.0,
             counts: Counts::default(),
             history: MotionHistory::default(),
@@ -163,6 +148,7 @@ impl MotionFilter {
             hypotheses: Hypotheses::default(),
             window: InitialisationWindow::default(),
             frame: Frame::default(),
+            stated: OnceLock::new(),
         })
     }
 
@@ -171,9 +157,10 @@ impl MotionFilter {
     /// # Errors
     /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
-        TimeNotIncreasing::check(self.last_time * self.time_unit, time)?;
+        TimeNotIncreasing::check(self.last_time * self.seconds_per_unit(), time)?;
+        self.stated.take();
         self.choose_time_unit(time);
-        let (seconds, time) = (time, time / self.time_unit);
+        let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
             self.start(time, outline)?;
             self.counts.accepted += 1;
@@ -208,25 +195,27 @@ impl MotionFilter {
     /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
     fn choose_time_unit(&mut self, time: f64) {
         let interval = time - self.last_time;
-        if self.time_unit_is_chosen || self.track.is_none() || !interval.is_finite() {
+        if self.time_unit.is_some() || self.track.is_none() || !interval.is_finite() {
             return;
         }
         let unit = interval.log2().round().exp2();
-        if unit.is_normal() && (1.0 / unit).is_normal() {
-            self.time_unit = unit;
-            self.last_time /= unit;
-            self.track_time /= unit;
-            self.window.divide_times(unit);
-            self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
-        }
-        self.time_unit_is_chosen = true;
+        let unit = if unit.is_normal() && (1.0 / unit).is_normal() { unit } else { 1.0 };
+        self.time_unit = Some(unit);
+        self.last_time /= unit;
+        self.track_time /= unit;
+        self.window.divide_times(unit);
+        self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
+    }
+
+    pub(super) fn seconds_per_unit(&self) -> f64 {
+        self.time_unit.unwrap_or(1.0)
     }
 
     /// Begins a track with a first frame.
     fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
         let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
         let mut track = Track::begin(self.settings.model, outline, &mut self.frame).ok_or(too_few)?;
-        track.set_time_unit(self.time_unit);
+        track.set_time_unit(self.seconds_per_unit());
         self.landmarks = Landmarks::of(outline);
         self.symmetry = 1;
         self.begin_window(time, outline, &track);
@@ -279,44 +268,6 @@ impl MotionFilter {
         Some(outcome)
     }
 
-    /// Pose and motion with their covariance, the hypotheses of dynamics taken together; without the systematic part, and with it.
-    fn summaries(&self) -> Option<[Summary; 2]> {
-        let track = self.track.as_ref()?;
-        let own = track.summary()?;
-        let (model, middle) = (self.settings.model, track.centred_pose().middle);
-        let none = CentredDeviations::zeros();
-        let mut random = own;
-        if let Some(dynamics) = &self.history.dynamics {
-            let summary = dynamics.combined((!dynamics.leads()).then_some(&own)).unwrap_or(own);
-            random = summary.widened(model, &middle, &dynamics.factors(), [&none, &none])?;
-        }
-        let size = self.settings.edge_uncertainty.hypot(self.misfit().map_or(0.0, |(_, size)| size));
-        if size <= 0.0 {
-            return Some([random, random]);
-        }
-        let [pose, motion] = track.systematic(size);
-        let all = random.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
-        Some([random, all])
-    }
-
-    /// Pose and motion with all of their covariance.
-    fn summary(&self) -> Option<Summary> {
-        self.summaries().map(|[_, all]| all)
-    }
-
-    /// What the outlines do that their family of motions does not have, and the displacement that it makes, image lengths.
-    fn misfit(&self) -> Option<(WrongFamily, f64)> {
-        let track = self.track.as_ref()?;
-        let (family, size) = self.history.family.found(track.sigma())?;
-        Some((family, size * track.reference().radius))
-    }
-
-    /// What the outlines do that the motion model does not have, if that is beyond doubt: the model to try is another.
-    #[must_use]
-    pub fn wrong_family(&self) -> Option<WrongFamily> {
-        self.misfit().map(|(family, _)| family)
-    }
-
     /// Probabilities of the hypotheses of dynamics; `None` where they are not told: before the third frame, with process noise, and for
     /// projective motion.
     #[must_use]
@@ -347,83 +298,11 @@ impl MotionFilter {
         self.phase
     }
 
-    /// The estimated motion, at the time of [`state`](Self::state). `None` before the second accepted frame, also after a restart of the
-    /// map by a frame that shows the turn of the object for the first time.
-    #[must_use]
-    pub fn estimate(&self) -> Option<MotionEstimate> {
-        if matches!(self.phase, Phase::Waiting | Phase::Acquiring) {
-            return None;
-        }
-        let track = self.track.as_ref()?;
-        let [random, all] = self.summaries()?;
-        let estimate = track.estimate_of(&all)?.with_random_part(&track.deviations_of(&random)?);
-        let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
-        let is_stated = self.unstated().is_none();
-        let unknown =
-            doubts.take(self.settings.model.parameter_count()).filter(|(_, doubtful)| *doubtful || !is_stated);
-        Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
-    }
-
-    /// Why nothing is stated of the motion although frames have been taken; `None` where it is stated.
-    #[must_use]
-    pub fn unstated(&self) -> Option<Unstated> {
-        let Counts { taken, refused, .. } = self.counts;
-        let frames = taken + refused;
-        if self.phase == Phase::Lost {
-            Some(Unstated::Lost)
-        } else if refused >= statement::FEWEST_REJECTED && refused as f64 > statement::MOST_REJECTED * frames as f64 {
-            Some(Unstated::ManyRejected { rejected: refused, frames })
-        } else {
-            None
-        }
-    }
-
-    /// Other angular velocities, in rad/s, that explain the outlines as well as the one stated: those of the turns of
-    /// [`rival_turns`](Self::rival_turns). Empty for outlines without symmetry, and where omega is not one of the parameters.
-    #[must_use]
-    pub fn aliases(&self) -> Vec<f64> {
-        let names = self.settings.model.parameter_names();
-        let omega = names.iter().position(|name| *name == "omega");
-        let known = omega.and_then(|j| self.estimate()?.parameters().nth(j)?.value);
-        let Some(omega) = known.filter(|_| self.acquired_over > 0.0) else { return Vec::new() };
-        let turn = self.hypotheses.taken();
-        // Omega is positive clockwise where y points up, turns the other way.
-        self.hypotheses.turns().iter().map(|rival| omega - (rival - turn) / self.acquired_over).collect()
-    }
-
-    /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`
-    /// if [`estimate`](Self::estimate) is.
-    #[must_use]
-    pub fn state(&self) -> Option<MotionState> {
-        let estimate = self.estimate()?;
-        let mut observable = [false; MAX_PARAMETERS];
-        observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
-        self.track.as_ref()?.state_of(&self.summary()?, self.track_time, observable)
-    }
-
-    /// Velocity of the middle of the object, which is the centre of its known outline, at the time of [`state`](Self::state). It may be
-    /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
-    /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
-    #[must_use]
-    pub fn velocity(&self) -> Option<PointVelocity> {
-        if self.hypotheses.are_doubtful() || self.unstated().is_some() {
-            return None;
-        }
-        self.track.as_ref()?.velocity_of_middle(&self.state()?)
-    }
-
     /// The map of the image from the outline of the first frame to its place in the last accepted frame; after rejected frames, to its
     /// predicted place. `None` before the first frame.
     #[must_use]
     pub fn pose(&self) -> Option<Projective2<f64>> {
         self.track.as_ref().map(Track::pose)
-    }
-
-    /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not
-    /// finite.
-    #[must_use]
-    pub fn covariance(&self) -> Option<DMatrix<f64>> {
-        self.track.as_ref()?.covariance_of(&self.summary()?)
     }
 
     /// The outline as now known, image coordinates: one point per cell of its map. The points are not ordered if the map has grown.

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Matrix3};
 
 use super::Track;
 use crate::{
-    belief::{STATE, scaled_inverse},
+    belief::{StateMatrix, scaled_inverse},
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
     tuning::{
         null_space::{TAKES_PART, TURNS_WITH},
@@ -17,11 +17,14 @@ use crate::{
 impl Track {
     /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
     pub(crate) fn summary(&self) -> Option<Summary> {
-        let (belief, k) = (&self.belief, self.belief.parameter_count());
-        let covariance = scaled_inverse(&belief.marginal, k)? * self.noise.effective_variance();
-        let mut summary = Summary { pose: belief.pose, motion: belief.motion, covariance };
-        (2 * k..STATE).for_each(|i| summary.covariance[(i, i)] = 1.0);
-        covariance.iter().all(|e| e.is_finite()).then_some(summary)
+        self.summary_by(&self.belief.marginal)
+    }
+
+    fn summary_by(&self, marginal: &StateMatrix) -> Option<Summary> {
+        let belief = &self.belief;
+        let covariance = scaled_inverse(marginal, belief.parameter_count())? * self.noise.effective_variance();
+        let is_finite = covariance.iter().all(|e| e.is_finite());
+        is_finite.then_some(Summary { pose: belief.pose, motion: belief.motion, covariance })
     }
 
     /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
@@ -46,12 +49,9 @@ impl Track {
 
     /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.
     pub(crate) fn begun_dynamics(&self, setting: Dynamics) -> Option<DynamicsFilter> {
-        let (belief, k) = (&self.belief, self.belief.parameter_count());
+        let belief = &self.belief;
         let null = self.map.null_directions(belief.model, &belief.pose);
-        let marginal = with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref());
-        let mut covariance = scaled_inverse(&marginal, k)? * self.noise.effective_variance();
-        (2 * k..STATE).for_each(|i| covariance[(i, i)] = 1.0);
-        let summary = Summary { pose: belief.pose, motion: belief.motion, covariance };
+        let summary = self.summary_by(&with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref()))?;
         DynamicsFilter::begin(belief.model, setting, &summary, self.map.middle(), belief.memory.step)
     }
 
@@ -70,7 +70,7 @@ impl Track {
 
     /// Standard deviations of the motion parameters in the order of the model, image units.
     pub(crate) fn deviations_of(&self, summary: &Summary) -> Option<Vec<f64>> {
-        Some(self.covariance_of(summary)?.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect())
+        Some(roots(&self.covariance_of(summary)?))
     }
 
     /// Covariance of the motion parameters as this track alone has it; `None` where it cannot be computed, or is beyond any number.
@@ -94,7 +94,7 @@ impl Track {
         let from_image = to_image.try_inverse()?;
         let generator = to_image * model.generator(&summary.motion[..k]) * from_image;
         let values = model.parameters_of(&generator).map(|value| value * self.reference.per_second());
-        let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
+        let deviations = roots(&covariance);
         let mut estimate = MotionEstimate::new(model, &values[..k], Some(&deviations));
         let blind = self.blind_parameters(&summary.pose);
         let reach = self.reference.radius + self.reference.origin.coords.norm();
@@ -196,4 +196,9 @@ impl Track {
         }
         blind
     }
+}
+
+/// Standard deviations of a covariance.
+fn roots(covariance: &DMatrix<f64>) -> Vec<f64> {
+    covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect()
 }

@@ -49,7 +49,7 @@ pub(crate) struct Outcome {
     pub(crate) measurement: FrameMeasurement,
     pub(crate) verdict: Result<(), Rejection>,
     pub(crate) innovation: PoseInnovation,
-    /// What the frame tells of the pose by itself.
+    /// What the frame tells of the pose by itself, if it was taken.
     pub(crate) pose: Option<PoseMeasurement>,
     /// What it says of motions that the model leaves out; not looked for in every frame.
     pub(crate) misfit: Option<Misfit>,
@@ -141,10 +141,7 @@ impl Track {
         let variance = self.noise.effective_variance();
         self.belief.pose = expected.pose;
         self.belief.motion = expected.motion;
-        let k = self.belief.parameter_count();
-        let mut added = expected.covariance / variance;
-        (2 * k..added.nrows()).for_each(|i| added[(i, i)] = 0.0);
-        self.belief.add_covariance(&added);
+        self.belief.add_covariance(&(expected.covariance / variance));
     }
 
     /// Takes a unit of time, in seconds, before anything is known of the motion.
@@ -186,7 +183,6 @@ impl Track {
         let [before, after] =
             [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold.as_ref()));
         let innovation = self.belief.pose_innovation([&before, &after], &proposal.state, &self.map.middle(), variance);
-        let pose = proposal.pose_measurement.map(|measurement| measurement.over(variance));
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
             likelihood = view.negative_log_likelihood(frame);
@@ -195,13 +191,13 @@ impl Track {
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
         let correlation = correlation_of(&frame.measurements, measurement.noise.map(|noise| noise / radius));
         let verdict = gate.verdict(&measurement);
-        let mut found = None;
+        let (mut pose, mut found) = (None, None);
         if verdict.is_ok() {
+            pose = Some(PoseMeasurement::of(&self.belief, &proposal, frame).over(variance));
             self.frames += 1;
             let is_looked_at = self.frames <= family::ALL_OF_THE_FIRST || self.frames.is_multiple_of(family::EVERY);
             if self.frames > family::MAP_KNOWN && is_looked_at {
-                let at = CentredPose { pose: proposal.pose, middle: self.map.middle() };
-                found = misfit(&self.belief, frame, &at, variance.sqrt());
+                found = misfit(&self.belief, frame, (&proposal.pose, &self.map.middle()), variance.sqrt());
             }
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             if let Some(noise) = measurement.noise {

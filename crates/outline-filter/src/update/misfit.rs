@@ -1,12 +1,12 @@
 //! What a frame says of motions that the model leaves out: growth, stretch, skew, perspective. Score tests of what is left out (C. R. Rao,
 //! Large sample tests of statistical hypotheses, 1948).
-use freeform_riccati::MotionModel;
-use nalgebra::{SMatrix, SVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point};
+use nalgebra::{Matrix3, Point2, SMatrix, SVector};
 
 use crate::{
     belief::Belief,
-    dynamics::CentredPose,
     measurement::{Frame, NO_CELL},
+    tuning::family as tuning,
 };
 
 /// Motions that may be left out: growth, stretch, skew, and two of perspective.
@@ -30,17 +30,25 @@ fn has(model: MotionModel) -> [bool; LEFT_OUT] {
     [growth, shear, shear, perspective, perspective]
 }
 
-/// Of a solved frame that has not been taken yet: `frame.cells` have the information with it, those of the belief without.
-pub(crate) fn misfit(belief: &Belief, frame: &Frame, at: &CentredPose, sigma: f64) -> Option<Misfit> {
-    type Rows = SVector<f64, 13>;
+/// Entries of the equations: those of the pose, and behind them those of what is left out.
+const ENTRIES: usize = MAX_PARAMETERS + LEFT_OUT;
+
+/// Of a solved frame that has not been taken yet: `frame.cells` have the information with it, those of the belief without. `pose` is that
+/// of the frame, `middle` that of the object in the body frame.
+pub(crate) fn misfit(
+    belief: &Belief,
+    frame: &Frame,
+    (pose, middle): (&Matrix3<f64>, &Point2<f64>),
+    sigma: f64,
+) -> Option<Misfit> {
     let (model, k) = (belief.model, belief.parameter_count());
     let is_had = has(model);
-    if is_had.iter().all(|had| *had) || at.linear().determinant() <= 0.0 {
+    if is_had.iter().all(|had| *had) || pose.fixed_view::<2, 2>(0, 0).determinant() <= 0.0 {
         return None;
     }
-    let (centre, scale) = (at.centre(), 1.0 / belief.scale());
-    let mut gram = SMatrix::<f64, 13, 13>::zeros();
-    let mut right = Rows::zeros();
+    let (centre, scale) = (map_point(pose, middle), 1.0 / belief.scale());
+    let mut gram = SMatrix::<f64, ENTRIES, ENTRIES>::zeros();
+    let mut right = SVector::<f64, ENTRIES>::zeros();
     let mut total = 0.0;
     for (m, p) in frame.measurements.iter().zip(&frame.points) {
         if m.cell == NO_CELL || m.weight <= 0.0 || m.cell >= belief.information.cells.len() {
@@ -56,13 +64,13 @@ pub(crate) fn misfit(belief: &Belief, frame: &Frame, at: &CentredPose, sigma: f6
         let (nx, ny) = (m.jacobian[k - 2], m.jacobian[k - 1]);
         let d = (p - centre) * scale;
         let along = nx * d.x + ny * d.y;
-        let mut row = Rows::zeros();
+        let mut row = SVector::<f64, ENTRIES>::zeros();
         (0..k).for_each(|i| row[i] = m.jacobian[i]);
         let left_out = [along, nx * d.x - ny * d.y, nx * d.y + ny * d.x, d.x * along, d.y * along];
         for (i, value) in left_out.into_iter().enumerate() {
-            row[8 + i] = if is_had[i] { 0.0 } else { value };
+            row[MAX_PARAMETERS + i] = if is_had[i] { 0.0 } else { value };
         }
-        for i in 0..13 {
+        for i in 0..ENTRIES {
             let factor = weight * row[i];
             if factor != 0.0 {
                 right[i] += factor * residual;
@@ -71,21 +79,21 @@ pub(crate) fn misfit(belief: &Belief, frame: &Frame, at: &CentredPose, sigma: f6
         }
         total += weight;
     }
-    let pose = SMatrix::<f64, 8, 8>::from_fn(|i, j| {
+    let of_pose = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| {
         if i < k && j < k { gram[(i.max(j), i.min(j))] } else { f64::from(u8::from(i == j)) }
     });
-    let jitter = (0..k).map(|i| pose[(i, i)]).fold(0.0, f64::max) * 1e-9;
-    let factor = (pose + SMatrix::<f64, 8, 8>::identity() * jitter).cholesky()?;
+    let jitter = (0..k).map(|i| of_pose[(i, i)]).fold(0.0, f64::max) * tuning::SINGULAR;
+    let factor = (of_pose + SMatrix::identity() * jitter).cholesky()?;
     let mut found = Misfit { standardised: LeftOutVector::zeros(), displacement: LeftOutVector::zeros() };
     for i in (0..LEFT_OUT).filter(|i| !is_had[*i]) {
-        let cross = SVector::<f64, 8>::from_fn(|j, _| if j < k { gram[(8 + i, j)] } else { 0.0 });
+        let cross =
+            SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { gram[(MAX_PARAMETERS + i, j)] } else { 0.0 });
         let explained = factor.solve(&cross);
-        let own = gram[(8 + i, 8 + i)];
+        let own = gram[(MAX_PARAMETERS + i, MAX_PARAMETERS + i)];
         let left = own - cross.dot(&explained);
         // Of a motion that is the same as one of the model's on this outline nothing can be told.
-        if left > 1e-3 * own && left > 0.0 {
-            let of_pose = SVector::<f64, 8>::from_fn(|j, _| if j < k { right[j] } else { 0.0 });
-            let score = right[8 + i] - explained.dot(&of_pose);
+        if left > tuning::TOLD_APART * own && left > 0.0 {
+            let score = right[MAX_PARAMETERS + i] - (0..k).map(|j| explained[j] * right[j]).sum::<f64>();
             found.standardised[i] = score / (left.sqrt() * sigma);
             found.displacement[i] = score / (left * total).sqrt();
         }

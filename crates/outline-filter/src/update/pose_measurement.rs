@@ -2,7 +2,11 @@
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
-use crate::belief::{Arrowhead, CellInformation, StateVector};
+use super::solve::Proposal;
+use crate::{
+    belief::{Belief, CellInformation},
+    measurement::Frame,
+};
 
 /// In normalised coordinates, of the error of the predicted pose, on the left; the outline taken as known before the frame.
 ///
@@ -16,30 +20,27 @@ pub(crate) struct PoseMeasurement {
 }
 
 impl PoseMeasurement {
-    /// From the information before a frame and with it, and the right-hand sides that it has added, those of the cells apart.
-    pub(super) fn of(before: &Arrowhead, with: &Arrowhead, right: &StateVector, right_of_cells: &[f64]) -> Self {
-        match before.k {
-            3 => Self::sized::<3>(before, with, right, right_of_cells),
-            4 => Self::sized::<4>(before, with, right, right_of_cells),
-            6 => Self::sized::<6>(before, with, right, right_of_cells),
-            _ => Self::sized::<8>(before, with, right, right_of_cells),
+    /// Of a solved frame that has not been taken yet, in units of the noise: `frame.cells` have the information with it, those of the belief
+    /// without.
+    pub(crate) fn of(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
+        match belief.parameter_count() {
+            3 => Self::sized::<3>(belief, proposal, frame),
+            4 => Self::sized::<4>(belief, proposal, frame),
+            6 => Self::sized::<6>(belief, proposal, frame),
+            _ => Self::sized::<8>(belief, proposal, frame),
         }
     }
 
-    fn sized<const K: usize>(
-        before: &Arrowhead,
-        with: &Arrowhead,
-        right: &StateVector,
-        right_of_cells: &[f64],
-    ) -> Self {
+    fn sized<const K: usize>(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
+        let before = &belief.information;
         let mut information = [[0.0; K]; K];
         let mut pulled = [0.0; K];
         for i in 0..K {
-            pulled[i] = right[i];
-            (0..K).for_each(|j| information[i][j] = with.dense[i][j] - before.dense[i][j]);
+            pulled[i] = proposal.right[i];
+            (0..K).for_each(|j| information[i][j] = proposal.dense[i][j] - before.dense[i][j]);
         }
         let nothing = CellInformation::NOTHING;
-        for (number, (cell, right)) in with.cells.iter().zip(right_of_cells).enumerate() {
+        for (number, (cell, right)) in frame.cells.iter().zip(&frame.right).enumerate() {
             let known = before.cells.get(number).unwrap_or(&nothing);
             if cell.own <= known.own {
                 continue;

@@ -4,7 +4,6 @@ use nalgebra::Matrix3;
 use super::{
     hold::with_hold,
     normal_equations::{accumulate, reduce},
-    pose_measurement::PoseMeasurement,
 };
 use crate::{
     belief::{Arrowhead, CellInformation, STATE, StateMatrix, StateVector, scaled_solution},
@@ -24,8 +23,8 @@ pub(crate) struct Proposal {
     pub(crate) dense: [[f64; STATE]; STATE],
     /// Information on pose and motion with the frame, the offsets eliminated.
     pub(crate) marginal: StateMatrix,
-    /// What the frame tells of the pose by itself, in units of the noise; `None` in a proposal that is none yet.
-    pub(crate) pose_measurement: Option<PoseMeasurement>,
+    /// Right-hand side of pose and motion that the frame has added, the offsets not eliminated.
+    pub(super) right: StateVector,
     /// Linearisations taken.
     pub(crate) iterations: usize,
 }
@@ -47,7 +46,7 @@ impl View<'_> {
             pose: belief.pose,
             dense: belief.information.dense,
             marginal: belief.marginal,
-            pose_measurement: None,
+            right: StateVector::zeros(),
             iterations: 0,
         };
         let mut null = null.to_vec();
@@ -68,7 +67,6 @@ impl View<'_> {
             let reduced = reduce(&work, &frame.right, right);
             let solution = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
             let next = solution.filter(|next| next.iter().all(|e| e.is_finite()));
-            let pose_measurement = PoseMeasurement::of(&belief.information, &work, &right, &frame.right);
             if let Some(next) = next {
                 frame.take_step(&work.cells, &(next - proposal.state), &next, k);
             }
@@ -80,8 +78,7 @@ impl View<'_> {
                 return Err(proposal.iterations);
             }
             let iterations = proposal.iterations + 1;
-            let pose_measurement = Some(pose_measurement);
-            proposal = Proposal { state: next, pose, dense: work.dense, marginal, pose_measurement, iterations };
+            proposal = Proposal { state: next, pose, dense: work.dense, marginal, right, iterations };
             settled = step < tuning::SETTLED * self.noise.sigma;
         }
         Ok(proposal)
@@ -144,7 +141,7 @@ mod tests {
                 pose: belief.pose,
                 dense: work.dense,
                 marginal,
-                pose_measurement: None,
+                right,
                 iterations: 1,
             };
             let (motion, offsets) = (belief.motion, belief.offsets.clone());
