@@ -1,6 +1,7 @@
-//! The affine pose of an object that is followed from frame to frame, for frames that show only a part of it.
-use freeform_curve_fit::{ClosedOutline, Normalisation, OpenOutline, Outline, outward_normals};
-use nalgebra::{Affine2, Matrix3, Matrix6, Point2, Vector2, Vector3, Vector6};
+//! The pose of an object that is followed from frame to frame: affine, for frames that show only a part of it, or projective.
+use freeform_curve_fit::{ClosedOutline, Normalisation, OpenArc, OpenOutline, Outline, OutlineError, outward_normals};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+use nalgebra::{Matrix3, Point2, Projective2, SMatrix, SVector, Vector2};
 
 /// Points of the reference at most; more would not place a part of the outline any better.
 const REFERENCE_POINTS: usize = 400;
@@ -14,7 +15,7 @@ const CONVERGED: f64 = 1e-9;
 const ROBUST_MEDIANS: f64 = 3.0;
 /// Smallest scale of the residuals, in RMS radii: below, rounding decides.
 const ROUNDING: f64 = 1e-9;
-/// Keeps affine maps that a part of the outline does not tell where they were predicted, per point.
+/// Keeps maps that a part of the outline does not tell where they were predicted, per point.
 const DAMPING: f64 = 1e-6;
 /// Half window of the normals, a fraction of the length of the outline.
 const NORMAL_HALF_WINDOW: f64 = 0.02;
@@ -22,8 +23,10 @@ const NORMAL_HALF_WINDOW: f64 = 0.02;
 /// Where the working coordinates of the last frame were, and the outline in them as it was last seen whole, or first seen.
 #[derive(Debug, Clone)]
 pub(crate) struct FollowedPose {
+    /// The family that changes of the pose are in.
+    model: MotionModel,
     time: f64,
-    image_from_working: Affine2<f64>,
+    image_from_working: Projective2<f64>,
     points: Vec<Point2<f64>>,
     normals: Vec<Vector2<f64>>,
     is_whole: bool,
@@ -31,7 +34,7 @@ pub(crate) struct FollowedPose {
 
 impl FollowedPose {
     /// Takes an outline and its normalisation for the reference.
-    pub(crate) fn new(time: f64, outline: &Outline, normalisation: &Normalisation) -> Self {
+    pub(crate) fn new(model: MotionModel, time: f64, outline: &Outline, normalisation: &Normalisation) -> Self {
         let image_from_working = normalisation.image_from_working();
         // Normals are found in the image and moved as normals are.
         let map = image_from_working.matrix().fixed_view::<2, 2>(0, 0).transpose();
@@ -42,7 +45,8 @@ impl FollowedPose {
             .step_by(every)
             .map(|(p, n)| (normalisation.to_working(p), (map * n).try_normalize(0.0).unwrap_or_default()))
             .unzip();
-        Self { time, image_from_working, points, normals, is_whole: matches!(outline, Outline::Closed(_)) }
+        let image_from_working = nalgebra::convert(image_from_working);
+        Self { model, time, image_from_working, points, normals, is_whole: matches!(outline, Outline::Closed(_)) }
     }
 
     /// Seconds since the last frame.
@@ -52,13 +56,13 @@ impl FollowedPose {
 
     /// The pose at which the points of an outline lie on the reference, by iterated closest points (point to line, robust), from the
     /// better of two guesses: the last pose, and that moved by `flow`.
-    pub(crate) fn found(&self, outline: &Outline, flow: &Affine2<f64>) -> Affine2<f64> {
+    pub(crate) fn found(&self, outline: &Outline, flow: &Projective2<f64>) -> Projective2<f64> {
         let guesses = [self.image_from_working, flow * self.image_from_working];
-        let misfit = |pose: &Affine2<f64>| self.match_all(pose, outline).1;
+        let misfit = |pose: &Projective2<f64>| self.match_all(pose, outline).1;
         let mut pose = if misfit(&guesses[1]) < misfit(&guesses[0]) { guesses[1] } else { guesses[0] };
         for _ in 0..STEPS {
             let (matches, median) = self.match_all(&pose, outline);
-            let step = correction(&matches, ROBUST_MEDIANS * median.max(ROUNDING));
+            let step = correction(self.model, &matches, ROBUST_MEDIANS * median.max(ROUNDING));
             let Some(corrected) = step.and_then(nalgebra::Transform::try_inverse) else { break };
             pose *= corrected;
             if (corrected.matrix() - Matrix3::identity()).amax() < CONVERGED {
@@ -70,7 +74,7 @@ impl FollowedPose {
 
     /// The arcs of an outline at a pose, joined by the parts of the reference that they leave out. `None` where the reference is not
     /// whole itself, or the arcs do not run along it one way round.
-    pub(crate) fn completed(&self, arcs: &OpenOutline, pose: &Affine2<f64>) -> Option<ClosedOutline> {
+    pub(crate) fn completed(&self, arcs: &OpenOutline, pose: &Projective2<f64>) -> Option<ClosedOutline> {
         if !self.is_whole {
             return None;
         }
@@ -104,13 +108,13 @@ impl FollowedPose {
     }
 
     /// Remembers where the object was.
-    pub(crate) fn at(&mut self, time: f64, image_from_working: Affine2<f64>) {
+    pub(crate) fn at(&mut self, time: f64, image_from_working: Projective2<f64>) {
         (self.time, self.image_from_working) = (time, image_from_working);
     }
 
     /// Points of an outline in working coordinates with the normal of the nearest point of the reference and the distance from the
     /// line through that; and the median distance.
-    fn match_all(&self, pose: &Affine2<f64>, outline: &Outline) -> (Vec<Match>, f64) {
+    fn match_all(&self, pose: &Projective2<f64>, outline: &Outline) -> (Vec<Match>, f64) {
         let working_from_image = pose.inverse();
         let every = outline.point_count().div_ceil(PLACED_POINTS);
         let matches: Vec<Match> =
@@ -140,18 +144,31 @@ struct Match {
     distance: f64,
 }
 
-/// The affine map near the identity that brings the points onto their lines, by weighted least squares.
-fn correction(matches: &[Match], scale: f64) -> Option<Affine2<f64>> {
-    let mut information = Matrix6::identity() * (DAMPING * matches.len() as f64);
-    let mut right = Vector6::zeros();
+/// The map near the identity that brings the points onto their lines, by weighted least squares.
+fn correction(model: MotionModel, matches: &[Match], scale: f64) -> Option<Projective2<f64>> {
+    type Normal = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
+    let mut information = Normal::identity() * (DAMPING * matches.len() as f64);
+    let mut right = SVector::<f64, MAX_PARAMETERS>::zeros();
     for Match { point, normal, distance } in matches {
         let weight = (1.0 + (distance / scale).powi(2)).powi(-2);
-        let p = Vector3::new(point.x, point.y, 1.0);
-        let row = Vector6::from_iterator((p * normal.x).iter().chain((p * normal.y).iter()).copied());
+        let row = SVector::from(model.normal_velocities(point, normal));
         information += weight * row * row.transpose();
         right -= weight * distance * row;
     }
     let d = information.cholesky()?.solve(&right);
-    let matrix = Matrix3::new(1.0 + d[0], d[1], d[2], d[3], 1.0 + d[4], d[5], 0.0, 0.0, 1.0);
-    Some(Affine2::from_matrix_unchecked(matrix))
+    let generator = model.generator(&d.as_slice()[..model.parameter_count()]);
+    Some(Projective2::from_matrix_unchecked(Matrix3::identity() + generator))
+}
+
+/// An outline in the coordinates that a pose takes to the image.
+pub(crate) fn in_working(outline: &Outline, pose: &Projective2<f64>) -> Result<Outline, OutlineError> {
+    let working_from_image = pose.inverse();
+    let moved = |points: &[Point2<f64>]| points.iter().map(|p| working_from_image * p).collect();
+    Ok(match outline {
+        Outline::Closed(closed) => Outline::closed(moved(closed.points()))?,
+        Outline::Open(arcs) => {
+            let arcs = arcs.arcs().iter().map(|arc| OpenArc::new(moved(arc.points())));
+            Outline::Open(OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?)?)
+        }
+    })
 }

@@ -36,6 +36,7 @@ mod frame_ranges;
 mod number;
 mod pipeline;
 mod pipeline_error;
+mod rectification;
 mod rejection;
 mod settling;
 pub mod tracker;
@@ -53,6 +54,7 @@ pub use freeform_sim_camera as sim_camera;
 pub use number::significant;
 pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
 pub use pipeline_error::PipelineError;
+pub use rectification::{Rectification, RectifyError};
 pub use tracker::{Tracker, TrackerSettings};
 pub use warning::Warning;
 

@@ -217,20 +217,21 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Turns in degrees, positive in the direction of a positive omega.
+/// What the outlines do and what to try.
 fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: MotionModel) -> fmt::Result {
     match family {
         WrongFamily::Growth => {
-            write!(f, "the outlines grow or shrink, which a {motion} motion does not: try --motion similarity")
+            write!(f, "the outlines grow or shrink, which {motion} motion does not: try --motion similarity")
         }
         WrongFamily::Shear => write!(
             f,
-            "the outlines are stretched or sheared, which a {motion} motion does not do: check the pixel aspect and the tilt of \
-             the camera, or try --motion affine"
+            "the outlines are stretched or sheared, which {motion} motion does not do: check the pixel aspect, try --rectify \
+             where the camera is tilted, or --motion affine"
         ),
         WrongFamily::Perspective => write!(
             f,
-            "the outlines change as in perspective, which a {motion} motion does not do: check lens and tilt of the camera"
+            "the outlines change as in perspective, which {motion} motion does not do: check the lens, try --rectify where the \
+             camera is tilted, or --motion projective"
         ),
         WrongFamily::RollingShutter => f.write_str(
             "the outlines are slanted by their own motion, as by a camera that reads its rows one after the other (a rolling \
@@ -238,12 +239,13 @@ fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: M
         ),
         WrongFamily::Shape => write!(
             f,
-            "the outlines change their shape in ways that no {motion} motion does: the object may bend, the lens distort it, or \
-             light and shadow move its edges"
+            "the outlines change their shape in ways that no {motion} motion does: the object may bend, the camera look at it from \
+             aside (--rectify), its lens distort it, or light and shadow move the edges"
         ),
     }
 }
 
+/// Turns in degrees, positive in the direction of a positive omega.
 fn write_ambiguity(f: &mut fmt::Formatter<'_>, ambiguity: &Ambiguity) -> fmt::Result {
     let as_omega = |anticlockwise: f64| -anticlockwise.to_degrees();
     let rivals: Vec<String> = ambiguity.rival_turns.iter().map(|turn| format!("{:.1}", as_omega(*turn))).collect();

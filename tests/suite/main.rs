@@ -6,6 +6,8 @@ mod documents;
 mod hostile_geometry;
 mod observability;
 mod paper_experiments;
+mod projective;
+mod rectification;
 mod robustness;
 mod soak;
 mod tracker;

@@ -279,7 +279,8 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
 #[test]
 fn settings_out_of_range_are_refused_before_any_frame() {
     let filter = FilterSettings { patience: 0, ..FilterSettings::default() };
-    let refused = Tracker::new(TrackerSettings { method: MethodSettings::Filter(filter), scale: None });
+    let refused =
+        Tracker::new(TrackerSettings { method: MethodSettings::Filter(filter), ..TrackerSettings::default() });
     assert_eq!(refused.expect_err("no patience").to_string(), "patience of 0 is not at least 1");
 }
 

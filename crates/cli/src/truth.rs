@@ -1,18 +1,19 @@
 use std::fmt;
 
-use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
+use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion, RigidMotion};
 use freeform_motion::sim_camera::Simulator;
+use nalgebra::Point2;
 
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
 
 /// The true motion of simulated outlines, as stated in a comment at the head of their file:
-/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`, behind it `v1=-3 v2=4`, and
-/// `time=9.9` where the motion changes.
+/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`, projective ones with `c1=0.01
+/// c2=0.02` before the scale; behind it `v1=-3 v2=4`, and `time=9.9` where the motion changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SimulatedMotion {
-    /// In space: image velocities over the scale.
-    pub(crate) motion: AffineMotion,
+    /// In space: image velocities over the scale, c times the scale.
+    pub(crate) motion: ProjectiveMotion,
     /// Camera scale f/Z0.
     pub(crate) scale: CameraScale,
     /// Velocity in space of the middle of the object, its area centroid, in the last frame.
@@ -25,7 +26,7 @@ pub(crate) struct SimulatedMotion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Truth {
     /// The motion in the last frame.
-    pub(crate) motion: AffineMotion,
+    pub(crate) motion: ProjectiveMotion,
     /// Velocity of the middle of the object in the last frame.
     pub(crate) middle_velocity: Option<[f64; 2]>,
     /// Whether the motion is the same in all frames.
@@ -34,20 +35,15 @@ pub(crate) struct Truth {
 
 impl Truth {
     /// Velocity of the point of the object that is at `[x, y]` in the last frame.
-    pub(crate) fn velocity_at(&self, point: [f64; 2]) -> [f64; 2] {
-        velocity_at(&self.motion, point)
+    pub(crate) fn velocity_at(&self, point: &Point2<f64>) -> [f64; 2] {
+        self.motion.velocity(point).into()
     }
 }
 
-impl From<AffineMotion> for Truth {
-    fn from(motion: AffineMotion) -> Self {
-        Self { motion, middle_velocity: None, is_constant: true }
+impl<M: Into<ProjectiveMotion>> From<M> for Truth {
+    fn from(motion: M) -> Self {
+        Self { motion: motion.into(), middle_velocity: None, is_constant: true }
     }
-}
-
-fn velocity_at(motion: &AffineMotion, [x, y]: [f64; 2]) -> [f64; 2] {
-    let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
-    [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
 }
 
 impl SimulatedMotion {
@@ -58,7 +54,7 @@ impl SimulatedMotion {
         let scale = scene.camera().scale();
         let middle = (scene.true_pose(last) * scene.shape().centroid()) / scale.value();
         let motion = scene.motion().at(last);
-        let middle_velocity = Some(velocity_at(&motion, middle.into()));
+        let middle_velocity = Some(motion.velocity(&middle).into());
         Self { motion, scale, middle_velocity, time: (!scene.motion().is_constant()).then_some(last) }
     }
 
@@ -83,8 +79,12 @@ impl SimulatedMotion {
         };
         let (b1, b2) = (value("b1")?, value("b2")?);
         let motion = match value("omega") {
-            Some(omega) => AffineMotion { a1: 0.0, a2: omega, a3: -omega, a4: 0.0, b1, b2 },
-            None => AffineMotion { a1: value("a1")?, a2: value("a2")?, a3: value("a3")?, a4: value("a4")?, b1, b2 },
+            Some(omega) => RigidMotion { omega, b1, b2 }.into(),
+            None => {
+                let [a1, a2, a3, a4] = [value("a1")?, value("a2")?, value("a3")?, value("a4")?];
+                let [c1, c2] = ["c1", "c2"].map(|name| value(name).unwrap_or(0.0));
+                ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }
+            }
         };
         let scale = CameraScale::new(value("scale")?).ok()?;
         let middle_velocity = value("v1").zip(value("v2")).map(|(x, y)| [x, y]);
@@ -95,13 +95,17 @@ impl SimulatedMotion {
 impl fmt::Display for SimulatedMotion {
     /// The comment line without its `#`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let AffineMotion { a1, a2, a3, a4, b1, b2 } = self.motion;
+        let ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 } = self.motion;
         f.write_str(MARK)?;
         match MotionModel::Rigid.parameters_of_motion(&self.motion) {
             Some(_) => write!(f, "omega={a2}")?,
             None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
         }
-        write!(f, " b1={b1} b2={b2} scale={}", self.scale)?;
+        write!(f, " b1={b1} b2={b2}")?;
+        if self.motion.as_affine().is_none() {
+            write!(f, " c1={c1} c2={c2}")?;
+        }
+        write!(f, " scale={}", self.scale)?;
         if let Some([x, y]) = self.middle_velocity {
             write!(f, " v1={x} v2={y}")?;
         }
@@ -115,13 +119,15 @@ mod tests {
 
     #[test]
     fn a_motion_written_as_a_comment_reads_back_to_the_last_bit() {
-        let rigid = AffineMotion { a1: 0.0, a2: 0.1 + 0.2, a3: -(0.1 + 0.2), a4: 0.0, b1: -3.0, b2: 1e-17 };
-        let affine = AffineMotion { a1: 0.3, ..rigid };
+        let rigid: ProjectiveMotion = RigidMotion { omega: 0.1 + 0.2, b1: -3.0, b2: 1e-17 }.into();
+        let affine = ProjectiveMotion { a1: 0.3, ..rigid };
+        let projective = ProjectiveMotion { c1: 0.1 + 0.2, c2: -1e-17, ..rigid };
         let scale = CameraScale::new(0.1).expect("a scale");
         let known =
             SimulatedMotion { motion: rigid, scale, middle_velocity: Some([0.1 + 0.7, -1e-9]), time: Some(9.9) };
         let always = SimulatedMotion { time: None, ..known };
-        for written in [known, always, SimulatedMotion { motion: affine, middle_velocity: None, ..always }] {
+        let affine = SimulatedMotion { motion: affine, middle_velocity: None, ..always };
+        for written in [known, always, affine, SimulatedMotion { motion: projective, ..always }] {
             assert_eq!(SimulatedMotion::parse(&written.to_string()), Some(written));
         }
         assert!(known.to_string().starts_with("truth omega="));
@@ -135,12 +141,12 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_of_the_one_who_asks_divides_the_velocity_only() {
-        let motion = AffineMotion { a2: 2.0, a3: -2.0, b1: -3.0, b2: 4.0, ..AffineMotion::default() };
+    fn the_scale_of_the_one_who_asks_divides_the_velocity_and_multiplies_the_perspective() {
+        let motion = ProjectiveMotion { c1: 0.1, ..RigidMotion { omega: 2.0, b1: -3.0, b2: 4.0 }.into() };
         let half = CameraScale::new(0.5).expect("a scale");
         let truth = SimulatedMotion { motion, scale: half, middle_velocity: Some([3.0, -1.0]), time: None };
         let in_image = truth.seen_at(None);
-        assert_eq!(in_image.motion, AffineMotion { b1: -1.5, b2: 2.0, ..motion });
+        assert_eq!(in_image.motion, ProjectiveMotion { b1: -1.5, b2: 2.0, c1: 0.2, ..motion });
         assert_eq!(in_image.middle_velocity, Some([1.5, -0.5]));
         assert_eq!(truth.seen_at(Some(half)), Truth { motion, middle_velocity: Some([3.0, -1.0]), is_constant: true });
     }

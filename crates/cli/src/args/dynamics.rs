@@ -1,5 +1,6 @@
 //! Options of how a simulated motion changes with time.
 use clap::{Args, ValueEnum};
+use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{Dynamics, Motion, Trajectory};
 use nalgebra::{Point2, Vector2};
 
@@ -19,7 +20,7 @@ pub(crate) struct DynamicsArgs {
 
     /// Velocity of the middle of the object at time 0, in space lengths per second; not for 'generator' [default: that of --b]
     #[arg(long, value_name = "VX,VY", value_parser = numbers::<2>("VX,VY"), allow_hyphen_values = true,
-          conflicts_with_all = ["b", "affine"])]
+          conflicts_with_all = ["b", "affine", "projective"])]
     velocity: Option<[f64; 2]>,
 
     /// Angular acceleration in rad/s^2, and acceleration of the middle in space lengths per second squared, for 'accelerating'
@@ -67,7 +68,8 @@ impl DynamicsArgs {
         use DynamicsChoice as Choice;
         let choice = self.dynamics;
         let given = [
-            ("affine", start.is_affine(), choice == Choice::Generator),
+            ("affine", start.family() == MotionModel::Affine, choice == Choice::Generator),
+            ("projective", start.family() == MotionModel::Projective, choice == Choice::Generator),
             ("velocity", self.velocity.is_some(), choice != Choice::Generator),
             ("acceleration", self.acceleration.is_some(), choice == Choice::Accelerating),
             ("period", self.period.is_some(), matches!(choice, Choice::StopAndGo | Choice::Oscillating)),

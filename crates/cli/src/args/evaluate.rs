@@ -50,7 +50,8 @@ pub(crate) struct EvaluateArgs {
     #[command(flatten)]
     pub(crate) motion_in_space: TrueMotionArgs,
 
-    /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine]
+    /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine,
+    /// projective with --projective]
     #[arg(long, value_enum)]
     pub(crate) motion: Option<MotionChoice>,
 
@@ -89,15 +90,15 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// Methods to evaluate
-    #[arg(long, value_parser = methods(), value_delimiter = ',', default_values = ["filter", "moments", "icp"])]
+    /// Methods to evaluate [default: filter,moments,icp; for projective motion, which moments do not have, filter,icp]
+    #[arg(long, value_parser = methods(), value_delimiter = ',')]
     pub(crate) method: Vec<Method>,
 
     /// Evaluate the start instead of the motion: how often the pose in the second of two frames is found
     ///
     /// Between the two frames the turn is uniform within 60 degrees and the shift uniform up to half the size of the
     /// object. The pose is found if the turn is right to 6 degrees and the centre to a tenth of the size.
-    #[arg(long, conflicts_with_all = ["omega", "b", "affine", "scale", "frames", "seconds", "fps", "wrong_frames"])]
+    #[arg(long, conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "frames", "seconds", "fps", "wrong_frames"])]
     pub(crate) acquisition: bool,
 
     /// Evaluate the settings of docs/accuracy.md, or those whose name contains TEXT, and print Markdown
@@ -108,7 +109,7 @@ pub(crate) struct EvaluateArgs {
     /// expects, in the classes plain, noise, family, dynamics, round and symmetry. A table tells how often a stated value was more
     /// than four standard deviations off without a word, how often nothing was stated, and how often the 95 % intervals held.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "",
-          conflicts_with_all = ["omega", "b", "affine", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
+          conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
                                 "noise", "occlusion", "outliers", "wrong_frames", "acquisition"])]
     pub(crate) suite: Option<String>,
 

@@ -6,6 +6,7 @@ mod identify;
 mod outline;
 mod pictures;
 mod recognise;
+mod rectify;
 mod reproduce;
 mod simulate;
 mod simulated;
@@ -23,6 +24,7 @@ pub(crate) use identify::{
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{PictureOptions, through_ffmpeg};
 pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
+pub(crate) use rectify::RectifyArgs;
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
@@ -61,6 +63,7 @@ pub(crate) enum Command {
     Track(TrackArgs),
     Outline(OutlineArgs),
     Recognise(RecogniseArgs),
+    Rectify(RectifyArgs),
     Evaluate(EvaluateArgs),
     Reproduce(ReproduceArgs),
     Completions(CompletionsArgs),

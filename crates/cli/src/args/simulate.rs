@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::dynamics::DynamicsArgs;
+use super::identify::MotionChoice;
 use super::simulated::{DisturbanceArgs, TrueMotionArgs};
 use super::values::positive;
 
@@ -11,6 +12,7 @@ Examples:
   freeform simulate > outlines.csv
   freeform simulate --shape glider --omega -1.0472 --b 0,4 --seconds 20 --output glider.csv
   freeform simulate --shape mask.png --affine 0.1,1,-1,-0.1,0.2,0 --scale 1 --noise 0.002
+  freeform simulate --motion projective --projective 0,1.6,-1.6,0,-3,4,-0.015,0.02
   freeform simulate --shape circle --dynamics velocity --omega 2 --velocity 10,0
   freeform simulate --dynamics accelerating --velocity 3,8 --acceleration 0,0,-9.81
   freeform simulate --dynamics oscillating --omega 1 --velocity 2,0 --period 3 --amplitude 0.5
@@ -38,6 +40,10 @@ pub(crate) struct SimulateArgs {
 
     #[command(flatten)]
     pub(crate) motion_in_space: TrueMotionArgs,
+
+    /// Family of motions that must hold the motion [default: any]
+    #[arg(long, value_enum)]
+    pub(crate) motion: Option<MotionChoice>,
 
     #[command(flatten)]
     pub(crate) dynamics: DynamicsArgs,

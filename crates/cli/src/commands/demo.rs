@@ -49,6 +49,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         method: IdentifyMethod::Filter,
         degree: None,
         scale: Some(scale),
+        rectify: None,
         dynamics: DynamicsChoice::Auto,
         edge_uncertainty: None,
     };

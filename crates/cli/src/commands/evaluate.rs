@@ -2,7 +2,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use freeform_experiments::monte_carlo::{AcquisitionSetting, Setting, Study, suite};
+use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, Setting, Study, suite};
+use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{BuiltInShape, SequenceLength, Settings, Shape};
 
 use super::simulate::shape;
@@ -70,7 +71,13 @@ fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
         None if args.acquisition => (Vec::new(), vec![acquisition(args)], runs),
         None => (settings(args)?, Vec::new(), runs),
     };
-    let (methods, seed) = (args.method.clone(), args.seed);
+    let is_projective = settings.iter().any(|setting| setting.model == MotionModel::Projective);
+    let methods = match (args.method.is_empty(), is_projective) {
+        (false, _) => args.method.clone(),
+        (true, false) => vec![Method::Filter, Method::Moments, Method::Icp],
+        (true, true) => vec![Method::Filter, Method::Icp],
+    };
+    let seed = args.seed;
     Ok(Study { shapes, settings, acquisitions, methods, runs, acquisition_runs, seed })
 }
 
@@ -87,10 +94,10 @@ fn named_by_file(shape: Shape, path: &str, others: &[Shape]) -> Shape {
 fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
     let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
     let motion = camera.image_motion(&args.motion_in_space.motion());
-    let default = if args.motion_in_space.is_affine() { MotionChoice::Affine } else { MotionChoice::Rigid };
-    let model = args.motion.unwrap_or(default).model();
+    let family = args.motion_in_space.family();
+    let model = args.motion.map_or(family, MotionChoice::model);
     if model.parameters_of_motion(&motion).is_none() {
-        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --affine")));
+        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --{family}")));
     }
     let of_seconds = |seconds: &f64| {
         let length = SequenceLength::Seconds(*seconds);

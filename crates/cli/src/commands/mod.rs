@@ -7,6 +7,7 @@ mod identify;
 mod man;
 mod outline;
 mod recognise;
+mod rectify;
 mod reproduce;
 mod simulate;
 mod stress;
@@ -29,6 +30,7 @@ pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Track(args) => track::run(args),
         Command::Outline(args) => outline::run(args),
         Command::Recognise(args) => recognise::run(args),
+        Command::Rectify(args) => rectify::run(args),
         Command::Evaluate(args) => evaluate::run(args),
         Command::Reproduce(args) => reproduce::run(args),
         Command::Completions(args) => completions::run(args),

@@ -23,8 +23,7 @@ pub(super) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     if !args.shape.is_empty() {
         return Err(Failure::unusable("--suite stress has its own shapes: --shape has no meaning there"));
     }
-    // The methods as they are without the option, or the filter alone.
-    if !matches!(args.method[..], [Method::Filter, Method::Moments, Method::Icp] | [Method::Filter]) {
+    if !matches!(args.method[..], [] | [Method::Filter]) {
         return Err(Failure::unusable("--suite stress judges the motion filter alone: --method has no meaning there"));
     }
     let format = args.format.unwrap_or(EvaluateFormat::Table);

@@ -42,7 +42,7 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &M
         let kinds = model.parameter_kinds().iter();
         let turn_is_known = kinds.zip(&found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
         let (is_told, true_velocity) = match truth {
-            Some((truth, _)) if turn_is_known => (true, Some(truth.velocity_at(velocity.point.into()))),
+            Some((truth, _)) if turn_is_known => (true, Some(truth.velocity_at(&velocity.point))),
             Some((truth, _)) => (true, truth.middle_velocity),
             None => (false, None),
         };
@@ -112,7 +112,7 @@ pub(crate) fn write_identify_table(
 mod tests {
     use freeform_motion::estimate::{MotionEstimate, PointVelocity};
     use freeform_motion::outline_filter::Ambiguity;
-    use freeform_motion::riccati::{AffineMotion, MotionModel, RigidMotion};
+    use freeform_motion::riccati::{MotionModel, RigidMotion};
     use freeform_motion::tracker::Method;
     use nalgebra::{Matrix2, Point2, Vector2};
 
@@ -141,7 +141,7 @@ mod tests {
             warnings: Vec::new(),
         };
         let motion = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 };
-        let truth = Truth::from(AffineMotion::from(motion));
+        let truth = Truth::from(motion);
         let rows_beside =
             |estimate, truth| parameter_rows(&result(estimate), Some(truth), &MeaningOfB::in_coordinates(None));
         let rows = |estimate| rows_beside(estimate, &truth);
@@ -183,7 +183,7 @@ mod tests {
             ObjectResult { ambiguity: Some(ambiguity), ..result(Some(estimate.with_unobservable(0))) },
             result(None),
         ];
-        let truth = Truth::from(AffineMotion::from(RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 }));
+        let truth = Truth::from(RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 });
         let mut text = Vec::new();
         write_identify_table(&mut text, &results, Some(&truth), &MeaningOfB::in_coordinates(None)).expect("memory");
         insta::assert_snapshot!(String::from_utf8(text).expect("UTF-8"));

@@ -105,7 +105,7 @@ fn a_truth_that_the_motion_model_does_not_hold_is_told_to_be_left_out() {
     let csv = sequence("--affine 0.1,0,0,0.1,0.2,0 --scale 1");
     let output = run("identify -", &csv);
     assert!(!stdout(&output).contains("truth"), "{}", stdout(&output));
-    assert!(stderr(&output).contains("warning: the truth in the file is not a rigid motion"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("warning: the truth in the file is no rigid motion"), "{}", stderr(&output));
     let output = run("identify - --motion similarity", &csv);
     assert!(stdout(&output).contains("truth") && stderr(&output).is_empty(), "{}", stderr(&output));
 }

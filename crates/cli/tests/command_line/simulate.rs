@@ -55,6 +55,7 @@ fn the_velocity_of_the_middle_in_the_head_is_that_of_the_simulated_path_at_its_e
         "--dynamics accelerating --velocity 3,8 --acceleration 0.5,0,-9.8",
         "--dynamics stop-and-go --velocity 5,0 --period 0.8",
         "--dynamics oscillating --velocity 5,1 --period 1.7 --amplitude 0.6",
+        "--projective 0,1.6,-1.6,0,-3,4,-0.012,0.016",
     ] {
         let arguments = format!("simulate --shape circle --points 3000 --noise 0 --fps 200 --seconds 1 {motion}");
         let csv = succeed(&arguments, "");
@@ -173,6 +174,8 @@ fn settings_out_of_range_are_refused_on_one_line() {
         "--dynamics accelerating --acceleration 1,2",
         "--dynamics velocity --acceleration 1,2,3",
         "--dynamics velocity --affine 0,1,-1,0,0,0",
+        "--dynamics velocity --projective 0,1,-1,0,0,0,0,0",
+        "--dynamics velocity --velocity 1,2 --projective 0,1,-1,0,0,0,0,0",
         "--dynamics velocity --velocity 1",
         "--dynamics velocity --velocity 1,2 --b 1,2",
         "--dynamics velocity --period 1",

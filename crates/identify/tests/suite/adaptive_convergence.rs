@@ -1,5 +1,7 @@
 //! The three laws over line pairs that move exactly.
-use crate::adaptive_support::{AFFINE, RIGID, SIMILARITY, even_times, parameters_after, run, starting_lines};
+use crate::adaptive_support::{
+    AFFINE, PROJECTIVE, RIGID, SIMILARITY, even_times, parameters_after, run, starting_lines,
+};
 use freeform_decompose::Line;
 use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice};
 use freeform_riccati::{MotionModel, line_flow};
@@ -41,6 +43,16 @@ fn the_structured_law_converges_to_an_affine_motion() {
 }
 
 #[test]
+fn two_laws_converge_to_a_projective_motion_over_exact_lines() {
+    for (law, seconds) in [(AdaptiveLaw::Structured, 400.0), (AdaptiveLaw::FilteredLeastSquares, 3.0)] {
+        let settings = AdaptiveSettings { model: MotionModel::Projective, law, ..AdaptiveSettings::default() };
+        let found = parameters_after(&settings, &PROJECTIVE, &even_times(seconds, 30.0));
+        println!("{law:?} {}", distance(&found, &PROJECTIVE));
+        assert!(distance(&found, &PROJECTIVE) < 0.02, "{law:?}: {found:?}");
+    }
+}
+
+#[test]
 fn filtered_least_squares_settles_to_two_percent_within_half_a_second() {
     let law = AdaptiveLaw::FilteredLeastSquares;
     let rigid = AdaptiveSettings { law, ..AdaptiveSettings::default() };
@@ -55,9 +67,13 @@ fn the_true_motion_is_a_fixed_point_of_every_law() {
         (MotionModel::Rigid, &RIGID[..]),
         (MotionModel::Similarity, &SIMILARITY[..]),
         (MotionModel::Affine, &AFFINE[..]),
+        (MotionModel::Projective, &PROJECTIVE[..]),
     ];
     for (model, truth) in models {
         for law in LAWS {
+            if law == AdaptiveLaw::Printed && model == MotionModel::Projective {
+                continue;
+            }
             let settings =
                 AdaptiveSettings { model, law, initial_values: truth.to_vec(), ..AdaptiveSettings::default() };
             let found = parameters_after(&settings, truth, &even_times(10.0, 200.0));
@@ -101,7 +117,12 @@ fn a_fifth_of_the_frames_may_be_missing_and_times_may_be_uneven() {
 fn a_law_keeps_its_estimate_where_its_origin_moves() {
     let origin = Vector2::new(0.7, -1.3);
     let old_from_new = nalgebra::convert::<_, Affine2<f64>>(Translation2::from(origin));
-    for (model, truth) in [(MotionModel::Rigid, &RIGID[..]), (MotionModel::Affine, &AFFINE[..])] {
+    let models = [
+        (MotionModel::Rigid, &RIGID[..]),
+        (MotionModel::Affine, &AFFINE[..]),
+        (MotionModel::Projective, &PROJECTIVE[..]),
+    ];
+    for (model, truth) in models {
         // The numbers of the printed law need not belong to any motion: they have a test of their own.
         for law in [AdaptiveLaw::Structured, AdaptiveLaw::FilteredLeastSquares] {
             let settings = AdaptiveSettings { model, law, ..AdaptiveSettings::default() };

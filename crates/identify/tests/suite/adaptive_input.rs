@@ -1,7 +1,7 @@
 //! Bad settings and bad frames, and what is left after them.
 use crate::adaptive_support::{RIGID, even_times, run, starting_lines};
 use freeform_estimate::TimeNotIncreasing;
-use freeform_identify::{AdaptiveIdentifier, AdaptiveSettings, IdentifyError, PairChoice};
+use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError, PairChoice};
 use freeform_riccati::MotionModel;
 use nalgebra::Matrix4;
 
@@ -16,7 +16,8 @@ fn bad_settings_are_refused_with_the_reason() {
     assert!(matches!(error, IdentifyError::NotStable { real_part } if (real_part - 1.0).abs() < 1e-12), "{error}");
     let error = refused(AdaptiveSettings { definite: -Matrix4::identity(), ..default() });
     assert_eq!(error, IdentifyError::NotPositiveDefinite { smallest: -1.0 });
-    let error = refused(AdaptiveSettings { model: MotionModel::Projective, ..default() });
+    let law = AdaptiveLaw::Printed;
+    let error = refused(AdaptiveSettings { model: MotionModel::Projective, law, ..default() });
     assert_eq!(error, IdentifyError::UnsupportedModel { model: MotionModel::Projective });
     let error = refused(AdaptiveSettings { initial_values: vec![1.0], ..default() });
     assert_eq!(error, IdentifyError::WrongInitialValueCount { needed: 3, found: 1 });

@@ -10,6 +10,9 @@ pub(crate) const LARGEST: usize = 6;
 pub(crate) type CentredVector = SVector<f64, LARGEST>;
 pub(crate) type CentredMatrix = SMatrix<f64, LARGEST, LARGEST>;
 
+/// One entry for each parameter of any model, projective motion included.
+pub(crate) type CentredDeviations = SVector<f64, MAX_PARAMETERS>;
+
 /// A pose with the object's middle in it, which centred coordinates are taken about.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CentredPose {
@@ -60,8 +63,8 @@ impl Summary {
         &self,
         model: MotionModel,
         middle: &Point2<f64>,
-        factors: &CentredVector,
-        added: [&CentredVector; 2],
+        factors: &CentredDeviations,
+        added: [&CentredDeviations; 2],
     ) -> Option<Self> {
         let k = model.parameter_count();
         let at = CentredPose { pose: self.pose, middle: *middle };

@@ -3,7 +3,7 @@ use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::SMatrix;
 
 use super::{
-    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
+    centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
     hypothesis::{CentredMeasurement, Course, Entries, EntryMatrix, Hypothesis, Step},
     innovations::InnovationSeries,
     mixing::{Accelerations, mix},
@@ -201,8 +201,9 @@ impl DynamicsFilter {
     }
 
     /// Factors, at least 1, by which the innovations say that deviations about the middle are to be widened.
-    pub(crate) fn factors(&self) -> CentredVector {
-        self.series.spread(self.model.parameter_count())
+    pub(crate) fn factors(&self) -> CentredDeviations {
+        let spread = self.series.spread(self.model.parameter_count());
+        CentredDeviations::from_fn(|j, _| spread.get(j).copied().unwrap_or(1.0))
     }
 
     /// Mean square of the innovations, at least 1: how much larger than the model's errors are.

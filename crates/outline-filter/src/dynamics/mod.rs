@@ -11,7 +11,7 @@ mod interacting;
 mod mixing;
 mod setting;
 
-pub(crate) use centred::{CentredPose, CentredVector, LARGEST, Summary};
+pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use family::FamilyTests;
 pub use family::WrongFamily;
 pub(crate) use interacting::DynamicsFilter;

@@ -1,11 +1,11 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::DMatrix;
 
 use super::motion_filter::{Counts, MotionFilter, Phase};
 use crate::{
-    dynamics::{CentredVector, Summary, WrongFamily},
+    dynamics::{CentredDeviations, Summary, WrongFamily},
     tuning::statement as tuning,
 };
 
@@ -41,18 +41,18 @@ impl MotionFilter {
         let track = self.track.as_ref()?;
         let own = track.summary()?;
         let (model, middle) = (self.settings.model, track.centred_pose().middle);
-        let none = CentredVector::zeros();
+        let none = CentredDeviations::zeros();
         let mut random = own;
         if let Some(dynamics) = &self.history.dynamics {
             let summary = dynamics.combined((!dynamics.leads()).then_some(&own)).unwrap_or(own);
             random = summary.widened(model, &middle, &dynamics.factors(), [&none, &none])?;
         }
         let size = self.settings.edge_uncertainty.hypot(self.misfit().map_or(0.0, |(_, size)| size));
-        if size <= 0.0 || model == MotionModel::Projective {
+        if size <= 0.0 {
             return Some(Statement { random, all: random });
         }
         let [pose, motion] = track.systematic(size);
-        let all = random.widened(model, &middle, &CentredVector::from_element(1.0), [&pose, &motion])?;
+        let all = random.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         Some(Statement { random, all })
     }
 

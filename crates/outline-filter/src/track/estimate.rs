@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, Matrix3};
 use super::Track;
 use crate::{
     belief::{StateMatrix, scaled_inverse},
-    dynamics::{CentredVector, Dynamics, DynamicsFilter, LARGEST, Summary},
+    dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
     tuning::{
         null_space::{TAKES_PART, TURNS_WITH},
         supervisor::STEPS_KNOWN,
@@ -29,7 +29,7 @@ impl Track {
 
     /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
     /// about the middle, normalised. Over the time that the motion is known from it may change by as much as it is.
-    pub(crate) fn systematic(&self, size: f64) -> [CentredVector; 2] {
+    pub(crate) fn systematic(&self, size: f64) -> [CentredDeviations; 2] {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let (size, memory) = (size / self.reference.radius, &self.belief.memory);
         let span = memory.shortest(k).max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE);
@@ -39,8 +39,8 @@ impl Track {
             let along = model.normal_velocities(&(cell.centre - self.map.middle().coords), &cell.normal);
             levers.iter_mut().zip(along).for_each(|(sum, v)| *sum += v * v / cells.len() as f64);
         }
-        let pose = CentredVector::from_fn(|j, _| {
-            let lever = if j < k.min(LARGEST) { levers[j].sqrt() } else { 0.0 };
+        let pose = CentredDeviations::from_fn(|j, _| {
+            let lever = if j < k { levers[j].sqrt() } else { 0.0 };
             // Half of an error of one side is a shift; what an outline hardly shows may be anything.
             if lever > 0.0 { (0.5 * size / lever).min(1.0) } else { 0.0 }
         });

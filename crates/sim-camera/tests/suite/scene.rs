@@ -1,12 +1,12 @@
 //! Motions, the camera and the pose of the object.
 use std::f64::consts::FRAC_PI_2;
 
-use freeform_riccati::{AffineMotion, DynamicsError, RigidMotion};
+use freeform_riccati::{AffineMotion, DynamicsError, ProjectiveMotion, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Camera, Motion, PaperExperiment, Scene, Settings, SimulationError, Simulator};
-use nalgebra::{Affine2, Matrix3, Point2, Translation2};
+use nalgebra::{Affine2, Matrix3, Point2, Projective2, TCategory, Transform, Translation2};
 use proptest::prelude::*;
 
-fn difference(a: &Affine2<f64>, b: &Affine2<f64>) -> f64 {
+fn difference<A: TCategory, B: TCategory>(a: &Transform<f64, A, 2>, b: &Transform<f64, B, 2>) -> f64 {
     (a.matrix() - b.matrix()).amax()
 }
 
@@ -31,7 +31,7 @@ fn positive_omega_turns_clockwise() {
 fn the_object_starts_where_the_initial_pose_puts_it() {
     let start = nalgebra::convert(Translation2::new(2.0, -1.0));
     let scene = Scene::new(BuiltInShape::Bird, RigidMotion::default(), Camera::default());
-    assert!(scene.true_pose(0.0) == Affine2::identity());
+    assert!(scene.true_pose(0.0) == Projective2::identity());
     let moved = scene.clone().with_initial_pose(start);
     for (p, q) in scene.true_outline(5.0, 20).iter().zip(moved.true_outline(5.0, 20)) {
         assert!((q - p - nalgebra::Vector2::new(2.0, -1.0)).norm() < 1e-14);
@@ -40,7 +40,7 @@ fn the_object_starts_where_the_initial_pose_puts_it() {
 
 #[test]
 fn a_swinging_object_turns_by_the_integral_of_its_rate() {
-    let swing = Motion::varying(|t| RigidMotion { omega: t.cos(), b1: 0.0, b2: 0.0 }.into());
+    let swing = Motion::varying(|t| RigidMotion { omega: t.cos(), b1: 0.0, b2: 0.0 });
     let turned = swing.flow(0.0, 2.0) * Point2::new(1.0, 0.0);
     let angle = -(2.0_f64.sin());
     assert!((turned - Point2::new(angle.cos(), angle.sin())).norm() < 1e-12);
@@ -61,8 +61,7 @@ fn a_varying_motion_is_the_limit_of_many_short_constant_ones() {
 #[test]
 fn a_varying_motion_that_stops_being_finite_is_refused() {
     for bad in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e308] {
-        let motion =
-            Motion::varying(move |t| RigidMotion { omega: 0.0, b1: if t < 0.4 { 1.0 } else { bad }, b2: 0.0 }.into());
+        let motion = Motion::varying(move |t| RigidMotion { omega: 0.0, b1: if t < 0.4 { 1.0 } else { bad }, b2: 0.0 });
         assert!(motion.try_flow(0.0, 0.3).is_ok());
         assert!(motion.try_flow(0.0, 1.0).is_err() || bad == 1e308);
         assert!(motion.flow(0.0, 1.0).matrix().iter().any(|e| e.is_nan() || e.abs() >= 1e300));
@@ -78,7 +77,7 @@ fn a_varying_motion_that_stops_being_finite_is_refused() {
 #[test]
 fn phases_must_start_at_zero_and_follow_each_other() {
     let rest = AffineMotion::default();
-    assert!(matches!(Motion::piecewise(vec![]), Err(SimulationError::NoFirstPhase)));
+    assert!(matches!(Motion::piecewise::<AffineMotion>(vec![]), Err(SimulationError::NoFirstPhase)));
     assert!(matches!(Motion::piecewise(vec![(1.0, rest)]), Err(SimulationError::NoFirstPhase)));
     let order = |starts: &[f64]| Motion::piecewise(starts.iter().map(|s| (*s, rest)).collect());
     assert!(matches!(order(&[0.0, 2.0, 2.0]), Err(SimulationError::PhaseOrder { index: 2, .. })));
@@ -128,7 +127,7 @@ proptest! {
         let phases = Motion::piecewise(vec![(0.0, first), (0.5, second)]).expect("increasing");
         let expected = second.flow(0.75) * first.flow(0.5);
         prop_assert!(difference(&phases.flow(0.0, 1.25), &expected) < 1e-11 * expected.matrix().amax());
-        prop_assert_eq!((phases.at(0.49), phases.at(0.5)), (first, second));
+        prop_assert_eq!((phases.at(0.49), phases.at(0.5)), (first.into(), second.into()));
     }
 
     #[test]
@@ -142,11 +141,46 @@ proptest! {
         motion in any_motion(), scale in 0.01..10.0_f64, x in -5.0..5.0_f64, y in -5.0..5.0_f64,
     ) {
         let camera = Camera::new(scale).expect("positive");
-        let (space, flow) = (Point2::new(x, y), motion.flow(0.6));
+        let (space, motion) = (Point2::new(x, y), ProjectiveMotion::from(motion));
+        let flow = motion.flow(0.6);
         let seen = camera.project(&(flow * space));
         prop_assert!((camera.image_map(&flow) * camera.project(&space) - seen).norm() < 1e-10 * (1.0 + seen.coords.norm()));
         let image_flow = camera.image_motion(&motion).flow(0.6);
         prop_assert!(difference(&camera.image_map(&flow), &image_flow) < 1e-11 * image_flow.matrix().amax());
-        prop_assert_eq!(camera.image_map(&Affine2::from_matrix_unchecked(Matrix3::identity())), Affine2::identity());
+        prop_assert_eq!(camera.image_map(&Projective2::from_matrix_unchecked(Matrix3::identity())), Projective2::identity());
     }
+}
+
+fn any_projective_motion() -> impl Strategy<Value = ProjectiveMotion> {
+    (any_motion(), prop::array::uniform2(-0.3..0.3_f64)).prop_map(|(motion, [c1, c2])| ProjectiveMotion {
+        c1,
+        c2,
+        ..motion.into()
+    })
+}
+
+proptest! {
+    #[test]
+    fn every_point_of_a_projective_motion_moves_by_the_field_of_its_generator(
+        motion in any_projective_motion(), scale in 0.1..10.0_f64, x in -0.5..0.5_f64, y in -0.5..0.5_f64,
+    ) {
+        let scene = Scene::new(BuiltInShape::Bird, motion, Camera::new(scale).expect("positive"));
+        let h = 1e-5;
+        let at = |time: f64| scene.true_pose(time) * Point2::new(x, y);
+        let difference = (at(0.3 + h) - at(0.3 - h)) / (2.0 * h);
+        let velocity = scene.image_motion(0.3).velocity(&at(0.3));
+        prop_assert!((difference - velocity).norm() < 1e-6 * (1.0 + velocity.norm()), "{difference} {velocity}");
+    }
+}
+
+#[test]
+fn an_object_that_comes_near_the_line_at_infinity_is_refused() {
+    let run = |c1: f64| {
+        let motion = ProjectiveMotion { c1, ..ProjectiveMotion::default() };
+        let scene = Scene::new(BuiltInShape::Bird, motion, Camera::default());
+        Simulator::new(scene, Settings { noise: 0.0, ..Settings::default() }).map(drop)
+    };
+    assert_eq!(run(0.1), Ok(()));
+    // After 4 s a point at x = -0.4 has the depth 1 - 4 * 0.7 * 0.4.
+    assert!(matches!(run(0.7), Err(SimulationError::PoseOutOfRange { .. })));
 }

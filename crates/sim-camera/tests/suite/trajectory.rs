@@ -1,7 +1,7 @@
 //! Motions whose middle has a path of its own.
 use freeform_riccati::RigidMotion;
 use freeform_sim_camera::{Camera, Dynamics, Motion, Scene, SimulationError, Trajectory};
-use nalgebra::{Affine2, Matrix3, Point2, Vector2};
+use nalgebra::{Matrix3, Point2, Projective2, Vector2};
 use proptest::prelude::*;
 
 fn number() -> impl Strategy<Value = f64> {
@@ -34,7 +34,7 @@ fn jumps(trajectory: &Trajectory, time: f64, step: f64) -> bool {
         && trajectory.omega(time - step) != trajectory.omega(time + step)
 }
 
-fn difference(a: &Affine2<f64>, b: &Affine2<f64>) -> f64 {
+fn difference(a: &Projective2<f64>, b: &Projective2<f64>) -> f64 {
     (a.matrix() - b.matrix()).amax()
 }
 
@@ -85,7 +85,8 @@ proptest! {
     ) {
         let camera = Camera::new(scale).expect("positive");
         let scene = Scene::new(freeform_sim_camera::BuiltInShape::Van, trajectory, camera);
-        prop_assert!(difference(&scene.true_pose(time), &camera.image_map(&trajectory.pose(time))) < 1e-12);
+        let pose = camera.image_map(&nalgebra::convert(trajectory.pose(time)));
+        prop_assert!(difference(&scene.true_pose(time), &pose) < 1e-12);
         let motion = scene.image_motion(time);
         prop_assert!((motion.b1 - scale * trajectory.motion(time).b1).abs() < 1e-12);
         prop_assert_eq!(motion.a2, trajectory.omega(time));
@@ -103,7 +104,8 @@ proptest! {
             Dynamics::StopAndGo { period: 20.0 },
         ] {
             let other = with(dynamics);
-            prop_assert!(difference(&other.pose(time), &plain.pose(time)) < 1e-12, "{dynamics:?}");
+            let poses = [&other, &plain].map(|t| nalgebra::convert(t.pose(time)));
+            prop_assert!(difference(&poses[0], &poses[1]) < 1e-12, "{dynamics:?}");
             prop_assert_eq!(other.motion(time), plain.motion(time));
         }
     }
@@ -126,7 +128,7 @@ fn an_object_that_stops_and_goes_rests_in_the_second_half_of_every_period() {
 fn an_object_that_swings_comes_back_after_a_period() {
     let dynamics = Dynamics::Oscillating { period: 1.5, share: 1.0 };
     let trajectory = Trajectory::new(Point2::new(1.0, 2.0), 2.0, Vector2::new(1.0, -1.0), dynamics).expect("finite");
-    assert!(difference(&trajectory.pose(3.0), &Affine2::identity()) < 1e-12);
+    assert!(difference(&nalgebra::convert(trajectory.pose(3.0)), &Projective2::identity()) < 1e-12);
     assert!((trajectory.omega(0.75) + 2.0).abs() < 1e-12);
     assert!(!Motion::from(trajectory).is_constant());
 }

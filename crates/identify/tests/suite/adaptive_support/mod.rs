@@ -13,6 +13,9 @@ pub(crate) const SIMILARITY: [f64; 4] = [0.01, 1.2, -0.3, 0.4];
 /// A bounded affine motion.
 pub(crate) const AFFINE: [f64; 6] = [0.05, 1.2, -1.7, -0.05, -0.3, 0.4];
 
+/// A bounded projective motion: its generator has imaginary eigenvalues and 0.
+pub(crate) const PROJECTIVE: [f64; 8] = [0.05, 1.2, -1.7, -0.05, -0.3, 0.4, -0.098, 0.093];
+
 /// Two pairs that tell of rotation about as well as those of a bird.
 pub(crate) fn starting_lines() -> [Line; 2] {
     let line = |w: (f64, f64), k: (f64, f64)| Line {
