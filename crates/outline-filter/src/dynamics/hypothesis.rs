@@ -2,6 +2,8 @@
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
 
+use crate::tuning::dynamics as tuning;
+
 use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts};
 
 /// Pose, motion and accelerations of the largest model.
@@ -27,6 +29,16 @@ pub(super) enum Course {
 }
 
 impl Course {
+    /// Variances of accelerations of which nothing is known yet: such that they move the object by some deviations of a pose over the steps
+    /// that the level remembers. Larger ones are those of higher levels.
+    pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
+        let Self::Accelerating { level, rates } = self else { return CentredVector::zeros() };
+        let first = if rates { 0 } else { k - 2 };
+        let span = seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0);
+        let unit = (tuning::FIRST_ACCELERATION / (span * span)).powi(2);
+        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
+    }
+
     /// Whether accelerations are part of the state.
     pub(super) fn has_accelerations(self) -> bool {
         matches!(self, Self::Accelerating { .. })

@@ -6,7 +6,7 @@ use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
     hypothesis::{CentredMeasurement, Course, Entries, EntryMatrix, Hypothesis, Step},
     innovations::InnovationSeries,
-    mixing::{Accelerations, mix},
+    mixing::mix,
     setting::{Dynamics, DynamicsWeights},
 };
 use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
@@ -75,7 +75,7 @@ impl DynamicsFilter {
         for course in courses {
             let mut hypothesis = Hypothesis { course, mean, covariance };
             if course.has_accelerations() {
-                let prior = Accelerations::of(course).prior(&pose_variance, k, seconds);
+                let prior = course.acceleration_prior(&pose_variance, k, seconds);
                 // The motion known so far is the mean over the step: half of it ago.
                 for j in 0..k {
                     let (u, a) = (k + j, 2 * k + j);
