@@ -320,14 +320,14 @@ pub(crate) mod dynamics {
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
     pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.046;
-    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.004;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
     /// sixty frames, fourteen, three, and none.
     pub(crate) const LEVELS: [f64; 4] = [1e-9, 1e-5, 1e-1, 1e3];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;
     /// As these, where the velocity of the middle alone changes.
-    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-5, 1e-2];
+    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
     /// Probability that an interval of 95 % leaves out.
     pub(crate) const LEFT_OUT: f64 = 0.05;
     /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
