@@ -104,7 +104,7 @@ impl Accelerations {
         match course {
             Course::Accelerating { rates: true, .. } => Self::All,
             Course::Accelerating { rates: false, .. } => Self::OfVelocity,
-            Course::ConstantGenerator | Course::ConstantVelocity => Self::None,
+            Course::ConstantGenerator | Course::Shaken { .. } | Course::ConstantVelocity => Self::None,
         }
     }
 
@@ -123,7 +123,7 @@ impl Accelerations {
         let mut mean = source.mean;
         match source.course {
             // Along an arc the velocity of the middle turns all the time.
-            Course::ConstantGenerator => {
+            Course::ConstantGenerator | Course::Shaken { .. } => {
                 let (a, v) = parts(&model.generator(&source.mean.as_slice()[k..2 * k]));
                 mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(a * v));
             }
