@@ -180,8 +180,6 @@ pub(crate) mod shape_noise {
 
 /// Solving for a frame, and the gate.
 pub(crate) mod update {
-    /// What makes the equations for a shift of the outline solvable where it does not show one, as a share of the largest entry.
-    pub(crate) const SINGULAR: f64 = 1e-9;
     /// Weight of the first pose, in points: it only fixes the gauge, since pose and offsets can move together.
     pub(crate) const GAUGE_WEIGHT: f64 = 10.0;
     /// Information on the motion that makes the first equations solvable, per squared second: next to nothing.
@@ -317,6 +315,12 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
+    /// Variance of a pose that is measured against an outline learnt from the frames before, in that of one measured against a known outline: the
+    /// errors that they have in common do not average out. Measured: 1.75 squared.
+    pub(crate) const OF_LEARNT_OUTLINE: f64 = 3.0;
+    /// Factor of the stated variances of a constant velocity, which remembers all frames and adds up what errors of poses have in common.
+    /// Measured: deviations 1.75 times as large.
+    pub(crate) const IN_COMMON: f64 = 3.0;
     /// Probability of each change from one hypothesis to another in a frame: a thousandth for all of them together.
     pub(crate) const TRANSITION: f64 = 0.000_15;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.

@@ -34,6 +34,15 @@ pub(crate) struct DynamicsFilter {
     leads: bool,
 }
 
+/// What the hypotheses are taken together for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// To say where the object is expected.
+    Prediction,
+    /// To say how well the motion is known.
+    Statement,
+}
+
 impl DynamicsFilter {
     /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
     /// (projective), and numbers that do not allow it.
@@ -151,9 +160,9 @@ impl DynamicsFilter {
     pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
-        let information = to.transpose() * measured.information * to;
+        let information = to.transpose() * measured.information * to / tuning::OF_LEARNT_OUTLINE;
         let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
-        let pulled = to.transpose() * measured.pulled;
+        let pulled = to.transpose() * measured.pulled / tuning::OF_LEARNT_OUTLINE;
         let Some(deviation) =
             solved(&information, &CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 }), k)
         else {
@@ -188,14 +197,6 @@ impl DynamicsFilter {
         let weight = self.weights().generator;
         if self.setting == Dynamics::Auto {
             self.leads = if self.leads { weight < tuning::LEADS_UNTIL } else { weight < tuning::LEADS_FROM };
-        }
-    }
-
-    /// Takes it that the outline has been corrected, so that poses measured against it are off by an error that they were not off by before.
-    pub(crate) fn follow_outline(&mut self, shift: &nalgebra::SVector<f64, MAX_PARAMETERS>) {
-        let error = self.reference.about_middle(self.model) * shift;
-        for hypothesis in &mut self.hypotheses {
-            (0..self.model.parameter_count()).for_each(|j| hypothesis.mean[j] += error[j]);
         }
     }
 
@@ -245,7 +246,7 @@ impl DynamicsFilter {
 
     /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
     /// outline as well.
-    pub(crate) fn combined(&self, given: Option<&Summary>) -> Option<Summary> {
+    pub(crate) fn combined(&self, given: Option<&Summary>, purpose: Purpose) -> Option<Summary> {
         let (model, k) = (self.model, self.model.parameter_count());
         let change = self.reference.about_middle(model);
         let of_given = match given {
@@ -259,29 +260,36 @@ impl DynamicsFilter {
             }
         };
         let least = self.least_weight();
+        let of_given = of_given.as_ref();
         let parts = || {
             let weighted = self.hypotheses.iter().zip(&self.weights).filter(|(_, weight)| **weight >= least);
-            weighted.map(|(hypothesis, weight)| match &of_given {
+            // Only what remembers much adds up the errors that poses have in common.
+            let wider = |course| match purpose {
+                Purpose::Statement if course == Course::ConstantVelocity => tuning::IN_COMMON,
+                _ => 1.0,
+            };
+            weighted.map(move |(hypothesis, weight)| match of_given {
                 Some((mean, covariance)) if hypothesis.course == Course::ConstantGenerator => {
-                    (*weight, mean, covariance)
+                    (*weight, mean, covariance, 1.0)
                 }
-                _ => (*weight, &hypothesis.mean, &hypothesis.covariance),
+                _ => (*weight, &hypothesis.mean, &hypothesis.covariance, wider(hypothesis.course)),
             })
         };
         let sum: f64 = parts().map(|(weight, ..)| weight).sum();
         // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
-        let mean = match &of_given {
+        let mean = match of_given {
             Some((mean, _)) => *mean,
-            _ => parts().fold(Entries::zeros(), |mean, (weight, x, _)| mean + x * (weight / sum)),
+            _ => parts().fold(Entries::zeros(), |mean, (weight, x, ..)| mean + x * (weight / sum)),
         };
         let mut covariance = EntryMatrix::zeros();
         // Where one of them is stated, its interval reaches the others that are not left out.
         let others = 1.0 - self.weights().generator / sum;
         let reach = if of_given.is_some() && others > 0.0 { (tuning::REACH / others).max(1.0) } else { 1.0 };
-        for (weight, x, p) in parts() {
+        for (weight, x, p, wider) in parts() {
             for j in 0..2 * k {
                 for i in 0..2 * k {
-                    covariance[(i, j)] += (weight / sum) * (p[(i, j)] + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
+                    covariance[(i, j)] +=
+                        (weight / sum) * (wider * p[(i, j)] + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
                 }
             }
         }

@@ -14,5 +14,5 @@ mod setting;
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use family::FamilyTests;
 pub use family::WrongFamily;
-pub(crate) use interacting::DynamicsFilter;
+pub(crate) use interacting::{DynamicsFilter, Purpose};
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};

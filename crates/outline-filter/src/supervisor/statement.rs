@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 
 use super::motion_filter::{Counts, MotionFilter, Phase};
 use crate::{
-    dynamics::{CentredDeviations, Summary, WrongFamily},
+    dynamics::{CentredDeviations, Purpose, Summary, WrongFamily},
     tuning::statement as tuning,
 };
 
@@ -44,7 +44,7 @@ impl MotionFilter {
         let none = CentredDeviations::zeros();
         let mut random = own;
         if let Some(dynamics) = &self.history.dynamics {
-            let summary = dynamics.combined((!dynamics.leads()).then_some(&own)).unwrap_or(own);
+            let summary = dynamics.combined((!dynamics.leads()).then_some(&own), Purpose::Statement).unwrap_or(own);
             random = summary.widened(model, &middle, &dynamics.factors(), [&none, &none])?;
         }
         let size = self.settings.edge_uncertainty.hypot(self.misfit().map_or(0.0, |(_, size)| size));

@@ -4,7 +4,7 @@ use super::{
     settings::FilterSettings,
 };
 use crate::{
-    dynamics::DynamicsFilter,
+    dynamics::{DynamicsFilter, Purpose},
     measurement::Frame,
     track::{Comparison, Outcome, Track},
     tuning::update::SUDDEN,
@@ -107,7 +107,9 @@ fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHis
         history.dynamics = None;
     }
     let leading = history.dynamics.as_mut().filter(|dynamics| dynamics.leads());
-    if let Some((dynamics, expected)) = leading.and_then(|d| d.combined(None).map(|expected| (d, expected))) {
+    if let Some((dynamics, expected)) =
+        leading.and_then(|d| d.combined(None, Purpose::Prediction).map(|expected| (d, expected)))
+    {
         track.expect(&expected);
         dynamics.take_reference(&expected.pose);
     } else if let Some(variances) = history.change.variances() {
@@ -122,9 +124,6 @@ fn take(history: &mut MotionHistory, outcome: &Outcome) {
     }
     if let Some((dynamics, measured)) = history.dynamics.as_mut().zip(outcome.pose.as_ref()) {
         dynamics.update(measured);
-        if let Some(shift) = &outcome.outline_shift {
-            dynamics.follow_outline(shift);
-        }
     }
     if let Some(misfit) = &outcome.misfit {
         history.family.take(misfit);
