@@ -3,15 +3,21 @@ use std::io::{self, BufRead, BufReader, Read};
 /// Longest stretch of a file without a complete row, in bytes.
 pub(crate) const ROW_LIMIT: usize = 1 << 20;
 
+/// What a line begins with that is no row.
+pub(crate) const COMMENT: u8 = b'#';
+
 /// Bytes read from the source at once, if it has as many.
 const BUFFER: usize = 1 << 16;
 
 /// Passes a file on, one line per read at most, until a row takes more than [`ROW_LIMIT`], so that a file without line
-/// ends cannot fill the memory; and knows whether the file ended in the middle of a line.
+/// ends cannot fill the memory; comments and empty lines before a row may have any length, as nothing of them is kept. Knows
+/// whether the file ended in the middle of a line.
 #[derive(Debug)]
 pub(crate) struct Lines<R> {
     source: BufReader<R>,
     allowance: usize,
+    /// Whether nothing but comments and empty lines has passed since the last row was complete.
+    is_between_rows: bool,
     last_byte: u8,
     at_end: bool,
     exceeded: bool,
@@ -20,12 +26,13 @@ pub(crate) struct Lines<R> {
 impl<R: Read> Lines<R> {
     pub(crate) fn new(source: R) -> Self {
         let source = BufReader::with_capacity(BUFFER, source);
-        Self { source, allowance: ROW_LIMIT, last_byte: b'\n', at_end: false, exceeded: false }
+        Self { source, allowance: ROW_LIMIT, is_between_rows: true, last_byte: b'\n', at_end: false, exceeded: false }
     }
 
     /// The last row is complete: the next may have the full length again.
     pub(crate) fn begin_row(&mut self) {
         self.allowance = ROW_LIMIT;
+        self.is_between_rows = true;
     }
 
     /// What has been read from the source and not been passed on. Maybe nothing: the next read is what fills it.
@@ -62,9 +69,14 @@ impl<R: Read> Read for Lines<R> {
         let line = &available[..end.map_or(most, |end| end + 1)];
         let count = line.len();
         buffer[..count].copy_from_slice(line);
+        if self.last_byte == b'\n' && self.is_between_rows && !line.is_empty() {
+            self.is_between_rows = matches!(line[0], COMMENT | b'\n') || line == b"\r\n";
+        }
         self.last_byte = *line.last().unwrap_or(&self.last_byte);
         self.source.consume(count);
-        self.allowance -= count;
+        if !self.is_between_rows {
+            self.allowance -= count;
+        }
         Ok(count)
     }
 }
