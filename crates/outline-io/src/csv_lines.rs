@@ -21,12 +21,31 @@ pub(crate) struct Lines<R> {
     last_byte: u8,
     at_end: bool,
     exceeded: bool,
+    first_line: FirstLine,
+}
+
+/// What is known of the first line, by which lines that end otherwise are told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum FirstLine {
+    /// It has not ended.
+    Open,
+    /// Nor has it, though there was a carriage return in it.
+    OpenWithReturn,
+    Ended,
 }
 
 impl<R: Read> Lines<R> {
     pub(crate) fn new(source: R) -> Self {
         let source = BufReader::with_capacity(BUFFER, source);
-        Self { source, allowance: ROW_LIMIT, is_between_rows: true, last_byte: b'\n', at_end: false, exceeded: false }
+        Self {
+            source,
+            allowance: ROW_LIMIT,
+            is_between_rows: true,
+            last_byte: b'\n',
+            at_end: false,
+            exceeded: false,
+            first_line: FirstLine::Open,
+        }
     }
 
     /// The last row is complete: the next may have the full length again.
@@ -50,6 +69,11 @@ impl<R: Read> Lines<R> {
         self.exceeded
     }
 
+    /// Whether there was a carriage return, and no line end so far.
+    pub(crate) fn has_returns_alone(&self) -> bool {
+        self.first_line == FirstLine::OpenWithReturn
+    }
+
     /// Whether the end has been reached and the last line has no line end.
     pub(crate) fn ended_within_line(&self) -> bool {
         self.at_end && self.last_byte != b'\n'
@@ -71,6 +95,13 @@ impl<R: Read> Read for Lines<R> {
         buffer[..count].copy_from_slice(line);
         if self.last_byte == b'\n' && self.is_between_rows && !line.is_empty() {
             self.is_between_rows = matches!(line[0], COMMENT | b'\n') || line == b"\r\n";
+        }
+        if self.first_line != FirstLine::Ended {
+            self.first_line = match (line.ends_with(b"\n"), line.contains(&b'\r')) {
+                (true, _) => FirstLine::Ended,
+                (false, true) => FirstLine::OpenWithReturn,
+                (false, false) => self.first_line,
+            };
         }
         self.last_byte = *line.last().unwrap_or(&self.last_byte);
         self.source.consume(count);

@@ -58,7 +58,7 @@ impl<R: Read> Rows<R> {
         if !rows.read_row()? {
             return Err(rows.error_at(None, None, ReadErrorKind::Empty));
         }
-        if rows.row.as_slice().trim_ascii_end().contains(&b'\r') {
+        if rows.reader.get_ref().has_returns_alone() && rows.row.as_slice().trim_ascii_end().contains(&b'\r') {
             return Err(rows.error_at(None, None, ReadErrorKind::LineEnds));
         }
         rows.field_count = rows.row.len();
@@ -187,7 +187,8 @@ impl<R: Read> Rows<R> {
 
     fn failure(&mut self, error: csv::Error) -> ReadError {
         let line = self.csv_line();
-        let kind = if self.reader.get_ref().exceeded() && self.row.as_slice().contains(&b'\r') && self.field_count == 0 {
+        self.row.clear();
+        let kind = if self.reader.get_ref().has_returns_alone() {
             ReadErrorKind::LineEnds
         } else if self.reader.get_ref().exceeded() {
             ReadErrorKind::RowTooLong { limit: ROW_LIMIT as u64 }
@@ -197,7 +198,6 @@ impl<R: Read> Rows<R> {
                 other => ReadErrorKind::Io(io::Error::other(format!("{other:?}"))),
             }
         };
-        self.row.clear();
         self.error_at(Some((line, line)), None, kind)
     }
 }

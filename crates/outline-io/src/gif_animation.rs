@@ -332,7 +332,8 @@ mod tests {
     #[test]
     fn a_frame_that_shows_nothing_new_is_the_picture_before_it() {
         let dot = (3, 3, 1, 1, 1, None, vec![2]);
-        let found = pictures(encoded(&[dot.clone(), dot.clone(), (0, 0, 12, 9, 1, Some(1), vec![1]), dot]), Channel::Red);
+        let found =
+            pictures(encoded(&[dot.clone(), dot.clone(), (0, 0, 12, 9, 1, Some(1), vec![1]), dot]), Channel::Red);
         assert_eq!(found.len(), 4);
         assert!(found.iter().all(|picture| Arc::ptr_eq(picture, &found[0])));
     }
@@ -344,6 +345,9 @@ mod tests {
         animation.work.limit = 5 * 12 * 9;
         assert!(animation.next().is_ok() && animation.next().is_ok());
         let error = animation.next().expect_err("more than five pictures of work");
-        assert_eq!(error.to_string(), "the animation unpacks to more than 540 pixels, which is too much for its length");
+        assert_eq!(
+            error.to_string(),
+            "the animation unpacks to more than 540 pixels, which is too much for its length"
+        );
     }
 }

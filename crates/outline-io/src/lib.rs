@@ -42,6 +42,7 @@ mod gif_animation;
 mod gif_interval;
 mod identity;
 mod jpeg_end;
+mod latest_frames;
 mod morphology;
 mod natural_order;
 mod not_csv;

@@ -96,7 +96,9 @@ fn several_pictures(
     let start = source.stream_position()?;
     // A damaged file is told as such later.
     let is_animated = match format {
-        ImageFormat::Png => PngDecoder::with_limits(&mut *source, limits()).and_then(|png| png.is_apng()).unwrap_or(false),
+        ImageFormat::Png => {
+            PngDecoder::with_limits(&mut *source, limits()).and_then(|png| png.is_apng()).unwrap_or(false)
+        }
         ImageFormat::WebP => WebPDecoder::new(&mut *source).is_ok_and(|webp| webp.has_animation()),
         _ => false,
     };

@@ -105,11 +105,8 @@ impl Components {
         // The root of a run becomes the place of its component. That of an earlier run, which the root is, has done so already.
         for index in 0..roots.len() {
             let root = roots[index] as usize;
-            roots[index] = if root == index {
-                places.get(&(index as u32)).copied().unwrap_or(u32::MAX)
-            } else {
-                roots[root]
-            };
+            roots[index] =
+                if root == index { places.get(&(index as u32)).copied().unwrap_or(u32::MAX) } else { roots[root] };
             if let Some(count) = counts.get_mut(roots[index] as usize) {
                 *count += 1;
             }

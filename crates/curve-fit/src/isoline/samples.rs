@@ -183,7 +183,7 @@ mod tests {
             let lines = of_samples([values[0].len(), values.len()], |x, y| values[y][x], 2.0);
             let largest = lines.iter().max_by(|a, b| signed_area(a).total_cmp(&signed_area(b)));
             let found = |most: usize| largest_of_samples([values[0].len(), values.len()], |x, y| values[y][x], 2.0, most);
-            prop_assert_eq!(found(1000).expect("short lines").as_ref(), largest);
+            prop_assert_eq!(found(1000).expect("short lines"), largest.cloned());
             let longest = lines.iter().map(Vec::len).max().unwrap_or(0);
             prop_assert_eq!(found(longest).is_ok(), true);
             prop_assert_eq!(found(longest.saturating_sub(1)).is_ok(), longest == 0);
