@@ -19,7 +19,8 @@ pub(crate) fn not_csv(start: &[u8]) -> Option<ReadErrorKind> {
         return Some(ReadErrorKind::Utf16);
     }
     // Without a mark: a header of plain letters with a zero beside each.
-    if start.len() > 3 && (start[0] == 0) != (start[1] == 0) && (start[2] == 0) != (start[3] == 0) {
+    let zeros: Vec<bool> = start.iter().map(|byte| *byte == 0).collect();
+    if start.len() as u64 == HEAD_LENGTH && zeros[0] != zeros[1] && zeros.iter().skip(2).eq(zeros.iter().take(4)) {
         return Some(ReadErrorKind::Utf16);
     }
     let known = COMPRESSED.iter().find(|(mark, ..)| start.starts_with(mark));
