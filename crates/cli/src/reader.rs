@@ -65,7 +65,7 @@ pub(crate) fn follow_stream(
     let mut reader = Reader::new(input, quiet, &progress);
     let (mut first_missing, mut is_any_seen) = (None, false);
     let mut present = Attendance::default();
-    while let Some(item) = reader.next() {
+    for item in reader.by_ref() {
         let (event, left) = match item {
             Recorded::Gap(missing) => (Followed::Gap(missing), Vec::new()),
             Recorded::Outline(frame, seen_in) => {

@@ -97,9 +97,12 @@ enum Pictures {
     One(Option<GrayImage>),
 }
 
+/// A picture, with its time in seconds if its file tells.
+type TimedPicture = (Arc<GrayImage>, Option<f64>);
+
 impl Pictures {
     /// The next picture, with its time in seconds from the beginning of the file if that tells.
-    fn next(&mut self) -> Result<Option<(Arc<GrayImage>, Option<f64>)>, PictureErrorKind> {
+    fn next(&mut self) -> Result<Option<TimedPicture>, PictureErrorKind> {
         Ok(match self {
             Self::Animation(animation) => animation.next()?.map(|(picture, time)| (picture, Some(time))),
             Self::Video(video) => video.next().transpose()?.map(|picture| (Arc::new(picture), None)),

@@ -119,7 +119,10 @@ impl Place {
 fn prefix_of(file_name: &OsStr) -> OsString {
     let mut prefix = OsString::from(".");
     match file_name.to_str() {
-        Some(text) if text.len() > LONGEST_PREFIX => prefix.push(&text[..text.floor_char_boundary(LONGEST_PREFIX)]),
+        Some(text) if text.len() > LONGEST_PREFIX => {
+            let ends = text.char_indices().map(|(start, _)| start);
+            prefix.push(&text[..ends.take_while(|end| *end <= LONGEST_PREFIX).last().unwrap_or(0)]);
+        }
         None if file_name.len() > LONGEST_PREFIX => prefix.push("unfinished"),
         _ => prefix.push(file_name),
     }

@@ -184,7 +184,7 @@ fn an_object_that_has_left_a_stream_has_a_last_line_and_begins_anew_when_it_come
     let mut csv = "frame,time,x,y,object\n".to_owned();
     for frame in 0..1105 {
         csv += &triangle(frame, "stays");
-        if frame < 3 || frame > 1100 {
+        if !(3..=1100).contains(&frame) {
             csv += &triangle(frame, "leaves");
         }
     }
