@@ -6,7 +6,7 @@ set -eu
 cd "$(dirname "$0")"
 seconds=$1
 shift
-[ $# -gt 0 ] || set -- csv_reader picture_reader picture_stream tracing fit_and_decomposition adaptive_identifier motion_filter
+[ $# -gt 0 ] || set -- csv_reader names picture_reader picture_stream picture_folder tracing fit_and_decomposition adaptive_identifier motion_filter
 instrumentation="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
  -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table
  -Cllvm-args=-sanitizer-coverage-trace-compares"
@@ -14,7 +14,7 @@ host=$(rustc -vV | sed -n 's/^host: //p')
 RUSTFLAGS="--cfg fuzzing $(echo $instrumentation)" cargo build --release --target "$host"
 for target in "$@"; do
     mkdir -p "corpus/$target" "artifacts/$target"
-    "${CARGO_TARGET_DIR:-target}/$host/release/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 \
+    "${CARGO_TARGET_DIR:-target}/$host/release/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 \
         -max_len=4096 -artifact_prefix="artifacts/$target/" -print_final_stats=1 "corpus/$target" 2>&1 |
         tee "artifacts/$target.log" | grep -E "SUMMARY|panicked|ERROR|stat::number_of_executed|Done" || true
 done

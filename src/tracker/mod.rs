@@ -4,6 +4,7 @@
 //! several threads ([`follow`](Tracker::follow)). It uses the motion filter or the paper's adaptive identifier. It gives an
 //! [`Observation`] for each frame of each object, and an [`ObjectResult`] with [`Warning`](crate::Warning)s for each object. A
 //! [`Trajectory`] keeps the poses.
+mod attendance;
 mod contour_order;
 mod identifier;
 mod object;
@@ -21,6 +22,7 @@ use freeform_outline_io::OutlineFrame;
 use self::{identifier::Identifier, object::TrackedObject};
 
 pub use self::{
+    attendance::{Attendance, Sighting},
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
     result::ObjectResult,
@@ -99,6 +101,14 @@ impl Tracker {
     /// Records a frame of an object whose points are not an outline. It counts as rejected. The reason should name the frame.
     pub fn reject(&mut self, object: &str, frame: u64, reason: String) -> Observation {
         self.object(object).reject(frame, reason)
+    }
+
+    /// Forgets an object and gives its result; `None` if there is none of this name. If the name comes again, it is that of a new object.
+    /// In a stream without end, [`Attendance`] tells which objects have not been seen for long.
+    pub fn close(&mut self, object: &str) -> Option<ObjectResult> {
+        let position = self.objects.positions.remove(object)?;
+        self.objects.positions.values_mut().filter(|other| **other > position).for_each(|other| *other -= 1);
+        Some(self.objects.list.remove(position).result(&self.settings))
     }
 
     /// The result for each object so far, in the order in which the objects first appeared.

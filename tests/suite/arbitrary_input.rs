@@ -2,7 +2,8 @@
 use std::io::Cursor;
 
 use crate::checks::{
-    adaptive_identifier, csv_reader, fit_and_decomposition, motion_filter, picture_reader, picture_stream, tracing,
+    adaptive_identifier, csv_reader, fit_and_decomposition, motion_filter, names, picture_folder, picture_reader,
+    picture_stream, tracing,
 };
 use freeform_motion::outline_io::GrayImage;
 use rand::{Rng as _, RngExt as _, SeedableRng as _};
@@ -76,6 +77,24 @@ fn any_bytes_are_read_as_a_stream_of_pictures_or_refused() {
     damaged(&video, 10, 3000).for_each(|bytes| picture_stream(&bytes));
     let head = video.iter().position(|&byte| byte == b'\n').expect("a line");
     damaged(&video[..head], 11, 3000).for_each(|bytes| picture_stream(&[&bytes, &video[head..]].concat()));
+}
+
+#[test]
+fn any_files_in_a_folder_are_read_as_pictures_or_refused() {
+    random_bytes(12, 100, 600).for_each(|bytes| picture_folder(&bytes));
+}
+
+#[test]
+fn any_name_is_shown_without_what_a_terminal_acts_upon() {
+    random_bytes(13, 3000, 60).for_each(|bytes| names(&bytes));
+    // Characters of two and three bytes, among which are the marks of direction.
+    random_bytes(14, 3000, 60).for_each(|bytes| {
+        let text: String = bytes
+            .chunks_exact(2)
+            .filter_map(|b| char::from_u32(u32::from_le_bytes([b[0], b[1] & 0x21, 0, 0])))
+            .collect();
+        names(text.as_bytes());
+    });
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The command line as it was typed, for reports and advice.
 use std::path::{Path, PathBuf};
 
+use freeform_motion::outline_io::readable;
+
 use crate::args::takes_next;
 
 /// The command line as it could be typed again.
@@ -34,6 +36,11 @@ fn typed(arguments: &[String]) -> String {
 /// An argument as it could be typed.
 pub(crate) fn quoted(argument: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
+    if readable(argument).to_string() != argument {
+        // The shell writes what it cannot show in the same way, but for the braces.
+        let escaped = readable(&argument.replace('\\', r"\\").replace('\'', r"\'")).to_string().replace("\\u{", r"\U{");
+        return format!("$'{}'", without_braces(&escaped));
+    }
     if !argument.is_empty() && argument.chars().all(is_plain) {
         argument.to_owned()
     } else {
@@ -41,9 +48,24 @@ pub(crate) fn quoted(argument: &str) -> String {
     }
 }
 
+/// `\\U{202e}` as `\\U0000202e`.
+fn without_braces(text: &str) -> String {
+    let mut parts = text.split("\\U{");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |whole, part| match part.split_once('}') {
+        Some((digits, rest)) => whole + "\\U" + &"0".repeat(8_usize.saturating_sub(digits.len())) + digits + rest,
+        None => whole + part,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_argument_with_characters_that_cannot_be_seen_stays_on_its_line() {
+        assert_eq!(quoted("a\nb'\u{202e}"), r"$'a\nb\'\U0000202e'");
+    }
 
     #[test]
     fn standard_input_takes_the_place_of_the_inputs_and_of_nothing_else() {

@@ -3,6 +3,7 @@ use std::io::{self, Write as _};
 use std::process::ExitCode;
 
 use freeform_experiments::ExperimentError;
+use freeform_motion::outline_io::readable;
 
 /// Why a command ends before its time; decides the exit status.
 #[derive(Debug)]
@@ -68,10 +69,11 @@ pub(crate) fn plain(error: &impl Display) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
-/// Prints one line on standard error, which may be closed.
+/// Prints one line on standard error, which may be closed. Names in it may hold anything: nothing reaches the terminal that it
+/// would act upon.
 pub(crate) fn say(message: &str) {
     let lines: Vec<&str> = message.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-    let _ = writeln!(io::stderr(), "freeform: {}", lines.join(" "));
+    let _ = writeln!(io::stderr(), "freeform: {}", readable(&lines.join(" ")));
 }
 
 /// Prints a warning on standard error.

@@ -1,4 +1,6 @@
 //! What was found of every object over time.
+use std::collections::HashMap;
+
 use freeform_motion::curve_fit::Outline;
 use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::outline_io::OutlineFrame;
@@ -31,20 +33,30 @@ impl History {
         let (estimates, residuals, innovations, rejected) = Default::default();
         Self { object, start: None, estimates, residuals, innovations, rejected, latest: None }
     }
+}
+
+/// The histories of all objects, in the order in which they first appeared.
+#[derive(Debug, Default)]
+pub(crate) struct Histories {
+    pub(crate) list: Vec<History>,
+    /// By their names.
+    positions: HashMap<String, usize>,
+}
+
+impl Histories {
+    /// The history of an object, if it has one.
+    pub(crate) fn of(&self, object: &str) -> Option<&History> {
+        self.positions.get(object).map(|&position| &self.list[position])
+    }
 
     /// Adds a frame to the history of its object.
-    pub(crate) fn take(
-        histories: &mut Vec<Self>,
-        observation: &Observation,
-        frame: Option<&OutlineFrame>,
-        curves: &mut CurveFitter,
-    ) {
-        let position = histories.iter().position(|history| history.object == observation.object);
-        let position = position.unwrap_or_else(|| {
-            histories.push(Self::of(observation.object.clone()));
-            histories.len() - 1
+    pub(crate) fn take(&mut self, observation: &Observation, frame: Option<&OutlineFrame>, curves: &mut CurveFitter) {
+        let position = self.positions.get(&observation.object).copied().unwrap_or_else(|| {
+            self.positions.insert(observation.object.clone(), self.list.len());
+            self.list.push(History::of(observation.object.clone()));
+            self.list.len() - 1
         });
-        let history = &mut histories[position];
+        let history = &mut self.list[position];
         history.start = history.start.or(observation.time);
         history.estimates.extend(observation.time.map(|time| (time, observation.estimate)));
         if !observation.is_accepted() {

@@ -1,15 +1,15 @@
 //! Outlines from a file, pictures or standard input.
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{OutlineReader, PictureSequence, ReadError, ReadErrorKind};
 
 use crate::args::PictureOptions;
+use crate::awaited::Awaited;
 use crate::failure::{Failure, plain};
 use crate::picture_input::PictureInput;
 use crate::seen::Item;
-use crate::stdin::Stdin;
 use crate::truth::SimulatedMotion;
 
 /// Longest head of comment lines that is looked through for the truth, in bytes.
@@ -44,7 +44,11 @@ impl Input {
         }
         let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
         if path.as_os_str() == "-" {
-            return Self::from_source(Stdin::open(), name, options);
+            return Self::from_source(Awaited::stdin(), name, options);
+        }
+        // A pipe can be read once, whatever its name says.
+        if fs::metadata(path).is_ok_and(|place| !place.is_file() && !place.is_dir()) {
+            return Self::from_source(Awaited::open(path.clone()), name, options);
         }
         if PictureSequence::is_named_by(path) {
             return Self::of_pictures(PictureInput::open(paths, options)?, name);
@@ -95,6 +99,15 @@ impl Input {
     /// Whether the outlines come from pictures.
     pub(crate) fn has_pictures(&self) -> bool {
         self.pictures().is_some()
+    }
+
+    /// What should be known of the input before it is read, if anything.
+    pub(crate) fn warning(&self) -> Option<String> {
+        let is_interlaced = self.pictures().is_some_and(PictureInput::is_interlaced);
+        is_interlaced.then(|| {
+            let reason = "every second line of a picture is of another moment, which frays the edges of what moves";
+            format!("{}: the video is interlaced: {reason}; deinterlace it, such as with ffmpeg -vf yadif", self.name)
+        })
     }
 
     /// The pictures that the outlines come from.

@@ -1,5 +1,6 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
+mod awaited;
 mod command_line;
 mod commands;
 mod failure;
@@ -16,7 +17,6 @@ mod plot;
 mod progress;
 mod reader;
 mod seen;
-mod stdin;
 mod truth;
 
 use std::process::ExitCode;

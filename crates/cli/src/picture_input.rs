@@ -88,6 +88,11 @@ impl PictureInput {
         Ok(Self { inputs, outlines, options, trace, waiting, frames: 0, found })
     }
 
+    /// Whether the pictures are of a video that says that it is interlaced.
+    pub(crate) fn is_interlaced(&self) -> bool {
+        self.outlines.source().is_interlaced()
+    }
+
     /// Number of pictures, where it is known.
     pub(crate) fn frame_count(&self) -> Option<u64> {
         self.outlines.source().frame_count()
@@ -213,7 +218,7 @@ fn picture_settings(options: &PictureOptions, aspect: Option<f64>) -> Result<Pic
         Some(path) => {
             let picture = read_picture_channel(path, options.channel.channel());
             let failed = |error| Failure::unusable(format_args!("--background {}", plain(&error)));
-            Some(Background::Picture(picture.map_err(failed)?))
+            Some(Background::Picture(picture.map_err(failed)?.into()))
         }
         None => None,
     };

@@ -3,7 +3,7 @@ use std::num::NonZero;
 use std::rc::Rc;
 
 use freeform_motion::Tracker;
-use freeform_motion::tracker::{Followed, ReadAhead};
+use freeform_motion::tracker::{Attendance, Followed, ObjectResult, ReadAhead, Recorded, Sighting};
 
 use crate::failure::{Failure, warn};
 use crate::input::Input;
@@ -15,42 +15,30 @@ use crate::seen::{Item, Missing, SeenIn};
 /// Outlines from pictures read ahead, which are held with their pictures.
 const OUTLINES_OF_PICTURES_AHEAD: NonZero<usize> = NonZero::new(32).expect("positive");
 
-/// How an input is gone through.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pace {
-    /// Every frame is dealt with before the next one is read: what it gave is known as soon as it is complete.
-    FrameByFrame,
-    /// Many frames are read while those before are dealt with.
-    Ahead,
-}
-
-impl Pace {
-    fn read_ahead(self, has_pictures: bool) -> ReadAhead {
-        match self {
-            Self::FrameByFrame => ReadAhead::FRAME_BY_FRAME,
-            Self::Ahead if has_pictures => ReadAhead { outlines: OUTLINES_OF_PICTURES_AHEAD, ..ReadAhead::default() },
-            Self::Ahead => ReadAhead::default(),
-        }
-    }
-}
-
 /// What comes of reading on: a frame of an object, as far as it could be read, with the picture that it was seen in, if it was; or a
 /// picture without an outline.
 pub(crate) type Event = Followed<Option<Rc<SeenIn>>, Missing>;
 
-/// Has a tracker take all frames of an input and hands on what each gave. Returns the error that ended the reading, if any; what came
-/// before it has been taken.
+/// An object of a stream that has left.
+pub(crate) struct Left {
+    pub(crate) seen: Sighting,
+    pub(crate) result: ObjectResult,
+}
+
+/// Has a tracker take all frames of an input, many of which are read while those before are dealt with, and hands on what each gave.
+/// Returns the error that ended the reading, if any; what came before it has been taken.
 pub(crate) fn follow(
     tracker: &mut Tracker,
     input: &mut Input,
-    pace: Pace,
     quiet: bool,
     mut observe: impl FnMut(&Event) -> Result<(), Failure>,
 ) -> Result<Option<Failure>, Failure> {
-    let is_in_the_way = pace == Pace::FrameByFrame && would_stand_in_output();
-    let progress = Progress::of_frames(input.frame_count(), quiet || is_in_the_way);
-    let ahead = pace.read_ahead(input.has_pictures());
-    let mut reader = Reader { input, quiet, progress: &progress, warnings: MissingWarnings::default(), failure: None };
+    let progress = Progress::of_frames(input.frame_count(), quiet);
+    let ahead = match input.has_pictures() {
+        true => ReadAhead { outlines: OUTLINES_OF_PICTURES_AHEAD, ..ReadAhead::default() },
+        false => ReadAhead::default(),
+    };
+    let mut reader = Reader::new(input, quiet, &progress);
     let mut first_missing = None;
     tracker.follow_recording(&mut reader, ahead, |event| {
         observe(&event)?;
@@ -62,6 +50,48 @@ pub(crate) fn follow(
     })?;
     // Nothing but pictures without an object: the first says why.
     let nothing = first_missing.filter(|_| tracker.objects().len() == 0).map(Missing::into_failure);
+    Ok(reader.finish().or(nothing))
+}
+
+/// As [`follow`], but deals with every frame before the next one is read, so that what it gave is known as soon as it is complete,
+/// and closes objects that have left, which are handed on too.
+pub(crate) fn follow_stream(
+    tracker: &mut Tracker,
+    input: &mut Input,
+    quiet: bool,
+    mut observe: impl FnMut(Result<&Event, &Left>) -> Result<(), Failure>,
+) -> Result<Option<Failure>, Failure> {
+    let progress = Progress::of_frames(input.frame_count(), quiet || would_stand_in_output());
+    let mut reader = Reader::new(input, quiet, &progress);
+    let (mut first_missing, mut is_any_seen) = (None, false);
+    let mut present = Attendance::default();
+    for item in reader.by_ref() {
+        let (event, left) = match item {
+            Recorded::Gap(missing) => (Followed::Gap(missing), Vec::new()),
+            Recorded::Outline(frame, seen_in) => {
+                let left = present.take(&frame.object, frame.frame, Some(frame.time));
+                (Followed::Object(tracker.push(&frame), Some((frame, seen_in))), left)
+            }
+            Recorded::NoOutline { object, frame, reason } => {
+                let left = present.take(&object, frame, None);
+                (Followed::Object(tracker.reject(&object, frame, reason), None), left)
+            }
+        };
+        for seen in left {
+            if let Some(result) = tracker.close(&seen.object) {
+                observe(Err(&Left { seen, result }))?;
+            }
+        }
+        observe(Ok(&event))?;
+        match event {
+            Followed::Gap(missing) => {
+                first_missing.get_or_insert(missing);
+            }
+            Followed::Object(..) => is_any_seen = true,
+        }
+        progress.advance();
+    }
+    let nothing = first_missing.filter(|_| !is_any_seen).map(Missing::into_failure);
     Ok(reader.finish().or(nothing))
 }
 
@@ -94,7 +124,14 @@ impl Iterator for Reader<'_> {
     }
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    fn new(input: &'a mut Input, quiet: bool, progress: &'a Progress) -> Self {
+        if let Some(warning) = input.warning().filter(|_| !quiet) {
+            progress.pause(|| warn(&warning));
+        }
+        Self { input, quiet, progress, warnings: MissingWarnings::default(), failure: None }
+    }
+
     fn tell(&mut self, missing: &Missing) {
         // The reason of a single picture is told in the end.
         if self.quiet || self.input.frame_count() == Some(1) {

@@ -1,6 +1,7 @@
 //! What is seen in an input: outlines in pictures, and pictures without one.
 use std::mem::{Discriminant, discriminant};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use freeform_motion::curve_fit::PixelGrid;
 use freeform_motion::outline_io::{GrayImage, PictureErrorKind, TraceError};
@@ -12,7 +13,7 @@ use crate::failure::Failure;
 #[derive(Debug)]
 pub(crate) struct SeenIn {
     pub(crate) frame: u64,
-    pub(crate) picture: GrayImage,
+    pub(crate) picture: Arc<GrayImage>,
     pub(crate) grid: PixelGrid,
 }
 

@@ -1,16 +1,24 @@
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use image::GrayImage;
 
 /// Part of the pictures kept that is replaced before the median is computed again.
 const RENEWED_SHARE: usize = 5;
 
+/// Pixels of all pictures kept for the median.
+const PIXELS_KEPT: u64 = 1 << 28;
+
+/// Fewest pictures that a median is taken of.
+const FEWEST_KEPT: usize = 3;
+
 /// What pictures are compared with, so that only what moves in front of it is an object.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Background {
     /// A picture of the ground without objects.
-    Picture(GrayImage),
-    /// The median of so many pictures, 3 to 255: first of those at the beginning, which are read ahead, then of the latest.
+    Picture(Arc<GrayImage>),
+    /// The median of so many pictures, 3 to 255: first of those at the beginning, which are read ahead, then of the latest. Of
+    /// fewer where they have more than 2^28 pixels together, but of 3 at least.
     RunningMedian(usize),
 }
 
@@ -45,8 +53,8 @@ impl Difference {
 #[derive(Debug)]
 pub(crate) struct RunningMedian {
     size: usize,
-    latest: VecDeque<GrayImage>,
-    median: Option<GrayImage>,
+    latest: VecDeque<Arc<GrayImage>>,
+    median: Option<Arc<GrayImage>>,
     /// Pictures added since the median was taken.
     added: usize,
 }
@@ -56,25 +64,27 @@ impl RunningMedian {
         Self { size, latest: VecDeque::new(), median: None, added: 0 }
     }
 
-    pub(crate) fn add(&mut self, picture: &GrayImage) {
+    /// How many pictures of this size are kept: fewer of large ones, so that they fit in the memory.
+    pub(crate) fn kept(size: usize, picture: &GrayImage) -> usize {
+        let pixels = (picture.as_raw().len() as u64).max(1);
+        size.min(usize::try_from(PIXELS_KEPT / pixels).unwrap_or(usize::MAX).max(FEWEST_KEPT))
+    }
+
+    pub(crate) fn add(&mut self, picture: &Arc<GrayImage>) {
         if self.latest.front().is_some_and(|first| first.dimensions() != picture.dimensions()) {
             // The median of pictures of different sizes is none.
             self.latest.clear();
             self.median = None;
         }
         self.added += 1;
-        let oldest = if self.latest.len() == self.size { self.latest.pop_front() } else { None };
-        match oldest {
-            Some(mut oldest) => {
-                oldest.copy_from_slice(picture);
-                self.latest.push_back(oldest);
-            }
-            None => self.latest.push_back(picture.clone()),
+        while self.latest.len() >= Self::kept(self.size, picture) {
+            self.latest.pop_front();
         }
+        self.latest.push_back(Arc::clone(picture));
     }
 
     /// The median; `None` before the first picture.
-    pub(crate) fn get(&mut self) -> Option<&GrayImage> {
+    pub(crate) fn get(&mut self) -> Option<&Arc<GrayImage>> {
         if self.median.is_none() || RENEWED_SHARE * self.added >= self.size {
             self.median = self.taken();
             self.added = 0;
@@ -82,8 +92,12 @@ impl RunningMedian {
         self.median.as_ref()
     }
 
-    fn taken(&self) -> Option<GrayImage> {
-        let mut median = self.latest.front()?.clone();
+    fn taken(&self) -> Option<Arc<GrayImage>> {
+        let first = self.latest.front()?;
+        if self.latest.iter().all(|picture| Arc::ptr_eq(picture, first)) {
+            return Some(Arc::clone(first));
+        }
+        let mut median = GrayImage::clone(first);
         let pictures: Vec<&[u8]> = self.latest.iter().map(|picture| picture.as_raw().as_slice()).collect();
         let mut values = vec![0; pictures.len()];
         for (index, pixel) in median.iter_mut().enumerate() {
@@ -91,6 +105,6 @@ impl RunningMedian {
             let middle = values.len() / 2;
             *pixel = *values.select_nth_unstable(middle).1;
         }
-        Some(median)
+        Some(Arc::new(median))
     }
 }

@@ -1,4 +1,3 @@
-use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -11,6 +10,7 @@ use crate::csv_field::{frame_number, number, text};
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind};
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
+use crate::latest_frames::LatestFrames;
 use crate::outline_rows::OutlineRows;
 
 /// Reads outlines one by one from CSV with the header `frame,time,x,y` and the optional columns `object` and `arc`.
@@ -26,8 +26,8 @@ use crate::outline_rows::OutlineRows;
 /// - Points that repeat their neighbour are kept.
 ///
 /// The reader is an iterator. An outline is returned as soon as the row after it has been read; no more than two rows,
-/// the present outline, and the last frame number and time of every object are held, so memory does not grow with the
-/// number of frames. After an error for which [`ReadError::is_recoverable`] is true the iterator continues with the next
+/// the present outline, and the last frame number and time of every object are held (of more than 32768 objects those seen
+/// last), so memory does not grow with the number of frames. After an error for which [`ReadError::is_recoverable`] is true the iterator continues with the next
 /// outline, after any other it has ended. Outlines that are complete before the bad row are returned before the error;
 /// the one that the bad row interrupts is not returned.
 #[derive(Debug)]
@@ -38,8 +38,7 @@ pub struct OutlineReader<R> {
     roles: Vec<Role>,
     /// The outline whose rows are being read.
     present: Option<OutlineRows>,
-    /// Frame number and time of the latest outline of every object.
-    latest: HashMap<String, (u64, f64)>,
+    latest: LatestFrames,
     /// Comes after the outline that was complete before it.
     failure: Option<ReadError>,
     ended: bool,
@@ -75,7 +74,7 @@ impl<R: Read> OutlineReader<R> {
     /// Goes on with a file whose header has been read.
     pub(crate) fn with_columns(rows: Rows<R>, columns: Columns) -> Self {
         let roles = (0..rows.field_count()).map(|index| columns.role(index)).collect();
-        Self { rows, columns, roles, present: None, latest: HashMap::new(), failure: None, ended: false }
+        Self { rows, columns, roles, present: None, latest: LatestFrames::default(), failure: None, ended: false }
     }
 
     /// Reads one row; returns the outline that it completes, if any.
@@ -125,27 +124,21 @@ impl<R: Read> OutlineReader<R> {
         let frame = self.frame_number()?;
         let time = self.number(Column::Time, self.columns.time)?;
         let object = self.object()?.to_owned();
-        match self.latest.get_mut(&object) {
-            None => {
-                self.latest.insert(object.clone(), (frame, time));
+        if let Some((previous_frame, previous)) = self.latest.of(&object) {
+            if frame == previous_frame {
+                let kind = ReadErrorKind::SecondOutline { object, frame };
+                return Err(self.rows.error(Some(Column::Frame), kind));
             }
-            Some(latest) => {
-                let (previous_frame, previous) = *latest;
-                if frame == previous_frame {
-                    let kind = ReadErrorKind::SecondOutline { object, frame };
-                    return Err(self.rows.error(Some(Column::Frame), kind));
-                }
-                if frame < previous_frame {
-                    let kind = ReadErrorKind::FrameNotIncreasing { object, frame, previous: previous_frame };
-                    return Err(self.rows.error(Some(Column::Frame), kind));
-                }
-                if time <= previous {
-                    let kind = ReadErrorKind::TimeNotIncreasing { object, frame, previous, time };
-                    return Err(self.rows.error(Some(Column::Time), kind));
-                }
-                *latest = (frame, time);
+            if frame < previous_frame {
+                let kind = ReadErrorKind::FrameNotIncreasing { object, frame, previous: previous_frame };
+                return Err(self.rows.error(Some(Column::Frame), kind));
+            }
+            if time <= previous {
+                let kind = ReadErrorKind::TimeNotIncreasing { object, frame, previous, time };
+                return Err(self.rows.error(Some(Column::Time), kind));
             }
         }
+        self.latest.set(&object, (frame, time));
         let capacity = self.present.as_ref().map_or(0, OutlineRows::capacity_hint);
         Ok(self.present.replace(OutlineRows::new(frame, time, object, self.rows.line(), capacity)))
     }

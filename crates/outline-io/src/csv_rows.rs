@@ -6,11 +6,9 @@ use nalgebra::Point2;
 use crate::column::Column;
 use crate::csv_columns::{HeaderError, Role};
 use crate::csv_field::{leading_number, unquoted_length};
-use crate::csv_lines::{Lines, ROW_LIMIT};
+use crate::csv_lines::{COMMENT, Lines, ROW_LIMIT};
 use crate::error::{Place, ReadError, ReadErrorKind};
-
-/// What a line begins with that is no row.
-const COMMENT: u8 = b'#';
+use crate::not_csv::{HEAD_LENGTH, not_csv};
 
 /// The rows of a CSV file one after the other, with their line numbers; comments and blank lines left out. Two rows
 /// are held at a time, whatever the length of the file.
@@ -41,12 +39,12 @@ impl<R: Read> Rows<R> {
     ) -> Result<(Self, C), ReadError> {
         // The csv crate takes a byte order mark off too, but only where the first read returns all of it.
         let mut start = Vec::new();
-        if let Err(error) = source.by_ref().take(3).read_to_end(&mut start) {
-            let place = Place { file, lines: None, column: None };
-            return Err(ReadError { place, kind: ReadErrorKind::Io(error) });
+        let head = source.by_ref().take(HEAD_LENGTH).read_to_end(&mut start);
+        if let Some(kind) = head.err().map(ReadErrorKind::Io).or_else(|| not_csv(&start)) {
+            return Err(ReadError { place: Place { file, lines: None, column: None }, kind });
         }
-        if start == b"\xef\xbb\xbf" {
-            start.clear();
+        if start.starts_with(b"\xef\xbb\xbf") {
+            start.drain(..3);
         }
         // Ending rows at "\n" alone makes line numbers exact; the "\r" of a "\r\n" falls to trimming.
         let reader = ReaderBuilder::new()
@@ -59,6 +57,9 @@ impl<R: Read> Rows<R> {
         let mut rows = Self { file, reader, field_count: 0, row, needs_no_quotes: false, lines_repeated: 0, previous };
         if !rows.read_row()? {
             return Err(rows.error_at(None, None, ReadErrorKind::Empty));
+        }
+        if rows.reader.get_ref().has_returns_alone() && rows.row.as_slice().trim_ascii_end().contains(&b'\r') {
+            return Err(rows.error_at(None, None, ReadErrorKind::LineEnds));
         }
         rows.field_count = rows.row.len();
         let found = columns(&rows.row).map_err(|(column, kind)| rows.error(column, kind))?;
@@ -187,7 +188,9 @@ impl<R: Read> Rows<R> {
     fn failure(&mut self, error: csv::Error) -> ReadError {
         let line = self.csv_line();
         self.row.clear();
-        let kind = if self.reader.get_ref().exceeded() {
+        let kind = if self.reader.get_ref().has_returns_alone() {
+            ReadErrorKind::LineEnds
+        } else if self.reader.get_ref().exceeded() {
             ReadErrorKind::RowTooLong { limit: ROW_LIMIT as u64 }
         } else {
             match error.into_kind() {

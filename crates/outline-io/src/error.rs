@@ -5,7 +5,7 @@ use freeform_curve_fit::OutlineError;
 use thiserror::Error;
 
 use crate::column::Column;
-use crate::file_name::write_name;
+use crate::file_name::readable;
 use crate::picture_error::{PictureError, TraceError};
 
 /// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40` or `name`.
@@ -21,7 +21,7 @@ pub struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_name(f, &self.file)?;
+        write!(f, "{}", readable(&self.file))?;
         match self.lines {
             Some((first, last)) if first == last => write!(f, ":{first}")?,
             Some((first, last)) => write!(f, ":{first}-{last}")?,
@@ -61,6 +61,20 @@ pub enum ReadErrorKind {
     /// The file could not be opened or read.
     #[error("{0}")]
     Io(#[source] io::Error),
+    /// A compressed file.
+    #[error("compressed with {format}: unpack it, such as by a pipe: {unpack} FILE | ...")]
+    Compressed {
+        /// Name of the format.
+        format: &'static str,
+        /// The command that unpacks it.
+        unpack: &'static str,
+    },
+    /// Text in UTF-16, as spreadsheets save it.
+    #[error("the text is UTF-16, expected UTF-8: save it as such, or use iconv -f UTF-16 -t UTF-8")]
+    Utf16,
+    /// Lines that end with a carriage return alone, as on very old systems.
+    #[error("the lines end with carriage returns alone, expected line feeds: use tr '\\r' '\\n'")]
+    LineEnds,
     /// Nothing in the file but comments and blank lines.
     #[error("the file is empty, expected a header such as frame,time,x,y")]
     Empty,

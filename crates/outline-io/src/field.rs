@@ -1,4 +1,4 @@
-use freeform_curve_fit::isoline::{self, Crossing};
+use freeform_curve_fit::isoline::{self, Crossing, LineTooLong};
 
 /// Grey values on a grid of samples, row by row.
 #[derive(Debug, Clone)]
@@ -9,9 +9,11 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// Where the grey value passes a level, between the samples.
-    pub(crate) fn isolines(&self, level: f64) -> Vec<Vec<Crossing>> {
-        isoline::of_samples([self.width, self.height], |x, y| f64::from(self.values[y * self.width + x]), level)
+    /// Where the grey value passes a level, between the samples: of the lines the one around the largest area; `None` if
+    /// there is none.
+    pub(crate) fn outer_isoline(&self, level: f64, most: usize) -> Result<Option<Vec<Crossing>>, LineTooLong> {
+        let value = |x: usize, y: usize| f64::from(self.values[y * self.width + x]);
+        isoline::largest_of_samples([self.width, self.height], value, level, most)
     }
 
     /// Indices of the samples above, below and beside a sample, as far as the grid goes.
@@ -45,15 +47,21 @@ impl Field {
                 *value = weighted_sum(&line[..width], x, &weights);
             }
         }
-        // Row by row in both directions: going down the columns would miss the cache at every step.
-        let across = self.values.clone();
-        for (y, row) in self.values.chunks_exact_mut(width).enumerate() {
+        // Row by row in both directions: going down the columns would miss the cache at every step. Of the rows that have been
+        // blurred those that are still needed are kept as they were, so that the grid is held once and not twice.
+        let kept = weights.len().min(height);
+        let mut before = vec![0.0; kept * width];
+        for y in 0..height {
+            let (row, below) = self.values[y * width..].split_at_mut(width);
+            before[y % kept * width..][..width].copy_from_slice(row);
             row.fill(0.0);
             for (distance, &weight) in weights.iter().enumerate() {
-                let below = (y + distance).min(height - 1) * width;
-                let above = y.saturating_sub(distance) * width;
+                let as_it_was = |y: usize| &before[y % kept * width..][..width];
+                let last = (y + distance).min(height - 1);
+                let a = if last == y { as_it_was(y) } else { &below[(last - y - 1) * width..][..width] };
+                let b = as_it_was(y.saturating_sub(distance));
                 let weight = if distance == 0 { 0.5 * weight } else { weight };
-                for ((value, a), b) in row.iter_mut().zip(&across[below..below + width]).zip(&across[above..]) {
+                for ((value, a), b) in row.iter_mut().zip(a).zip(b) {
                     *value += weight * (a + b);
                 }
             }

@@ -18,53 +18,74 @@ pub(crate) struct ObjectMask {
     pub(crate) pixel_count: u64,
 }
 
-/// The objects of a picture: 8-connected sets of pixels.
+/// Windows of the objects of a picture have no more pixels than this together. Of a picture of up to a million pixels that is
+/// never reached; of larger ones only by objects that lie within each other, such as rings, which windows would hold many times.
+const WINDOW_LIMIT: usize = 1 << 29;
+
+/// The largest objects of a picture: 8-connected sets of pixels.
 #[derive(Debug)]
 pub(crate) struct Objects {
-    components: Components,
-    /// First run and pixels of each, the largest first.
-    sizes: Vec<(usize, u64)>,
+    /// Number of all objects, also of those that were not asked for.
+    pub(crate) count: usize,
+    /// Pixels and runs of each, the largest first.
+    largest: Vec<(u64, Vec<Run>)>,
     columns: usize,
     rows: usize,
 }
 
 impl Objects {
     /// Finds the objects of at least the smallest area among those that the pixels with `set(value)` form; the upper one
-    /// first where several have the same size.
-    pub(crate) fn of(picture: &GrayImage, set: impl Fn(u8) -> bool, minimum_area: u64) -> Result<Self, TraceError> {
+    /// first where several have the same size. Keeps up to `limit` of them.
+    pub(crate) fn of(
+        picture: &GrayImage,
+        set: impl Fn(u8) -> bool,
+        minimum_area: u64,
+        limit: usize,
+    ) -> Result<Self, TraceError> {
         let (columns, rows) = (picture.width() as usize, picture.height() as usize);
         let pixels = picture.as_raw();
-        let is_set = |column: usize, row: usize| set(pixels[row * columns + column]);
-        let components = Components::of(columns, rows, Connectivity::Eight, is_set);
-        let mut sizes = components.pixel_counts();
-        sizes.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        if let Some((_, pixels)) = sizes.first().filter(|(_, count)| *count < minimum_area) {
-            return Err(TraceError::TooSmall { pixels: *pixels, needed: minimum_area });
+        let mut is_set = [false; 256];
+        (0..=u8::MAX).for_each(|value| is_set[usize::from(value)] = set(value));
+        let components = Components::of(columns, rows, Connectivity::Eight, |column, row| {
+            is_set[usize::from(pixels[row * columns + column])]
+        });
+        let (mut sizes, mut largest) = (Vec::new(), 0);
+        for (root, count) in components.pixel_counts() {
+            largest = largest.max(count);
+            if count >= minimum_area {
+                sizes.push((root, count));
+            }
         }
-        sizes.retain(|(_, count)| *count >= minimum_area);
-        Ok(Self { components, sizes, columns, rows })
-    }
-
-    /// Number of objects.
-    pub(crate) fn count(&self) -> usize {
-        self.sizes.len()
+        if sizes.is_empty() && largest > 0 {
+            return Err(TraceError::TooSmall { pixels: largest, needed: minimum_area });
+        }
+        let count = sizes.len();
+        sizes.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        sizes.truncate(limit);
+        let roots: Vec<u32> = sizes.iter().map(|(root, _)| *root).collect();
+        let runs = components.into_runs_of(&roots);
+        let largest = sizes.into_iter().map(|(_, count)| count).zip(runs).collect();
+        Ok(Self { count, largest, columns, rows })
     }
 
     /// The objects, each in a window that reaches `margin` pixels beyond it, as far as the picture goes.
-    pub(crate) fn masks(&self, margin: usize) -> impl Iterator<Item = ObjectMask> + '_ {
-        self.sizes.iter().map(move |&(root, pixel_count)| {
-            let bounds = Bounds::of(self.components.runs_of(root));
+    pub(crate) fn into_masks(self, margin: usize) -> impl Iterator<Item = ObjectMask> {
+        let Self { largest, columns, rows, .. } = self;
+        let mut left_over = WINDOW_LIMIT;
+        largest.into_iter().map_while(move |(pixel_count, runs)| {
+            let bounds = Bounds::of(runs.iter().copied());
             let left = bounds.left.saturating_sub(margin);
             let top = bounds.top.saturating_sub(margin);
-            let width = (bounds.right + margin).min(self.columns) - left;
-            let height = (bounds.bottom + margin).min(self.rows) - top;
+            let width = (bounds.right + margin).min(columns) - left;
+            let height = (bounds.bottom + margin).min(rows) - top;
+            left_over = left_over.checked_sub(width * height)?;
             let mut filled = vec![false; width * height];
-            for run in self.components.runs_of(root) {
-                let from = (run.row - top) * width;
-                filled[from + run.start - left..from + run.end - left].fill(true);
+            for run in runs {
+                let (from, columns) = ((run.row() - top) * width, run.columns());
+                filled[from + columns.start - left..from + columns.end - left].fill(true);
             }
             fill_holes(&mut filled, width, height);
-            ObjectMask { left, top, width, height, filled, pixel_count }
+            Some(ObjectMask { left, top, width, height, filled, pixel_count })
         })
     }
 }
@@ -81,10 +102,10 @@ impl Bounds {
     fn of(runs: impl Iterator<Item = Run>) -> Self {
         let none = Self { left: usize::MAX, right: 0, top: usize::MAX, bottom: 0 };
         runs.fold(none, |bounds, run| Self {
-            left: bounds.left.min(run.start),
-            right: bounds.right.max(run.end),
-            top: bounds.top.min(run.row),
-            bottom: bounds.bottom.max(run.row + 1),
+            left: bounds.left.min(run.columns().start),
+            right: bounds.right.max(run.columns().end),
+            top: bounds.top.min(run.row()),
+            bottom: bounds.bottom.max(run.row() + 1),
         })
     }
 }
@@ -97,8 +118,8 @@ pub(crate) fn fill_holes(filled: &mut [bool], width: usize, height: usize) {
         !within || !filled[(row - 1) * width + column - 1]
     };
     let ground = Components::of(width + 2, height + 2, Connectivity::Four, is_ground);
-    for run in ground.runs_not_of(0) {
-        let from = (run.row - 1) * width;
-        filled[from + run.start - 1..from + run.end - 1].fill(true);
+    for run in ground.runs_but_first() {
+        let (from, columns) = ((run.row() - 1) * width, run.columns());
+        filled[from + columns.start - 1..from + columns.end - 1].fill(true);
     }
 }

@@ -5,7 +5,7 @@ use freeform_curve_fit::OutlineError;
 use image::ImageError;
 use thiserror::Error;
 
-use crate::file_name::write_name;
+use crate::file_name::readable;
 
 /// A picture could not be read. Displays as one line: file, frame where the file has several, and reason.
 #[derive(Debug, Error)]
@@ -27,7 +27,7 @@ impl PictureError {
 
 impl fmt::Display for PictureError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_name(f, &self.file)?;
+        write!(f, "{}", readable(&self.file))?;
         match self.frame {
             Some(frame) => write!(f, ": frame {frame}: {}", self.kind),
             None => write!(f, ": {}", self.kind),
@@ -64,6 +64,21 @@ pub enum PictureErrorKind {
     CompressedVideo {
         /// Name of the format.
         format: &'static str,
+    },
+    /// A file of several pictures in a format that is read one picture a file.
+    #[error("{format} holds several pictures: save them one a file, or as an animated GIF")]
+    SeveralPictures {
+        /// What kind of file it is.
+        format: &'static str,
+    },
+    /// Something other than a file, such as a named pipe, in a folder or where a pattern matches: it might never end.
+    #[error("not a file")]
+    NotAFile,
+    /// An animation of few bytes that unpacks to very many pixels.
+    #[error("the animation unpacks to more than {limit} pixels, which is too much for its length")]
+    TooMuchWork {
+        /// Most pixels that are unpacked, all frames together.
+        limit: u64,
     },
     /// More pixels than are accepted.
     #[error("{width} x {height} pixels, more than {limit} in all")]
@@ -201,6 +216,22 @@ pub enum TraceError {
     Touching {
         /// How many.
         objects: usize,
+    },
+    /// The outline is longer than that of any object.
+    #[error("no outline: it would have more than {limit} points")]
+    TooManyPoints {
+        /// Most points accepted.
+        limit: usize,
+    },
+    /// A picture that is too large to look for rings in.
+    #[error("{width} x {height} pixels, rings are looked for in up to {limit}")]
+    TooLargeForRings {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Largest number of pixels accepted.
+        limit: u64,
     },
     /// The object is so thin that smoothing takes it below the threshold.
     #[error("smoothing by {sigma} pixels leaves nothing of the object")]

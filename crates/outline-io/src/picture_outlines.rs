@@ -1,4 +1,5 @@
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use image::GrayImage;
 
@@ -46,7 +47,7 @@ pub struct TracedFrame {
 /// };
 /// let frames = (0..5_u64).map(|frame| {
 ///     let picture = disc(20.0 + 3.0 * frame as f64);
-///     Ok(PictureFrame { frame, time: frame as f64 / 30.0, file: "memory".to_owned(), picture })
+///     Ok(PictureFrame { frame, time: frame as f64 / 30.0, file: "memory".to_owned(), picture: picture.into() })
 /// });
 /// for traced in PictureOutlines::new(frames, PictureSettings::default())? {
 ///     let traced = traced?;
@@ -64,6 +65,26 @@ pub struct PictureOutlines<S> {
     median: Option<RunningMedian>,
     /// Pictures read ahead for the first median; `None` before they have been read.
     ahead: Option<VecDeque<Result<PictureFrame, PictureError>>>,
+    latest: Option<Latest>,
+}
+
+/// What was seen in a picture, which may come again.
+#[derive(Debug)]
+struct Latest {
+    picture: Arc<GrayImage>,
+    /// What it was compared with.
+    ground: Option<Arc<GrayImage>>,
+    traced: Result<Vec<TracedOutline>, TraceError>,
+}
+
+impl Latest {
+    fn is_of(&self, picture: &Arc<GrayImage>, ground: Option<&Arc<GrayImage>>) -> bool {
+        let is_same_ground = match (&self.ground, ground) {
+            (Some(before), Some(now)) => Arc::ptr_eq(before, now),
+            (before, now) => before.is_none() && now.is_none(),
+        };
+        is_same_ground && Arc::ptr_eq(&self.picture, picture)
+    }
 }
 
 impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> {
@@ -83,7 +104,7 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         };
         let ahead = if median.is_some() { None } else { Some(VecDeque::new()) };
         let identities = Identities::new(settings.selection);
-        Ok(Self { source, settings, identities, median: median.map(|(median, _)| median), ahead })
+        Ok(Self { source, settings, identities, median: median.map(|(median, _)| median), ahead, latest: None })
     }
 
     /// The source of the pictures.
@@ -100,9 +121,16 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         let ahead = match &mut self.ahead {
             Some(ahead) => ahead,
             None => {
-                let first: VecDeque<_> = self.source.by_ref().take(size).collect();
-                if let Some(median) = &mut self.median {
-                    first.iter().flatten().for_each(|frame| median.add(&frame.picture));
+                let mut first = VecDeque::new();
+                let mut wanted = size;
+                while first.len() < wanted
+                    && let Some(item) = self.source.next()
+                {
+                    if let (Some(median), Ok(PictureFrame { picture, .. })) = (&mut self.median, &item) {
+                        median.add(picture);
+                        wanted = wanted.min(RunningMedian::kept(size, picture));
+                    }
+                    first.push_back(item);
                 }
                 self.ahead.insert(first)
             }
@@ -118,22 +146,28 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
     }
 
     fn objects(&mut self, frame: &PictureFrame) -> Result<Vec<(u64, TracedOutline)>, TraceError> {
-        let picture = &frame.picture;
         let ground = match (&self.settings.background, &mut self.median) {
             (Some(Background::Picture(ground)), _) => Some(ground),
             (Some(Background::RunningMedian(_)), Some(median)) => median.get(),
             _ => None,
         };
+        let picture = &frame.picture;
+        if let Some(latest) = self.latest.as_ref().filter(|latest| latest.is_of(picture, ground)) {
+            return self.identities.assign(frame.frame, latest.traced.clone()?);
+        }
+        // Makes room before more is needed.
+        self.latest = None;
         let limit = self.identities.limit();
         let traced = match ground {
-            None => trace_objects(picture, &self.settings.trace, limit)?,
+            None => trace_objects(picture, &self.settings.trace, limit),
             Some(ground) => {
-                let difference = checked_difference(self.settings.difference, picture, ground)?;
                 let settings = TraceSettings { contrast: Contrast::LightOnDark, ..self.settings.trace };
-                trace_objects(&difference, &settings, limit)?
+                let difference = checked_difference(self.settings.difference, picture, ground);
+                difference.and_then(|difference| trace_objects(&difference, &settings, limit))
             }
         };
-        self.identities.assign(frame.frame, traced)
+        self.latest = Some(Latest { picture: Arc::clone(picture), ground: ground.cloned(), traced: traced.clone() });
+        self.identities.assign(frame.frame, traced?)
     }
 }
 

@@ -1,13 +1,16 @@
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::{GrayImage, ImageFormat};
 
 use crate::channel::Channel;
 use crate::compressed_video::compressed_video;
+use crate::file_pattern::{is_pattern, matching_files};
+use crate::gif_animation::GifAnimation;
 use crate::natural_order::natural_order;
-use crate::picture::{Animation, decode, read_picture_channel};
+use crate::picture::{decode, read_picture_channel};
 use crate::picture_error::{PictureError, PictureErrorKind};
 use crate::y4m::{MAGIC, VideoReader};
 
@@ -21,7 +24,7 @@ const STREAM_LIMIT: u64 = 1 << 30;
 const MAGIC_LENGTH: usize = 16;
 
 /// Extensions of the files that a folder is searched for.
-const EXTENSIONS: [&str; 9] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp", "gif", "y4m", "jpe"];
+const EXTENSIONS: [&str; 10] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp", "gif", "y4m", "jpe", "webp"];
 
 /// One picture of a sequence.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +35,8 @@ pub struct PictureFrame {
     pub time: f64,
     /// Name of the file.
     pub file: String,
-    /// The grey values.
-    pub picture: GrayImage,
+    /// The grey values. A frame of an animation that shows nothing new shares them with the frame before.
+    pub picture: Arc<GrayImage>,
 }
 
 /// How a sequence of pictures is read.
@@ -49,16 +52,34 @@ pub struct SequenceSettings {
 /// The pictures of files, folders, animations, videos or a stream, one after the other; one is in memory at a time.
 ///
 /// A picture that cannot be read is an error item, after which the sequence continues with the next file. Its number is
-/// not given to another picture. All pictures have the size of the first.
+/// not given to another picture. The same holds for a broken link or a pipe among the pictures of a folder. All pictures have
+/// the size of the first.
 pub struct PictureSequence {
     settings: SequenceSettings,
-    files: std::vec::IntoIter<PathBuf>,
+    files: std::vec::IntoIter<SequenceFile>,
     open: Option<OpenFile>,
     next_frame: u64,
     /// Size of the first picture.
     size: Option<(u32, u32)>,
     frame_count: Option<u64>,
     pixel_aspect: Option<f64>,
+    is_interlaced: bool,
+}
+
+/// A file of a sequence.
+#[derive(Debug)]
+struct SequenceFile {
+    path: PathBuf,
+    origin: Origin,
+}
+
+/// Where the name of a file comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// It was given, and may be that of a pipe.
+    Given,
+    /// It was found in a folder or by a pattern.
+    Found,
 }
 
 /// A file of several pictures that is being read.
@@ -70,8 +91,24 @@ struct OpenFile {
 }
 
 enum Pictures {
-    Animation(Animation),
+    Animation(Box<GifAnimation>),
     Video(VideoReader<Box<dyn BufRead>>),
+    /// `None` when it has been taken.
+    One(Option<GrayImage>),
+}
+
+/// A picture, with its time in seconds if its file tells.
+type TimedPicture = (Arc<GrayImage>, Option<f64>);
+
+impl Pictures {
+    /// The next picture, with its time in seconds from the beginning of the file if that tells.
+    fn next(&mut self) -> Result<Option<TimedPicture>, PictureErrorKind> {
+        Ok(match self {
+            Self::Animation(animation) => animation.next()?.map(|(picture, time)| (picture, Some(time))),
+            Self::Video(video) => video.next().transpose()?.map(|picture| (Arc::new(picture), None)),
+            Self::One(picture) => picture.take().map(|picture| (Arc::new(picture), Some(0.0))),
+        })
+    }
 }
 
 impl PictureSequence {
@@ -84,17 +121,18 @@ impl PictureSequence {
     pub fn open(paths: &[PathBuf], settings: SequenceSettings) -> Result<Self, PictureError> {
         let mut files = Vec::new();
         for path in paths {
-            files.append(&mut picture_files(path)?);
+            let origin = if path.is_dir() || is_pattern(path) { Origin::Found } else { Origin::Given };
+            files.extend(picture_files(path)?.into_iter().map(|path| SequenceFile { path, origin }));
         }
         let single = files.len() == 1;
-        let frame_count = (!files.iter().any(|file| may_hold_several(file))).then_some(files.len() as u64);
+        let frame_count = (!files.iter().any(may_hold_several)).then_some(files.len() as u64);
         let mut sequence = Self::of(settings, files, frame_count);
         if single && frame_count.is_none() {
             // What the header says is known before the first frame is read.
-            let path = sequence.files.next().unwrap_or_default();
-            let name = path.display().to_string();
-            let opened = sequence.open_file(&path);
-            sequence.open = opened.map_err(|kind| PictureError::of_file(name, kind))?;
+            if let Some(file) = sequence.files.next() {
+                let opened = sequence.open_file(&file);
+                sequence.open = opened.map_err(|kind| PictureError::of_file(file.path.display().to_string(), kind))?;
+            }
         }
         Ok(sequence)
     }
@@ -114,9 +152,10 @@ impl PictureSequence {
         Ok(sequence)
     }
 
-    fn of(settings: SequenceSettings, files: Vec<PathBuf>, frame_count: Option<u64>) -> Self {
+    fn of(settings: SequenceSettings, files: Vec<SequenceFile>, frame_count: Option<u64>) -> Self {
         let files = files.into_iter();
-        Self { settings, files, open: None, next_frame: 0, size: None, frame_count, pixel_aspect: None }
+        let (open, next_frame, size, pixel_aspect, is_interlaced) = Default::default();
+        Self { settings, files, open, next_frame, size, frame_count, pixel_aspect, is_interlaced }
     }
 
     /// Whether a path names pictures: by its extension, as a folder, or as a pattern.
@@ -144,23 +183,39 @@ impl PictureSequence {
         self.pixel_aspect
     }
 
+    /// Whether a video says that it is interlaced: every second line of a frame is of another moment.
+    #[must_use]
+    pub fn is_interlaced(&self) -> bool {
+        self.is_interlaced
+    }
+
     fn rate(&self) -> f64 {
         self.settings.frames_per_second.unwrap_or(DEFAULT_RATE)
     }
 
     /// Opens a file of several pictures; `None` for a file of one.
-    fn open_file(&mut self, path: &Path) -> Result<Option<OpenFile>, PictureErrorKind> {
+    fn open_file(&mut self, file: &SequenceFile) -> Result<Option<OpenFile>, PictureErrorKind> {
+        let SequenceFile { path, origin } = file;
+        // A link may lead nowhere, and to open a pipe is to wait for somebody who writes to it.
+        let is_file = fs::metadata(path)?.is_file();
+        if *origin == Origin::Found && !is_file {
+            return Err(PictureErrorKind::NotAFile);
+        }
         let mut source = BufReader::new(File::open(path)?);
-        let start = source.fill_buf()?;
         let name = path.display().to_string();
+        // What is no file can be read only once, front to back.
+        if !is_file {
+            return self.open_stream(Box::new(source), &name).map(Some);
+        }
+        let start = source.fill_buf()?;
         if start.starts_with(MAGIC) {
             return self.open_stream(Box::new(source), &name).map(Some);
         }
         if !matches!(image::guess_format(start), Ok(ImageFormat::Gif)) {
             return Ok(None);
         }
-        let animation = Animation::open(source, self.settings.channel)?;
-        Ok(Some(self.opened(name, Pictures::Animation(animation))))
+        let animation = GifAnimation::open(source, self.settings.channel)?;
+        Ok(Some(self.opened(name, Pictures::Animation(Box::new(animation)))))
     }
 
     fn open_stream(&mut self, mut source: Box<dyn BufRead>, name: &str) -> Result<OpenFile, PictureErrorKind> {
@@ -173,6 +228,7 @@ impl PictureSequence {
         } else if start.starts_with(b"Y") {
             let video = VideoReader::open(source, channel)?;
             self.pixel_aspect = video.pixel_aspect;
+            self.is_interlaced |= video.is_interlaced;
             self.settings.frames_per_second = self.settings.frames_per_second.or(video.frame_rate);
             Pictures::Video(video)
         } else {
@@ -181,10 +237,10 @@ impl PictureSequence {
             let mut bytes = Vec::new();
             source.take(STREAM_LIMIT).read_to_end(&mut bytes)?;
             let bytes = Cursor::new(bytes);
-            Pictures::Animation(match is_animation {
-                true => Animation::open(bytes, channel)?,
-                false => Animation::of_one(decode(bytes, channel)?),
-            })
+            match is_animation {
+                true => Pictures::Animation(Box::new(GifAnimation::open(bytes, channel)?)),
+                false => Pictures::One(Some(decode(bytes, channel)?)),
+            }
         };
         Ok(self.opened(name.to_owned(), pictures))
     }
@@ -198,18 +254,14 @@ impl PictureSequence {
     fn next_of_open(&mut self) -> Option<Result<PictureFrame, PictureError>> {
         let rate = self.rate();
         let open = self.open.as_mut()?;
-        let item = match &mut open.pictures {
-            Pictures::Video(video) => video.next().map(|picture| picture.map(|picture| (picture, None))),
-            Pictures::Animation(animation) => {
-                animation.next().map(|item| item.map(|(picture, time)| (picture, Some(time))))
-            }
-        };
+        let item = open.pictures.next().transpose();
         let (name, first) = (open.name.clone(), open.first);
         let frame = self.next_frame;
-        let Some(item) = item else {
+        // Nothing can be trusted behind an error.
+        if !matches!(item, Some(Ok(_))) {
             self.open = None;
-            return None;
-        };
+        }
+        let item = item?;
         self.next_frame += 1;
         let in_file = Some(frame - first.0);
         Some(match item {
@@ -242,15 +294,16 @@ impl Iterator for PictureSequence {
             if let Some(item) = self.next_of_open() {
                 return Some(item);
             }
-            let path = self.files.next()?;
+            let file = self.files.next()?;
+            let path = &file.path;
             let name = path.display().to_string();
             let frame = self.next_frame;
-            match self.open_file(&path) {
+            match self.open_file(&file) {
                 Ok(Some(open)) => self.open = Some(open),
                 Ok(None) => {
                     self.next_frame += 1;
                     let time = frame as f64 / self.rate();
-                    let read = read_picture_channel(&path, self.settings.channel);
+                    let read = read_picture_channel(path, self.settings.channel).map(Arc::new);
                     let read = read.map(|picture| PictureFrame { frame, time, file: name, picture });
                     return Some(read.and_then(|frame| self.checked(frame, None)));
                 }
@@ -282,10 +335,6 @@ fn filled(source: &mut impl BufRead) -> io::Result<&[u8]> {
     }
 }
 
-fn is_pattern(path: &Path) -> bool {
-    path.to_str().is_some_and(|text| text.contains(['*', '?', '['])) && !path.exists()
-}
-
 /// Whether a file is taken for a picture where its folder is searched, by its extension.
 #[must_use]
 pub fn has_picture_extension(path: &Path) -> bool {
@@ -293,8 +342,11 @@ pub fn has_picture_extension(path: &Path) -> bool {
     extension.is_some_and(|extension| EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
 }
 
-/// Whether a file may hold several pictures, as far as its name and beginning tell.
-fn may_hold_several(path: &Path) -> bool {
+/// Whether a file may hold several pictures, as far as its beginning tells; that of a pipe would be gone.
+fn may_hold_several(SequenceFile { path, origin }: &SequenceFile) -> bool {
+    if !path.is_file() {
+        return *origin == Origin::Given;
+    }
     let start = beginning(path).unwrap_or_default();
     start.starts_with(MAGIC) || start.starts_with(b"GIF")
 }
@@ -319,6 +371,8 @@ fn nothing_to_read(path: &Path, mut files: Vec<PathBuf>) -> PictureError {
 }
 
 /// The files that a path stands for: those of the pictures in a folder or that match a pattern, in natural order, or the path.
+/// Those found may be links that lead nowhere, or pipes. `**` in a pattern stands for folders within each other, but does not
+/// follow links.
 ///
 /// # Errors
 /// A folder that cannot be read; a folder or a pattern without pictures; a folder of nothing but compressed video, whose
@@ -329,15 +383,14 @@ pub fn picture_files(path: &Path) -> Result<Vec<PathBuf>, PictureError> {
         let entries = fs::read_dir(path).map_err(|error| failed(error.into()))?;
         let entries = entries.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
         let is_hidden = |path: &Path| path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
-        let all = entries.into_iter().map(|entry| entry.path()).filter(|path| !is_hidden(path) && path.is_file());
+        let all = entries.into_iter().map(|entry| entry.path()).filter(|path| !is_hidden(path) && !path.is_dir());
         let (pictures, others): (Vec<_>, Vec<_>) = all.partition(|path| has_picture_extension(path));
         if pictures.is_empty() {
-            return Err(nothing_to_read(path, others));
+            return Err(nothing_to_read(path, others.into_iter().filter(|path| path.is_file()).collect()));
         }
         pictures
     } else if is_pattern(path) {
-        let matches = glob::glob(&path.to_string_lossy()).map_err(|_| failed(PictureErrorKind::WrongPattern))?;
-        matches.filter_map(Result::ok).filter(|path| path.is_file()).collect()
+        matching_files(&path.to_string_lossy()).map_err(|_| failed(PictureErrorKind::WrongPattern))?
     } else {
         return Ok(vec![path.to_owned()]);
     };

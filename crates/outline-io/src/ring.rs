@@ -19,6 +19,9 @@ const SIGMA: f64 = 1.0;
 /// A ring stands out where its weakest point is so many times as strong as the median of the picture.
 const STANDS_OUT: f32 = 2.0;
 
+/// Largest number of pixels of a picture that rings are looked for in: about 40 bytes a pixel are needed.
+const PIXEL_LIMIT: u64 = 1 << 25;
+
 /// Rings of at least this share of the score of the clearest one are objects too.
 const CLEAR_SHARE: f64 = 0.5;
 
@@ -66,7 +69,11 @@ impl Ring {
         smallest_area: u64,
         limit: usize,
     ) -> Result<Vec<RingObject>, TraceError> {
-        let reach = self.widest(picture.width(), picture.height()).ceil() as usize;
+        let (width, height) = picture.dimensions();
+        if u64::from(width) * u64::from(height) > PIXEL_LIMIT {
+            return Err(TraceError::TooLargeForRings { width, height, limit: PIXEL_LIMIT });
+        }
+        let reach = self.widest(width, height).ceil() as usize;
         let strength = self.strength(picture, reach);
         let median = median(&strength.values);
         let area = u32::try_from(smallest_area).unwrap_or(u32::MAX).max(1);

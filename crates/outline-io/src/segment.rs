@@ -1,9 +1,28 @@
-/// Pixels next to each other in one row: columns `start` to `end - 1`.
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Pixels next to each other in one row: columns `start` to `end - 1`. A picture may have half as many as it has pixels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Run {
-    pub(crate) row: usize,
-    pub(crate) start: usize,
-    pub(crate) end: usize,
+    row: u32,
+    start: u32,
+    end: u32,
+}
+
+impl Run {
+    /// The row.
+    pub(crate) fn row(self) -> usize {
+        self.row as usize
+    }
+
+    /// The columns.
+    pub(crate) fn columns(self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+
+    fn length(self) -> u32 {
+        self.end - self.start
+    }
 }
 
 /// Whether pixels that touch at a corner only are connected.
@@ -15,16 +34,16 @@ pub(crate) enum Connectivity {
     Eight,
 }
 
-/// Connected components of a set of pixels, as runs. Memory is in proportion to the number of runs, not of pixels.
+/// Connected components of a set of pixels, as runs: 16 bytes for each, whatever the number of pixels.
 #[derive(Debug)]
 pub(crate) struct Components {
     runs: Vec<Run>,
     /// Index of the first run of each run's component.
-    roots: Vec<usize>,
+    roots: Vec<u32>,
 }
 
 impl Components {
-    /// Labels the pixels for which `set(column, row)` is true.
+    /// Labels the pixels for which `set(column, row)` is true, of a picture of fewer than 2^32 pixels.
     pub(crate) fn of(
         width: usize,
         height: usize,
@@ -33,7 +52,7 @@ impl Components {
     ) -> Self {
         let reach = usize::from(connectivity == Connectivity::Eight);
         let mut runs: Vec<Run> = Vec::new();
-        let mut parents: Vec<usize> = Vec::new();
+        let mut parents: Vec<u32> = Vec::new();
         let mut above = 0..0;
         for row in 0..height {
             let first = runs.len();
@@ -49,55 +68,76 @@ impl Components {
                     column += 1;
                 }
                 let index = runs.len();
-                runs.push(Run { row, start, end: column });
-                parents.push(index);
-                while candidate < above.end && runs[candidate].end + reach <= start {
+                runs.push(Run { row: row as u32, start: start as u32, end: column as u32 });
+                parents.push(index as u32);
+                while candidate < above.end && runs[candidate].end as usize + reach <= start {
                     candidate += 1;
                 }
                 let mut touching = candidate;
-                while touching < above.end && runs[touching].start < column + reach {
-                    join(&mut parents, touching, index);
+                while touching < above.end && (runs[touching].start as usize) < column + reach {
+                    join(&mut parents, touching as u32, index as u32);
                     touching += 1;
                 }
             }
             above = first..runs.len();
         }
-        let roots = (0..runs.len()).map(|index| root(&mut parents, index)).collect();
-        Self { runs, roots }
-    }
-
-    /// Number of pixels of every component, under the index of its first run.
-    pub(crate) fn pixel_counts(&self) -> Vec<(usize, u64)> {
-        let mut counts = vec![0; self.runs.len()];
-        for (run, root) in self.runs.iter().zip(&self.roots) {
-            counts[*root] += (run.end - run.start) as u64;
+        // A parent comes before its children, so that its own root is known by then.
+        for index in 0..parents.len() {
+            parents[index] = parents[parents[index] as usize];
         }
-        counts.into_iter().enumerate().filter(|(_, count)| *count > 0).collect()
+        Self { runs, roots: parents }
     }
 
-    /// The runs of the component whose first run this is.
-    pub(crate) fn runs_of(&self, root: usize) -> impl Iterator<Item = Run> {
-        self.runs.iter().zip(&self.roots).filter(move |(_, own)| **own == root).map(|(run, _)| *run)
+    /// Number of pixels of every component, under the index of its first run, in the order of these.
+    pub(crate) fn pixel_counts(&self) -> impl Iterator<Item = (u32, u64)> + use<> {
+        let mut counts = vec![0_u32; self.runs.len()];
+        for (run, root) in self.runs.iter().zip(&self.roots) {
+            counts[*root as usize] += run.length();
+        }
+        (0..).zip(counts).filter(|(_, count)| *count > 0).map(|(root, count)| (root, u64::from(count)))
     }
 
-    /// The runs of all other components.
-    pub(crate) fn runs_not_of(&self, root: usize) -> impl Iterator<Item = Run> {
-        self.runs.iter().zip(&self.roots).filter(move |(_, own)| **own != root).map(|(run, _)| *run)
+    /// The runs of these components, which are named by their first runs and come in their order.
+    pub(crate) fn into_runs_of(self, wanted: &[u32]) -> Vec<Vec<Run>> {
+        let Self { runs, mut roots } = self;
+        let places: HashMap<u32, u32> = wanted.iter().copied().zip(0..).collect();
+        let mut counts = vec![0_usize; wanted.len()];
+        // The root of a run becomes the place of its component. That of an earlier run, which the root is, has done so already.
+        for index in 0..roots.len() {
+            let root = roots[index] as usize;
+            roots[index] =
+                if root == index { places.get(&(index as u32)).copied().unwrap_or(u32::MAX) } else { roots[root] };
+            if let Some(count) = counts.get_mut(roots[index] as usize) {
+                *count += 1;
+            }
+        }
+        let mut found: Vec<Vec<Run>> = counts.into_iter().map(Vec::with_capacity).collect();
+        for (run, place) in runs.iter().zip(&roots) {
+            if let Some(of_component) = found.get_mut(*place as usize) {
+                of_component.push(*run);
+            }
+        }
+        found
+    }
+
+    /// The runs of all components but that of the first run.
+    pub(crate) fn runs_but_first(&self) -> impl Iterator<Item = Run> {
+        self.runs.iter().zip(&self.roots).filter(|(_, root)| **root != 0).map(|(run, _)| *run)
     }
 }
 
-fn root(parents: &mut [usize], mut index: usize) -> usize {
-    while parents[index] != index {
-        parents[index] = parents[parents[index]];
-        index = parents[index];
+fn root(parents: &mut [u32], mut index: u32) -> u32 {
+    while parents[index as usize] != index {
+        parents[index as usize] = parents[parents[index as usize] as usize];
+        index = parents[index as usize];
     }
     index
 }
 
 /// The lower index becomes the root, so that a root is the first run of its component.
-fn join(parents: &mut [usize], a: usize, b: usize) {
+fn join(parents: &mut [u32], a: u32, b: u32) {
     let (a, b) = (root(parents, a), root(parents, b));
-    parents[a.max(b)] = a.min(b);
+    parents[a.max(b) as usize] = a.min(b);
 }
 
 #[cfg(test)]
@@ -141,9 +181,14 @@ mod tests {
             for connectivity in [Connectivity::Four, Connectivity::Eight] {
                 let set = |column: usize, row: usize| cells[row][column];
                 let components = Components::of(cells[0].len(), cells.len(), connectivity, set);
-                let mut sizes: Vec<u64> = components.pixel_counts().into_iter().map(|(_, count)| count).collect();
+                let counts: Vec<(u32, u64)> = components.pixel_counts().collect();
+                let mut sizes: Vec<u64> = counts.iter().map(|(_, count)| *count).collect();
                 sizes.sort_unstable();
                 prop_assert_eq!(sizes, flood_fill(&cells, connectivity));
+                let wanted: Vec<u32> = counts.iter().rev().step_by(2).map(|(root, _)| *root).collect();
+                let lengths = components.into_runs_of(&wanted).into_iter().map(|runs| runs.into_iter().map(Run::length).sum::<u32>());
+                let expected = counts.iter().rev().step_by(2).map(|(_, count)| *count as u32);
+                prop_assert_eq!(lengths.collect::<Vec<_>>(), expected.collect::<Vec<_>>());
             }
         }
     }

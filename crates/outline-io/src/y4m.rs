@@ -68,6 +68,8 @@ pub(crate) struct VideoReader<R> {
     pub(crate) frame_rate: Option<f64>,
     /// Width of a pixel over its height, if the header states it.
     pub(crate) pixel_aspect: Option<f64>,
+    /// Whether the header says that the lines of a frame are of two moments.
+    pub(crate) is_interlaced: bool,
     channel: Channel,
     buffer: Vec<u8>,
     ended: bool,
@@ -83,6 +85,7 @@ impl<R: BufRead> VideoReader<R> {
         }
         let (mut width, mut height) = (None, None);
         let (mut frame_rate, mut pixel_aspect) = (None, None);
+        let mut is_interlaced = false;
         let mut layout = Layout { chroma: Some((2, 2)), bits: 8, has_alpha: false };
         for word in words {
             let mut characters = word.chars();
@@ -93,6 +96,7 @@ impl<R: BufRead> VideoReader<R> {
                 'W' => width = Some(value.parse().ok().filter(|w| *w > 0).ok_or_else(wrong)?),
                 'H' => height = Some(value.parse().ok().filter(|h| *h > 0).ok_or_else(wrong)?),
                 'F' => frame_rate = ratio(value).ok_or_else(wrong)?,
+                'I' => is_interlaced = matches!(value, "t" | "b" | "m"),
                 'A' => pixel_aspect = ratio(value).ok_or_else(wrong)?,
                 'C' => layout = Layout::parse(value).ok_or_else(wrong)?,
                 _ => {}
@@ -102,7 +106,8 @@ impl<R: BufRead> VideoReader<R> {
             return Err(PictureErrorKind::VideoWithoutSize { header: shortened(&line) });
         };
         check_size(width, height)?;
-        Ok(Self { source, width, height, layout, frame_rate, pixel_aspect, channel, buffer: Vec::new(), ended: false })
+        let (buffer, ended) = (Vec::new(), false);
+        Ok(Self { source, width, height, layout, frame_rate, pixel_aspect, is_interlaced, channel, buffer, ended })
     }
 
     fn read_frame(&mut self) -> Result<Option<GrayImage>, PictureErrorKind> {

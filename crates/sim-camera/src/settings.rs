@@ -4,6 +4,9 @@ use crate::{
     sampling::Sampling,
 };
 
+/// Most points of an outline: as many as are read from one.
+const MOST_POINTS: usize = 1 << 22;
+
 /// Fewest points that a closed outline has.
 const FEWEST_POINTS: usize = 3;
 
@@ -71,7 +74,7 @@ impl Settings {
     /// Checks every setting and returns the number of frames.
     ///
     /// # Errors
-    /// A number that is not finite or out of its range, fewer than 3 points in view, no frame or more than a million.
+    /// A number that is not finite or out of its range, fewer than 3 points in view or more than 4194304, no frame or more than a million.
     pub fn frame_count(&self) -> Result<usize, SimulationError> {
         positive("fps", self.fps)?;
         not_negative("noise", self.noise)?;
@@ -84,6 +87,7 @@ impl Settings {
         if let Sampling::Regular { jitter } = self.sampling {
             share("sampling jitter", jitter)?;
         }
+        check(self.points <= MOST_POINTS, "points", self.points as f64, "3 to 4194304")?;
         let visible = self.visible_points();
         if visible < FEWEST_POINTS {
             return Err(TooFewPoints { points: self.points, visible, needed: FEWEST_POINTS });

@@ -3,7 +3,7 @@ use std::io::{Cursor, Read};
 
 use freeform_motion::outline_io::{
     GrayImage, OutlineFrame, OutlineReader, OutlineWriter, PictureSequence, SequenceSettings, TraceSettings,
-    WriterOptions, decode_picture, trace_mask,
+    WriterOptions, decode_picture, readable, trace_mask,
 };
 
 /// Pixels of the largest picture that is traced, so that a check takes milliseconds.
@@ -91,6 +91,44 @@ pub(crate) fn picture_stream(bytes: &[u8]) {
     for message in messages {
         assert!(message.starts_with("input") && message.lines().count() == 1, "{message:?}");
     }
+}
+
+/// Any bytes as a folder of pictures, each behind its length: every picture is read or told on one line, in the order of time.
+pub(crate) fn picture_folder(bytes: &[u8]) {
+    let Ok(folder) = tempfile::tempdir() else { return };
+    let (mut rest, mut count) = (bytes, 0);
+    while let Some((&length, after)) = rest.split_first()
+        && count < STREAMED_PICTURES
+    {
+        let (picture, others) = after.split_at(after.len().min(4 * usize::from(length)));
+        let name = ["png", "jpg", "gif", "tif", "bmp", "webp", "y4m"][count % 7];
+        std::fs::write(folder.path().join(format!("{count}.{name}")), picture).expect("a temporary file");
+        (rest, count) = (others, count + 1);
+    }
+    let Ok(pictures) = PictureSequence::open(&[folder.path().to_owned()], SequenceSettings::default()) else { return };
+    let mut last = None;
+    for picture in pictures.take(STREAMED_PICTURES) {
+        match picture {
+            Ok(picture) => {
+                assert!(last.is_none_or(|last| picture.frame > last), "{} after {last:?}", picture.frame);
+                last = Some(picture.frame);
+                trace(&picture.picture);
+            }
+            Err(error) => assert_eq!(error.to_string().lines().count(), 1, "{error:?}"),
+        }
+    }
+}
+
+/// Any text as a name: what is shown of it has nothing that a terminal or a page acts upon, and is as it was where it had nothing.
+pub(crate) fn names(bytes: &[u8]) {
+    let name = String::from_utf8_lossy(bytes);
+    let shown = readable(&name).to_string();
+    let acts = |c: char| {
+        c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    assert!(!shown.contains(acts), "{shown:?}");
+    assert_eq!(readable(&shown).to_string(), shown);
+    assert!(shown.len() >= name.len() || name.contains(acts), "{name:?} as {shown:?}");
 }
 
 /// Any bytes as the pixels of a picture: width, then rows.

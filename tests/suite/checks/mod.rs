@@ -6,7 +6,7 @@ mod hostile_input;
 mod stages;
 
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]
-pub(crate) use files::{csv_reader, picture_reader, picture_stream, tracing};
+pub(crate) use files::{csv_reader, names, picture_folder, picture_reader, picture_stream, tracing};
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]
 pub(crate) use finite::{assert_covariance, assert_finite};
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]

@@ -102,7 +102,8 @@ Examples:
 
 Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
 generator and reason (why the frame was not accepted, or null). The phases are acquiring, tracking and lost for the \
-filter, start and adapt for the adaptive method.
+filter, start and adapt for the adaptive method. The last line of an object that was in none of the last 1000 frames has the \
+phase closed; the object is then forgotten.
 
 A line is written and flushed as soon as its frame is complete. At the end of the input the exit status is 0, or 1 if no \
 frame could be used. If the points of a frame are not an outline, its line has accepted false and the reason. A picture \

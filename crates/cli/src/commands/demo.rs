@@ -13,7 +13,7 @@ use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, TrackO
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::fitted_outline::FittedOutline;
-use crate::history::History;
+use crate::history::Histories;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::{
@@ -129,13 +129,13 @@ struct Identification {
     trace: TraceWriter<WholeFile>,
     trace_path: PathBuf,
     curves: CurveFitter,
-    histories: Vec<History>,
+    histories: Histories,
 }
 
 /// What one method found.
 struct Found {
     results: Vec<ObjectResult>,
-    histories: Vec<History>,
+    histories: Histories,
 }
 
 impl Identification {
@@ -144,13 +144,13 @@ impl Identification {
         let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.model())
             .map_err(|error| file_failure(trace_path, &error))?;
         let curves = CurveFitter::new(&options)?;
-        Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories: Vec::new() })
+        Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories: Histories::default() })
     }
 
     fn take(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
         let observation = self.tracker.push(frame);
         self.trace.write(&observation).map_err(|error| file_failure(&self.trace_path, &error))?;
-        History::take(&mut self.histories, &observation, Some(frame), &mut self.curves);
+        self.histories.take(&observation, Some(frame), &mut self.curves);
         Ok(observation)
     }
 
@@ -158,7 +158,7 @@ impl Identification {
     fn finish(self, figure: &Path, truth: &Truth) -> Result<Found, Failure> {
         let Self { options, tracker, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
-        WholeFile::write(figure, &parameter_figure(&histories, options.motion.model(), Some(truth)))?;
+        WholeFile::write(figure, &parameter_figure(&histories.list, options.motion.model(), Some(truth)))?;
         let results = tracker.results();
         for warning in results.iter().flat_map(|result| &result.warnings) {
             warn(&format!("{} method: {warning}", tracker.settings().method()));

@@ -8,7 +8,9 @@ use crate::failure::{Failure, warn};
 use crate::fitted_outline::FittedOutline;
 use crate::input::Input;
 use crate::left_out::MissingWarnings;
-use crate::output::{Sink, WholeFile, fit_figure, refuse_overwriting, write_fit_table, write_fits_json};
+use crate::output::{
+    Sink, WholeFile, fit_figure, refuse_overwriting, refuse_standard_output, write_fit_table, write_fits_json,
+};
 use crate::progress::Progress;
 use crate::seen::{Item, Missing};
 
@@ -17,6 +19,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let mut fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
     if let Some(svg) = &args.svg {
         refuse_overwriting(&args.inputs, &[svg])?;
+        refuse_standard_output(&[svg])?;
     }
     let input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();

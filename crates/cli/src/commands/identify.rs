@@ -10,18 +10,18 @@ use freeform_motion::{Tracker, Warning};
 use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
-use crate::history::History;
+use crate::history::Histories;
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::{
-    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, write_identify_json,
-    write_identify_table, write_parameters, write_report, write_trajectory,
+    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, refuse_standard_output,
+    write_identify_json, write_identify_table, write_parameters, write_report, write_trajectory,
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
-use crate::reader::{Event, Pace, follow};
+use crate::reader::{Event, follow};
 use crate::truth::Truth;
 
 /// Identifies the motion of every object of a sequence.
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
     interrupt::listen();
     let mut left_out = LeftOut::default();
-    let failure = follow(&mut tracker, &mut input, Pace::Ahead, args.quiet, |event| {
+    let failure = follow(&mut tracker, &mut input, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
             overlay.take(event)?;
         }
@@ -114,6 +114,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
+    refuse_standard_output(&outputs)?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
         return Err(Failure::unusable("--trajectory: the adaptive method gives no poses; use --method filter"));
     }
@@ -136,7 +137,7 @@ struct Files<'a> {
     trajectory: Option<(&'a Path, WholeFile, Trajectory)>,
     svg: Option<WholeFile>,
     curves: CurveFitter,
-    histories: Vec<History>,
+    histories: Histories,
 }
 
 impl<'a> Files<'a> {
@@ -149,7 +150,14 @@ impl<'a> Files<'a> {
         let trajectory = trajectory.map(|path| Ok((path, WholeFile::create(path)?, Trajectory::default())));
         let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
         let (trace, trajectory) = (trace.transpose()?, trajectory.transpose()?);
-        Ok(Self { args, trace, trajectory, svg, curves: CurveFitter::new(&args.options)?, histories: Vec::new() })
+        Ok(Self {
+            args,
+            trace,
+            trajectory,
+            svg,
+            curves: CurveFitter::new(&args.options)?,
+            histories: Histories::default(),
+        })
     }
 
     /// Takes what a frame of an object gave.
@@ -161,7 +169,7 @@ impl<'a> Files<'a> {
             trajectory.take(observation);
         }
         if self.args.svg.is_some() || self.args.report.is_some() {
-            History::take(&mut self.histories, observation, frame, &mut self.curves);
+            self.histories.take(observation, frame, &mut self.curves);
         }
         Ok(())
     }
@@ -201,7 +209,7 @@ impl<'a> Files<'a> {
         if results.iter().all(|result| result.estimate.is_none()) {
             not_written(&[("--svg", svg.is_some())], "there is no motion to draw");
         } else if let Some(file) = svg {
-            file.finish_with(parameter_figure(&histories, model, truth).as_bytes())?;
+            file.finish_with(parameter_figure(&histories.list, model, truth).as_bytes())?;
         }
         Ok(())
     }

@@ -18,6 +18,9 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     if !input.has_pictures() {
         return Err(Failure::unusable(format_args!("{}: not a picture", input.name)));
     }
+    if let Some(warning) = input.warning().filter(|_| !args.quiet) {
+        warn(&warning);
+    }
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::open(&args.output)?;

@@ -1,3 +1,5 @@
+use std::collections::HashMap;
+
 use freeform_motion::outline_io::{OutlineFrame, read_shape};
 use freeform_motion::recognise::{Evidence, RecogniseError, RecogniseSettings, Recogniser, Recognition};
 
@@ -24,15 +26,15 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     let input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
     let mut sink = Sink::stdout();
-    let mut objects: Vec<SeenObject> = Vec::new();
+    let mut objects = SeenObjects::default();
     let (mut reasons, mut warnings, mut failure) = (Vec::new(), MissingWarnings::default(), None);
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     for item in input {
         progress.advance();
         match item {
-            Ok(Item::Outline(frame, _)) => seen(&mut objects, &frame.object).take(&mut recogniser, &frame),
+            Ok(Item::Outline(frame, _)) => objects.of(&frame.object).take(&mut recogniser, &frame),
             Ok(Item::NoOutline { object, reason, .. }) => {
-                seen(&mut objects, &object).frames_rejected += 1;
+                objects.of(&object).frames_rejected += 1;
                 reasons.push(reason);
             }
             Ok(Item::Gap(missing)) => reasons.extend(warnings.take(&missing)),
@@ -47,8 +49,8 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
         let error = object.first_refusal.as_ref()?;
         Some(format!("{name}: {} frame(s) of object {:?} left out: {error}", object.frames_rejected, object.object))
     };
-    reasons.extend(objects.iter().filter_map(refused));
-    let recognised: Vec<_> = objects.into_iter().filter_map(|object| object.recognised(&recogniser)).collect();
+    reasons.extend(objects.list.iter().filter_map(refused));
+    let recognised: Vec<_> = objects.list.into_iter().filter_map(|object| object.recognised(&recogniser)).collect();
     if recognised.is_empty() {
         let nothing = reasons.into_iter().next().unwrap_or_else(|| format!("{name}: no outline in the file"));
         return Err(failure.unwrap_or_else(|| Failure::no_result(nothing)));
@@ -87,14 +89,25 @@ struct SeenObject {
     first_refusal: Option<RecogniseError>,
 }
 
-/// The object of a name, which may be new.
-fn seen<'a>(objects: &'a mut Vec<SeenObject>, name: &str) -> &'a mut SeenObject {
-    let place = objects.iter().position(|object| object.object == name).unwrap_or_else(|| {
-        let object = name.to_owned();
-        objects.push(SeenObject { object, evidence: Evidence::new(), frames_rejected: 0, first_refusal: None });
-        objects.len() - 1
-    });
-    &mut objects[place]
+/// Objects in the order in which they first appeared.
+#[derive(Default)]
+struct SeenObjects {
+    list: Vec<SeenObject>,
+    /// By their names.
+    positions: HashMap<String, usize>,
+}
+
+impl SeenObjects {
+    /// The object of a name, which may be new.
+    fn of(&mut self, name: &str) -> &mut SeenObject {
+        let position = self.positions.get(name).copied().unwrap_or_else(|| {
+            let (object, evidence) = (name.to_owned(), Evidence::new());
+            self.positions.insert(object.clone(), self.list.len());
+            self.list.push(SeenObject { object, evidence, frames_rejected: 0, first_refusal: None });
+            self.list.len() - 1
+        });
+        &mut self.list[position]
+    }
 }
 
 impl SeenObject {

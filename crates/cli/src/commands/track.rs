@@ -6,14 +6,15 @@ use crate::args::TrackArgs;
 use crate::failure::{Failure, warn};
 use crate::input::Input;
 use crate::interrupt;
-use crate::output::{Sink, refuse_overwriting, track_line};
+use crate::output::{Sink, closing_line, refuse_overwriting, refuse_standard_output, track_line};
 use crate::overlay::ObservedOverlay;
-use crate::reader::{Event, Pace, follow};
+use crate::reader::{Event, follow_stream};
 
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = args.overlay.iter().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
+    refuse_standard_output(&outputs)?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let mut overlay =
@@ -23,7 +24,11 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
-    let failure = follow(&mut tracker, &mut input, Pace::FrameByFrame, args.quiet, |event| {
+    let failure = follow_stream(&mut tracker, &mut input, args.quiet, |event| {
+        let event = match event {
+            Ok(event) => event,
+            Err(left) => return write_line(&mut sink, &closing_line(left).map_err(Failure::unusable)?),
+        };
         if let Some(overlay) = &mut overlay {
             overlay.take(event)?;
         }
@@ -33,8 +38,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         }
         accepted += u64::from(observation.is_accepted());
         first_reason = first_reason.take().or_else(|| observation.rejection.clone());
-        let line = track_line(observation).map_err(Failure::unusable)?;
-        writeln!(sink, "{line}").and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
+        write_line(&mut sink, &track_line(observation).map_err(Failure::unusable)?)
     })?;
     if let Some(overlay) = overlay {
         overlay.finish()?;
@@ -48,4 +52,9 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         (0, None) => Err(Failure::no_result(format_args!("{name}: no outline in the file"))),
         _ => Ok(()),
     }
+}
+
+/// Writes a line, which is to be read at once.
+fn write_line(sink: &mut Sink, line: &str) -> Result<(), Failure> {
+    writeln!(sink, "{line}").and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
 }

@@ -1,6 +1,7 @@
 use std::io::{self, Write};
 
 use freeform_experiments::paper::Table;
+use freeform_motion::outline_io::readable;
 
 /// Columns as wide as their widest entry: those listed in `text_columns` to the left, numbers to the right. Columns that no row
 /// has are left out.
@@ -12,7 +13,9 @@ pub(crate) fn write_aligned(
 ) -> io::Result<()> {
     let count = rows.first().map_or(heads.len(), Vec::len);
     let heads = heads.iter().take(count).map(|&head| head.to_owned()).collect();
-    sink.write_all(aligned(&heads, rows, "   ", |column| text_columns.contains(&column)).as_bytes())
+    let rows: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|cell| readable(cell).to_string()).collect()).collect();
+    sink.write_all(aligned(&heads, &rows, "   ", |column| text_columns.contains(&column)).as_bytes())
 }
 
 /// A table of the experiments.

@@ -23,7 +23,7 @@ impl<W: Write> TraceWriter<W> {
     /// Writes one frame. What is missing stays empty.
     pub(crate) fn write(&mut self, observation: &Observation) -> io::Result<()> {
         let mut row = vec![
-            observation.object.clone(),
+            text_cell(&observation.object),
             observation.frame.to_string(),
             optional(observation.time),
             observation.phase.map_or("", ObjectPhase::name).to_owned(),
@@ -47,6 +47,12 @@ fn values(estimate: &MotionEstimate) -> impl Iterator<Item = String> + '_ {
     estimate.parameters().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])
 }
 
+/// A name as a cell that no spreadsheet takes for a formula: with a `'` before what would begin one. Numbers stay as they are.
+pub(super) fn text_cell(name: &str) -> String {
+    let begins_formula = name.starts_with(['=', '+', '-', '@', '\t', '\r']) && name.parse::<f64>().is_err();
+    if begins_formula { format!("'{name}") } else { name.to_owned() }
+}
+
 fn optional(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
@@ -63,7 +69,7 @@ pub(crate) fn write_parameters(sink: &mut impl Write, results: &[ObjectResult]) 
             let value = found.get(index).and_then(|p| p.value);
             let deviation = found.get(index).and_then(|p| p.standard_deviation);
             let row = [
-                result.object.clone(),
+                text_cell(&result.object),
                 result.method.name().to_owned(),
                 result.motion.to_string(),
                 result.frames.to_string(),
@@ -78,4 +84,23 @@ pub(crate) fn write_parameters(sink: &mut impl Write, results: &[ObjectResult]) 
         }
     }
     writer.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::text_cell;
+
+    #[test]
+    fn a_name_cannot_become_a_formula() {
+        for (name, cell) in [
+            ("=1+1", "'=1+1"),
+            ("+a", "'+a"),
+            ("-2+3", "'-2+3"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("-1", "-1"),
+            ("a=b", "a=b"),
+        ] {
+            assert_eq!(text_cell(name), cell);
+        }
+    }
 }

@@ -1,14 +1,17 @@
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, IntoInnerError, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 
-use freeform_motion::outline_io::picture_files;
 use tempfile::{Builder, NamedTempFile};
 
+use super::destination::{destination, folder_of};
 use crate::failure::{Failure, plain};
 use crate::interrupt::Unfinished;
 use crate::progress::would_stand_in_output;
+
+/// Bytes of a name that the name of the unfinished file repeats: with what is added these are less than the usual 255.
+const LONGEST_PREFIX: usize = 200;
 
 /// A file that appears whole or not at all: written beside its place and moved there in the end. A place that is no
 /// regular file (a device, a pipe) is written to as it is.
@@ -71,23 +74,26 @@ impl WholeFile {
 
 impl Place {
     fn open(path: &Path) -> io::Result<Self> {
-        // Through links, so that what they point to is replaced and not they.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        let old = fs::metadata(&target).ok();
+        if path.as_os_str() == "-" {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "standard output is for the result; for a file of this name write ./-",
+            ));
+        }
+        let old = fs::metadata(path).ok();
         if let Some(old) = &old {
             if !old.is_file() {
-                return Ok(Self::Device(OpenOptions::new().write(true).open(&target)?));
+                return Ok(Self::Device(OpenOptions::new().write(true).open(path)?));
             }
             if old.permissions().readonly() {
                 return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
             }
         }
+        let target = destination(path)?;
         let Some(file_name) = target.file_name() else {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file"));
         };
-        let mut prefix = OsString::from(".");
-        prefix.push(file_name);
-        prefix.push(".");
+        let prefix = prefix_of(file_name);
         let folder = folder_of(&target);
         // A name of its own, whatever a run that was killed has left behind.
         let mut builder = Builder::new();
@@ -107,6 +113,21 @@ impl Place {
         file.as_file().sync_all()?;
         file.persist(target).map(drop).map_err(|error| error.error)
     }
+}
+
+/// What the name of an unfinished file begins with. Long names are cut, so that it is not longer than file systems allow.
+fn prefix_of(file_name: &OsStr) -> OsString {
+    let mut prefix = OsString::from(".");
+    match file_name.to_str() {
+        Some(text) if text.len() > LONGEST_PREFIX => {
+            let ends = text.char_indices().map(|(start, _)| start);
+            prefix.push(&text[..ends.take_while(|end| *end <= LONGEST_PREFIX).last().unwrap_or(0)]);
+        }
+        None if file_name.len() > LONGEST_PREFIX => prefix.push("unfinished"),
+        _ => prefix.push(file_name),
+    }
+    prefix.push(".");
+    prefix
 }
 
 impl Write for Place {
@@ -189,52 +210,4 @@ impl Write for Sink {
             Self::File(file) => file.flush(),
         }
     }
-}
-
-/// Refuses a folder for drawings that is the input, or holds it.
-pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: &Path) -> Result<(), Failure> {
-    let Some(place) = fs::canonicalize(folder).ok().filter(|place| place.is_dir()) else { return Ok(()) };
-    for input in inputs.iter().filter(|input| input.as_os_str() != "-") {
-        // A pattern is no file, but its folder is one.
-        let named_in = fs::canonicalize(folder_of(input)).ok();
-        let input = fs::canonicalize(input).ok();
-        let lies_in = input.as_deref().and_then(Path::parent);
-        if [named_in.as_deref(), input.as_deref(), lies_in].contains(&Some(&place)) {
-            let reason = format_args!("{}: the pictures of the input are here, draw elsewhere", place.display());
-            return Err(Failure::unusable(reason));
-        }
-    }
-    Ok(())
-}
-
-/// The folder that a file is named in.
-fn folder_of(file: &Path) -> &Path {
-    // A name without a folder has an empty one.
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Refuses output files that are an input or one of its pictures, or one another.
-pub(crate) fn refuse_overwriting(inputs: &[PathBuf], outputs: &[&Path]) -> Result<(), Failure> {
-    inputs.iter().try_for_each(|input| refuse_files_of(input, outputs))?;
-    for (index, output) in outputs.iter().enumerate() {
-        let is_device = output.exists() && !output.is_file();
-        if outputs[..index].contains(output) && !is_device {
-            return Err(Failure::unusable(format_args!("{}: given for two outputs", output.display())));
-        }
-    }
-    Ok(())
-}
-
-fn refuse_files_of(input: &Path, outputs: &[&Path]) -> Result<(), Failure> {
-    // What cannot be listed cannot be read either, which is told in its place.
-    let files = if input.as_os_str() == "-" { Vec::new() } else { picture_files(input).unwrap_or_default() };
-    for output in outputs {
-        if let Some(place) = fs::canonicalize(output).ok().filter(|place| place.is_file())
-            && files.iter().any(|file| fs::canonicalize(file).is_ok_and(|file| file == place))
-        {
-            let what = if files == [input] { "the input" } else { "a file of the input" };
-            return Err(Failure::unusable(format_args!("{}: this is {what}", output.display())));
-        }
-    }
-    Ok(())
 }

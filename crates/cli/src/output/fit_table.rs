@@ -1,6 +1,7 @@
 use std::io::{self, Write};
 
 use freeform_motion::curve_fit::exponents;
+use freeform_motion::outline_io::readable;
 use nalgebra::{Complex, Point2};
 
 use super::number::{short, significant};
@@ -19,7 +20,7 @@ pub(crate) fn write_fit_table(sink: &mut impl Write, fitted: &FittedOutline, bla
     let degree = polynomial.degree();
     let FittedOutline { object, frame, time, .. } = fitted;
     let (time, points) = (short(*time), diagnostics.point_count);
-    writeln!(sink, "object {object}, frame {frame}, {time} s: degree {degree}, {points} points")?;
+    writeln!(sink, "object {}, frame {frame}, {time} s: degree {degree}, {points} points", readable(object))?;
     let margin = significant(diagnostics.boundedness_margin, 3);
     let constraint = if diagnostics.constraint_active { ", constraint active" } else { "" };
     let bounded = if fitted.fit.is_bounded() { "yes" } else { "no" };

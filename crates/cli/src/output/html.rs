@@ -5,7 +5,7 @@ use freeform_motion::tracker::{FrameRanges, ObjectResult};
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
 use super::velocity::meaning_of_v;
-use crate::history::History;
+use crate::history::{Histories, History};
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::plot::{escape, panel_svg};
@@ -39,7 +39,7 @@ pub(crate) struct Report<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Findings<'a> {
     pub(crate) results: &'a [ObjectResult],
-    pub(crate) histories: &'a [History],
+    pub(crate) histories: &'a Histories,
 }
 
 /// A page that needs nothing but itself.
@@ -58,7 +58,7 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
     }
     for Findings { results, histories } in &report.findings {
         for result in *results {
-            let history = histories.iter().find(|history| history.object == result.object);
+            let history = histories.of(&result.object);
             write_object(&mut body, result, history, report);
         }
     }

@@ -10,6 +10,7 @@ use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 use super::velocity::VelocityJson;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
+use crate::reader::Left;
 
 /// The result as one JSON object.
 pub(crate) fn write_identify_json(
@@ -41,6 +42,22 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         generator: estimate.and_then(generator_rows),
         reason: observation.rejection.as_ref().map(ToString::to_string),
         ambiguity: observation.ambiguity.as_ref().map(AmbiguityJson::from),
+    })
+}
+
+/// The last line of an object of a stream that has left, without its end.
+pub(crate) fn closing_line(Left { seen, result }: &Left) -> serde_json::Result<String> {
+    serde_json::to_string(&TrackLine {
+        schema: "freeform.track/1",
+        object: &seen.object,
+        frame: seen.frame,
+        time: seen.time,
+        phase: Some("closed"),
+        accepted: false,
+        parameters: result.estimate.as_ref().map(|estimate| Parameters(estimate, &[])),
+        generator: result.estimate.as_ref().and_then(generator_rows),
+        reason: Some("not seen for long, and forgotten".to_owned()),
+        ambiguity: result.ambiguity.as_ref().map(AmbiguityJson::from),
     })
 }
 

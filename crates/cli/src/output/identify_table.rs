@@ -1,5 +1,6 @@
 use std::io::{self, Write};
 
+use freeform_motion::outline_io::readable;
 use freeform_motion::riccati::ParameterKind;
 use freeform_motion::significant;
 use freeform_motion::tracker::ObjectResult;
@@ -98,7 +99,8 @@ pub(crate) fn write_identify_table(
         let method = result.method.name();
         writeln!(
             sink,
-            "object {object}: {motion} motion, {method} method, {frames} frames, {frames_rejected} rejected"
+            "object {}: {motion} motion, {method} method, {frames} frames, {frames_rejected} rejected",
+            readable(object)
         )?;
         write_aligned(sink, &COLUMNS, &parameter_rows(result, truth, b), &[0, 3])?;
         if let Some(velocity) = &result.velocity {

@@ -3,6 +3,8 @@ use std::io::{self, Write};
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use freeform_motion::tracker::{PoseAndMotion, Trajectory};
 
+use super::csv::text_cell;
+
 /// Writes a trajectory: one row per object and frame with pose and motion and their standard deviations. What is not known stays
 /// empty.
 pub(crate) fn write_trajectory(
@@ -20,7 +22,7 @@ pub(crate) fn write_trajectory(
     writer.write_record(&header).map_err(io::Error::from)?;
     for (row, known) in trajectory.rows().iter().zip(trajectory.poses(scale)) {
         let mut fields = vec![
-            row.object.clone(),
+            text_cell(&row.object),
             row.frame.to_string(),
             row.time.map_or_else(String::new, |time| time.to_string()),
             row.accepted.to_string(),

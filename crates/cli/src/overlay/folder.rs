@@ -24,6 +24,11 @@ pub(super) struct DrawingFolder {
 impl DrawingFolder {
     /// Refuses the name of a file, and a folder where drawings would overwrite other pictures.
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
+        if path.as_os_str() == "-" {
+            return Err(Failure::unusable(
+                "-: drawings do not go to standard output; for a folder of this name write ./-",
+            ));
+        }
         let within = path.ancestors().find(|place| place.exists());
         if within.is_some_and(|place| !place.is_dir()) || (is_named_as_file(path) && !path.is_dir()) {
             let reason = format_args!("{}: drawings go into a folder, or into one animation FILE.gif", path.display());

@@ -7,7 +7,14 @@ mod filter;
 mod fit;
 mod guides;
 mod help;
+#[cfg(unix)]
+mod hostile_names;
+#[cfg(unix)]
+mod hostile_outputs;
+#[cfg(unix)]
+mod hostile_streams;
 mod identify;
+mod memory;
 mod outline;
 mod pictures;
 mod projective;

@@ -24,37 +24,109 @@ pub struct Crossing {
 /// between samples. The grid is taken as surrounded by samples below any level. Where two opposite corners of a cell are
 /// inside and two are not, the inside corners are joined: the inside is connected over corners, as in 8-connected
 /// components. Values that are not numbers are below any level.
-pub fn of_samples([columns, rows]: [usize; 2], value: impl Fn(usize, usize) -> f64, level: f64) -> Vec<Vec<Crossing>> {
-    // A margin of one node stands for what surrounds the grid: no line leaves it.
-    let sample = |[column, row]: Node| {
-        let (x, y) = (usize::try_from(column - 1).ok()?, usize::try_from(row - 1).ok()?);
-        (x < columns && y < rows).then(|| value(x, y))
-    };
-    let is_inside = |node: Node| sample(node).is_some_and(|value| value >= level);
-    let grid = Grid { columns: columns + 2, rows: rows + 2, is_inside, joins_inside: |_| true };
-    // Every closed line has a first row, where it leads into the inside from the row before.
-    let starts = (1..=rows as i64).flat_map(|row| (1..=columns as i64).map(move |column| [column, row]));
-    let starts = starts.map(|inside| Step { left: [inside[0], inside[1] - 1], right: inside });
-    let lines = grid.lines(starts.filter(|start| is_inside(start.right)));
+pub fn of_samples(size: [usize; 2], value: impl Fn(usize, usize) -> f64, level: f64) -> Vec<Vec<Crossing>> {
+    let samples = Samples { size, value, level };
+    let lines = samples.grid().lines(samples.starts());
+    lines.iter().map(|line| line.steps.iter().map(|step| samples.crossing(*step)).collect()).collect()
+}
 
-    let crossing = |Step { left: outside, right: inside }: &Step| {
-        let (share, at_edge) = match (sample(*inside), sample(*outside)) {
-            (Some(inside), Some(outside)) => (crossing_share(inside, outside, level, SAMPLE_CLEARANCE), false),
+/// A line would have more crossings than are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("an isoline has more than {most} points")]
+pub struct LineTooLong {
+    /// Most crossings that were asked for.
+    pub most: usize,
+}
+
+/// Of the lines of [`of_samples`] the one with the largest [`signed_area`], the last of several; `None` if there is none.
+/// Nothing is kept of the others, of which there may be as many as samples.
+///
+/// # Errors
+/// A line, this or another, has more than `most` crossings.
+pub fn largest_of_samples(
+    size: [usize; 2],
+    value: impl Fn(usize, usize) -> f64,
+    level: f64,
+    most: usize,
+) -> Result<Option<Vec<Crossing>>, LineTooLong> {
+    let samples = Samples { size, value, level };
+    let grid = samples.grid();
+    let mut passed = grid.nothing_passed();
+    let mut largest: Option<(f64, Step)> = None;
+    for start in samples.starts() {
+        if !grid.begins_a_line(&passed, start) {
+            continue;
+        }
+        let mut count = 0;
+        let steps = grid.steps_from(start).inspect(|step| {
+            count += 1;
+            passed.mark(grid.index(*step));
+        });
+        let area = signed_area_of(steps.take(most + 1).map(|step| samples.crossing(step)));
+        if count > most {
+            return Err(LineTooLong { most });
+        }
+        if largest.is_none_or(|(before, _)| before.total_cmp(&area).is_le()) {
+            largest = Some((area, start));
+        }
+    }
+    Ok(largest.map(|(_, start)| grid.steps_from(start).map(|step| samples.crossing(step)).collect()))
+}
+
+/// Samples of a grid and a level. A margin of one node stands for what surrounds the grid: no line leaves it.
+struct Samples<V> {
+    /// Columns and rows.
+    size: [usize; 2],
+    value: V,
+    level: f64,
+}
+
+impl<V: Fn(usize, usize) -> f64> Samples<V> {
+    fn sample(&self, [column, row]: Node) -> Option<f64> {
+        let (x, y) = (usize::try_from(column - 1).ok()?, usize::try_from(row - 1).ok()?);
+        (x < self.size[0] && y < self.size[1]).then(|| (self.value)(x, y))
+    }
+
+    fn is_inside(&self, node: Node) -> bool {
+        self.sample(node).is_some_and(|value| value >= self.level)
+    }
+
+    fn grid(&self) -> Grid<impl Fn(Node) -> bool, impl Fn(Node) -> bool> {
+        let [columns, rows] = self.size;
+        Grid { columns: columns + 2, rows: rows + 2, is_inside: |node| self.is_inside(node), joins_inside: |_| true }
+    }
+
+    /// Steps into the inside from the row before: every closed line has a first row, where it has one.
+    fn starts(&self) -> impl Iterator<Item = Step> {
+        let [columns, rows] = self.size.map(|count| count as i64);
+        let nodes = (1..=rows).flat_map(move |row| (1..=columns).map(move |column| [column, row]));
+        let steps = nodes.map(|inside| Step { left: [inside[0], inside[1] - 1], right: inside });
+        steps.filter(|start| self.is_inside(start.right))
+    }
+
+    fn crossing(&self, Step { left: outside, right: inside }: Step) -> Crossing {
+        let (share, at_edge) = match (self.sample(inside), self.sample(outside)) {
+            (Some(inside), Some(outside)) => (crossing_share(inside, outside, self.level, SAMPLE_CLEARANCE), false),
             _ => (0.5, true),
         };
         let [x, y] = [0, 1].map(|k| (inside[k] - 1) as f64 + share * (outside[k] - inside[k]) as f64);
         Crossing { x, y, at_edge }
-    };
-    lines.iter().map(|line| line.steps.iter().map(crossing).collect()).collect()
+    }
 }
 
 /// Area within a closed line of [`of_samples`], in squares of the sample spacing: positive with the inside within, negative
 /// for a hole.
 #[must_use]
 pub fn signed_area(line: &[Crossing]) -> f64 {
-    let next = line.iter().cycle().skip(1);
+    signed_area_of(line.iter().copied())
+}
+
+fn signed_area_of(mut line: impl Iterator<Item = Crossing>) -> f64 {
+    let Some(first) = line.next() else { return 0.0 };
+    let twice = |p: Crossing, q: Crossing| p.x * q.y - p.y * q.x;
+    let (sum, last) = line.fold((0.0, first), |(sum, p), q| (sum + twice(p, q), q));
     // The minus sign turns rows upwards.
-    -0.5 * line.iter().zip(next).map(|(p, q)| p.x * q.y - p.y * q.x).sum::<f64>()
+    -0.5 * (sum + twice(last, first))
 }
 
 #[cfg(test)]
@@ -109,6 +181,12 @@ mod tests {
                 prop::collection::vec(prop::collection::vec((0..5_u8).prop_map(f64::from), w), h)),
         ) {
             let lines = of_samples([values[0].len(), values.len()], |x, y| values[y][x], 2.0);
+            let largest = lines.iter().max_by(|a, b| signed_area(a).total_cmp(&signed_area(b)));
+            let found = |most: usize| largest_of_samples([values[0].len(), values.len()], |x, y| values[y][x], 2.0, most);
+            prop_assert_eq!(found(1000).expect("short lines"), largest.cloned());
+            let longest = lines.iter().map(Vec::len).max().unwrap_or(0);
+            prop_assert_eq!(found(longest).is_ok(), true);
+            prop_assert_eq!(found(longest.saturating_sub(1)).is_ok(), longest == 0);
             for (y, row) in values.iter().enumerate() {
                 for (x, value) in row.iter().enumerate() {
                     let winding: i32 = lines.iter().map(|line| winding(line, x as f64, y as f64)).sum();

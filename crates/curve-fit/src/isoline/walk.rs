@@ -27,6 +27,20 @@ pub(super) struct Line {
     pub(super) closed: bool,
 }
 
+/// Which steps of a grid have been gone.
+#[derive(Debug)]
+pub(super) struct Passed(Vec<u64>);
+
+impl Passed {
+    fn has(&self, index: usize) -> bool {
+        self.0[index / 64] >> (index % 64) & 1 == 1
+    }
+
+    pub(super) fn mark(&mut self, index: usize) {
+        self.0[index / 64] |= 1 << (index % 64);
+    }
+}
+
 /// A grid of nodes. Lines end where they leave it.
 pub(super) struct Grid<I, J> {
     pub(super) columns: usize,
@@ -42,20 +56,35 @@ impl<I: Fn(Node) -> bool, J: Fn(Node) -> bool> Grid<I, J> {
     /// The lines through those of these steps that a line passes, in their order, each line once. Closed lines come whole;
     /// open ones from the step on, so that their starts are to be those at the edge of the grid.
     pub(super) fn lines(&self, starts: impl Iterator<Item = Step>) -> Vec<Line> {
-        // Two to a node: the way to its right and the way upwards.
-        let mut passed = vec![false; 2 * self.columns * self.rows];
+        let mut passed = self.nothing_passed();
         let mut lines = Vec::new();
         for start in starts {
-            if !passed[self.index(start)] && (self.is_inside)(start.left) != (self.is_inside)(start.right) {
+            if self.begins_a_line(&passed, start) {
                 let line = self.follow(start);
-                line.steps.iter().for_each(|step| passed[self.index(*step)] = true);
+                line.steps.iter().for_each(|step| passed.mark(self.index(*step)));
                 lines.push(line);
             }
         }
         lines
     }
 
-    fn index(&self, step: Step) -> usize {
+    /// No step of this grid.
+    pub(super) fn nothing_passed(&self) -> Passed {
+        // Two to a node: the way to its right and the way upwards.
+        Passed(vec![0; (2 * self.columns * self.rows).div_ceil(64)])
+    }
+
+    /// Whether a line that has not been followed passes here.
+    pub(super) fn begins_a_line(&self, passed: &Passed, start: Step) -> bool {
+        !passed.has(self.index(start)) && (self.is_inside)(start.left) != (self.is_inside)(start.right)
+    }
+
+    /// The steps of the line from one on, not twice the same: to where it leaves the grid, or to the one before the first.
+    pub(super) fn steps_from(&self, start: Step) -> impl Iterator<Item = Step> {
+        std::iter::successors(Some(start), move |present| self.next(*present).filter(|next| *next != start))
+    }
+
+    pub(super) fn index(&self, step: Step) -> usize {
         let [[column, row], [_, far_row]] = step.ascending();
         2 * (row as usize * self.columns + column as usize) + usize::from(far_row > row)
     }

@@ -71,11 +71,6 @@ fn missing_columns_are_named_with_the_header_found() {
     let long = format!("{}\n", "abc,".repeat(100));
     let start = "abc,".repeat(10);
     refused(long, &[], &format!("in.csv:1: missing column(s) frame, time, x, y, the header is \"{start}...\""));
-    let utf16: Vec<u8> = "frame,time,x,y\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
-    let (frames, errors) = read_all(utf16);
-    assert!(frames.is_empty());
-    assert!(errors[0].0.starts_with("in.csv:1: missing column(s) frame, time, x, y"), "{errors:?}");
-    assert_eq!(errors[0].0.lines().count(), 1);
 }
 
 #[test]
@@ -329,4 +324,34 @@ fn a_file_that_cannot_be_opened_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let error = OutlineReader::open(folder.path()).expect_err("a folder is no file");
     assert!(matches!(error.kind, ReadErrorKind::Io(_)), "{error}");
+}
+
+#[test]
+fn comments_and_empty_lines_may_have_any_length() {
+    let comment = "# ".to_owned() + &"x".repeat(78) + "\n";
+    let many = comment.repeat(40_000) + &"\n".repeat(2_000_000) + "#" + &"y".repeat(3_000_000) + "\n";
+    let rest = many.clone() + &TWO_FRAMES[15..];
+    assert_eq!(read_all(many + "frame,time,x,y\n" + &rest), (vec![0, 1], vec![]));
+}
+
+#[test]
+fn a_quote_that_is_never_closed_is_told_though_comments_seem_to_follow() {
+    let text = "frame,time,x,y\n0,0,\"1\n".to_owned() + &"# a comment within quotes\n".repeat(100_000);
+    refused(text, &[], "in.csv:40332: no complete row within 1048576 bytes");
+}
+
+#[test]
+fn what_is_no_csv_is_named_for_what_it_is() {
+    let utf16 = |text: &str| -> Vec<u8> { text.encode_utf16().flat_map(u16::to_le_bytes).collect() };
+    let message = "in.csv: the text is UTF-16, expected UTF-8: save it as such, or use iconv -f UTF-16 -t UTF-8";
+    refused([b"\xff\xfe".to_vec(), utf16(TWO_FRAMES)].concat(), &[], message);
+    refused(utf16(TWO_FRAMES), &[], message);
+    let message = "in.csv: compressed with gzip: unpack it, such as by a pipe: gzip -dc FILE | ...";
+    refused(b"\x1f\x8b\x08\0\0\0\0\0\0\x03".as_slice(), &[], message);
+    let message = "in.csv: compressed with zstd: unpack it, such as by a pipe: zstd -dc FILE | ...";
+    refused(b"\x28\xb5\x2f\xfd\x24\0".as_slice(), &[], message);
+    let returns = TWO_FRAMES.replace('\n', "\r");
+    let message = "the lines end with carriage returns alone, expected line feeds: use tr '\\r' '\\n'";
+    refused(&returns, &[], &format!("in.csv: {message}"));
+    refused(returns.repeat(20_000), &[], &format!("in.csv:1: {message}"));
 }

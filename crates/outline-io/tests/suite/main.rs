@@ -4,6 +4,7 @@ mod csv_bad_input;
 mod csv_cut_anywhere;
 mod csv_round_trip;
 mod identities;
+mod pictures_as_people_have_them;
 mod sequences;
 mod support;
 mod tracing;

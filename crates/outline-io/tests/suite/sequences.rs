@@ -114,7 +114,7 @@ fn video_has_the_rate_and_pixels_that_its_header_says() {
         let mut sequence = stream(bytes, SequenceSettings::default()).expect("a video");
         assert_eq!(sequence.pixel_aspect(), Some(8.0 / 7.0));
         let second = sequence.nth(1).expect("two frames").expect("a frame");
-        assert_eq!((second.time, &second.picture), (0.08, &pictures[1]), "{colour}");
+        assert_eq!((second.time, &*second.picture), (0.08, &pictures[1]), "{colour}");
         assert!(sequence.next().is_none());
     }
 }
@@ -124,7 +124,7 @@ fn video_of_more_than_8_bits_keeps_its_upper_ones() {
     let mut bytes = b"YUV4MPEG2 W2 H1 Cmono10\nFRAME\n".to_vec();
     bytes.extend([0xff, 0x03, 0x04, 0x00]);
     let frame = stream(bytes, SequenceSettings::default()).expect("a video").next().expect("a frame");
-    assert_eq!(frame.expect("a frame").picture.into_raw(), [255, 1]);
+    assert_eq!(frame.expect("a frame").picture.as_raw(), &[255, 1]);
 }
 
 #[test]
@@ -261,14 +261,14 @@ fn a_background_leaves_only_what_moves() {
         })
     };
     let pictures: Vec<GrayImage> = (0..20).map(|frame| with_disc(12.0 + 3.0 * f64::from(frame))).collect();
-    for background in [Background::Picture(ground.clone()), Background::RunningMedian(15)] {
+    for background in [Background::Picture(ground.clone().into()), Background::RunningMedian(15)] {
         let settings = PictureSettings { background: Some(background), ..PictureSettings::default() };
         for (frame, traced) in traced(pictures.clone(), settings).iter().enumerate() {
             let (_, object) = &traced.objects.as_ref().expect("the disc")[0];
             assert!((object.centre.x - 12.0 - 3.0 * frame as f64).abs() < 0.5, "frame {frame}: {}", object.centre);
         }
     }
-    let other_size = Background::Picture(GrayImage::new(3, 3));
+    let other_size = Background::Picture(GrayImage::new(3, 3).into());
     let settings = PictureSettings { background: Some(other_size), ..PictureSettings::default() };
     let refused = traced(vec![disc(20.0, 10.0)], settings);
     let said = refused[0].objects.as_ref().expect_err("another size").to_string();

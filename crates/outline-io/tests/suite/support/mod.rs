@@ -3,7 +3,7 @@ use freeform_outline_io::{GrayImage, PictureError, PictureFrame, PictureOutlines
 
 fn frames(pictures: Vec<GrayImage>) -> impl Iterator<Item = Result<PictureFrame, PictureError>> {
     (0_u64..).zip(pictures).map(|(frame, picture)| {
-        Ok(PictureFrame { frame, time: frame as f64 / 30.0, file: "memory".to_owned(), picture })
+        Ok(PictureFrame { frame, time: frame as f64 / 30.0, file: "memory".to_owned(), picture: picture.into() })
     })
 }
 

@@ -1,5 +1,7 @@
-//! Standard input that Ctrl-C ends, also while nothing comes.
+//! Input that Ctrl-C ends, also while nothing comes.
+use std::fs::File;
 use std::io::{self, BufRead, Read};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
@@ -15,22 +17,35 @@ const AHEAD: usize = 4;
 /// How often Ctrl-C is looked for while nothing comes.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Standard input, read by a separate thread, since a waiting read cannot be cancelled.
-pub(crate) struct Stdin {
+/// Standard input or a named pipe, read by a separate thread, since a waiting read cannot be cancelled.
+pub(crate) struct Awaited {
     chunks: Receiver<io::Result<Vec<u8>>>,
     chunk: Vec<u8>,
     used: usize,
 }
 
-impl Stdin {
+impl Awaited {
+    /// Standard input.
+    pub(crate) fn stdin() -> Self {
+        Self::read(|| Ok(io::stdin().lock()))
+    }
+
+    /// Something that is no file. To open it is to wait for somebody who writes to it.
+    pub(crate) fn open(path: PathBuf) -> Self {
+        Self::read(|| File::open(path))
+    }
+
     /// Starts reading.
-    pub(crate) fn open() -> Self {
+    fn read<R: Read>(open: impl FnOnce() -> io::Result<R> + Send + 'static) -> Self {
         let (sender, chunks) = sync_channel(AHEAD);
         thread::spawn(move || {
-            let mut stdin = io::stdin().lock();
+            let mut source = match open() {
+                Ok(source) => source,
+                Err(error) => return drop(sender.send(Err(error))),
+            };
             loop {
                 let mut chunk = vec![0; CHUNK];
-                let read = match stdin.read(&mut chunk) {
+                let read = match source.read(&mut chunk) {
                     Ok(0) => return,
                     Ok(count) => {
                         chunk.truncate(count);
@@ -49,7 +64,7 @@ impl Stdin {
     }
 }
 
-impl BufRead for Stdin {
+impl BufRead for Awaited {
     /// Empty at the end of the input, or when Ctrl-C has asked for one.
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         while self.used == self.chunk.len() {
@@ -67,7 +82,7 @@ impl BufRead for Stdin {
     }
 }
 
-impl Read for Stdin {
+impl Read for Awaited {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let available = self.fill_buf()?;
         let count = available.len().min(buffer.len());

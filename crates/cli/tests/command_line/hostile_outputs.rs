@@ -1,0 +1,148 @@
+//! Outputs under other names, and outputs that fail at any place.
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::{file, json, run, sequence, stderr, succeed};
+
+fn refused(arguments: &str, reason: &str) {
+    let output = run(arguments, &sequence(""));
+    assert_eq!(output.status.code(), Some(2), "{arguments}: {}", stderr(&output));
+    assert!(
+        stderr(&output).contains(reason) && stderr(&output).lines().count() == 1,
+        "{arguments}: {}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn two_outputs_on_one_file_are_refused_under_whatever_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    symlink("t.csv", path("link.csv")).expect("a link");
+    fs::create_dir(path("within")).expect("a folder");
+    // First while there is no such file, then with one, which may have two names.
+    for _ in 0..2 {
+        for other in ["./t.csv", "within/../t.csv", "link.csv"] {
+            refused(&format!("identify - --trace {} --report {}", path("t.csv"), path(other)), "given for two outputs");
+        }
+        if !Path::new(&path("t.csv")).exists() {
+            fs::write(path("t.csv"), "old").expect("a file");
+        }
+    }
+    fs::hard_link(path("t.csv"), path("hard.csv")).expect("a link");
+    refused(&format!("identify - --trace {} --svg {}", path("t.csv"), path("hard.csv")), "given for two outputs");
+    assert_eq!(fs::read_to_string(path("t.csv")).expect("the file"), "old");
+}
+
+#[test]
+fn standard_output_is_for_the_result_alone() {
+    for output in ["/dev/stdout", "/dev/fd/1"].into_iter().filter(|path| Path::new(path).exists()) {
+        refused(&format!("identify - --json --trace {output}"), "this is standard output, where the result goes");
+        refused(&format!("fit - --svg {output}"), "this is standard output, where the result goes");
+    }
+    for option in ["--trace", "--trajectory", "--svg", "--report"] {
+        refused(&format!("identify - {option} -"), "for a file of this name write ./-");
+    }
+    // Where nothing else goes there it is welcome.
+    let csv = succeed("simulate --seconds 0.1", "");
+    let rows = |text: &str| text.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(rows(&succeed("simulate --seconds 0.1 --output -", "")), rows(&csv));
+    if Path::new("/dev/stdout").exists() {
+        assert_eq!(rows(&succeed("simulate --seconds 0.1 --output /dev/stdout", "")), rows(&csv));
+    }
+}
+
+#[test]
+fn a_file_may_have_the_longest_name_that_there_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["x".repeat(255), "\u{e4}".repeat(127)] {
+        let path = folder.path().join(&name);
+        succeed(&format!("simulate --seconds 0.1 --output {}", path.display()), "");
+        assert!(path.is_file());
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 2);
+    let longer = folder.path().join("x".repeat(256));
+    refused(&format!("simulate --seconds 0.1 --output {}", longer.display()), "name too long");
+}
+
+#[test]
+fn a_link_that_leads_to_no_file_yet_is_followed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    fs::create_dir(path("data")).expect("a folder");
+    symlink("data/new.csv", path("first")).expect("a link");
+    symlink("first", path("second")).expect("a link");
+    succeed(&format!("simulate --seconds 0.1 --output {}", path("second").display()), "");
+    assert!(path("data/new.csv").is_file() && path("second").is_symlink());
+    symlink("round", path("round")).expect("a link");
+    refused(&format!("simulate --output {}", path("round").display()), "too many links");
+    symlink("no/where", path("astray")).expect("a link");
+    refused(&format!("simulate --output {}", path("astray").display()), "No such file");
+    assert!(path("astray").is_symlink());
+}
+
+#[test]
+fn wherever_writing_fails_old_files_stay_and_nothing_half_done_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = tempfile::tempdir().expect("a folder");
+    let csv = file(input.path(), "o.csv", sequence(""));
+    let pictures = input.path().join("p");
+    fs::create_dir(&pictures).expect("a folder");
+    for frame in 0..3 {
+        let inside = |x: u32, y: u32| (9 + frame..40 + frame).contains(&x) && (12..40 + x / 8).contains(&y);
+        let shade = |x, y| image::Luma([if inside(x, y) { 230 } else { 9 }]);
+        image::GrayImage::from_fn(64, 64, shade).save(pictures.join(format!("{frame}.png"))).expect("a picture");
+    }
+    let pictures = pictures.display();
+    let target = folder.path().join("target.gif").display().to_string();
+    let commands = [
+        format!("simulate --seconds 0.2 --output {target}"),
+        format!("identify {csv} --trace {target}"),
+        format!("identify {csv} --trajectory {target}"),
+        format!("identify {csv} --svg {target}"),
+        format!("identify {csv} --report {target}"),
+        format!("fit {csv} --svg {target}"),
+        format!("outline {pictures} --output {target}"),
+        format!("outline {pictures} --overlay {target}"),
+        format!("track {pictures} --overlay {target}"),
+        format!("identify {pictures} --overlay {target}"),
+    ];
+    let failing_after = |blocks: u64, command: &str| {
+        let mut shell = Command::new("sh");
+        let script = format!(r#"ulimit -f {blocks}; exec "$0" "$@" > /dev/null"#);
+        shell.args(["-c", &script]).arg(assert_cmd::cargo::cargo_bin("freeform"));
+        shell.args(command.split_whitespace()).output().expect("a shell")
+    };
+    for command in commands {
+        fs::write(&target, "old").expect("a file");
+        succeed(&command, "");
+        let blocks = fs::metadata(&target).expect("the file").len().div_ceil(512);
+        // A shell may count in blocks of twice the size, so that some of the last places are beyond the end.
+        let step = (blocks / 12).max(1);
+        let mut failures = 0;
+        for limit in (0..blocks).step_by(step as usize) {
+            fs::write(&target, "old").expect("a file");
+            let output = failing_after(limit, &command);
+            let content = fs::read(&target).expect("the file");
+            match output.status.code() {
+                Some(2) => {
+                    failures += 1;
+                    assert!(content == b"old", "{command}, {limit} blocks: the old file is gone");
+                    let message = stderr(&output);
+                    assert!(message.contains("target.gif: File too large"), "{command}, {limit} blocks: {message}");
+                }
+                code => assert!(code == Some(0) && content.len() as u64 > 512 * limit, "{command}, {limit}: {code:?}"),
+            }
+            let entries = fs::read_dir(folder.path()).expect("the folder").count();
+            assert_eq!(entries, 1, "{command}, {limit} blocks: something is left");
+        }
+        assert!(failures * 2 >= blocks.div_ceil(step), "{command}: {failures} failures of {blocks} blocks");
+    }
+    // A folder of drawings keeps those that are whole.
+    let drawn = folder.path().join("drawn").display().to_string();
+    assert_eq!(failing_after(1, &format!("outline {pictures} --overlay {drawn}")).status.code(), Some(2));
+    assert_eq!(fs::read_dir(&drawn).expect("the folder").count(), 0);
+    assert!(json(&succeed(&format!("identify {csv} --json"), "")).is_object());
+}

@@ -1,0 +1,109 @@
+//! Memory of the whole program on inputs that are small and unpack to much.
+#![cfg(target_os = "linux")]
+use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use image::{GrayImage, Luma};
+
+use crate::support::file;
+
+/// What the program may take for any picture, in kilobytes.
+const LIMIT: u64 = 3 << 19;
+
+/// Longest that a run may take with a build that is not optimised, on a machine that does other things too.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn entry(child: &Child, name: &str) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix(name))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// Exit status and largest memory of a run in kilobytes.
+fn peak(arguments: &[&str]) -> (Option<i32>, u64) {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("freeform"));
+    let mut child =
+        command.args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the binary runs");
+    let (begin, mut peak) = (Instant::now(), 0);
+    loop {
+        peak = peak.max(entry(&child, "VmHWM:").unwrap_or(0));
+        if let Some(status) = child.try_wait().expect("our child") {
+            return (status.code(), peak);
+        }
+        if begin.elapsed() > PATIENCE || peak > 2 * LIMIT {
+            child.kill().expect("our child");
+            child.wait().expect("our child");
+            panic!("{arguments:?}: {peak} kB after {:?}", begin.elapsed());
+        }
+        thread::sleep(Duration::from_millis(2));
+    }
+}
+
+fn picture(folder: &Path, name: &str, shade: impl Fn(u32, u32) -> bool) -> String {
+    let path = folder.join(name);
+    GrayImage::from_fn(8192, 8192, |x, y| Luma([if shade(x, y) { 255 } else { 0 }])).save(&path).expect("a picture");
+    path.to_str().expect("UTF-8").to_owned()
+}
+
+#[test]
+fn the_largest_picture_of_the_most_runs_and_points_stays_within_the_memory_that_is_promised() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let comb = picture(folder.path(), "comb.png", |x, y| y == 0 || x % 2 == 0);
+    for arguments in [&["outline", &comb][..], &["track", &comb, "--objects", "all"]] {
+        let (status, peak) = peak(arguments);
+        assert_eq!(status, Some(1), "{arguments:?}");
+        assert!((1 << 17..LIMIT).contains(&peak), "{arguments:?}: {peak} kB");
+    }
+}
+
+/// An animation of the largest size whose frames are of one pixel.
+fn animation(frames: usize) -> Vec<u8> {
+    let mut gif = b"GIF89a\x00\x20\xff\x1f\xf0\0\0\0\0\0\xff\xff\xff".to_vec();
+    for _ in 0..frames {
+        gif.extend(b"\x21\xf9\x04\x04\x0a\0\0\0\x2c\0\0\0\0\x01\0\x01\0\0\x02\x02\x44\x01\0");
+    }
+    gif.push(b';');
+    gif
+}
+
+#[test]
+fn frames_that_show_nothing_new_cost_next_to_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let gif = file(folder.path(), "small.gif", animation(5000));
+    for arguments in [&["outline", &gif][..], &["track", &gif], &["outline", &gif, "--background", "median"]] {
+        let (status, peak) = peak(arguments);
+        assert_eq!(status, Some(1), "{arguments:?}");
+        assert!(peak < LIMIT, "{arguments:?}: {peak} kB");
+    }
+}
+
+#[test]
+fn memory_does_not_grow_with_the_number_of_objects_that_come_and_go() {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("freeform"));
+    command.args(["track", "--quiet"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.spawn().expect("the binary runs");
+    let mut input = child.stdin.take().expect("a pipe");
+    let writer = thread::spawn(move || {
+        input.write_all(b"frame,time,x,y,object\n").expect("the binary reads");
+        for frame in 0..9000 {
+            let points = [(0, 0), (2, 0), (4, 1), (5, 3), (4, 5), (3, 6), (1, 5), (0, 4), (-1, 2)];
+            let rows = points.map(|(x, y)| format!("{frame},{frame},{x},{y},{frame}\n"));
+            input.write_all(rows.concat().as_bytes()).expect("the binary reads");
+        }
+    });
+    let mut lines = BufReader::new(child.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
+    // From here on an object leaves for each that comes.
+    assert_eq!(lines.by_ref().take(3000).count(), 3000);
+    let early = entry(&child, "RssAnon:").expect("our child");
+    assert_eq!(lines.by_ref().take(12_000).count(), 12_000);
+    let late = entry(&child, "RssAnon:").expect("our child");
+    lines.for_each(drop);
+    writer.join().expect("the writer ends");
+    assert!(child.wait().expect("it ends").success());
+    // 6000 objects would be more than 60 megabytes; their names are kept by the reader.
+    assert!(late < early + 3072, "{early} kB early, {late} kB late");
+}
