@@ -12,6 +12,8 @@ mod queues;
 mod recording;
 mod result;
 mod settings;
+#[cfg(feature = "serde")]
+mod state_bytes;
 mod trajectory;
 
 use std::collections::HashMap;
@@ -20,6 +22,8 @@ use freeform_outline_io::OutlineFrame;
 
 use self::{identifier::Identifier, object::TrackedObject};
 
+#[cfg(feature = "serde")]
+pub use self::state_bytes::TrackerStateError;
 pub use self::{
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},

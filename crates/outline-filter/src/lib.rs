@@ -56,6 +56,8 @@ mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase};
+#[cfg(feature = "serde")]
+pub use supervisor::{StateError, with_header, without_header};
 pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]

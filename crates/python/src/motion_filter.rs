@@ -5,6 +5,7 @@ use freeform_motion::outline_filter::{FilterSettings, FilterStep, MotionFilter, 
 use freeform_motion::tracker::ObjectPhase;
 use numpy::PyArray2;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::arrays::{array_of_matrix3, array_of_points};
 use crate::errors::{value_error, whole};
@@ -183,6 +184,42 @@ impl PyMotionFilter {
     #[getter]
     fn motion(&self) -> String {
         self.lock().settings().model.to_string()
+    }
+
+    /// Everything that the filter knows, as bytes: some 70 kB. Pickling uses them too.
+    ///
+    /// Returns
+    /// -------
+    /// bytes
+    ///     The first four are the version of the format.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.lock().to_bytes()).map_err(value_error)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// A filter that goes on where the one that gave the bytes was, to the last bit.
+    ///
+    /// Parameters
+    /// ----------
+    /// data : bytes
+    ///     From `to_bytes` of the same version.
+    ///
+    /// Returns
+    /// -------
+    /// MotionFilter
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Bytes of another version, damaged ones, or ones that describe no filter.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+        let inner = py.detach(|| MotionFilter::from_bytes(data)).map_err(value_error)?;
+        Ok(Self { inner: Mutex::new(inner) })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        Ok((slf.get_type().getattr("from_bytes")?, (slf.get().to_bytes(slf.py())?,)))
     }
 
     fn __copy__(&self) -> Self {

@@ -6,6 +6,7 @@ use freeform_motion::tracker::{MethodSettings, ObjectPhase, ObjectResult, Observ
 use freeform_motion::{Tracker, TrackerSettings, Warning};
 use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::errors::{value_error, whole};
 use crate::estimate::{PyEstimate, PyMotionState, PyPointVelocity};
@@ -160,6 +161,47 @@ impl PyTracker {
     #[getter]
     fn scale(&self) -> Option<f64> {
         self.lock().settings().scale.map(CameraScale::value)
+    }
+
+    /// Everything that the tracker knows, as bytes: some 70 kB for each object. Pickling uses them too.
+    ///
+    /// Returns
+    /// -------
+    /// bytes
+    ///     The first four are the version of the format.
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     The method is `adaptive`, whose objects cannot be saved.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| self.lock().to_bytes()).map_err(value_error)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// A tracker that goes on where the one that gave the bytes was, to the last bit.
+    ///
+    /// Parameters
+    /// ----------
+    /// data : bytes
+    ///     From `to_bytes` of the same version.
+    ///
+    /// Returns
+    /// -------
+    /// Tracker
+    ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     Bytes of another version, damaged ones, or ones that describe no tracker.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+        let inner = py.detach(|| Tracker::from_bytes(data)).map_err(value_error)?;
+        Ok(Self { inner: Mutex::new(inner) })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        Ok((slf.get_type().getattr("from_bytes")?, (slf.get().to_bytes(slf.py())?,)))
     }
 
     fn __copy__(&self) -> Self {

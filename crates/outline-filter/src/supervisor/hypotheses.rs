@@ -25,6 +25,7 @@ pub(super) struct Candidate {
 
 /// One other way in which the object may have turned.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Hypothesis {
     /// While it is followed.
     track: Option<Track>,
@@ -33,6 +34,7 @@ struct Hypothesis {
 
 /// All others, and what the one taken is compared with them by.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Hypotheses {
     list: Vec<Hypothesis>,
     /// Their turns, in the same order.
@@ -181,4 +183,17 @@ impl Hypotheses {
 fn apart(a: f64, b: f64) -> bool {
     let turn = (a - b + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
     turn.abs() > tuning::DIFFERENT_TURN
+}
+
+#[cfg(feature = "serde")]
+impl Hypotheses {
+    /// Whether turns belong to hypotheses, and all numbers can be worked with; `restore` makes their tracks usable, or tells that it cannot.
+    pub(super) fn restore(&mut self, restore: impl Fn(&mut Track) -> bool) -> bool {
+        let numbers = self.turns.iter().chain([&self.taken]);
+        let is_sound = numbers.into_iter().all(|turn| turn.is_finite())
+            && self.turns.len() == self.list.len()
+            && self.likelihood.is_sound()
+            && self.list.iter().all(|hypothesis| hypothesis.likelihood.is_sound());
+        is_sound && self.list.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
+    }
 }

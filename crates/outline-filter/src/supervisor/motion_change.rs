@@ -6,6 +6,7 @@ const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 /// Recursive maximum-likelihood estimates, by Fisher's scoring, of the variances by which the rates and the velocities of the motion change
 /// per second; none until the evidence is significant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MotionChange {
     kinds: [Change; 2],
     /// Of one variance for both: chance has no more than one occasion.
@@ -16,6 +17,7 @@ pub(crate) struct MotionChange {
 
 /// One of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Change {
     /// Normalised units, per second.
     variance: f64,
@@ -26,6 +28,7 @@ struct Change {
 /// Slope of the likelihood by a variance at none, of every frame in its own standard deviations, over the frames looked back on. Frames in
 /// which much is known count no more than others: their Fisher information is that of a variance of next to none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Evidence {
     slope: f64,
     /// Roots of the Fisher information: what the slope is for a unit variance.
@@ -108,6 +111,15 @@ impl Evidence {
     /// Slope in standard deviations; 0 where there is none.
     fn deviations(&self) -> f64 {
         if self.frames > 0.0 { self.slope / self.frames.sqrt() } else { 0.0 }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionChange {
+    /// Whether every number is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        let evidence = |e: &Evidence| [e.slope, e.by_variance, e.frames].iter().all(|number| number.is_finite());
+        self.kinds.iter().all(|kind| kind.variance.is_finite() && evidence(&kind.evidence)) && evidence(&self.of_both)
     }
 }
 

@@ -21,6 +21,7 @@ use crate::{
 
 /// The phase of the filter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
     /// No frame yet.
     Waiting,
@@ -55,6 +56,7 @@ impl FilterStep {
 
 /// How many frames became what.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Counts {
     accepted: usize,
     rejected: usize,
@@ -98,6 +100,7 @@ struct Counts {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionFilter {
     pub(super) settings: FilterSettings,
     pub(super) phase: Phase,
@@ -113,6 +116,7 @@ pub struct MotionFilter {
     pub(super) motion_changed: bool,
     pub(super) hypotheses: Hypotheses,
     pub(super) window: InitialisationWindow,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
 }
 
@@ -342,5 +346,20 @@ impl MotionFilter {
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionFilter {
+    /// Whether the last time is finite, or there was none, and that of the track is.
+    pub(super) fn times_are_sound(&self) -> bool {
+        let before_first = self.last_time == f64::NEG_INFINITY && self.track.is_none();
+        (self.last_time.is_finite() || before_first) && self.track_time.is_finite()
+    }
+
+    /// Whether no counter is near its end.
+    pub(super) fn counts_are_below(&self, most: usize) -> bool {
+        let Counts { accepted, rejected, rejected_in_a_row, taken, refused, restarts } = self.counts;
+        [accepted, rejected, rejected_in_a_row, taken, refused, restarts].iter().all(|count| *count < most)
     }
 }

@@ -5,6 +5,7 @@ use super::error::FilterError;
 
 /// Settings of a [`MotionFilter`](crate::MotionFilter).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FilterSettings {
     /// The motion model.
     pub model: MotionModel,

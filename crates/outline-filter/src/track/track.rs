@@ -21,6 +21,7 @@ use crate::{
 /// ([`View::solve`]), judged ([`Gate::verdict`]), committed ([`commit`]); then the map grows by what is new.
 /// Copies share the map until one of them changes it.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Track {
     pub(super) reference: Reference,
     pub(super) map: Arc<OutlineMap>,
@@ -313,5 +314,22 @@ impl Track {
             }
             evidence => evidence == TurnEvidence::NewAndHidden,
         }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Track {
+    /// Builds what is not saved; false where what was saved is no track.
+    pub(crate) fn restore(&mut self) -> bool {
+        let cells = self.map.cells().len();
+        let Reference { origin, radius } = self.reference;
+        origin.iter().all(|coordinate| coordinate.is_finite())
+            && radius.is_normal()
+            && radius > 0.0
+            && self.belief.is_sound(cells)
+            && self.noise.is_sound(cells)
+            && self.shape.is_sound(cells)
+            && self.first_pose.is_finite()
+            && Arc::make_mut(&mut self.map).restore()
     }
 }
