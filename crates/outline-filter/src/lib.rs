@@ -17,6 +17,8 @@
 //!
 //! `docs/motion-filter.md` of the repository derives the equations, each with its code and test.
 //!
+//! With the feature `serde` a filter can be saved and restored: `MotionFilter::to_bytes` and `MotionFilter::from_bytes`.
+//!
 //! [`MotionFilter`] processes frames one by one, as from a camera. [`estimate_batch`] estimates a constant motion from all frames of a
 //! recording together.
 //!

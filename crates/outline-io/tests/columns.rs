@@ -104,7 +104,10 @@ fn a_last_point_that_repeats_the_first_is_dropped() {
     for (column, first) in [(&mut table.x, again.x[0]), (&mut table.y, again.y[0])] {
         column.push(first);
     }
-    (table.object.push(0), table.frame.push(0), table.time.push(0.0), table.arc.push(-1));
+    table.object.push(0);
+    table.frame.push(0);
+    table.time.push(0.0);
+    table.arc.push(-1);
     assert_eq!(table.read().remove(0).expect("a triangle").outline, triangle(0.0));
 }
 
@@ -175,8 +178,12 @@ proptest! {
     ) {
         let mut table = Table { names: ["a", "b", "c"].map(str::to_owned).to_vec(), ..Table::default() };
         for (object, frame, time, x, y, arc) in rows {
-            (table.object.push(object), table.frame.push(frame), table.time.push(time));
-            (table.x.push(x), table.y.push(y), table.arc.push(arc));
+            table.object.push(object);
+            table.frame.push(frame);
+            table.time.push(time);
+            table.x.push(x);
+            table.y.push(y);
+            table.arc.push(arc);
         }
         let count = table.frame.len();
         prop_assert!(table.columns().outlines().expect("columns").count() <= count);

@@ -114,7 +114,9 @@ fn follow(
     py.detach(|| {
         let mut frames = 0_usize;
         let recording = outlines.map(recorded);
-        tracker.lock().follow_recording(recording, ReadAhead::default(), |followed| {
+        // Not behind its lock: the interpreter is waited for below.
+        let mut following = tracker.lock().clone();
+        following.follow_recording(recording, ReadAhead::default(), |followed| {
             let observation = match followed {
                 Followed::Object(observation, _) => observation,
                 Followed::Gap(Err(error)) => return Err(PyValueError::new_err(table_error(&error))),
@@ -130,6 +132,7 @@ fn follow(
             }
             Ok(())
         })?;
+        *tracker.lock() = following;
         let rest = frames % FRAMES_BETWEEN_SIGNALS;
         progress.map_or(Ok(()), |progress| Python::attach(|py| progress.call1(py, (rest,)).map(drop)))
     })

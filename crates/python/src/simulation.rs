@@ -7,7 +7,7 @@ use freeform_motion::sim_camera::{
 use nalgebra::{Point2, Vector2};
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray as _, PyArray2, PyArray3};
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyRange;
 
@@ -17,6 +17,9 @@ use crate::outline::PyOutline;
 
 /// Points of the outline that a mask is drawn from.
 const MASK_CORNERS: usize = 2000;
+
+/// Most points of one outline, as in files.
+const MOST_POINTS: usize = 1 << 22;
 
 /// Share of the picture that is left free around the object.
 const MARGIN: f64 = 0.05;
@@ -75,6 +78,7 @@ pub(crate) fn simulate(
     outliers: f64,
     #[pyo3(from_py_with = whole)] seed: u64,
 ) -> PyResult<PySimulation> {
+    check_points(points)?;
     let rigid = RigidMotion { omega, b1: b.0, b2: b.1 };
     let motion = affine.map_or(rigid.into(), |[a1, a2, a3, a4, b1, b2]| AffineMotion { a1, a2, a3, a4, b1, b2 });
     if motion.generator().iter().any(|entry| !entry.is_finite()) {
@@ -92,6 +96,13 @@ pub(crate) fn simulate(
         ..Settings::default()
     };
     Ok(PySimulation { inner: Simulator::new(scene, settings).map_err(value_error)? })
+}
+
+fn check_points(points: usize) -> PyResult<()> {
+    if points > MOST_POINTS {
+        return Err(PyValueError::new_err(format!("{points} points, more than {MOST_POINTS}")));
+    }
+    Ok(())
 }
 
 fn shape_of(value: Option<&Bound<'_, PyAny>>) -> PyResult<Shape> {
@@ -161,8 +172,9 @@ impl PySimulation {
         py: Python<'py>,
         time: f64,
         #[pyo3(from_py_with = whole)] count: usize,
-    ) -> Bound<'py, PyArray2<f64>> {
-        array_of_points(py, self.inner.scene().true_outline(time, count))
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        check_points(count)?;
+        Ok(array_of_points(py, self.inner.scene().true_outline(time, count)))
     }
 
     /// Masks of the moving object, as a segmentation would give them: 1 where a pixel is at least half covered, else 0.
@@ -229,7 +241,11 @@ impl PySimulation {
         let pixel = (size.x / room[0]).max(size.y / room[1]);
         let middle = [0.5 * width as f64, 0.5 * height as f64];
         let grid = PixelGrid::new(middle, bounds.centre(), Vector2::new(pixel, -pixel));
-        let mut masks = Vec::with_capacity(count * height * width);
+        let pixels = count.checked_mul(height).and_then(|pixels| pixels.checked_mul(width)).unwrap_or(usize::MAX);
+        let mut masks = Vec::new();
+        if masks.try_reserve_exact(pixels).is_err() {
+            return Err(PyMemoryError::new_err(format!("no memory for {count} masks of {height} x {width} pixels")));
+        }
         for frame in 0..count {
             let mask = Mask::of_outline(&outline(frame)?, [width, height], &grid).map_err(value_error)?;
             masks.extend(mask.binary().grey.iter().map(|grey| u8::from(*grey > 0)));
