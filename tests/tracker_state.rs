@@ -35,7 +35,7 @@ fn a_restored_tracker_goes_on_to_the_last_bit_and_keeps_what_it_told() {
         interrupted = Tracker::from_bytes(&interrupted.to_bytes().expect("the filter")).expect("a saved state");
         // Another object under the name of the first, a frame that is late, and points that are no outline.
         let bird = match index {
-            8..11 => OutlineFrame { outline: square.outline.clone(), ..bird.clone() },
+            8..=10 => OutlineFrame { outline: square.outline.clone(), ..bird.clone() },
             12 => OutlineFrame { time: 0.0, ..bird.clone() },
             _ => bird.clone(),
         };
@@ -43,7 +43,9 @@ fn a_restored_tracker_goes_on_to_the_last_bit_and_keeps_what_it_told() {
             assert_eq!(interrupted.push(frame), straight.push(frame), "frame {index}");
         }
         if index == 15 {
-            [&mut interrupted, &mut straight].map(|tracker| tracker.reject("bird", 15, "frame 15: torn".to_owned()));
+            for tracker in [&mut interrupted, &mut straight] {
+                assert!(!tracker.reject("bird", 15, "frame 15: torn".to_owned()).is_accepted());
+            }
         }
     }
     assert!(interrupted.objects().eq(["bird", "square"]));

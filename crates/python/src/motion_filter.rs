@@ -186,7 +186,7 @@ impl PyMotionFilter {
         self.lock().settings().model.to_string()
     }
 
-    /// Everything that the filter knows, as bytes: some 70 kB. Pickling uses them too.
+    /// Everything that the filter knows, as bytes: 40 to 80 kB. Pickling uses them too.
     ///
     /// Returns
     /// -------

@@ -1,12 +1,14 @@
 """What several tests look at."""
 
-import matplotlib
+import os
+
 import numpy as np
 import pytest
 
 import freeform_motion as ff
 
-matplotlib.use("Agg")
+# Pictures are drawn without a screen.
+os.environ.setdefault("MPLBACKEND", "Agg")
 
 
 @pytest.fixture(scope="session")

@@ -13,8 +13,6 @@ Angular velocity, pose and motion of objects without marks, with standard deviat
 A positive omega turns clockwise where y points up: ``x' = omega y + b1``, ``y' = -omega x + b2``.
 """
 
-from importlib.metadata import version as _version
-
 from ._identify import Identification, identify, track
 from ._masks import outlines
 from ._native import (
@@ -44,7 +42,17 @@ from ._native import (
 from ._plot import plot
 from ._tables import outline_table
 
-__version__ = _version("freeform-motion")
+__version__: str
+
+
+def __getattr__(name: str) -> str:
+    # Not before it is asked for: reading it takes longer than importing all of this.
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("freeform-motion")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 __all__ = [
     "AdaptiveIdentifier",
