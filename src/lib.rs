@@ -31,10 +31,12 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod followed_pose;
 mod frame_ranges;
 mod number;
 mod pipeline;
 mod pipeline_error;
+mod rectification;
 mod rejection;
 mod settling;
 pub mod tracker;
@@ -46,11 +48,13 @@ pub use freeform_estimate as estimate;
 pub use freeform_identify as identify;
 pub use freeform_outline_filter as outline_filter;
 pub use freeform_outline_io as outline_io;
+pub use freeform_recognise as recognise;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use number::significant;
 pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
 pub use pipeline_error::PipelineError;
+pub use rectification::{Rectification, RectifyError};
 pub use tracker::{Tracker, TrackerSettings};
 pub use warning::Warning;
 

@@ -1,13 +1,14 @@
-use freeform_curve_fit::{Fit, FitSettings, Fitter, Method, Normalisation, Outline};
+use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Normalise, Outline};
 use freeform_decompose::{
     Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
 };
 use freeform_estimate::MotionEstimate;
 use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError};
-use freeform_riccati::MotionModel;
-use nalgebra::{Affine2, Point2, Translation2};
+use freeform_riccati::{MotionModel, moved_line};
+use nalgebra::{Affine2, Matrix3, Point2, Projective2, Translation2};
 
 use crate::{
+    followed_pose::{FollowedPose, in_working},
     pipeline_error::PipelineError,
     settling::Settling,
     warning::{MANY_REJECTED, Warning},
@@ -46,6 +47,24 @@ impl Default for PipelineSettings {
     }
 }
 
+impl PipelineSettings {
+    /// The settings for a family of motions. For affine motion outlines are fitted affine-normalised, since the lines of other fits
+    /// do not follow it, and the law is filtered least squares: over six parameters the structured law takes minutes to
+    /// settle for outlines whose lines excite it little. An outline moved to its circle of inertia needs less of a ridge, and a
+    /// larger margin keeps the lines of slender ones, whose curve is bounded by it alone, apart. Projective motion has the same.
+    #[must_use]
+    pub fn for_model(model: MotionModel) -> Self {
+        let mut settings = Self::default();
+        settings.identify.model = model;
+        if matches!(model, MotionModel::Affine | MotionModel::Projective) {
+            settings.fit.normalise = Normalise::Affine;
+            settings.identify.law = AdaptiveLaw::FilteredLeastSquares;
+            settings.fit.method = Method::Bounded { margin: 0.7, ridge_weight: 0.003 };
+        }
+        settings
+    }
+}
+
 /// What one frame gave.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameResult {
@@ -62,7 +81,12 @@ pub struct FrameResult {
 /// From outlines to motion, frame by frame: fit, decompose, match, identify.
 ///
 /// Outlines may be in any unit and anywhere: the identifier works in coordinates centred on the first outline, in which
-/// the object is about of size 1, as its gains expect. In steady state a frame costs no allocation.
+/// the object is about of size 1, as its gains expect. In steady state a frame costs no allocation, but for hidden arcs under
+/// affine motion and for projective motion.
+///
+/// **Projective motion.** The lines that a curve falls into are its asymptotes, and a projective map does not take asymptotes to
+/// asymptotes. So every outline is brought onto the first one by iterated closest points, fitted and taken apart there; the
+/// lines that the identifier follows are those, moved to the image by the same map.
 #[derive(Debug, Clone)]
 pub struct Pipeline {
     settings: PipelineSettings,
@@ -73,6 +97,8 @@ pub struct Pipeline {
     /// From the coordinates that the identifier had at the start to its present ones.
     identifier_from_start: Translation2<f64>,
     last: Option<MatchedFrame>,
+    /// Of an object that is followed affinely or projectively.
+    pose: Option<FollowedPose>,
     frames: usize,
     frames_rejected: usize,
     counts: Counts,
@@ -108,6 +134,7 @@ impl Pipeline {
             identifier_from_start: Translation2::identity(),
             settings,
             last: None,
+            pose: None,
             frames: 0,
             frames_rejected: 0,
             counts: Counts::default(),
@@ -129,25 +156,38 @@ impl Pipeline {
     }
 
     fn take(&mut self, time: f64, outline: &Outline) -> Result<FrameResult, PipelineError> {
-        let fit = self.fitter.fit(outline)?;
-        let Some(curve) = fit.bounded_working() else {
-            return Err(PipelineError::NotBounded { margin: fit.diagnostics().boundedness_margin });
-        };
-        // Decomposed where the fit is well-conditioned; the lines are then moved exactly.
+        let (fit, pose) = self.fit(time, outline)?;
         let normalisation = fit.normalisation();
-        let working = Decomposition::of(curve.polynomial())?;
+        let working = decomposed(&fit)?;
         let image_from_identifier = match self.image_from_identifier {
             Some(known) => known,
             None => self.start_at(normalisation)?,
         };
         let image_from_working = normalisation.image_from_working();
-        let in_identifier = working.moved(&(image_from_identifier.inverse() * image_from_working))?;
         let decomposition = working.moved(&image_from_working)?;
-        let (matched, correspondence) = self.matched(in_identifier)?;
-        let (lines, count) = matched.lines();
+        let (matched, correspondence) = if self.is_projective() {
+            // Where the first outline was: those are the working coordinates of the first frame.
+            let there = match &pose {
+                Some(pose) => self.decomposed_in(outline, pose)?,
+                None => working,
+            };
+            self.matched(there, 1.0)?
+        } else {
+            self.matched(working.moved(&(image_from_identifier.inverse() * image_from_working))?, RMS_RADIUS)?
+        };
+        let (mut lines, count) = matched.lines();
+        if self.is_projective() {
+            let image = pose.unwrap_or_else(|| nalgebra::convert(image_from_working));
+            let identifier_from_there =
+                nalgebra::convert::<_, Projective2<f64>>(image_from_identifier.inverse()) * image;
+            for line in &mut lines[..count] {
+                *line = moved_line(line, &identifier_from_there)?.0;
+            }
+        }
         self.identifier.step(time, &lines[..count])?;
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
+        self.remember_pose(time, outline, normalisation, pose);
         self.counts.take(correspondence.as_ref());
         let start_from_identifier = nalgebra::convert(self.identifier_from_start.inverse());
         let at_start = self.identifier.estimate().map(|estimate| estimate.in_coordinates(&start_from_identifier));
@@ -156,10 +196,82 @@ impl Pipeline {
         Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
     }
 
-    /// Sets up the identifier in coordinates centred on the first outline.
+    /// Fits a curve to an outline. Arcs of one that is followed affinely have no area moments to normalise them by: they are brought
+    /// to the pose at which they lie on the outline of the frames before, which fills in what is hidden. Where that was
+    /// never seen whole, they are fitted in its coordinates as they are. Also returns the pose, if it was looked for.
+    fn fit(&mut self, time: f64, outline: &Outline) -> Result<(Fit, Option<Projective2<f64>>), FitError> {
+        let arcs = match (self.settings.fit.normalise, outline) {
+            (_, Outline::Closed(_)) if self.is_projective() => {
+                let pose = self
+                    .pose
+                    .as_ref()
+                    .map(|followed| followed.found(outline, &self.flow(followed.seconds_until(time))));
+                return Ok((self.fitter.fit(outline)?, pose));
+            }
+            (Normalise::Affine, Outline::Open(arcs)) => arcs,
+            _ => return Ok((self.fitter.fit(outline)?, None)),
+        };
+        let Some(followed) = &self.pose else {
+            // The first frame: any coordinates will do that later frames are brought to.
+            let first = Normalisation::similarity(outline.centroid(), outline.rms_radius());
+            return Ok((self.fitter.fit_in(outline, &first.image_from_working())?, None));
+        };
+        let pose = followed.found(outline, &self.flow(followed.seconds_until(time)));
+        let fit = match followed.completed(arcs, &pose) {
+            Some(whole) => self.fitter.fit(&Outline::Closed(whole)),
+            None => self.fitter.fit_in(outline, &affine_about_origin(&pose)),
+        };
+        Ok((fit?, Some(pose)))
+    }
+
+    /// The lines of an outline at a pose, in the coordinates that the pose takes to the image. What is hidden is filled in from the
+    /// outline of the frames before.
+    fn decomposed_in(&mut self, outline: &Outline, pose: &Projective2<f64>) -> Result<Decomposition, PipelineError> {
+        let completed = match (&self.pose, outline) {
+            (Some(followed), Outline::Open(arcs)) => followed.completed(arcs, pose).map(Outline::Closed),
+            _ => None,
+        };
+        let there = in_working(completed.as_ref().unwrap_or(outline), pose)?;
+        let fit = match there {
+            Outline::Closed(_) => self.fitter.fit(&there)?,
+            Outline::Open(_) => self.fitter.fit_in(&there, &Affine2::identity())?,
+        };
+        Ok(decomposed(&fit)?.moved(&fit.normalisation().image_from_working())?)
+    }
+
+    fn is_projective(&self) -> bool {
+        self.settings.identify.model == MotionModel::Projective
+    }
+
+    fn remember_pose(
+        &mut self,
+        time: f64,
+        outline: &Outline,
+        normalisation: &Normalisation,
+        pose: Option<Projective2<f64>>,
+    ) {
+        let model = self.settings.identify.model;
+        let follows = model == MotionModel::Projective || self.settings.fit.normalise == Normalise::Affine;
+        match (&mut self.pose, pose) {
+            _ if !follows => {}
+            (Some(followed), Some(pose)) => followed.at(time, pose),
+            (followed, _) => *followed = Some(FollowedPose::new(follow_by(model), time, outline, normalisation)),
+        }
+    }
+
+    /// How the motion as identified so far moves the image in so many seconds; not at all before it is known.
+    fn flow(&self, seconds: f64) -> Projective2<f64> {
+        self.identified().map_or(Projective2::identity(), |found| found.model().flow(found.values(), seconds))
+    }
+
+    /// Sets up the identifier in coordinates centred on the first outline and, where the motion is affine, moved to its circle of
+    /// inertia: the slopes of lines of a slender object swing far out.
     fn start_at(&mut self, first: &Normalisation) -> Result<Affine2<f64>, IdentifyError> {
-        let unit = Normalisation { centre: first.centre, radius: first.radius / RMS_RADIUS };
-        let map = unit.image_from_working();
+        let unit = Normalisation { radius: first.radius / RMS_RADIUS, ..*first };
+        let map = match self.settings.identify.model {
+            MotionModel::Affine | MotionModel::Projective => unit.image_from_working(),
+            _ => Normalisation::similarity(unit.centre, unit.radius).image_from_working(),
+        };
         let AdaptiveSettings { model, initial_values, .. } = &self.settings.identify;
         if !initial_values.is_empty() {
             let moved = MotionEstimate::new(*model, initial_values, None).in_coordinates(&map.inverse());
@@ -175,22 +287,26 @@ impl Pipeline {
         let origin = (image_from_identifier.inverse() * centre).coords;
         let moved = nalgebra::convert::<_, Affine2<f64>>(Translation2::from(origin));
         let Some(last) = self.last.as_mut().filter(|_| origin.norm() > FAR * RMS_RADIUS) else { return };
-        // Lines that cannot be told in the new coordinates stay in the old.
-        let Ok(decomposition) = last.decomposition.moved(&moved.inverse()) else { return };
-        last.decomposition = decomposition;
+        // Those of a projective motion are where the first outline was.
+        if self.settings.identify.model != MotionModel::Projective {
+            // Lines that cannot be told in the new coordinates stay in the old.
+            let Ok(decomposition) = last.decomposition.moved(&moved.inverse()) else { return };
+            last.decomposition = decomposition;
+        }
         self.identifier.shift_origin(origin);
         self.identifier_from_start = Translation2::from(-origin) * self.identifier_from_start;
         self.image_from_identifier = Some(image_from_identifier * moved);
     }
 
-    /// Finds which pair continues which, in the coordinates of the identifier.
+    /// Finds which pair continues which, in coordinates in which the first outline has this RMS radius.
     fn matched(
         &self,
         decomposition: Decomposition,
+        radius: f64,
     ) -> Result<(MatchedFrame, Option<Correspondence>), CorrespondenceError> {
         let mut order = [0, 1, 2, 3];
         let Some(last) = &self.last else { return Ok((MatchedFrame { decomposition, order }, None)) };
-        let correspondence = Correspondence::between(&last.decomposition, &decomposition, RMS_RADIUS)?;
+        let correspondence = Correspondence::between(&last.decomposition, &decomposition, radius)?;
         for (slot, &before) in order.iter_mut().zip(&last.order).take(correspondence.permutation().len()) {
             *slot = correspondence.permutation()[before];
         }
@@ -202,8 +318,7 @@ impl Pipeline {
     /// outlines tell nothing are marked unobservable: all of them for a circle.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
-        let map = self.image_from_identifier.as_ref();
-        let identified = map.and_then(|map| self.identifier.estimate().map(|estimate| estimate.in_coordinates(map)));
+        let identified = self.identified();
         if self.frames < 2 || 2 * self.counts.without_separate_lines <= self.frames {
             return identified;
         }
@@ -212,6 +327,12 @@ impl Pipeline {
         let nothing = [0.0; MotionModel::MAX_PARAMETERS];
         let estimate = identified.unwrap_or_else(|| MotionEstimate::new(model, &nothing[..count], None));
         Some((0..count).fold(estimate, MotionEstimate::with_unobservable))
+    }
+
+    /// What the identifier says, in the image frame.
+    fn identified(&self) -> Option<MotionEstimate> {
+        let map = self.image_from_identifier.as_ref()?;
+        Some(self.identifier.estimate()?.in_coordinates(map))
     }
 
     /// The identifier, for its diagnostics. Its estimate is in its own coordinates, not in those of the image.
@@ -261,7 +382,9 @@ impl Pipeline {
         {
             warnings.push(Warning::MayNotHaveSettled { seconds });
         }
-        if self.settings.identify.model == MotionModel::Affine && self.identifier.intervals_followed() > 0 {
+        let PipelineSettings { fit, identify } = &self.settings;
+        let is_biased = identify.model == MotionModel::Affine && fit.normalise == Normalise::Similarity;
+        if is_biased && self.identifier.intervals_followed() > 0 {
             warnings.push(Warning::AffineBias);
         }
         warnings
@@ -278,6 +401,29 @@ impl Counts {
                 && matching.runner_up_cost() < AMBIGUOUS_COST_RATIO * matching.continuity_cost(),
         );
     }
+}
+
+/// The family that the pose of an object is followed in where its motion is identified in another: affine at least, since that is
+/// what outlines are normalised by.
+fn follow_by(model: MotionModel) -> MotionModel {
+    model.max(MotionModel::Affine)
+}
+
+/// The lines of a fitted curve in its working coordinates, where it is decomposed best.
+fn decomposed(fit: &Fit) -> Result<Decomposition, PipelineError> {
+    let Some(curve) = fit.bounded_working() else {
+        return Err(PipelineError::NotBounded { margin: fit.diagnostics().boundedness_margin });
+    };
+    Ok(Decomposition::of(curve.polynomial())?)
+}
+
+/// The affine map that is nearest to a map about the origin.
+fn affine_about_origin(map: &Projective2<f64>) -> Affine2<f64> {
+    let m = map.matrix();
+    let [x, y] = [m[(0, 2)] / m[(2, 2)], m[(1, 2)] / m[(2, 2)]];
+    let by = |image: f64, row: usize, column: usize| (m[(row, column)] - image * m[(2, column)]) / m[(2, 2)];
+    let matrix = Matrix3::new(by(x, 0, 0), by(x, 0, 1), x, by(y, 1, 0), by(y, 1, 1), y, 0.0, 0.0, 1.0);
+    Affine2::from_matrix_unchecked(matrix)
 }
 
 /// Whether a frame was refused because its lines nearly coincide, as those of a circle do.

@@ -1,6 +1,7 @@
-use freeform_curve_fit::{FitError, SettingsError};
+use freeform_curve_fit::{FitError, OutlineError, SettingsError};
 use freeform_decompose::{CorrespondenceError, DecompositionError};
 use freeform_identify::IdentifyError;
+use freeform_riccati::DynamicsError;
 
 /// Why a frame gave nothing, or a pipeline could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -17,6 +18,12 @@ pub enum PipelineError {
     /// The lines could not be matched to those of the frame before.
     #[error("lines not matched: {0}")]
     Correspondence(#[from] CorrespondenceError),
+    /// An outline cannot be moved to where it was in the first frame (projective motion).
+    #[error("not moved to the first frame: {0}")]
+    Outline(#[from] OutlineError),
+    /// A line cannot be moved to the image (projective motion).
+    #[error("no line in the image: {0}")]
+    Line(#[from] DynamicsError),
     /// The identifier refused its settings or the lines.
     #[error("not identified: {0}")]
     Identify(#[from] IdentifyError),

@@ -2,7 +2,7 @@ use std::{error::Error, fmt};
 
 use freeform_outline_filter::{FilterError, Rejection};
 
-use crate::pipeline_error::PipelineError;
+use crate::{pipeline_error::PipelineError, rectification::RectifyError};
 
 /// Why a frame of an object was not used.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +20,8 @@ pub struct FrameRejection {
 pub enum RejectionCause {
     /// The points are not an outline. The text comes from the reader and names the frame.
     NoOutline(String),
+    /// The outline cannot be brought to the plane that the objects move in.
+    NotRectified(RectifyError),
     /// The frame does not fit the object as the motion filter knows it.
     NotAccepted(Rejection),
     /// Error of the motion filter.
@@ -44,6 +46,7 @@ impl fmt::Display for RejectionCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoOutline(reason) | Self::Saved(reason) => f.write_str(reason),
+            Self::NotRectified(error) => error.fmt(f),
             Self::NotAccepted(rejection) => rejection.fmt(f),
             Self::Filter(error) => f.write_str(&with_causes(error)),
             Self::Pipeline(error) => f.write_str(&with_causes(error)),

@@ -1,11 +1,15 @@
 use std::fmt;
 
-use freeform_outline_filter::Ambiguity;
+use freeform_outline_filter::{Ambiguity, WrongFamily};
+use freeform_riccati::MotionModel;
 
 use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
 
 /// Share of rejected frames from which on there is a warning.
 pub(crate) const MANY_REJECTED: f64 = 0.05;
+
+/// Other angular velocities that are named at most.
+const MOST_ALIASES: usize = 4;
 
 /// What a user should know of an identified motion: a [`code`](Self::code) for programs, a message for people.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +54,25 @@ pub enum Warning {
     Ambiguous(Ambiguity),
     /// The motion changed; the estimate is the motion at the end.
     MotionChanged,
+    /// Too many frames were rejected for the others to be trusted: nothing is stated.
+    TooManyRejected {
+        /// Frames rejected since the object was begun with.
+        rejected: usize,
+        /// All of them.
+        frames: usize,
+    },
+    /// The outlines move in ways that the motion model does not have. Standard deviations are widened by what that may do.
+    WrongFamily {
+        /// The ways.
+        family: WrongFamily,
+        /// The model.
+        motion: MotionModel,
+    },
+    /// Other angular velocities explain the outlines as well.
+    Aliases {
+        /// These, in rad/s, nearest to zero first.
+        omega: Vec<f64>,
+    },
     /// The method diverged, and its numbers are not finite.
     Diverged,
     /// One of the first frames that were not used.
@@ -85,6 +108,22 @@ pub enum Warning {
 }
 
 impl Warning {
+    /// Rank by importance: what makes a result worthless first, single frames last.
+    pub(crate) const fn order(&self) -> u8 {
+        match self {
+            Self::PointsOutOfOrder { .. } | Self::Diverged => 0,
+            Self::TooManyRejected { .. } | Self::Lost | Self::Reacquiring { .. } => 1,
+            Self::Ambiguous(_) | Self::AmbiguousCorrespondence { .. } => 2,
+            Self::WrongFamily { .. } | Self::AffineBias => 3,
+            Self::Aliases { .. } => 4,
+            Self::NotObservable { .. } | Self::RotationNotObservable { .. } => 5,
+            Self::Restarted { .. } | Self::MayNotHaveSettled { .. } | Self::LinesNotFollowed { .. } => 6,
+            Self::MotionChanged => 7,
+            Self::FramesRejected { .. } => 8,
+            Self::FrameRejected(_) | Self::MoreFramesRejected { .. } => 9,
+        }
+    }
+
     /// A stable name, the same in every version.
     #[must_use]
     pub const fn code(&self) -> &'static str {
@@ -98,6 +137,13 @@ impl Warning {
             Self::FramesRejected { .. } => "frames_rejected",
             Self::Ambiguous(_) => "ambiguous",
             Self::MotionChanged => "motion_changed",
+            Self::TooManyRejected { .. } => "too_many_rejected",
+            Self::WrongFamily { family: WrongFamily::Growth, .. } => "wrong_family_growth",
+            Self::WrongFamily { family: WrongFamily::Shear, .. } => "wrong_family_shear",
+            Self::WrongFamily { family: WrongFamily::Perspective, .. } => "wrong_family_perspective",
+            Self::WrongFamily { family: WrongFamily::RollingShutter, .. } => "wrong_family_rolling_shutter",
+            Self::WrongFamily { family: WrongFamily::Shape, .. } => "wrong_family_shape",
+            Self::Aliases { .. } => "aliases",
             Self::Diverged => "diverged",
             Self::FrameRejected(_) => "frame_rejected",
             Self::MoreFramesRejected { .. } => "more_frames_rejected",
@@ -127,13 +173,27 @@ impl fmt::Display for Warning {
             Self::Lost => f.write_str("the object was lost at the end"),
             Self::Reacquiring { last_known } => write!(
                 f,
-                "the object was lost and searched for at the end; this is its motion at {} s",
+                "the object was lost and searched for at the end; its motion was last known at {} s",
                 significant(*last_known, 4)
             ),
             Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
             Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
             Self::MotionChanged => f.write_str("the motion changed: the values are those at the end"),
+            Self::TooManyRejected { rejected, frames } => write!(
+                f,
+                "{rejected} of {frames} frames do not fit the others, so that no motion is stated: the outlines may be of \
+                 several things, or turn by about half a turn (of their symmetry) from frame to frame"
+            ),
+            Self::WrongFamily { family, motion } => write_wrong_family(f, *family, *motion),
+            Self::Aliases { omega } => {
+                let list: Vec<String> = omega.iter().take(MOST_ALIASES).map(|omega| significant(*omega, 4)).collect();
+                write!(
+                    f,
+                    "the outline has a symmetry: omega may also be {} rad/s; the smallest turn from frame to frame was taken",
+                    list.join(" or ")
+                )
+            }
             Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
             Self::FrameRejected(rejection) => write!(f, "rejected: {rejection}"),
             Self::MoreFramesRejected { count, frames } => write!(f, "rejected: {count} more frame(s), {frames}"),
@@ -154,6 +214,34 @@ impl fmt::Display for Warning {
                 "the six parameters are biased, because the curve fit is not affine-equivariant: use the motion filter",
             ),
         }
+    }
+}
+
+/// What the outlines do and what to try.
+fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: MotionModel) -> fmt::Result {
+    match family {
+        WrongFamily::Growth => {
+            write!(f, "the outlines grow or shrink, which {motion} motion does not: try --motion similarity")
+        }
+        WrongFamily::Shear => write!(
+            f,
+            "the outlines are stretched or sheared, which {motion} motion does not do: check the pixel aspect, try --rectify \
+             where the camera is tilted, or --motion affine"
+        ),
+        WrongFamily::Perspective => write!(
+            f,
+            "the outlines change as in perspective, which {motion} motion does not do: check the lens, try --rectify where the \
+             camera is tilted, or --motion projective"
+        ),
+        WrongFamily::RollingShutter => f.write_str(
+            "the outlines are slanted by their own motion, as by a camera that reads its rows one after the other (a rolling \
+             shutter): velocities may be off by some percent",
+        ),
+        WrongFamily::Shape => write!(
+            f,
+            "the outlines change their shape in ways that no {motion} motion does: the object may bend, the camera look at it from \
+             aside (--rectify), its lens distort it, or light and shadow move the edges"
+        ),
     }
 }
 

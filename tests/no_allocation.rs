@@ -1,18 +1,21 @@
-//! The hot path takes no memory from the heap.
-mod common;
-
-use common::frames;
+//! The hot path takes no memory from the heap. A program of its own, whose allocator counts.
 use freeform_motion::{
     Pipeline, PipelineSettings,
     identify::{AdaptiveLaw, PairChoice},
     outline_filter::{FilterSettings, MotionFilter},
-    sim_camera::{Frame, PaperExperiment, Simulator},
+    sim_camera::{Frame, PaperExperiment, SequenceLength, Settings, Simulator},
 };
+
+/// Two seconds of the flight bird.
+fn frames() -> Vec<Frame> {
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scene");
+    let settings = Settings { length: SequenceLength::Frames(60), seed: 1, ..Settings::default() };
+    Simulator::new(scene, settings).expect("a simulation").frames().collect()
+}
 
 #[test]
 fn the_adaptive_identifier_allocates_in_the_first_frame_alone() {
-    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scene");
-    let frames: Vec<Frame> = Simulator::new(scene, frames(60)).expect("a simulation").frames().collect();
+    let frames = frames();
     for law in [AdaptiveLaw::Structured, AdaptiveLaw::Printed, AdaptiveLaw::FilteredLeastSquares] {
         for pairs in [PairChoice::All, PairChoice::Best, PairChoice::Given(0)] {
             let mut settings = PipelineSettings::default();
@@ -32,8 +35,7 @@ fn the_adaptive_identifier_allocates_in_the_first_frame_alone() {
 
 #[test]
 fn once_the_outline_is_known_no_step_of_the_motion_filter_allocates() {
-    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scene");
-    let frames: Vec<Frame> = Simulator::new(scene, frames(60)).expect("a simulation").frames().collect();
+    let frames = frames();
     let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
     for (index, frame) in frames.iter().enumerate() {
         let mut accepted = false;

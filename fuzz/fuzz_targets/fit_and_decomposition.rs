@@ -1,5 +1,5 @@
 #![no_main]
-#[path = "../../tests/checks/mod.rs"]
+#[path = "../../tests/suite/checks/mod.rs"]
 mod checks;
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| checks::fit_and_decomposition(bytes));

@@ -1,7 +1,7 @@
 //! The identifier of one object, whichever method it is.
 use freeform_curve_fit::{Fit, Outline};
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_outline_filter::{Ambiguity, MotionFilter, Phase};
+use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, Unstated};
 
 use super::{
     observation::ObjectPhase,
@@ -94,6 +94,30 @@ impl Identifier {
         }
     }
 
+    /// Other angular velocities that explain the outlines as well, rad/s.
+    pub(super) fn aliases(&self) -> Vec<f64> {
+        match self {
+            Self::Filter(object) => object.filter.aliases(),
+            Self::Adaptive(_) => Vec::new(),
+        }
+    }
+
+    /// Probabilities of the hypotheses of dynamics, where they are told.
+    pub(super) fn dynamics(&self) -> Option<DynamicsWeights> {
+        match self {
+            Self::Filter(object) => object.filter.dynamics(),
+            Self::Adaptive(_) => None,
+        }
+    }
+
+    /// How often the object was given up and begun anew.
+    pub(super) fn restarts(&self) -> usize {
+        match self {
+            Self::Filter(object) => object.filter.restarts(),
+            Self::Adaptive(_) => 0,
+        }
+    }
+
     /// Whether the motion was seen to change, which a smoother that takes it for constant does not know.
     pub(super) fn motion_changed(&self) -> bool {
         matches!(self, Self::Filter(object) if object.filter.motion_changed())
@@ -115,7 +139,12 @@ impl FilteredObject {
             Err(error) => return Step { rejected_because: Some(RejectionCause::Filter(error)), ..Step::default() },
         };
         let estimate = self.filter.estimate();
-        self.last_known = estimate.map(|estimate| (time, estimate)).or(self.last_known);
+        if let Some(estimate) = estimate {
+            // Of a lost object nothing is stated, but when something was.
+            let is_stated = estimate.parameters().any(|p| p.value.is_some());
+            let since = self.last_known.filter(|_| !is_stated && self.filter.phase() == Phase::Lost);
+            self.last_known = Some((since.map_or(time, |(since, _)| since), estimate));
+        }
         Step {
             phase: Some(step.phase.into()),
             estimate,
@@ -154,9 +183,20 @@ impl FilteredObject {
             warnings.push(Warning::FramesRejected { rejected, frames });
         }
         warnings.extend(ambiguity.map(Warning::Ambiguous));
+        if let Some(Unstated::ManyRejected { rejected, frames }) = filter.unstated() {
+            warnings.push(Warning::TooManyRejected { rejected, frames });
+        }
+        if let Some(family) = filter.wrong_family() {
+            warnings.push(Warning::WrongFamily { family, motion: filter.settings().model });
+        }
+        let aliases = filter.aliases();
+        if !aliases.is_empty() {
+            warnings.push(Warning::Aliases { omega: aliases });
+        }
         if filter.motion_changed() {
             warnings.push(Warning::MotionChanged);
         }
+        warnings.sort_by_key(Warning::order);
         warnings
     }
 }

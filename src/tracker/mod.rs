@@ -133,6 +133,6 @@ impl Tracker {
     }
 
     fn new_object(&self, name: &str) -> TrackedObject {
-        TrackedObject::new(name.to_owned(), self.unused.clone(), self.settings.scale)
+        TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings)
     }
 }

@@ -7,6 +7,7 @@ use super::{
     contour_order::ContourOrder, identifier::Identifier, observation::Observation, result::ObjectResult,
     settings::TrackerSettings,
 };
+use crate::Rectification;
 use crate::frame_ranges::FrameRanges;
 use crate::rejection::{FrameRejection, RejectionCause};
 use crate::warning::Warning;
@@ -20,6 +21,7 @@ pub(super) struct TrackedObject {
     pub(super) name: String,
     pub(super) identifier: Identifier,
     pub(super) scale: Option<CameraScale>,
+    pub(super) rectification: Option<Rectification>,
     pub(super) contour_order: ContourOrder,
     pub(super) frames: usize,
     pub(super) rejected: usize,
@@ -31,11 +33,12 @@ pub(super) struct TrackedObject {
 
 impl TrackedObject {
     /// A new object without frames.
-    pub(super) fn new(name: String, identifier: Identifier, scale: Option<CameraScale>) -> Self {
+    pub(super) fn new(name: String, identifier: Identifier, settings: &TrackerSettings) -> Self {
         Self {
             name,
             identifier,
-            scale,
+            scale: settings.scale,
+            rectification: settings.rectification,
             contour_order: ContourOrder::default(),
             frames: 0,
             rejected: 0,
@@ -51,7 +54,14 @@ impl TrackedObject {
 
     /// Takes its next outline.
     pub(super) fn push(&mut self, frame: &OutlineFrame) -> Observation {
-        let step = self.identifier.push(frame.time, &frame.outline);
+        let in_plane = match self.rectification.map(|plane| plane.outline(&frame.outline)).transpose() {
+            Ok(in_plane) => in_plane,
+            Err(error) => {
+                let unusable = self.unusable(frame.frame, RejectionCause::NotRectified(error));
+                return Observation { time: Some(frame.time), ..unusable };
+            }
+        };
+        let step = self.identifier.push(frame.time, in_plane.as_ref().unwrap_or(&frame.outline));
         let rejection = self.count(frame.frame, step.rejected_because);
         Observation {
             object: self.name.clone(),
@@ -65,13 +75,19 @@ impl TrackedObject {
             innovation: step.innovation,
             ambiguity: step.ambiguity,
             rejection,
+            segment: self.identifier.restarts(),
             warning: self.contour_order.look_at(frame).cloned(),
         }
     }
 
     /// Takes note of a frame whose points are no outline.
     pub(super) fn reject(&mut self, frame: u64, reason: String) -> Observation {
-        let rejection = self.count(frame, Some(RejectionCause::NoOutline(reason)));
+        self.unusable(frame, RejectionCause::NoOutline(reason))
+    }
+
+    /// A frame that does not come to the method.
+    fn unusable(&mut self, frame: u64, cause: RejectionCause) -> Observation {
+        let rejection = self.count(frame, Some(cause));
         Observation {
             object: self.name.clone(),
             frame,
@@ -84,6 +100,7 @@ impl TrackedObject {
             innovation: None,
             ambiguity: None,
             rejection,
+            segment: self.identifier.restarts(),
             warning: None,
         }
     }
@@ -139,6 +156,8 @@ impl TrackedObject {
             estimate,
             velocity: velocity.filter(freeform_estimate::PointVelocity::is_finite),
             ambiguity: self.identifier.ambiguity(),
+            aliases: self.identifier.aliases(),
+            dynamics: self.identifier.dynamics(),
             warnings,
         }
     }

@@ -33,6 +33,8 @@ pub struct Observation {
     pub ambiguity: Option<Ambiguity>,
     /// Why the frame was not used; `None` where it was.
     pub rejection: Option<FrameRejection>,
+    /// How often the object had been given up and begun anew.
+    pub segment: usize,
     /// An immediate warning: [`Warning::PointsOutOfOrder`], in the first such frame of an object.
     pub warning: Option<Warning>,
 }

@@ -1,5 +1,5 @@
 use freeform_estimate::{MotionEstimate, PointVelocity};
-use freeform_outline_filter::Ambiguity;
+use freeform_outline_filter::{Ambiguity, DynamicsWeights};
 use freeform_riccati::MotionModel;
 
 use super::settings::Method;
@@ -28,6 +28,10 @@ pub struct ObjectResult {
     pub velocity: Option<PointVelocity>,
     /// Turns between which the outlines do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
+    /// Other angular velocities, rad/s, that explain the outlines as well, because the outline has a symmetry (motion filter).
+    pub aliases: Vec<f64>,
+    /// Probabilities of the hypotheses of dynamics (motion filter, from the third frame on).
+    pub dynamics: Option<DynamicsWeights>,
     /// Warnings on the result, causes before consequences.
     pub warnings: Vec<Warning>,
 }

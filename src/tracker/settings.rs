@@ -3,15 +3,18 @@ use std::fmt;
 use freeform_outline_filter::{FilterError, FilterSettings};
 use freeform_riccati::{CameraScale, MotionModel};
 
-use crate::{PipelineError, PipelineSettings};
+use crate::{PipelineError, PipelineSettings, Rectification};
 
-/// Settings of a [`Tracker`](super::Tracker): method, motion model and camera scale.
+/// Settings of a [`Tracker`](super::Tracker): method, motion model, camera scale and plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackerSettings {
     /// The method for every object, with its settings.
     pub method: MethodSettings,
     /// Camera scale f/Z0. If it is given, estimates and velocities are those in space: b divided by the scale (equations 23 and 24).
     pub scale: Option<CameraScale>,
+    /// The plane that the objects move in, where a camera looks at it from aside. If it is given, outlines are those of a picture, and all
+    /// results (motion, pose, velocity, noise, fitted curve) are in the plane.
+    pub rectification: Option<Rectification>,
 }
 
 /// A method with its settings.
@@ -49,13 +52,9 @@ impl TrackerSettings {
     pub fn new(method: Method, motion: MotionModel) -> Self {
         let method = match method {
             Method::Filter => MethodSettings::Filter(FilterSettings { model: motion, ..FilterSettings::default() }),
-            Method::Adaptive => {
-                let mut settings = PipelineSettings::default();
-                settings.identify.model = motion;
-                MethodSettings::Adaptive(Box::new(settings))
-            }
+            Method::Adaptive => MethodSettings::Adaptive(Box::new(PipelineSettings::for_model(motion))),
         };
-        Self { method, scale: None }
+        Self { method, scale: None, rectification: None }
     }
 
     /// The motion model.

@@ -2,6 +2,7 @@
 use freeform_estimate::MotionEstimate;
 use freeform_outline_filter::{FilterSettings, MotionFilter, StateError, with_header, without_header};
 use freeform_riccati::CameraScale;
+use nalgebra::{Matrix3, Projective2};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -11,9 +12,9 @@ use super::{
     object::{REJECTIONS_KEPT, TrackedObject},
     settings::{Method, MethodSettings, TrackerSettings},
 };
-use crate::Warning;
 use crate::frame_ranges::FrameRanges;
 use crate::rejection::{FrameRejection, RejectionCause};
+use crate::{Rectification, Warning};
 
 /// What the bytes hold, behind the version.
 const KIND: [u8; 4] = *b"trak";
@@ -40,6 +41,8 @@ pub enum TrackerStateError {
 struct SavedTracker {
     settings: FilterSettings,
     scale: Option<f64>,
+    /// From the picture to the plane.
+    rectification: Option<Matrix3<f64>>,
     objects: Vec<SavedObject>,
 }
 
@@ -101,11 +104,17 @@ impl Tracker {
     /// # Errors
     /// Another method than the motion filter.
     pub fn to_bytes(&self) -> Result<Vec<u8>, TrackerStateError> {
-        let (MethodSettings::Filter(settings), scale) = (&self.settings.method, self.settings.scale) else {
+        let TrackerSettings { method, scale, rectification } = &self.settings;
+        let MethodSettings::Filter(settings) = method else {
             return Err(TrackerStateError::Method { method: self.settings.method() });
         };
         let objects = self.objects.list.iter().map(saved).collect::<Result<_, _>>()?;
-        let state = SavedTracker { settings: *settings, scale: scale.map(CameraScale::value), objects };
+        let state = SavedTracker {
+            settings: *settings,
+            scale: scale.map(CameraScale::value),
+            rectification: rectification.map(|plane| *plane.plane_from_picture()),
+            objects,
+        };
         let state = postcard::to_allocvec(&state).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
         Ok(with_header(KIND, &state))
     }
@@ -122,11 +131,13 @@ impl Tracker {
             return Err(inconsistent("bytes left over").into());
         }
         let scale = state.scale.map(CameraScale::new).transpose().map_err(|_| inconsistent("settings"))?;
-        let settings = TrackerSettings { method: MethodSettings::Filter(state.settings), scale };
-        let mut tracker = Self::new(settings).map_err(|_| inconsistent("settings"))?;
+        let plane = |map: Matrix3<f64>| Rectification::new(&Projective2::from_matrix_unchecked(map));
+        let rectification = state.rectification.map(plane).transpose().map_err(|_| inconsistent("settings"))?;
+        let settings = TrackerSettings { method: MethodSettings::Filter(state.settings), scale, rectification };
+        let mut tracker = Self::new(settings.clone()).map_err(|_| inconsistent("settings"))?;
         let mut objects = Objects::default();
         for saved in state.objects {
-            let object = restored(saved, state.settings, scale)?;
+            let object = restored(saved, state.settings, &settings)?;
             if objects.positions.insert(object.name().to_owned(), objects.list.len()).is_some() {
                 return Err(inconsistent("two objects of one name").into());
             }
@@ -167,13 +178,13 @@ fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
 
 fn restored(
     saved: SavedObject,
-    settings: FilterSettings,
-    scale: Option<CameraScale>,
+    of_filter: FilterSettings,
+    settings: &TrackerSettings,
 ) -> Result<TrackedObject, StateError> {
     let inconsistent = |part| Err(StateError::Inconsistent { part });
     let SavedObject { name, last_known, frames_looked_at, frames, rejected, rejections, rejected_later, .. } = saved;
     let filter = MotionFilter::from_bytes(&saved.filter)?;
-    if *filter.settings() != settings || last_known.is_some_and(|(_, motion)| motion.model() != settings.model) {
+    if *filter.settings() != of_filter || last_known.is_some_and(|(_, motion)| motion.model() != of_filter.model) {
         return inconsistent("settings of an object");
     }
     if last_known.is_some_and(|(time, motion)| !(time.is_finite() && motion.is_finite())) {
@@ -193,7 +204,8 @@ fn restored(
     });
     Ok(TrackedObject {
         identifier: Identifier::Filter(Box::new(FilteredObject { filter, last_known })),
-        scale,
+        scale: settings.scale,
+        rectification: settings.rectification,
         contour_order: ContourOrder { seen: frames_looked_at, warning },
         frames,
         rejected,

@@ -42,6 +42,8 @@ pub struct TrajectoryRow {
     pub time: Option<f64>,
     /// Whether the frame was used.
     pub accepted: bool,
+    /// Counted up from 0 where the object was given up and begun anew: poses of different segments have different first outlines.
+    pub segment: usize,
     /// The state known then, at a time up to that of the frame.
     state: Option<MotionState>,
 }
@@ -85,6 +87,7 @@ impl Trajectory {
             frame: observation.frame,
             time: observation.time,
             accepted: observation.is_accepted(),
+            segment: observation.segment,
             state: observation.state.clone(),
         });
     }

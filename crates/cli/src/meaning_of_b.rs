@@ -21,6 +21,16 @@ impl MeaningOfB {
         Self { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), short_unit: None, scale }
     }
 
+    /// In the plane that pictures are rectified to.
+    pub(crate) fn in_plane() -> Self {
+        Self {
+            point: "the origin of the plane",
+            unit: "lengths of the plane/s".to_owned(),
+            short_unit: None,
+            scale: None,
+        }
+    }
+
     /// In pictures, with pixels of some width over height.
     pub(crate) fn in_pictures(options: &PictureOptions, pixel_aspect: f64, scale: Option<CameraScale>) -> Self {
         let point = if options.y_down { "the upper left corner" } else { "the lower left corner" };

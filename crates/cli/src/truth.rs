@@ -1,24 +1,72 @@
 use std::fmt;
 
-use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
+use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion, RigidMotion};
+use freeform_motion::sim_camera::Simulator;
+use nalgebra::Point2;
 
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
 
 /// The true motion of simulated outlines, as stated in a comment at the head of their file:
-/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`.
+/// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`, projective ones with `c1=0.01
+/// c2=0.02` before the scale; behind it `v1=-3 v2=4`, and `time=9.9` where the motion changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SimulatedMotion {
-    /// In space: image velocities over the scale.
-    pub(crate) motion: AffineMotion,
+    /// In space: image velocities over the scale, c times the scale.
+    pub(crate) motion: ProjectiveMotion,
     /// Camera scale f/Z0.
     pub(crate) scale: CameraScale,
+    /// Velocity in space of the middle of the object, its area centroid, in the last frame.
+    pub(crate) middle_velocity: Option<[f64; 2]>,
+    /// The time in seconds at which the motion is that; `None`: at all times.
+    pub(crate) time: Option<f64>,
+}
+
+/// A true motion as it is shown next to a result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Truth {
+    /// The motion in the last frame.
+    pub(crate) motion: ProjectiveMotion,
+    /// Velocity of the middle of the object in the last frame.
+    pub(crate) middle_velocity: Option<[f64; 2]>,
+    /// Whether the motion is the same in all frames.
+    pub(crate) is_constant: bool,
+}
+
+impl Truth {
+    /// Velocity of the point of the object that is at `[x, y]` in the last frame.
+    pub(crate) fn velocity_at(&self, point: &Point2<f64>) -> [f64; 2] {
+        self.motion.velocity(point).into()
+    }
+}
+
+impl<M: Into<ProjectiveMotion>> From<M> for Truth {
+    fn from(motion: M) -> Self {
+        Self { motion: motion.into(), middle_velocity: None, is_constant: true }
+    }
 }
 
 impl SimulatedMotion {
-    /// The motion in the image, b divided by the scale of the one who asks, if any.
-    pub(crate) fn seen_at(&self, scale: Option<CameraScale>) -> AffineMotion {
-        self.motion.in_image(self.scale).in_space(scale.unwrap_or_default())
+    /// That of the frames that a simulator makes: of the last one, where it changes.
+    pub(crate) fn of(simulator: &Simulator) -> Self {
+        let scene = simulator.scene();
+        let last = (simulator.frame_count() - 1) as f64 / simulator.settings().fps;
+        let scale = scene.camera().scale();
+        let middle = (scene.true_pose(last) * scene.shape().centroid()) / scale.value();
+        let motion = scene.motion().at(last);
+        let middle_velocity = Some(motion.velocity(&middle).into());
+        Self { motion, scale, middle_velocity, time: (!scene.motion().is_constant()).then_some(last) }
+    }
+
+    /// The motion in the image, velocities divided by the scale of the one who asks, if any.
+    pub(crate) fn seen_at(&self, scale: Option<CameraScale>) -> Truth {
+        let scale = scale.unwrap_or_default();
+        let per_velocity = self.scale.value() / scale.value();
+        Truth {
+            motion: self.motion.in_image(self.scale).in_space(scale),
+            middle_velocity: self.middle_velocity.map(|velocity| velocity.map(|v| v * per_velocity)),
+            is_constant: self.time.is_none(),
+        }
     }
 
     /// Reads a comment line without its `#`; `None` where it is another comment or not complete.
@@ -31,24 +79,37 @@ impl SimulatedMotion {
         };
         let (b1, b2) = (value("b1")?, value("b2")?);
         let motion = match value("omega") {
-            Some(omega) => AffineMotion { a1: 0.0, a2: omega, a3: -omega, a4: 0.0, b1, b2 },
-            None => AffineMotion { a1: value("a1")?, a2: value("a2")?, a3: value("a3")?, a4: value("a4")?, b1, b2 },
+            Some(omega) => RigidMotion { omega, b1, b2 }.into(),
+            None => {
+                let [a1, a2, a3, a4] = [value("a1")?, value("a2")?, value("a3")?, value("a4")?];
+                let [c1, c2] = ["c1", "c2"].map(|name| value(name).unwrap_or(0.0));
+                ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }
+            }
         };
         let scale = CameraScale::new(value("scale")?).ok()?;
-        Some(Self { motion, scale })
+        let middle_velocity = value("v1").zip(value("v2")).map(|(x, y)| [x, y]);
+        Some(Self { motion, scale, middle_velocity, time: value("time") })
     }
 }
 
 impl fmt::Display for SimulatedMotion {
     /// The comment line without its `#`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let AffineMotion { a1, a2, a3, a4, b1, b2 } = self.motion;
+        let ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 } = self.motion;
         f.write_str(MARK)?;
         match MotionModel::Rigid.parameters_of_motion(&self.motion) {
             Some(_) => write!(f, "omega={a2}")?,
             None => write!(f, "a1={a1} a2={a2} a3={a3} a4={a4}")?,
         }
-        write!(f, " b1={b1} b2={b2} scale={}", self.scale)
+        write!(f, " b1={b1} b2={b2}")?;
+        if self.motion.as_affine().is_none() {
+            write!(f, " c1={c1} c2={c2}")?;
+        }
+        write!(f, " scale={}", self.scale)?;
+        if let Some([x, y]) = self.middle_velocity {
+            write!(f, " v1={x} v2={y}")?;
+        }
+        self.time.map_or(Ok(()), |time| write!(f, " time={time}"))
     }
 }
 
@@ -58,14 +119,18 @@ mod tests {
 
     #[test]
     fn a_motion_written_as_a_comment_reads_back_to_the_last_bit() {
-        let rigid = AffineMotion { a1: 0.0, a2: 0.1 + 0.2, a3: -(0.1 + 0.2), a4: 0.0, b1: -3.0, b2: 1e-17 };
-        let affine = AffineMotion { a1: 0.3, ..rigid };
+        let rigid: ProjectiveMotion = RigidMotion { omega: 0.1 + 0.2, b1: -3.0, b2: 1e-17 }.into();
+        let affine = ProjectiveMotion { a1: 0.3, ..rigid };
+        let projective = ProjectiveMotion { c1: 0.1 + 0.2, c2: -1e-17, ..rigid };
         let scale = CameraScale::new(0.1).expect("a scale");
-        for motion in [rigid, affine] {
-            let written = SimulatedMotion { motion, scale };
+        let known =
+            SimulatedMotion { motion: rigid, scale, middle_velocity: Some([0.1 + 0.7, -1e-9]), time: Some(9.9) };
+        let always = SimulatedMotion { time: None, ..known };
+        let affine = SimulatedMotion { motion: affine, middle_velocity: None, ..always };
+        for written in [known, always, affine, SimulatedMotion { motion: projective, ..always }] {
             assert_eq!(SimulatedMotion::parse(&written.to_string()), Some(written));
         }
-        assert!(SimulatedMotion { motion: rigid, scale }.to_string().starts_with("truth omega="));
+        assert!(known.to_string().starts_with("truth omega="));
     }
 
     #[test]
@@ -76,11 +141,13 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_of_the_one_who_asks_divides_the_velocity_only() {
-        let motion = AffineMotion { a2: 2.0, a3: -2.0, b1: -3.0, b2: 4.0, ..AffineMotion::default() };
+    fn the_scale_of_the_one_who_asks_divides_the_velocity_and_multiplies_the_perspective() {
+        let motion = ProjectiveMotion { c1: 0.1, ..RigidMotion { omega: 2.0, b1: -3.0, b2: 4.0 }.into() };
         let half = CameraScale::new(0.5).expect("a scale");
-        let truth = SimulatedMotion { motion, scale: half };
-        assert_eq!(truth.seen_at(None), AffineMotion { b1: -1.5, b2: 2.0, ..motion });
-        assert_eq!(truth.seen_at(Some(half)), motion);
+        let truth = SimulatedMotion { motion, scale: half, middle_velocity: Some([3.0, -1.0]), time: None };
+        let in_image = truth.seen_at(None);
+        assert_eq!(in_image.motion, ProjectiveMotion { b1: -1.5, b2: 2.0, c1: 0.2, ..motion });
+        assert_eq!(in_image.middle_velocity, Some([1.5, -0.5]));
+        assert_eq!(truth.seen_at(Some(half)), Truth { motion, middle_velocity: Some([3.0, -1.0]), is_constant: true });
     }
 }

@@ -113,6 +113,12 @@ pub enum FitError {
     /// and back or an even figure of eight does, or its normals cancel.
     #[error("the outline has no inside: its signed area is zero")]
     NoInside,
+    /// Open arcs have no area moments to normalise them by.
+    #[error("open arcs have no area moments: an affine-normalised fit of them needs a map to be given")]
+    NoAreaMoments,
+    /// The map of the working coordinates to the image has no inverse, or is not finite.
+    #[error("the map that normalises the outline is singular or not finite")]
+    SingularNormalisation,
     /// The leading form of the bounded fit could not be brought above its margin.
     #[error("the bounded fit did not converge in {iterations} iterations")]
     NoConvergence {

@@ -20,8 +20,8 @@ pub enum Factorisation {
 /// What a fit says of itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitDiagnostics {
-    /// Minimum of the leading form on the unit circle over its root mean square there: the curve is closed and bounded
-    /// if it is positive, certainly not if it is negative; 1 for a circular leading form.
+    /// Minimum of the leading form on the unit circle of the working coordinates over its root mean square there: the curve is
+    /// closed and bounded if it is positive, certainly not if it is negative; 1 for a circular leading form.
     pub boundedness_margin: f64,
     /// Whether the boundedness constraint changed the solution.
     pub constraint_active: bool,
@@ -31,7 +31,7 @@ pub struct FitDiagnostics {
     pub algebraic_residual: f64,
     /// Root mean square first-order distance of the points from the curve (Taubin 1991), in image units.
     pub geometric_residual: f64,
-    /// Number of points fitted.
+    /// Number of points of the outline.
     pub point_count: usize,
     /// How the least-squares problem was solved.
     pub factorisation: Factorisation,
@@ -48,16 +48,23 @@ pub struct Fit {
 impl Fit {
     /// The polynomial in image coordinates. Exact, but far from the origin (beyond some hundred times the size of the
     /// object) its coefficients alone no longer carry the shape: use [`working`](Self::working) there.
+    ///
+    /// # Panics
+    /// Never: a fit whose stretch takes its coefficients beyond any number cannot be made.
     #[must_use]
     pub fn polynomial(&self) -> ImplicitPolynomial {
         // Substituting (p - centre) / radius directly costs a few hundred operations; a general map far more.
         let scale = 1.0 / self.normalisation.radius;
         let shift = -scale * self.normalisation.centre.coords;
-        substitute_scaled_shift(&self.working, scale, &Point2::from(shift))
+        if !self.normalisation.is_affine() {
+            return substitute_scaled_shift(&self.working, scale, &Point2::from(shift));
+        }
+        let unstretched = self.working.moved(&self.normalisation.stretching()).expect("finite when it was fitted");
+        substitute_scaled_shift(&unstretched, scale, &Point2::from(shift))
     }
 
-    /// The polynomial in working coordinates, where the data has mean 0 and RMS radius 1 and f is about the signed
-    /// distance from the outline over the level-set offset.
+    /// The polynomial in working coordinates, where the data has mean 0 and RMS radius 1 (about that in
+    /// [`Fitter::fit_in`](crate::Fitter::fit_in)) and f is about the signed distance from the outline over the level-set offset.
     #[must_use]
     pub fn working(&self) -> &ImplicitPolynomial {
         &self.working

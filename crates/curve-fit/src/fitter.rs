@@ -1,8 +1,10 @@
-use nalgebra::{DMatrix, Point2, Vector2};
+use nalgebra::{Affine2, DMatrix, Point2, Vector2};
 use pulp::Arch;
 
 use crate::{
+    area_moments::AreaMoments,
     bounded,
+    covariance::{FitCovariance, Fitted},
     degree::MAX_COEFFICIENTS,
     error::{FitError, SettingsError},
     fit::{Factorisation, Fit, FitDiagnostics},
@@ -14,9 +16,10 @@ use crate::{
     normals::NormalRegression,
     outline::Outline,
     polynomial::ImplicitPolynomial,
+    resampling::EvenOutline,
     residuals::Residuals,
     ridge::ridge_of_radial_sums,
-    settings::{FitSettings, Method},
+    settings::{FitSettings, Method, Normalise},
     vectors::sum,
 };
 
@@ -28,6 +31,7 @@ pub struct Fitter {
     points: [Vec<f64>; 2],
     normals: [Vec<f64>; 2],
     regression: NormalRegression,
+    even: EvenOutline,
     moments: LevelSetMoments,
     system: TriangularSystem,
 }
@@ -44,6 +48,7 @@ impl Fitter {
             points: Default::default(),
             normals: Default::default(),
             regression: NormalRegression::default(),
+            even: EvenOutline::default(),
             moments: LevelSetMoments::ZERO,
             system: TriangularSystem::new(),
         })
@@ -55,17 +60,60 @@ impl Fitter {
         &self.settings
     }
 
-    /// Fits a polynomial to an outline: 3L (Blane et al. 2000) from the moments of the three level sets, in centred,
-    /// scaled coordinates, by the method of the settings.
+    /// Fits a polynomial to an outline: 3L (Blane et al. 2000) from the moments of the three level sets, by the method of the
+    /// settings and in the coordinates that they ask for.
     ///
     /// # Errors
     /// Too few points, points that do not determine the coefficients, an outline that does not tell its inside from its
-    /// outside, or a bounded fit that does not converge.
+    /// outside, a bounded fit that does not converge; open arcs where the settings ask for an affine normalisation.
     pub fn fit(&mut self, outline: &Outline) -> Result<Fit, FitError> {
         let normalisation = self.load(outline)?;
+        self.fit_loaded(outline, normalisation)
+    }
+
+    /// The same in coordinates that are given: the outline is spread evenly by arc length there and fitted as it is. For open arcs
+    /// of an object whose pose is known, which have no area moments. `image_from_working` maps coordinates to the image in which the
+    /// whole outline has about the mean 0 and the RMS radius 1, such as the
+    /// [`normalisation`](Fit::normalisation) of an affine-normalised fit of an earlier outline, moved as the object has moved.
+    ///
+    /// # Errors
+    /// As [`fit`](Self::fit); a map that is singular or not finite.
+    pub fn fit_in(&mut self, outline: &Outline, image_from_working: &Affine2<f64>) -> Result<Fit, FitError> {
+        self.check_count(outline)?;
+        let normalisation = Normalisation::affine(image_from_working).ok_or(FitError::SingularNormalisation)?;
+        self.load_evenly(outline, &normalisation);
+        self.find_normals();
+        self.fit_loaded(outline, normalisation)
+    }
+
+    /// Fits a polynomial to an outline and says how uncertain its coefficients are. The covariance is that of the least-squares
+    /// solution, carried from independent noise of the points, whose size is told from the outline itself; where a
+    /// [constraint](crate::FitDiagnostics::constraint_active) is active the solution varies less than it says. What the curve
+    /// misses of the shape is no noise and is left out. Allocates.
+    ///
+    /// # Errors
+    /// As [`fit`](Self::fit).
+    pub fn fit_with_covariance(&mut self, outline: &Outline) -> Result<(Fit, FitCovariance), FitError> {
+        let fit = self.fit(outline)?;
+        let condition = fit.diagnostics.condition;
+        let size = self.settings.degree.coefficient_count();
+        let singular = FitError::RankDeficient { rank: size - 1, needed: size, condition };
+        let inverse = self.system.inverse().ok_or(singular)?;
+        let fitted = Fitted {
+            points: self.points.each_ref().map(Vec::as_slice),
+            normals: self.normals.each_ref().map(Vec::as_slice),
+            interpolated_from: (self.settings.normalise == Normalise::Affine).then(|| outline.point_count()),
+            offset: self.settings.offset,
+            polynomial: &fit.working,
+            inverse: &inverse,
+        };
+        Ok((fit, fitted.covariance()))
+    }
+
+    fn fit_loaded(&mut self, outline: &Outline, normalisation: Normalisation) -> Result<Fit, FitError> {
         self.sum_moments();
         let factorisation = self.factor()?;
-        self.finish(normalisation, factorisation)
+        self.finish(outline, normalisation, factorisation)
     }
 
     /// Factors and solves the problem of the last outline once more, under the constraint where that is active: what a fit
@@ -87,15 +135,27 @@ impl Fitter {
     pub fn fit_by_orthogonal_factorisation(&mut self, outline: &Outline) -> Result<Fit, FitError> {
         let normalisation = self.load(outline)?;
         self.factor_rows()?;
-        self.finish(normalisation, Factorisation::Orthogonal)
+        self.finish(outline, normalisation, Factorisation::Orthogonal)
+    }
+
+    fn check_count(&self, outline: &Outline) -> Result<(), FitError> {
+        let degree = self.settings.degree;
+        let (found, needed) = (outline.point_count(), degree.coefficient_count().div_ceil(LEVELS.len()));
+        if found < needed { Err(FitError::TooFewPoints { found, needed, degree }) } else { Ok(()) }
     }
 
     /// Brings the points into working coordinates and finds their normals.
     fn load(&mut self, outline: &Outline) -> Result<Normalisation, FitError> {
-        let degree = self.settings.degree;
-        let (found, needed) = (outline.point_count(), degree.coefficient_count().div_ceil(LEVELS.len()));
-        if found < needed {
-            return Err(FitError::TooFewPoints { found, needed, degree });
+        self.check_count(outline)?;
+        if self.settings.normalise == Normalise::Affine {
+            let Outline::Closed(whole) = outline else { return Err(FitError::NoAreaMoments) };
+            let frame = AreaMoments::of(whole).ok_or(FitError::NoInside)?.image_from_inertia_circle();
+            let frame = Normalisation::affine(&frame).ok_or(FitError::SingularNormalisation)?;
+            self.load_evenly(outline, &frame);
+            let [xs, ys] = &mut self.points;
+            let within = Arch::new().dispatch(|| normalise(xs, ys));
+            self.find_normals();
+            return Ok(frame.after(&within));
         }
         let [xs, ys] = &mut self.points;
         xs.clear();
@@ -108,6 +168,23 @@ impl Fitter {
         let [nx, ny] = &mut self.normals;
         self.regression.run(outline, [xs, ys], self.settings.normal_half_window, [nx, ny]);
         Ok(normalisation)
+    }
+
+    /// Brings points that are evenly spaced in the coordinates of `frame` there.
+    fn load_evenly(&mut self, outline: &Outline, frame: &Normalisation) {
+        self.even.spread(outline, |p| frame.to_working(p));
+        let [xs, ys] = &mut self.points;
+        xs.clear();
+        ys.clear();
+        xs.extend(self.even.points().iter().map(|p| p.x));
+        ys.extend(self.even.points().iter().map(|p| p.y));
+    }
+
+    /// The normals of points that are evenly spaced.
+    fn find_normals(&mut self) {
+        let [xs, ys] = &self.points;
+        let [nx, ny] = &mut self.normals;
+        self.regression.run_pieces(self.even.pieces(), [xs, ys], self.settings.normal_half_window, [nx, ny]);
     }
 
     /// The sums over the level sets.
@@ -190,20 +267,33 @@ impl Fitter {
     }
 
     /// Solves the triangular system and judges the result.
-    fn finish(&mut self, normalisation: Normalisation, factorisation: Factorisation) -> Result<Fit, FitError> {
+    fn finish(
+        &mut self,
+        outline: &Outline,
+        normalisation: Normalisation,
+        factorisation: Factorisation,
+    ) -> Result<Fit, FitError> {
         if !self.regression.has_inside {
             return Err(FitError::NoInside);
         }
         let Solution { coefficients, range, constraint_active } = self.solve()?;
         let working = ImplicitPolynomial::from_array(self.settings.degree, coefficients);
-        let residuals = Residuals::of(&working, &self.points[0], &self.points[1]);
+        let mut residuals = Residuals::of(&working, &self.points[0], &self.points[1]);
+        residuals.geometric *= normalisation.radius;
+        if normalisation.is_affine() {
+            // Distances in the image, and what the image shows of the curve is finite.
+            residuals.geometric = Residuals::geometric_in_image(&working, &normalisation, outline);
+            if working.moved(&normalisation.stretching()).is_err() {
+                return Err(FitError::SingularNormalisation);
+            }
+        }
         let diagnostics = FitDiagnostics {
             boundedness_margin: range.margin(),
             constraint_active,
             condition: self.system.condition(),
             algebraic_residual: residuals.algebraic,
-            geometric_residual: residuals.geometric * normalisation.radius,
-            point_count: self.points[0].len(),
+            geometric_residual: residuals.geometric,
+            point_count: outline.point_count(),
             factorisation,
         };
         Ok(Fit { normalisation, working, diagnostics })
@@ -232,5 +322,5 @@ fn normalise(xs: &mut [f64], ys: &mut [f64]) -> Normalisation {
     let inverse = 1.0 / radius;
     xs.iter_mut().for_each(|x| *x = (*x - centre.x) * inverse);
     ys.iter_mut().for_each(|y| *y = (*y - centre.y) * inverse);
-    Normalisation { centre, radius }
+    Normalisation::similarity(centre, radius)
 }

@@ -163,6 +163,14 @@ impl TriangularSystem {
         solve_upper_triangular_in_place(lower.transpose(), solution, Par::Seq);
     }
 
+    /// Inverse of the matrix of the normal equations, `(L L')^-1`. `None` where it is singular.
+    pub(crate) fn inverse(&self) -> Option<DMatrix<f64>> {
+        let size = self.size;
+        let upper = DMatrix::from_fn(size, size, |i, j| if i <= j { self.upper(i, j) } else { 0.0 });
+        let inverse = upper.solve_upper_triangular(&DMatrix::identity(size, size))?;
+        Some(&inverse * inverse.transpose())
+    }
+
     /// The minimiser over the coefficients before `fixed_from`, with those from there on given in `out`.
     pub(crate) fn solve_leading(&self, fixed_from: usize, out: &mut [f64]) {
         for row in (0..fixed_from).rev() {

@@ -4,8 +4,8 @@
 //! polynomial `f(x, y) = sum a_ij x^i y^j` of even degree 2 to 8 to it, negative inside and positive outside. The 3L method uses
 //! three level sets: the points at 0, and the points moved along their normals at -1 and +1. The fit can be globally
 //! stabilised, or closed and bounded by construction. The fit is equivariant under similarities (turns, shifts and changes of
-//! scale): the fit of the moved outline is the moved fit. It is not equivariant under an affine map that stretches or shears,
-//! which changes distances along normals.
+//! scale): the fit of the moved outline is the moved fit. Under an affine map that stretches or shears, which changes
+//! distances along normals, it is equivariant with [`Normalise::Affine`] only.
 //!
 //! ```
 //! use freeform_curve_fit::{FitSettings, Fitter, Outline};
@@ -27,8 +27,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod active_set;
+mod area_moments;
 mod bounded;
 mod bounded_polynomial;
+mod covariance;
 mod degree;
 mod error;
 mod fit;
@@ -47,6 +49,7 @@ mod outline;
 mod pixel_grid;
 mod polynomial;
 mod rectangle;
+mod resampling;
 mod residuals;
 mod ridge;
 mod settings;
@@ -54,7 +57,9 @@ mod stray_parts;
 mod vectors;
 mod windows;
 
+pub use area_moments::AreaMoments;
 pub use bounded_polynomial::BoundedPolynomial;
+pub use covariance::FitCovariance;
 pub use degree::{Degree, MAX_COEFFICIENTS, coefficient_count};
 pub use error::{FitError, OutlineError, PolynomialError, SettingsError};
 pub use fit::{Factorisation, Fit, FitDiagnostics};
@@ -68,9 +73,10 @@ pub use outline::{ClosedOutline, OpenArc, OpenOutline, Outline, Piece};
 pub use pixel_grid::PixelGrid;
 pub use polynomial::ImplicitPolynomial;
 pub use rectangle::Rectangle;
+pub use resampling::evenly_spaced;
 pub use residuals::Residuals;
 pub use ridge::rotation_invariant_ridge;
-pub use settings::{FitSettings, Method};
+pub use settings::{FitSettings, Method, Normalise};
 pub use stray_parts::stray_parts;
 
 #[cfg(doctest)]

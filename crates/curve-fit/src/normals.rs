@@ -47,6 +47,8 @@ pub struct NormalRegression {
     /// ...and of the points.
     point_sums: Vec<PointSums>,
     windows: Windows,
+    /// Index ranges of the pieces among all points, and whether each is closed.
+    pieces: Vec<(Range<usize>, bool)>,
 }
 
 /// Sums over all nodes of the extended piece before one: of x, y, s x and s y.
@@ -59,21 +61,42 @@ impl NormalRegression {
     ///
     /// # Panics
     /// If `half_window` is outside 0 to 0.25, or `xs` and `ys` do not hold one value per point of the outline.
-    pub fn run(&mut self, outline: &Outline, [xs, ys]: [&[f64]; 2], half_window: f64, [nx, ny]: [&mut Vec<f64>; 2]) {
+    pub fn run(&mut self, outline: &Outline, points: [&[f64]; 2], half_window: f64, normals: [&mut Vec<f64>; 2]) {
+        self.set_pieces(outline.pieces().map(|piece| (piece.points.len(), piece.closed)));
+        self.run_along(points, half_window, normals);
+    }
+
+    /// The same for pieces of so many points, each closed or not.
+    pub(crate) fn run_pieces(
+        &mut self,
+        pieces: &[(usize, bool)],
+        points: [&[f64]; 2],
+        half_window: f64,
+        normals: [&mut Vec<f64>; 2],
+    ) {
+        self.set_pieces(pieces.iter().copied());
+        self.run_along(points, half_window, normals);
+    }
+
+    fn set_pieces(&mut self, pieces: impl Iterator<Item = (usize, bool)>) {
+        self.pieces.clear();
+        self.pieces.extend(pieces.scan(0, |start, (count, closed)| {
+            let range = *start..*start + count;
+            *start = range.end;
+            Some((range, closed))
+        }));
+    }
+
+    fn run_along(&mut self, [xs, ys]: [&[f64]; 2], half_window: f64, [nx, ny]: [&mut Vec<f64>; 2]) {
         assert!((0.0..=0.25).contains(&half_window), "half window {half_window} outside 0 to 0.25");
-        assert_eq!([xs.len(), ys.len()], [outline.point_count(); 2], "one coordinate per point");
+        let count = self.pieces.last().map_or(0, |(range, _)| range.end);
+        assert_eq!([xs.len(), ys.len()], [count; 2], "one coordinate per point");
         for normals in [&mut *nx, &mut *ny] {
             normals.clear();
             normals.resize(xs.len(), 0.0);
         }
         self.reserve(xs.len(), half_window);
-        Arch::new().dispatch(NormalKernel {
-            regression: self,
-            outline,
-            points: [xs, ys],
-            half_window,
-            normals: [nx, ny],
-        });
+        Arch::new().dispatch(NormalKernel { regression: self, points: [xs, ys], half_window, normals: [nx, ny] });
     }
 
     /// Makes room for outlines of so many points, whose neighbours beyond the ends may be twice as many as if the points
@@ -87,13 +110,13 @@ impl NormalRegression {
     }
 
     #[inline(always)]
-    fn measure_steps(&mut self, outline: &Outline, xs: &[f64], ys: &[f64]) {
+    fn measure_steps(&mut self, xs: &[f64], ys: &[f64]) {
         self.steps.clear();
         self.steps.resize(xs.len(), 0.0);
         distances_to_previous(xs, ys, &mut self.steps);
-        for (range, closed) in ranges(outline) {
+        for (range, closed) in &self.pieces {
             let (first, last) = (range.start, range.end - 1);
-            self.steps[first] = if closed { distance(xs[first] - xs[last], ys[first] - ys[last]) } else { 0.0 };
+            self.steps[first] = if *closed { distance(xs[first] - xs[last], ys[first] - ys[last]) } else { 0.0 };
         }
     }
 
@@ -149,7 +172,6 @@ impl NormalRegression {
 /// The whole regression, in a form that is compiled for the vector instructions that the machine has.
 struct NormalKernel<'a> {
     regression: &'a mut NormalRegression,
-    outline: &'a Outline,
     points: [&'a [f64]; 2],
     half_window: f64,
     normals: [&'a mut [f64]; 2],
@@ -160,18 +182,19 @@ impl WithSimd for NormalKernel<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { regression, outline, points: [xs, ys], half_window, normals: [nx, ny] } = self;
+        let Self { regression, points: [xs, ys], half_window, normals: [nx, ny] } = self;
         let (area, absolute) = signed_area(xs, ys);
         regression.has_inside = area.abs() > NO_AREA * absolute;
         let outward = 1.0_f64.copysign(area);
-        regression.measure_steps(outline, xs, ys);
+        regression.measure_steps(xs, ys);
         // A hair less than the window, so that rounding does not decide whether evenly spaced points lie on its edge.
         let half_length = (1.0 - 1e-9) * half_window * sum(&regression.steps, |step| step);
         // Coordinates beyond all measure have no direction anywhere, and no order along the outline to look for windows in.
         if !half_length.is_finite() {
             return;
         }
-        for (range, closed) in ranges(outline) {
+        for piece in 0..regression.pieces.len() {
+            let (range, closed) = regression.pieces[piece].clone();
             let before = regression.lay_out(xs, ys, range.clone(), closed, half_length);
             regression.windows.find(&mut regression.arc_lengths, before, half_length);
             regression.regress(before, [&mut nx[range.clone()], &mut ny[range]]);
@@ -227,15 +250,6 @@ fn signed_area(xs: &[f64], ys: &[f64]) -> (f64, f64) {
         }
     }
     (0.5 * (closing + area.iter().sum::<f64>()), 0.5 * (closing.abs() + absolute.iter().sum::<f64>()))
-}
-
-/// The index ranges of the pieces among all points, and whether each is closed.
-fn ranges(outline: &Outline) -> impl Iterator<Item = (Range<usize>, bool)> + '_ {
-    outline.pieces().scan(0, |start, piece| {
-        let range = *start..*start + piece.points.len();
-        *start = range.end;
-        Some((range, piece.closed))
-    })
 }
 
 #[cfg(test)]

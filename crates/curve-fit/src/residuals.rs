@@ -1,6 +1,9 @@
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::{degree::Degree, monomials::monomial_index, polynomial::ImplicitPolynomial};
+use crate::{
+    degree::Degree, monomials::monomial_index, normalisation::Normalisation, outline::Outline,
+    polynomial::ImplicitPolynomial,
+};
 
 /// How far points lie from a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +21,22 @@ impl Residuals {
         let sums = Arch::new().dispatch(ResidualKernel { f, xs, ys });
         let count = xs.len().max(1) as f64;
         Self { algebraic: (sums.0 / count).sqrt(), geometric: (sums.1 / count).sqrt() }
+    }
+}
+
+impl Residuals {
+    /// Root mean square first-order distance of the points of an outline from the curve `f = 0` of the working coordinates of a
+    /// normalisation, in image units, whatever its stretch.
+    pub(crate) fn geometric_in_image(f: &ImplicitPolynomial, normalisation: &Normalisation, outline: &Outline) -> f64 {
+        let image_from_working = normalisation.image_from_working();
+        let linear = image_from_working.matrix().fixed_view::<2, 2>(0, 0).into_owned();
+        let Some(inverse) = linear.try_inverse() else { return f64::NAN };
+        let squares = outline.points().map(|p| {
+            let (value, gradient, _) = f.value_and_derivatives(&normalisation.to_working(p));
+            // As in the other residuals, a point where the gradient vanishes is kept from dividing by zero.
+            value * value / (inverse.tr_mul(&gradient).norm_squared() + 1e-100)
+        });
+        (squares.sum::<f64>() / outline.point_count() as f64).sqrt()
     }
 }
 

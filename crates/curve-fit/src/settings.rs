@@ -22,6 +22,18 @@ pub enum Method {
     },
 }
 
+/// In which coordinates an outline is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Normalise {
+    /// Centred and scaled. The fit of an outline moved by a similarity is the moved fit; that of a stretched or sheared one is not.
+    #[default]
+    Similarity,
+    /// Moved by its area moments to a circle of inertia and spread evenly by arc length there. The fit of an outline moved by any
+    /// affine map is the moved fit, to rounding, and to what spreading an outline anew changes where its points are others. For
+    /// closed outlines; an open one has no area moments, and needs [`Fitter::fit_in`](crate::Fitter::fit_in).
+    Affine,
+}
+
 /// Settings of a [`Fitter`](crate::Fitter).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitSettings {
@@ -29,11 +41,14 @@ pub struct FitSettings {
     pub degree: Degree,
     /// Which least-squares problem is solved.
     pub method: Method,
-    /// Distance c of the outer level sets from the data, in units of the RMS radius of the outline. In (0, 1].
+    /// Distance c of the outer level sets from the data, in units of the RMS radius of the outline where it is fitted.
+    /// In (0, 1].
     pub offset: f64,
     /// Half width of the window that normals are regressed over, as a fraction of the length of the outline.
     /// In [0, 0.25].
     pub normal_half_window: f64,
+    /// In which coordinates the outline is fitted.
+    pub normalise: Normalise,
 }
 
 impl Default for FitSettings {
@@ -44,6 +59,7 @@ impl Default for FitSettings {
             method: Method::Bounded { margin: 0.02, ridge_weight: 0.0 },
             offset: 0.1,
             normal_half_window: 0.02,
+            normalise: Normalise::Similarity,
         }
     }
 }

@@ -42,6 +42,7 @@ mod line_product;
 mod related_point;
 mod roots;
 mod rotation_chart;
+mod uncertainty;
 
 pub use condition::Condition;
 pub use correspondence::{Correspondence, Criterion, MAX_PAIRS, ORDERING_MARGIN};
@@ -52,6 +53,7 @@ pub use line::Line;
 pub use related_point::{RelatedPoint, RelatedPoints};
 pub use roots::{Roots, binary_form_roots, companion_roots};
 pub use rotation_chart::{from_rotation_chart, rotation_chart};
+pub use uncertainty::CurveUncertainty;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -11,6 +11,8 @@ pub struct MotionEstimate {
     model: MotionModel,
     values: [f64; MAX_PARAMETERS],
     standard_deviations: Option<[f64; MAX_PARAMETERS]>,
+    /// Systematic parts of these.
+    systematic: [f64; MAX_PARAMETERS],
     observable: [bool; MAX_PARAMETERS],
 }
 
@@ -23,8 +25,12 @@ pub struct ParameterEstimate {
     pub unit: &'static str,
     /// The value, or `None` where the outlines tell nothing of it.
     pub value: Option<f64>,
-    /// Its standard deviation, or `None` where the method gives none.
+    /// Its standard deviation, random and systematic together, or `None` where the method gives none.
     pub standard_deviation: Option<f64>,
+    /// The part of it that comes from random errors of the points.
+    pub random_deviation: Option<f64>,
+    /// The part of it that comes from errors of whole outlines, which more frames do not average out.
+    pub systematic_deviation: Option<f64>,
 }
 
 impl MotionEstimate {
@@ -44,6 +50,7 @@ impl MotionEstimate {
             model,
             values: pad(values),
             standard_deviations: standard_deviations.map(pad),
+            systematic: [0.0; MAX_PARAMETERS],
             observable: [true; MAX_PARAMETERS],
         }
     }
@@ -56,6 +63,21 @@ impl MotionEstimate {
     pub fn with_unobservable(mut self, index: usize) -> Self {
         assert!(index < self.model.parameter_count(), "parameter {index} of {:?}", self.model);
         self.observable[index] = false;
+        self
+    }
+
+    /// This estimate with the random parts of its standard deviations given; the rest of them is systematic.
+    ///
+    /// # Panics
+    /// If there is not one for every parameter of the model.
+    #[must_use]
+    pub fn with_random_part(mut self, random: &[f64]) -> Self {
+        assert_eq!(random.len(), self.model.parameter_count(), "one deviation per parameter");
+        if let Some(all) = &self.standard_deviations {
+            for ((systematic, all), random) in self.systematic.iter_mut().zip(all).zip(random) {
+                *systematic = (all * all - random * random).max(0.0).sqrt();
+            }
+        }
         self
     }
 
@@ -73,6 +95,11 @@ impl MotionEstimate {
             unit,
             value: self.observable[i].then_some(self.values[i]),
             standard_deviation: self.standard_deviations.filter(|_| self.observable[i]).map(|list| list[i]),
+            random_deviation: self.standard_deviations.filter(|_| self.observable[i]).map(|list| {
+                let (all, systematic) = (list[i], self.systematic[i]);
+                (all * all - systematic * systematic).max(0.0).sqrt()
+            }),
+            systematic_deviation: self.standard_deviations.filter(|_| self.observable[i]).map(|_| self.systematic[i]),
         })
     }
 
@@ -125,6 +152,7 @@ impl MotionEstimate {
             |values: &[f64]| model.parameters_of(&camera.generator_in_space(&model.generator(&values[..count])));
         self.values = in_space(&self.values);
         self.standard_deviations = self.standard_deviations.map(|list| in_space(&list));
+        self.systematic = in_space(&self.systematic);
         self
     }
 }

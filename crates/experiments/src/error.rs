@@ -2,11 +2,13 @@ use freeform_curve_fit::{FitError, SettingsError};
 use freeform_decompose::DecompositionError;
 use freeform_estimate::BoundError;
 use freeform_motion::PipelineError;
+use freeform_motion::tracker::TrackerError;
 use freeform_outline_filter::FilterError;
-use freeform_sim_camera::SimulationError;
+use freeform_sim_camera::{ShapeError, SimulationError};
 
 use crate::baseline::BaselineError;
 use crate::monte_carlo::suite;
+use crate::stress::Class;
 
 /// Why an experiment cannot be made or gives nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -14,6 +16,12 @@ pub enum ExperimentError {
     /// The simulator refused a scene or its settings.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A contour cannot be made.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// The tracker refused its settings.
+    #[error(transparent)]
+    Tracker(#[from] TrackerError),
     /// The bound of a setting cannot be given.
     #[error(transparent)]
     Bound(#[from] BoundError),
@@ -47,6 +55,15 @@ pub enum ExperimentError {
         suite::WORDS.join(", ")
     )]
     NoSuchSetting {
+        /// What was looked for.
+        text: String,
+    },
+    /// No kind of the stress suite has a class and name that contain this text.
+    #[error(
+        "no kind of the stress suite contains {text:?}; the classes are {} (--list shows all kinds)",
+        Class::ALL.map(Class::name).join(", ")
+    )]
+    NoSuchKind {
         /// What was looked for.
         text: String,
     },

@@ -2,6 +2,7 @@
 //! No arguments are read, nothing is printed and nothing is drawn here; progress is a callback.
 //!
 //! - [`monte_carlo`]: how far methods are from the truth and from the Cramer-Rao bound, over many simulated sequences
+//! - [`stress`]: whether what is stated is right, on sequences that are not what an estimator expects
 //! - [`baseline`]: the two estimators that one would otherwise write, which the motion filter is compared against
 //! - [`paper`]: the figures and experiments of M. Unel and B. K. Ghosh, *Motion identification of planar free-form objects*
 //! - [`figure`]: figures as panels of curves
@@ -45,6 +46,7 @@ mod error;
 pub mod figure;
 pub mod monte_carlo;
 pub mod paper;
+pub mod stress;
 
 pub use error::ExperimentError;
 

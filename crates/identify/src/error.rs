@@ -17,8 +17,8 @@ pub enum IdentifyError {
         /// Smallest eigenvalue of its symmetric part; NaN entries give NaN.
         smallest: f64,
     },
-    /// The motion model has no law here.
-    #[error("the adaptive identifier has no law for {model} motion")]
+    /// The law has no form for the motion model: equation 19 has no terms for projective motion.
+    #[error("the printed law has no form for {model} motion")]
     UnsupportedModel {
         /// The model asked for.
         model: MotionModel,

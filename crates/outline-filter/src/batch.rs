@@ -111,6 +111,7 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
         buffers.load(outline, track.reference());
         track.update(buffers, &gate, Comparison::NotAsked).is_accepted()
     };
+    let unit = track.reference().time_unit;
     let mut buffers = Frame::default();
     let mut best = track.clone();
     let mut mean = best.belief().motion;
@@ -118,7 +119,14 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
     // Nothing to cut from where the filter has begun with another frame.
     while rounds < tuning::MOST_ROUNDS && !converged && track.is_begun_with(used[0].1) {
         let stride = points.div_ceil(PLENTY).max(1);
-        let Some(new) = best.remapped(&best.placed(used.iter().copied()), stride, &mut buffers, take) else { break };
+        let Some(new) = best.remapped(
+            &best.placed(used.iter().map(|(time, outline)| (time / unit, *outline))),
+            stride,
+            &mut buffers,
+            take,
+        ) else {
+            break;
+        };
         best = new;
         rounds += 1;
         let before = mean;

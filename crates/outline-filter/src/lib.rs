@@ -8,6 +8,7 @@
 //! | `supervisor` | phases, restarts, hypotheses, changes of the motion: the only state machine |
 //! | `search` | global registration: related points, turns |
 //! | `track` | one object: the steps of a frame; growth and remapping of the map |
+//! | `dynamics` | hypotheses of how the motion goes on, side by side |
 //! | `update` | solve for a `Proposal`, test it at the `Gate`, commit it |
 //! | `measurement` | frame, association, point-to-line residuals and Jacobians, noise |
 //! | `prediction` | step, process noise, shape process noise |
@@ -47,6 +48,7 @@ mod batch;
 mod belief;
 #[cfg(test)]
 mod dense_filter;
+mod dynamics;
 mod map;
 mod measurement;
 mod prediction;
@@ -57,7 +59,8 @@ mod tuning;
 mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
-pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase};
+pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
+pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated};
 #[cfg(feature = "serde")]
 pub use supervisor::{StateError, with_header, without_header};
 pub use update::{FrameMeasurement, Rejection};

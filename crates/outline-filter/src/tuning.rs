@@ -83,6 +83,9 @@ pub(crate) mod null_space {
     pub(crate) const HOLDS_TURN: f64 = 0.3;
     /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.
     pub(crate) const TAKES_PART: f64 = 0.01;
+    /// As that, of a velocity in a direction that turns: what is not seen of a turn may be half a circle in a frame, so that this is
+    /// rounding alone.
+    pub(crate) const TURNS_WITH: f64 = 1e-6;
     /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
     /// over the frames of a recording, and leaves seven digits to the solution.
     pub(crate) const HOLDING: f64 = 1e9;
@@ -305,7 +308,7 @@ pub(crate) mod supervisor {
     /// Squared innovation of one frame beyond which a lost object has not gone on as it was.
     pub(crate) const LARGEST_INNOVATION: f64 = 80.0;
     /// Steps over which a parameter must be known at least, however fast the motion changes.
-    pub(crate) const STEPS_KNOWN: f64 = 30.0;
+    pub(crate) const STEPS_KNOWN: f64 = 10.0;
 }
 
 /// The batch estimator.
@@ -314,4 +317,120 @@ pub(crate) mod batch {
     pub(crate) const MOST_ROUNDS: usize = 8;
     /// Deviations by which the mean of the rounds may still change where it has settled.
     pub(crate) const SETTLED: f64 = 0.1;
+}
+
+/// Hypotheses of dynamics.
+pub(crate) mod dynamics {
+    /// Probability of each change from one hypothesis to another in a frame: a thousandth for all of them together.
+    pub(crate) const TRANSITION: f64 = 0.000_15;
+    /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
+    pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.046;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.004;
+    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
+    /// twenty frames, six, two, and none.
+    pub(crate) const LEVELS: [f64; 4] = [1e-6, 1e-3, 1.0, 1e3];
+    /// As these, where the velocity of the middle alone changes.
+    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-5, 1e-2];
+    /// Probability that an interval of 95 % leaves out.
+    pub(crate) const LEFT_OUT: f64 = 0.05;
+    /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
+    pub(crate) const REACH: f64 = 0.26;
+    /// Deviations of a pose that an acceleration which begins moves the object by in a step.
+    pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
+    /// Share of a hypothesis below which it counts for nothing.
+    pub(crate) const LEAST_SHARE: f64 = 1e-6;
+    /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
+    pub(crate) const LEAST_VARIANCE: f64 = 1e-18;
+    pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
+    /// Share by which a frame corrects the variance of a pose.
+    pub(crate) const VARIANCE_GAIN: f64 = 0.1;
+    /// What makes a measurement of the pose solvable along what it says nothing of.
+    pub(crate) const SINGULAR: f64 = 1e-9;
+    /// While a constant generator is more probable than this, which is what an interval of 95 % leaves out, its own estimate is stated, and
+    /// widened by the others; then the object is expected where all hypotheses take it...
+    pub(crate) const LEADS_FROM: f64 = LEFT_OUT;
+    /// ...until it is as probable as this.
+    pub(crate) const LEADS_UNTIL: f64 = 0.9;
+}
+
+/// Series of innovations, and what they say of deviations.
+pub(crate) mod innovations {
+    /// Innovations, in deviations, that count at most: they may be what the gate has let through.
+    pub(crate) const CLIPPED: f64 = 8.0;
+    /// Blocks that the series is kept in.
+    pub(crate) const BLOCKS: usize = 64;
+    /// Cosines that the long-run variance is told from.
+    pub(crate) const COSINES: usize = 8;
+    /// Cosines that changes are slow up to.
+    pub(crate) const SLOW: usize = 4;
+    /// Half width of a 95 % interval of Student's distribution for eight degrees of freedom over that of a normal one, 2.306 / 1.960.
+    pub(crate) const STUDENT: f64 = 1.177;
+    /// Fewest frames that say something of dependence.
+    pub(crate) const FEWEST_FRAMES: usize = 5;
+    /// Frames that the assumption of unit variance is worth.
+    pub(crate) const PRIOR_FRAMES: f64 = 8.0;
+    /// Deviations of its estimate beyond which a correlation of neighbours is one.
+    pub(crate) const CORRELATED: f64 = 2.5;
+    /// Fewest frames that say something of that.
+    pub(crate) const FEWEST_CORRELATED: usize = 10;
+    /// Correlation of neighbours that is reckoned with at most.
+    pub(crate) const LARGEST_CORRELATION: f64 = 0.98;
+}
+
+/// Tests of what a family of motions leaves out.
+pub(crate) mod family {
+    /// Frames, since the map was last cut, that say something.
+    pub(crate) const FEWEST_FRAMES: usize = 6;
+    /// Deviations beyond which a motion that is left out is there. A warning that is always there is none.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Share of the noise of a point that a displacement must have to matter.
+    pub(crate) const MATTERS: f64 = 0.03;
+    /// Displacement, in squares of the noise, that noise itself makes where the outline bends, by frames that are told by straight cells.
+    pub(crate) const OF_NOISE: f64 = 3.0;
+    /// Frames after which a map is known well enough to be compared with.
+    pub(crate) const MAP_KNOWN: usize = 4;
+    /// Mean square, in variances, of a change of shape that has no direction.
+    pub(crate) const SHAPE_CHANGES: f64 = 4.0;
+    /// Share of a motion that is left out that must not be one of the model's on the outline for anything to be told of it.
+    pub(crate) const TOLD_APART: f64 = 1e-3;
+    /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.
+    pub(crate) const SINGULAR: f64 = 1e-9;
+    /// Frames looked at: all of the first so many, and then every so many.
+    pub(crate) const ALL_OF_THE_FIRST: usize = 16;
+    pub(crate) const EVERY: usize = 4;
+}
+
+/// Symmetry of outlines.
+pub(crate) mod symmetry {
+    /// Largest order that is looked for.
+    pub(crate) const LARGEST_ORDER: usize = 72;
+    /// Mean square of the innovations of a turned outline, in those of the outline as it is, up to which it is symmetric within its
+    /// noise: noise and straight cells make as much of one, and a tooth that is missing much more.
+    pub(crate) const AS_GOOD: f64 = 1.5;
+    /// As [`AS_GOOD`], that half of a turn of a symmetry must exceed.
+    pub(crate) const HALF_IS_WORSE: f64 = 2.0;
+    /// Share of the angle of symmetry that a turn between frames may lie off a multiple of it for the turns to be the same.
+    pub(crate) const OFF_MULTIPLE: f64 = 0.2;
+    /// Turns on either side of none that are tried of a symmetric outline.
+    pub(crate) const TRIED: usize = 2;
+    /// Turns that differ by less than this share of the angle of symmetry are the same.
+    pub(crate) const SAME: f64 = 0.25;
+}
+
+/// What is stated at all.
+pub(crate) mod statement {
+    /// Share of the frames rejected beyond which what the others say is no motion of the object.
+    pub(crate) const MOST_REJECTED: f64 = 0.4;
+    /// Fewest frames rejected that say so.
+    pub(crate) const FEWEST_REJECTED: usize = 5;
+}
+
+/// States that are read from bytes.
+#[cfg(feature = "serde")]
+pub(crate) mod saved_state {
+    /// Counters of a filter stay below this: more frames than a camera sees in a thousand years.
+    pub(crate) const MOST_COUNTED: usize = 1 << 48;
+    /// How far probabilities may sum to something else than 1, by rounding.
+    pub(crate) const SUM_OFF: f64 = 1e-6;
 }

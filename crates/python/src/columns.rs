@@ -13,6 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::value_error;
 use crate::estimate::or_nan;
+use crate::outline::PyOutline;
 use crate::tracker::{PyObservation, PyTracker};
 
 /// Frames after which Python is asked whether to go on.
@@ -59,6 +60,24 @@ pub(crate) fn identify_columns(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
     follow(py, tracker, &columns.view()?, progress.as_ref(), |_| {})
+}
+
+/// The outlines of columns, each with the name of its object; frames whose points are no outline are left out.
+#[pyfunction]
+pub(crate) fn outlines_of_columns(py: Python<'_>, columns: Columns<'_>) -> PyResult<Vec<(String, PyOutline)>> {
+    let columns = columns.view()?;
+    let outlines = columns.outlines().map_err(value_error)?;
+    py.detach(|| {
+        let mut found = Vec::new();
+        for outline in outlines {
+            match recorded(outline) {
+                Recorded::Outline(frame, ()) => found.push((frame.object, PyOutline { inner: frame.outline })),
+                Recorded::Gap(Err(error)) => return Err(PyValueError::new_err(table_error(&error))),
+                _ => {}
+            }
+        }
+        Ok(found)
+    })
 }
 
 /// Lets a tracker follow a recording from columns. Returns columns with one row per object and frame.
@@ -199,6 +218,7 @@ impl Recording {
         table.set_item("time", PyArray1::from_vec(py, or_nan(rows.iter().map(|row| row.time))))?;
         table.set_item("phase", self.phases)?;
         table.set_item("accepted", PyArray1::from_iter(py, rows.iter().map(|row| row.accepted)))?;
+        let segments: Vec<i64> = rows.iter().map(|row| row.segment as i64).collect();
         let mut motions = self.estimates;
         if tracker.settings().method() == Method::Filter {
             let poses = self.trajectory.poses(scale);
@@ -212,6 +232,7 @@ impl Recording {
             motions = poses.into_iter().map(|known| known.map(|known| known.motion)).collect();
         }
         set_motions(&table, model, &motions)?;
+        table.set_item("segment", PyArray1::from_iter(py, segments))?;
         Ok(table)
     }
 }

@@ -35,10 +35,22 @@ impl PyParameter {
         self.inner.value
     }
 
-    /// Its standard deviation; None where the method gives none.
+    /// Its standard deviation, all of it; None where the method gives none.
     #[getter]
     fn std(&self) -> Option<f64> {
         self.inner.standard_deviation
+    }
+
+    /// The part of it that comes from random errors of the points, which more frames average out.
+    #[getter]
+    fn std_random(&self) -> Option<f64> {
+        self.inner.random_deviation
+    }
+
+    /// The part of it that comes from errors of whole outlines: of the edge uncertainty, and of what the motion model leaves out.
+    #[getter]
+    fn std_systematic(&self) -> Option<f64> {
+        self.inner.systematic_deviation
     }
 
     fn __repr__(&self) -> String {
@@ -47,7 +59,7 @@ impl PyParameter {
 }
 
 fn text(parameter: &ParameterEstimate) -> String {
-    let ParameterEstimate { name, unit, value, standard_deviation } = parameter;
+    let ParameterEstimate { name, unit, value, standard_deviation, .. } = parameter;
     match (value, standard_deviation) {
         (None, _) => format!("{name} not observable"),
         (Some(value), None) => format!("{name} = {} {unit}", significant(*value, 6)),
@@ -107,10 +119,23 @@ impl PyEstimate {
         PyArray1::from_vec(py, or_nan(self.inner.parameters().map(|p| p.value)))
     }
 
-    /// Standard deviations, shape (k,); NaN where there is none.
+    /// Standard deviations, all of them, shape (k,); NaN where there is none.
     #[getter]
     fn std<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, or_nan(self.inner.parameters().map(|p| p.standard_deviation)))
+    }
+
+    /// The parts of the standard deviations that come from random errors of the points, shape (k,); NaN where there is none.
+    #[getter]
+    fn std_random<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, or_nan(self.inner.parameters().map(|p| p.random_deviation)))
+    }
+
+    /// The parts of the standard deviations that come from errors of whole outlines, shape (k,): `std**2 = std_random**2 +
+    /// std_systematic**2`. NaN where there is none.
+    #[getter]
+    fn std_systematic<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, or_nan(self.inner.parameters().map(|p| p.systematic_deviation)))
     }
 
     /// Whether each parameter is observable, shape (k,), bool.

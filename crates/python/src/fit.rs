@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use crate::arrays::array_of_points;
 use crate::decomposition::PyDecomposition;
 use crate::errors::{unknown_name, value_error, whole};
-use crate::names::degree;
+use crate::names::{degree, normalise};
 use crate::outline::outline_of;
 use crate::polynomial::PyImplicitPolynomial;
 
@@ -31,6 +31,8 @@ const AROUND: f64 = 0.5;
 ///     Distance of the outer level sets, in RMS radii of the outline, in (0, 1].
 /// normal_half_window : float
 ///     Half width of the window that normals are regressed over, a share of the length of the outline, in [0, 0.25].
+/// normalise : str
+///     `similarity`, or `affine` for a closed outline: the fit of an affinely moved outline is then the moved fit.
 ///
 /// Returns
 /// -------
@@ -42,7 +44,7 @@ const AROUND: f64 = 0.5;
 ///     A setting out of range, or points that do not determine the coefficients.
 #[pyfunction]
 #[pyo3(signature = (outline, degree = 4, method = "bounded", *, margin = 0.02, ridge_weight = 0.0, offset = 0.1,
-                    normal_half_window = 0.02))]
+                    normal_half_window = 0.02, normalise = "similarity"))]
 #[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub(crate) fn fit(
     py: Python<'_>,
@@ -53,6 +55,7 @@ pub(crate) fn fit(
     ridge_weight: f64,
     offset: f64,
     normal_half_window: f64,
+    normalise: &str,
 ) -> PyResult<PyFit> {
     let method = match method {
         "bounded" => Method::Bounded { margin, ridge_weight },
@@ -60,7 +63,13 @@ pub(crate) fn fit(
         "3l" => Method::ThreeLevel,
         _ => return Err(unknown_name("method", method, &["bounded", "gs3l", "3l"])),
     };
-    let settings = FitSettings { degree: self::degree(degree)?, method, offset, normal_half_window };
+    let settings = FitSettings {
+        degree: self::degree(degree)?,
+        method,
+        offset,
+        normal_half_window,
+        normalise: self::normalise(normalise)?,
+    };
     let outline = outline_of(outline)?;
     let mut fitter = Fitter::new(settings).map_err(value_error)?;
     let inner = py.detach(|| fitter.fit(&outline)).map_err(value_error)?;
@@ -83,7 +92,8 @@ impl PyFit {
         PyImplicitPolynomial { inner: self.inner.polynomial() }
     }
 
-    /// The polynomial where the data has mean 0 and RMS radius 1. Better than `polynomial` for objects far from the origin.
+    /// The polynomial where the data has mean 0 and RMS radius 1 (`normalise="affine"`: the inertia of a disc). Better than `polynomial` for
+    /// objects far from the origin.
     #[getter]
     fn working(&self) -> PyImplicitPolynomial {
         PyImplicitPolynomial { inner: *self.inner.working() }

@@ -16,7 +16,9 @@ mod motion_filter;
 mod names;
 mod outline;
 mod pipeline;
+mod plane;
 mod polynomial;
+mod recogniser;
 mod simulation;
 mod tracker;
 
@@ -28,7 +30,7 @@ mod _native {
     #[pymodule_export]
     use crate::bound::PyCramerRaoBound;
     #[pymodule_export]
-    use crate::columns::{PyRecorder, identify_columns, track_columns};
+    use crate::columns::{PyRecorder, identify_columns, outlines_of_columns, track_columns};
     #[pymodule_export]
     use crate::decomposition::{PyCorrespondence, PyDecomposition};
     #[pymodule_export]
@@ -46,7 +48,11 @@ mod _native {
     #[pymodule_export]
     use crate::pipeline::PyPipeline;
     #[pymodule_export]
+    use crate::plane::homography;
+    #[pymodule_export]
     use crate::polynomial::PyImplicitPolynomial;
+    #[pymodule_export]
+    use crate::recogniser::{PyEvidence, PyRecogniser, PyRecognition};
     #[pymodule_export]
     use crate::simulation::{PySimulatedFrame, PySimulation, simulate};
     #[pymodule_export]

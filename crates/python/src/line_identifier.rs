@@ -16,7 +16,7 @@ use crate::names::{adaptive_law, motion_model};
 /// Parameters
 /// ----------
 /// motion : str
-///     `rigid`, `similarity` or `affine`.
+///     `rigid`, `similarity`, `affine` or `projective`.
 /// law : str
 ///     How the parameters are adapted: `structured`, `filtered` (least squares, settles sooner) or `printed` (as in the paper).
 #[pyclass(frozen, name = "AdaptiveIdentifier", module = "freeform_motion")]

@@ -3,14 +3,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use freeform_motion::estimate::ProcessNoise;
 use freeform_motion::outline_filter::{FilterSettings, FilterStep, MotionFilter, Phase};
 use freeform_motion::tracker::ObjectPhase;
-use numpy::PyArray2;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::arrays::{array_of_matrix3, array_of_points};
 use crate::errors::{value_error, whole};
 use crate::estimate::{PyEstimate, PyMotionState, PyPointVelocity};
-use crate::names::motion_model;
+use crate::names::{dynamics, dynamics_weights, motion_model, unstated_name, wrong_family_name};
 use crate::outline::outline_of;
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
@@ -26,6 +26,13 @@ use crate::outline::outline_of;
 ///     the object's centre in lengths per second. Zeros leave it to the frames to show changes.
 /// adaptive : bool
 ///     Whether changes of a motion without process noise are followed. If False, the motion is taken for constant.
+/// dynamics : str
+///     What is assumed of how the motion goes on from frame to frame: `generator` (the velocity of the object's middle turns with the
+///     object), `velocity` (it stays), `accelerating` (accelerations change slowly), or `auto` for all of them side by side, weighted by
+///     their likelihoods. Without effect with process noise, without `adaptive`, and on projective motion.
+/// edge_uncertainty : float
+///     How far all of a side of the outlines may lie off in every frame, image lengths, such as by a shadow or by a threshold. It widens
+///     the standard deviations.
 /// smallest_agreement : float
 ///     Smallest share of the points of a frame that must lie on the known outline, in (0, 1).
 /// patience : int
@@ -52,34 +59,52 @@ impl PyMotionFilter {
     }
 }
 
-/// Settings of the filter from the arguments of its constructor.
-pub(crate) fn filter_settings(
-    motion: &str,
-    (rates, velocities): (f64, f64),
-    adaptive: bool,
-    smallest_agreement: f64,
-    patience: usize,
-) -> PyResult<FilterSettings> {
-    let process_noise = ProcessNoise { rates, velocities };
-    let model = motion_model(motion)?;
-    let mut settings = FilterSettings { model, process_noise, ..FilterSettings::default() };
-    (settings.adaptive, settings.smallest_agreement, settings.patience) = (adaptive, smallest_agreement, patience);
-    Ok(settings)
+/// Arguments of a constructor that are settings of the filter, but for the motion model.
+pub(crate) struct FilterArguments<'a> {
+    pub(crate) process_noise: (f64, f64),
+    pub(crate) adaptive: bool,
+    pub(crate) dynamics: &'a str,
+    pub(crate) edge_uncertainty: f64,
+    pub(crate) smallest_agreement: f64,
+    pub(crate) patience: usize,
+}
+
+impl FilterArguments<'_> {
+    pub(crate) fn settings(&self, motion: &str) -> PyResult<FilterSettings> {
+        let Self {
+            process_noise: (rates, velocities), adaptive, edge_uncertainty, smallest_agreement, patience, ..
+        } = *self;
+        Ok(FilterSettings {
+            model: motion_model(motion)?,
+            process_noise: ProcessNoise { rates, velocities },
+            adaptive,
+            dynamics: dynamics(self.dynamics)?,
+            edge_uncertainty,
+            smallest_agreement,
+            patience,
+        })
+    }
 }
 
 #[pymethods]
 impl PyMotionFilter {
     #[new]
-    #[pyo3(signature = (motion = "rigid", *, process_noise = (0.0, 0.0), adaptive = true, smallest_agreement = 0.7, patience = 2),
-           text_signature = "(motion='rigid', *, process_noise=(0.0, 0.0), adaptive=True, smallest_agreement=0.7, patience=2)")]
+    #[pyo3(signature = (motion = "rigid", *, process_noise = (0.0, 0.0), adaptive = true, dynamics = "auto",
+                        edge_uncertainty = 0.0, smallest_agreement = 0.7, patience = 2),
+           text_signature = "(motion='rigid', *, process_noise=(0.0, 0.0), adaptive=True, dynamics='auto', edge_uncertainty=0.0, \
+                             smallest_agreement=0.7, patience=2)")]
     fn new(
         motion: &str,
         process_noise: (f64, f64),
         adaptive: bool,
+        dynamics: &str,
+        edge_uncertainty: f64,
         smallest_agreement: f64,
         #[pyo3(from_py_with = whole)] patience: usize,
     ) -> PyResult<Self> {
-        let settings = filter_settings(motion, process_noise, adaptive, smallest_agreement, patience)?;
+        let arguments =
+            FilterArguments { process_noise, adaptive, dynamics, edge_uncertainty, smallest_agreement, patience };
+        let settings = arguments.settings(motion)?;
         Ok(Self { inner: Mutex::new(MotionFilter::new(settings).map_err(value_error)?) })
     }
 
@@ -178,6 +203,36 @@ impl PyMotionFilter {
     #[getter]
     fn rival_turns(&self) -> Vec<f64> {
         self.lock().rival_turns().to_vec()
+    }
+
+    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; empty where there is
+    /// none.
+    #[getter]
+    fn aliases<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let aliases = self.lock().aliases();
+        PyArray1::from_vec(py, aliases)
+    }
+
+    /// Probabilities of the hypotheses of dynamics, `generator`, `velocity` and `accelerating`, which sum up to 1; None where they are not
+    /// told: before the third frame, with process noise, and for a projective motion.
+    #[getter]
+    fn dynamics<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let weights = self.lock().dynamics();
+        weights.map(|weights| dynamics_weights(py, &weights)).transpose()
+    }
+
+    /// What the outlines do beyond doubt that the motion model does not: `growth`, `shear`, `perspective`, `rolling_shutter` or `shape`.
+    /// None if nothing. Standard deviations are widened by what it may do.
+    #[getter]
+    fn wrong_family(&self) -> Option<&'static str> {
+        self.lock().wrong_family().map(wrong_family_name)
+    }
+
+    /// Why no value is stated although frames were taken: `lost`, or `too_many_rejected` where the frames that were taken are too few of
+    /// all. None where values are stated.
+    #[getter]
+    fn unstated(&self) -> Option<&'static str> {
+        self.lock().unstated().map(unstated_name)
     }
 
     /// The motion model.

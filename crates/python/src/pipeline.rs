@@ -14,9 +14,10 @@ use crate::tracker::PyResultWarning;
 /// Parameters
 /// ----------
 /// motion : str
-///     `rigid`, `similarity` or `affine`.
-/// law : str
-///     How the parameters are adapted: `structured`, `filtered` (least squares, settles sooner) or `printed` (as in the paper).
+///     `rigid`, `similarity`, `affine` or `projective`.
+/// law : str, optional
+///     How the parameters are adapted: `structured`, `filtered` (least squares, settles sooner) or `printed` (as in the paper). The default is
+///     `structured` for rigid motions and similarities and `filtered` for the others.
 #[pyclass(frozen, name = "Pipeline", module = "freeform_motion")]
 #[derive(Debug)]
 pub(crate) struct PyPipeline {
@@ -32,11 +33,12 @@ impl PyPipeline {
 #[pymethods]
 impl PyPipeline {
     #[new]
-    #[pyo3(signature = (motion = "rigid", *, law = "structured"))]
-    fn new(motion: &str, law: &str) -> PyResult<Self> {
-        let mut settings = PipelineSettings::default();
-        settings.identify.model = motion_model(motion)?;
-        settings.identify.law = adaptive_law(law)?;
+    #[pyo3(signature = (motion = "rigid", *, law = None))]
+    fn new(motion: &str, law: Option<&str>) -> PyResult<Self> {
+        let mut settings = PipelineSettings::for_model(motion_model(motion)?);
+        if let Some(law) = law {
+            settings.identify.law = adaptive_law(law)?;
+        }
         Ok(Self { inner: Mutex::new(Pipeline::new(settings).map_err(value_error)?) })
     }
 

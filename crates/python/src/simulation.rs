@@ -1,6 +1,6 @@
 use freeform_motion::curve_fit::{ClosedOutline, Outline, PixelGrid};
 use freeform_motion::outline_io::read_shape;
-use freeform_motion::riccati::{AffineMotion, RigidMotion};
+use freeform_motion::riccati::{AffineMotion, ProjectiveMotion, RigidMotion};
 use freeform_motion::sim_camera::{
     BuiltInShape, Camera, Frame, Mask, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator,
 };
@@ -39,6 +39,8 @@ const MARGIN: f64 = 0.05;
 ///     Velocity at the origin in lengths per second.
 /// affine : tuple of 6 floats, optional
 ///     An affine motion a1, a2, a3, a4, b1, b2 instead of omega and b.
+/// projective : tuple of 8 floats, optional
+///     A projective motion a1, a2, a3, a4, b1, b2, c1, c2 instead of these.
 /// scale : float
 ///     Camera scale f/Z0: image lengths per space length.
 /// fps, seconds : float
@@ -59,16 +61,17 @@ const MARGIN: f64 = 0.05;
 /// Simulation
 ///     A sequence of frames, each with `time` and `outline`.
 #[pyfunction]
-#[pyo3(signature = (shape = None, *, omega = 1.0, b = (0.0, 0.0), affine = None, scale = 1.0, fps = 30.0, seconds = 4.0,
-                    points = 400, noise = 0.005, occlusion = 0.0, outliers = 0.0, seed = 0),
-       text_signature = "(shape=None, *, omega=1.0, b=(0.0, 0.0), affine=None, scale=1.0, fps=30.0, seconds=4.0, points=400, \
-                         noise=0.005, occlusion=0.0, outliers=0.0, seed=0)")]
+#[pyo3(signature = (shape = None, *, omega = 1.0, b = (0.0, 0.0), affine = None, projective = None, scale = 1.0, fps = 30.0,
+                    seconds = 4.0, points = 400, noise = 0.005, occlusion = 0.0, outliers = 0.0, seed = 0),
+       text_signature = "(shape=None, *, omega=1.0, b=(0.0, 0.0), affine=None, projective=None, scale=1.0, fps=30.0, seconds=4.0, \
+                         points=400, noise=0.005, occlusion=0.0, outliers=0.0, seed=0)")]
 #[expect(clippy::too_many_arguments, reason = "keywords of a Python function")]
 pub(crate) fn simulate(
     shape: Option<&Bound<'_, PyAny>>,
     omega: f64,
     b: (f64, f64),
     affine: Option<[f64; 6]>,
+    projective: Option<[f64; 8]>,
     scale: f64,
     fps: f64,
     seconds: f64,
@@ -80,7 +83,12 @@ pub(crate) fn simulate(
 ) -> PyResult<PySimulation> {
     check_points(points)?;
     let rigid = RigidMotion { omega, b1: b.0, b2: b.1 };
-    let motion = affine.map_or(rigid.into(), |[a1, a2, a3, a4, b1, b2]| AffineMotion { a1, a2, a3, a4, b1, b2 });
+    let motion = match (affine, projective) {
+        (None, None) => ProjectiveMotion::from(rigid),
+        (Some([a1, a2, a3, a4, b1, b2]), None) => AffineMotion { a1, a2, a3, a4, b1, b2 }.into(),
+        (None, Some([a1, a2, a3, a4, b1, b2, c1, c2])) => ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 },
+        (Some(_), Some(_)) => return Err(PyValueError::new_err("an affine or a projective motion, not both")),
+    };
     if motion.generator().iter().any(|entry| !entry.is_finite()) {
         return Err(PyValueError::new_err("the motion is not finite"));
     }

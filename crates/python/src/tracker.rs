@@ -6,13 +6,14 @@ use freeform_motion::tracker::{MethodSettings, ObjectPhase, ObjectResult, Observ
 use freeform_motion::{Tracker, TrackerSettings, Warning};
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyDict};
 
 use crate::errors::{value_error, whole};
 use crate::estimate::{PyEstimate, PyMotionState, PyPointVelocity};
-use crate::motion_filter::filter_settings;
-use crate::names::{camera_scale, method, motion_model};
+use crate::motion_filter::FilterArguments;
+use crate::names::{camera_scale, dynamics_weights, method, motion_model};
 use crate::outline::outline_of;
+use crate::plane::rectification;
 
 /// Identifies the motion of many objects from their outlines. Memory does not grow with the number of frames.
 ///
@@ -24,7 +25,10 @@ use crate::outline::outline_of;
 ///     `filter` for the motion filter, `adaptive` for the paper's adaptive identifier.
 /// scale : float, optional
 ///     Camera scale f/Z0. If it is given, b and velocities are those in space: divided by it.
-/// process_noise, adaptive, smallest_agreement, patience
+/// rectify : array_like, shape (3, 3), optional
+///     Homography from the picture to the plane that the objects move in, where a camera looks at it from aside (see `homography`). All
+///     results are then in the plane, in its unit of length.
+/// process_noise, adaptive, dynamics, edge_uncertainty, smallest_agreement, patience
 ///     Settings of the motion filter, as of `MotionFilter`.
 #[pyclass(frozen, name = "Tracker", module = "freeform_motion")]
 #[derive(Debug)]
@@ -42,22 +46,29 @@ impl PyTracker {
 #[pymethods]
 impl PyTracker {
     #[new]
-    #[pyo3(signature = (motion = "rigid", *, method = "filter", scale = None, process_noise = (0.0, 0.0), adaptive = true,
-                        smallest_agreement = 0.7, patience = 2),
-           text_signature = "(motion='rigid', *, method='filter', scale=None, process_noise=(0.0, 0.0), adaptive=True, \
-                             smallest_agreement=0.7, patience=2)")]
+    #[pyo3(signature = (motion = "rigid", *, method = "filter", scale = None, rectify = None, process_noise = (0.0, 0.0),
+                        adaptive = true, dynamics = "auto", edge_uncertainty = 0.0, smallest_agreement = 0.7, patience = 2),
+           text_signature = "(motion='rigid', *, method='filter', scale=None, rectify=None, process_noise=(0.0, 0.0), adaptive=True, \
+                             dynamics='auto', edge_uncertainty=0.0, smallest_agreement=0.7, patience=2)")]
+    #[expect(clippy::too_many_arguments, reason = "keywords of a Python class")]
     fn new(
         motion: &str,
         method: &str,
         scale: Option<f64>,
+        rectify: Option<&Bound<'_, PyAny>>,
         process_noise: (f64, f64),
         adaptive: bool,
+        dynamics: &str,
+        edge_uncertainty: f64,
         smallest_agreement: f64,
         #[pyo3(from_py_with = whole)] patience: usize,
     ) -> PyResult<Self> {
         let mut settings = TrackerSettings::new(self::method(method)?, motion_model(motion)?);
         settings.scale = camera_scale(scale)?;
-        let filter = filter_settings(motion, process_noise, adaptive, smallest_agreement, patience)?;
+        settings.rectification = rectify.map(rectification).transpose()?;
+        let arguments =
+            FilterArguments { process_noise, adaptive, dynamics, edge_uncertainty, smallest_agreement, patience };
+        let filter = arguments.settings(motion)?;
         if let MethodSettings::Filter(settings) = &mut settings.method {
             *settings = filter;
         }
@@ -315,6 +326,12 @@ impl PyObservation {
         self.inner.innovation
     }
 
+    /// How often the object had been given up and begun anew: poses of different segments have different first outlines.
+    #[getter]
+    fn segment(&self) -> usize {
+        self.inner.segment
+    }
+
     /// A warning that should not wait for the end.
     #[getter]
     fn warning(&self) -> Option<PyResultWarning> {
@@ -394,7 +411,21 @@ impl PyObjectResult {
         PyArray1::from_slice(py, turns)
     }
 
-    /// What a user should know, causes before consequences.
+    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; empty where there is
+    /// none.
+    #[getter]
+    fn aliases<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.inner.aliases)
+    }
+
+    /// Probabilities of the hypotheses of dynamics, `generator`, `velocity` and `accelerating`, which sum up to 1 (motion filter); None
+    /// where they are not told.
+    #[getter]
+    fn dynamics<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        self.inner.dynamics.map(|weights| dynamics_weights(py, &weights)).transpose()
+    }
+
+    /// What a user should know, causes before consequences: each with a `code` for programs and a `message` for people.
     #[getter]
     fn warnings(&self) -> Vec<PyResultWarning> {
         self.inner.warnings.iter().map(Into::into).collect()

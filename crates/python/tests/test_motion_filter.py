@@ -89,6 +89,83 @@ def test_a_circle_has_a_velocity_and_no_angular_velocity():
     assert np.isfinite(motion_filter.velocity.velocity).all()
 
 
+def test_the_deviation_is_made_of_a_random_and_a_systematic_part(bird):
+    plain, wide = ff.MotionFilter(), ff.MotionFilter(edge_uncertainty=0.01)
+    for frame in bird:
+        plain.step(frame.time, frame.outline)
+        wide.step(frame.time, frame.outline)
+    estimate = wide.estimate
+    np.testing.assert_array_equal(estimate.values, plain.estimate.values)
+    assert (estimate.std_systematic > 0).all() and (plain.estimate.std_systematic == 0).all()
+    np.testing.assert_allclose(estimate.std_random, plain.estimate.std)
+    np.testing.assert_allclose(np.hypot(estimate.std_random, estimate.std_systematic), estimate.std)
+    omega = estimate["omega"]
+    assert (omega.std_random, omega.std_systematic) == (estimate.std_random[0], estimate.std_systematic[0])
+
+
+def test_a_symmetric_outline_has_other_angular_velocities():
+    motion_filter = followed(ff.simulate("square", omega=1.0, seconds=1.0))
+    omega = motion_filter.estimate["omega"].value
+    turns = (motion_filter.aliases - omega) / 30 / (np.pi / 2)
+    assert len(turns) > 0 and np.abs(turns - turns.round()).max() < 0.05 and (turns.round() != 0).all()
+    assert followed(ff.simulate("bird", omega=1.0, seconds=1.0)).aliases.shape == (0,)
+
+
+def thrown(seconds=2.0):
+    """A van that spins while its middle goes along a parabola."""
+    for frame in ff.simulate("van", omega=2.0, seconds=seconds):
+        path = np.array([frame.time, 0.8 * frame.time**2])
+        yield frame.time, frame.outline.points + path
+
+
+def test_the_dynamics_that_held_are_told():
+    motion_filter = ff.MotionFilter()
+    assert motion_filter.dynamics is None
+    for time, points in thrown():
+        motion_filter.step(time, points)
+    weights = motion_filter.dynamics
+    assert list(weights) == ["generator", "velocity", "accelerating"]
+    assert abs(sum(weights.values()) - 1.0) < 1e-9 and weights["accelerating"] > 0.9
+    one = ff.MotionFilter(dynamics="velocity")
+    for time, points in thrown(0.5):
+        one.step(time, points)
+    assert one.dynamics == {"generator": 0.0, "velocity": 1.0, "accelerating": 0.0}
+    steady = ff.MotionFilter(process_noise=(0.1, 0.1))
+    for time, points in thrown(0.5):
+        steady.step(time, points)
+    assert steady.dynamics is None
+
+
+def test_what_the_model_leaves_out_is_told():
+    frames = ff.simulate("bird", affine=[0.2, 1.0, -1.0, 0.2, 0, 0], seconds=2.0)
+    rigid, similar = ff.MotionFilter(), ff.MotionFilter("similarity")
+    for frame in frames:
+        rigid.step(frame.time, frame.outline)
+        similar.step(frame.time, frame.outline)
+    assert rigid.wrong_family == "growth" and similar.wrong_family is None
+    assert followed(ff.simulate("bird", seconds=2.0)).wrong_family is None
+
+
+def test_nothing_is_stated_of_an_object_that_is_lost(bird):
+    motion_filter = followed(bird)
+    assert motion_filter.unstated is None
+    square = ff.simulate("square", seconds=0.1)[0].outline
+    for frame in range(3):
+        motion_filter.step(1.1 + frame / 30, square)
+    assert motion_filter.phase == "lost" and motion_filter.unstated == "lost"
+    assert np.isnan(motion_filter.estimate.values).all() and motion_filter.velocity is None
+
+
+def test_a_projective_motion_is_found():
+    truth = np.array([0.1, 0.8, -0.8, -0.1, 0.1, 0.05, 0.2, -0.1])
+    motion_filter = ff.MotionFilter("projective")
+    for frame in ff.simulate("bird", projective=truth, seconds=1.0, noise=0.002):
+        motion_filter.step(frame.time, frame.outline)
+    estimate = motion_filter.estimate
+    assert estimate.names == ("a1", "a2", "a3", "a4", "b1", "b2", "c1", "c2")
+    assert (np.abs(estimate.values - truth) < 4 * estimate.std).all(), (estimate.values, estimate.std)
+
+
 def test_a_filter_without_frames_knows_nothing():
     motion_filter = ff.MotionFilter("affine")
     assert motion_filter.estimate is None and motion_filter.state is None and motion_filter.pose is None

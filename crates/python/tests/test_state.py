@@ -13,7 +13,8 @@ import freeform_motion as ff
 
 def told(motion_filter):
     state = motion_filter.state
-    return state and (state.covariance.tobytes(), state.pose.tobytes(), state.estimate.values.tobytes())
+    of = (motion_filter.dynamics, motion_filter.aliases.tolist(), motion_filter.wrong_family, motion_filter.unstated)
+    return state and (state.covariance.tobytes(), state.pose.tobytes(), state.estimate.values.tobytes(), of)
 
 
 @pytest.mark.parametrize("save", [lambda f: ff.MotionFilter.from_bytes(f.to_bytes()), lambda f: pickle.loads(pickle.dumps(f))])
@@ -82,7 +83,7 @@ def test_bytes_that_are_no_state_are_refused(bird):
         (data[:1000], "damaged"),
         (data + b"x", "damaged"),
         (data[:5000] + b"\x00\x01\x02" + data[5003:], "damaged"),
-        (bytes([data[0] + 1]) + data[1:], "has the format version 2, this library reads version 1"),
+        (bytes([data[0] + 1]) + data[1:], "has the format version 3, this library reads version 2"),
         (ff.Tracker().to_bytes(), "not the state of a filter"),
     ]:
         with pytest.raises(ValueError, match=message):

@@ -73,6 +73,15 @@ def test_track_returns_a_table_of_the_same_kind_with_a_row_per_object_and_frame(
     assert omega[-1] == last.values[0] and np.asarray(tracked["omega_std"])[-1] == last.std[0]
     assert np.asarray(tracked["phase"])[-1] == "tracking" and np.asarray(tracked["accepted"]).all()
     np.testing.assert_array_equal(np.asarray(tracked["time"])[::2], np.unique(table["time"]))
+    assert (np.asarray(tracked["segment"]) == 0).all()
+
+
+def test_an_object_given_up_and_begun_anew_has_another_segment(bird):
+    outlines = [("a", frame.index, frame.time, frame.outline) for frame in bird]
+    other = ff.simulate("square", omega=-1.0, seconds=2.0)
+    outlines += [("a", 30 + frame.index, 1.0 + frame.time, frame.outline) for frame in other]
+    segment = ff.track(ff.outline_table(outlines))["segment"]
+    assert (segment[:31] == 0).all() and segment[-1] == 1 and (np.diff(segment) >= 0).all()
 
 
 def test_smoothed_poses_are_known_better_than_filtered_ones(table):
@@ -115,6 +124,8 @@ def test_results_come_as_a_table_too(table):
     rows = pandas.DataFrame(results.table())
     assert rows["object"].tolist() == ["left", "right"]
     assert rows["omega"].tolist() == [result.estimate.values[0] for result in results]
+    assert rows["omega_std_random"].tolist() == [result.estimate.std_random[0] for result in results]
+    assert (rows["omega_std_systematic"] == 0.0).all()
     assert rows["v1_std"].tolist() == [result.velocity.std[0] for result in results]
     assert len(results) == 2 and results[1].object == "right" and results[:1].objects == ["left"]
     assert "omega" in repr(results)

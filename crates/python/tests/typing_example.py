@@ -15,3 +15,5 @@ step: ff.FilterStep = motion_filter.step(0.0, [[0, 0], [1, 0], [1, 1]])
 lines = ff.fit(ff.Outline(np.eye(3)[:, :2]), degree=4).decompose().lines()
 moduli = np.abs(lines)
 by_label: dict[int, ff.Outline] = ff.outlines(masks[0])
+weights: dict[str, float] | None = motion_filter.dynamics
+recognised: dict[str, ff.Recognition | None] = ff.recognise(masks, {"square": np.eye(3)[:, :2]})

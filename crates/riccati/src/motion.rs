@@ -1,6 +1,9 @@
-use nalgebra::{Affine2, Complex, Matrix3, Projective2};
+use nalgebra::{Affine2, Complex, Matrix3, Point2, Projective2, Vector2};
 
-use crate::exponential::{exponential, exponential_quotient};
+use crate::{
+    exponential::{exponential, exponential_quotient},
+    motion_model::MotionModel,
+};
 
 /// Constant rigid motion `x' = omega y + b1`, `y' = -omega x + b2` in the fixed image frame.
 ///
@@ -121,6 +124,28 @@ impl ProjectiveMotion {
     #[must_use]
     pub fn generator(&self) -> Matrix3<f64> {
         Matrix3::new(self.a1, self.a2, self.b1, self.a3, self.a4, self.b2, self.c1, self.c2, 0.0)
+    }
+
+    /// The motion with a generator, whose multiple of the identity is taken off.
+    #[must_use]
+    pub fn of_generator(generator: &Matrix3<f64>) -> Self {
+        let [a1, a2, a3, a4, b1, b2, c1, c2] = MotionModel::Projective.parameters_of(generator);
+        Self { a1, a2, a3, a4, b1, b2, c1, c2 }
+    }
+
+    /// The same motion without c1 and c2 where they are 0; `None` where they are not.
+    #[must_use]
+    pub fn as_affine(&self) -> Option<AffineMotion> {
+        let Self { a1, a2, a3, a4, b1, b2, c1, c2 } = *self;
+        (c1 == 0.0 && c2 == 0.0).then_some(AffineMotion { a1, a2, a3, a4, b1, b2 })
+    }
+
+    /// Velocity of the point that is at `p`, lengths per second.
+    #[must_use]
+    pub fn velocity(&self, p: &Point2<f64>) -> Vector2<f64> {
+        let Self { a1, a2, a3, a4, b1, b2, c1, c2 } = *self;
+        let affine = Vector2::new(a1 * p.x + a2 * p.y + b1, a3 * p.x + a4 * p.y + b2);
+        affine - p.coords * (c1 * p.x + c2 * p.y)
     }
 
     /// The map of the plane that the motion makes in `seconds`, `expm(A seconds)`.

@@ -2,7 +2,7 @@ use nalgebra::{Matrix3, Projective2};
 
 use crate::{
     exponential::exponential,
-    motion::{AffineMotion, SimilarityMotion},
+    motion::{ProjectiveMotion, SimilarityMotion},
 };
 
 /// Largest number of parameters of any model, that of a projective motion.
@@ -125,7 +125,7 @@ impl MotionModel {
         parameters.iter().zip(basis).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta)
     }
 
-    /// The parameters of an affine motion in this model, in its order; `None` where the model does not hold the motion.
+    /// The parameters of a motion in this model, in its order; `None` where the model does not hold the motion.
     ///
     /// ```
     /// use freeform_riccati::{MotionModel, RigidMotion};
@@ -134,14 +134,15 @@ impl MotionModel {
     /// assert_eq!(MotionModel::Rigid.parameters_of_motion(&motion), Some(vec![1.5, -0.3, 0.4]));
     /// ```
     #[must_use]
-    pub fn parameters_of_motion(self, motion: &AffineMotion) -> Option<Vec<f64>> {
-        let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
-        let is_similarity = a1 == a4 && a2 == -a3;
+    pub fn parameters_of_motion(self, motion: &ProjectiveMotion) -> Option<Vec<f64>> {
+        let ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 } = *motion;
+        let is_affine = c1 == 0.0 && c2 == 0.0;
+        let is_similarity = is_affine && a1 == a4 && a2 == -a3;
         match self {
             Self::Rigid => (is_similarity && a1 == 0.0).then(|| vec![a2, b1, b2]),
             Self::Similarity => is_similarity.then(|| vec![a1, a2, b1, b2]),
-            Self::Affine => Some(vec![a1, a2, a3, a4, b1, b2]),
-            Self::Projective => Some(vec![a1, a2, a3, a4, b1, b2, 0.0, 0.0]),
+            Self::Affine => is_affine.then(|| vec![a1, a2, a3, a4, b1, b2]),
+            Self::Projective => Some(vec![a1, a2, a3, a4, b1, b2, c1, c2]),
         }
     }
 

@@ -1,5 +1,5 @@
-use freeform_riccati::{AffineMotion, CameraScale};
-use nalgebra::{Affine2, Point2};
+use freeform_riccati::{CameraScale, ProjectiveMotion};
+use nalgebra::{Point2, Projective2};
 
 use crate::error::SimulationError;
 
@@ -32,16 +32,16 @@ impl Camera {
         space * self.scale.value()
     }
 
-    /// The motion seen in the image: the same linear part, `b` times `f/Z0` (equation 24).
+    /// The motion seen in the image: the same linear part, `b` times `f/Z0` (equation 24), `c` over it.
     #[must_use]
-    pub fn image_motion(&self, space: &AffineMotion) -> AffineMotion {
+    pub fn image_motion(&self, space: &ProjectiveMotion) -> ProjectiveMotion {
         space.in_image(self.scale)
     }
 
     /// The map of the image plane that a map of the object's plane shows as.
     #[must_use]
-    pub fn image_map(&self, space: &Affine2<f64>) -> Affine2<f64> {
-        Affine2::from_matrix_unchecked(self.scale.generator_in_image(space.matrix()))
+    pub fn image_map(&self, space: &Projective2<f64>) -> Projective2<f64> {
+        Projective2::from_matrix_unchecked(self.scale.generator_in_image(space.matrix()))
     }
 }
 

@@ -33,6 +33,7 @@ mod settings;
 mod shape;
 mod shapes;
 mod simulator;
+mod trajectory;
 
 pub use camera::Camera;
 pub use corruption::{HiddenArc, Occlusion};
@@ -46,6 +47,7 @@ pub use settings::{SequenceLength, Settings};
 pub use shape::Shape;
 pub use shapes::BuiltInShape;
 pub use simulator::{Corruption, Frame, Frames, Simulator};
+pub use trajectory::{Dynamics, Trajectory};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

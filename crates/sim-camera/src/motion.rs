@@ -1,9 +1,10 @@
 use std::{fmt, sync::Arc};
 
-use freeform_riccati::{AffineMotion, DynamicsError, FlowIntegrator, RigidMotion};
-use nalgebra::{Affine2, Matrix3};
+use freeform_riccati::{AffineMotion, DynamicsError, FlowIntegrator, ProjectiveMotion, RigidMotion};
+use nalgebra::{Matrix3, Projective2};
 
 use crate::error::SimulationError;
+use crate::trajectory::{Dynamics, Trajectory};
 
 /// Longest step of the integrator for a varying motion, in seconds: changes shorter than that can be missed.
 const LONGEST_STEP: f64 = 1.0 / 64.0;
@@ -11,9 +12,9 @@ const LONGEST_STEP: f64 = 1.0 / 64.0;
 /// Largest error of a step of the integrator, relative to the largest entry of its map.
 const TOLERANCE: f64 = 1e-13;
 
-type Generator = dyn Fn(f64) -> AffineMotion + Send + Sync;
+type Generator = dyn Fn(f64) -> ProjectiveMotion + Send + Sync;
 
-/// How the object moves in its plane, from time 0 on: an affine motion, constant or changing with time.
+/// How the object moves in its plane, from time 0 on: an affine or projective motion, constant or changing with time.
 #[derive(Clone)]
 pub struct Motion {
     kind: Kind,
@@ -21,16 +22,17 @@ pub struct Motion {
 
 #[derive(Clone)]
 enum Kind {
-    Constant(AffineMotion),
+    Constant(ProjectiveMotion),
     /// Start of each phase in seconds, from 0 and increasing, and its motion.
-    Piecewise(Vec<(f64, AffineMotion)>),
+    Piecewise(Vec<(f64, ProjectiveMotion)>),
+    Trajectory(Trajectory),
     Varying(Arc<Generator>),
 }
 
 impl Motion {
     /// A constant motion.
     #[must_use]
-    pub fn constant(motion: impl Into<AffineMotion>) -> Self {
+    pub fn constant(motion: impl Into<ProjectiveMotion>) -> Self {
         Self { kind: Kind::Constant(motion.into()) }
     }
 
@@ -38,7 +40,9 @@ impl Motion {
     ///
     /// # Errors
     /// No phase, a first one that does not start at 0, starts that do not increase.
-    pub fn piecewise(phases: Vec<(f64, AffineMotion)>) -> Result<Self, SimulationError> {
+    pub fn piecewise<M: Into<ProjectiveMotion>>(phases: Vec<(f64, M)>) -> Result<Self, SimulationError> {
+        let phases: Vec<(f64, ProjectiveMotion)> =
+            phases.into_iter().map(|(start, motion)| (start, motion.into())).collect();
         if phases.first().is_none_or(|(start, _)| *start != 0.0) {
             return Err(SimulationError::NoFirstPhase);
         }
@@ -51,16 +55,28 @@ impl Motion {
 
     /// A motion that is a smooth function of the time in seconds. Its flow is integrated by a [`FlowIntegrator`] to 1e-13
     /// in every step, in steps of at most 1/64 s.
-    pub fn varying(generator: impl Fn(f64) -> AffineMotion + Send + Sync + 'static) -> Self {
-        Self { kind: Kind::Varying(Arc::new(generator)) }
+    pub fn varying<M: Into<ProjectiveMotion>>(generator: impl Fn(f64) -> M + Send + Sync + 'static) -> Self {
+        Self { kind: Kind::Varying(Arc::new(move |time| generator(time).into())) }
+    }
+
+    /// Whether the motion is known to be the same at all times.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        match &self.kind {
+            Kind::Constant(_) => true,
+            Kind::Trajectory(trajectory) => trajectory.dynamics() == Dynamics::Generator,
+            Kind::Piecewise(phases) => phases.len() == 1,
+            Kind::Varying(_) => false,
+        }
     }
 
     /// The motion at a time in seconds.
     #[must_use]
-    pub fn at(&self, time: f64) -> AffineMotion {
+    pub fn at(&self, time: f64) -> ProjectiveMotion {
         match &self.kind {
             Kind::Constant(motion) => *motion,
             Kind::Piecewise(phases) => phases[phases.partition_point(|(start, _)| *start <= time).max(1) - 1].1,
+            Kind::Trajectory(trajectory) => trajectory.motion(time).into(),
             Kind::Varying(generator) => generator(time),
         }
     }
@@ -68,8 +84,8 @@ impl Motion {
     /// The map of the plane that the motion makes between two times in seconds, the second not before the first. All NaN
     /// where [`try_flow`](Self::try_flow) has an error.
     #[must_use]
-    pub fn flow(&self, from: f64, to: f64) -> Affine2<f64> {
-        self.try_flow(from, to).unwrap_or_else(|_| Affine2::from_matrix_unchecked(Matrix3::repeat(f64::NAN)))
+    pub fn flow(&self, from: f64, to: f64) -> Projective2<f64> {
+        self.try_flow(from, to).unwrap_or_else(|_| Projective2::from_matrix_unchecked(Matrix3::repeat(f64::NAN)))
     }
 
     /// As `flow`, but an error if the motion cannot be integrated. The map may contain numbers that are not finite: a constant
@@ -77,22 +93,30 @@ impl Motion {
     ///
     /// # Errors
     /// A varying motion that is not finite at some time between the two, or too rough to be integrated.
-    pub fn try_flow(&self, from: f64, to: f64) -> Result<Affine2<f64>, DynamicsError> {
+    pub fn try_flow(&self, from: f64, to: f64) -> Result<Projective2<f64>, DynamicsError> {
         Ok(match &self.kind {
             Kind::Constant(motion) => motion.flow(to - from),
             Kind::Piecewise(phases) => {
                 let ends = phases.iter().skip(1).map(|(start, _)| *start).chain([f64::INFINITY]);
                 let spans = phases.iter().zip(ends).map(|((start, m), end)| (start.max(from), end.min(to), m));
                 let steps = spans.filter(|(start, end, _)| start < end).map(|(start, end, m)| m.flow(end - start));
-                steps.fold(Affine2::identity(), |flow, step| step * flow)
+                steps.fold(Projective2::identity(), |flow, step| step * flow)
             }
+            Kind::Trajectory(trajectory) => match trajectory.dynamics() {
+                Dynamics::Generator => nalgebra::convert(trajectory.motion(0.0).flow(to - from)),
+                _ => nalgebra::convert(trajectory.pose(to) * trajectory.pose(from).inverse()),
+            },
             Kind::Varying(generator) => {
                 let integrator = FlowIntegrator::new(TOLERANCE)?.with_longest_step(LONGEST_STEP)?;
-                let flow = integrator.flow(|time| generator(time).generator(), from, to)?;
-                // The last row is (0, 0, 1), as that of every generator is zero.
-                Affine2::from_matrix_unchecked(flow.map.into_inner())
+                integrator.flow(|time| generator(time).generator(), from, to)?.map
             }
         })
+    }
+}
+
+impl From<ProjectiveMotion> for Motion {
+    fn from(motion: ProjectiveMotion) -> Self {
+        Self::constant(motion)
     }
 }
 
@@ -108,11 +132,18 @@ impl From<RigidMotion> for Motion {
     }
 }
 
+impl From<Trajectory> for Motion {
+    fn from(trajectory: Trajectory) -> Self {
+        Self { kind: Kind::Trajectory(trajectory) }
+    }
+}
+
 impl fmt::Debug for Motion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
             Kind::Constant(motion) => f.debug_tuple("Constant").field(motion).finish(),
             Kind::Piecewise(phases) => f.debug_tuple("Piecewise").field(phases).finish(),
+            Kind::Trajectory(trajectory) => trajectory.fmt(f),
             Kind::Varying(_) => f.write_str("Varying(..)"),
         }
     }

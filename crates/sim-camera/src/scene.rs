@@ -1,5 +1,5 @@
-use freeform_riccati::AffineMotion;
-use nalgebra::{Affine2, Point2};
+use freeform_riccati::ProjectiveMotion;
+use nalgebra::{Affine2, Point2, Projective2};
 
 use crate::{camera::Camera, motion::Motion, shape::Shape};
 
@@ -53,19 +53,19 @@ impl Scene {
 
     /// The motion in the image at a time in seconds: what identification without the camera's scale is to find.
     #[must_use]
-    pub fn image_motion(&self, time: f64) -> AffineMotion {
+    pub fn image_motion(&self, time: f64) -> ProjectiveMotion {
         self.camera.image_motion(&self.motion.at(time))
     }
 
     /// The map from the body frame to the image at a time in seconds, not negative.
     #[must_use]
-    pub fn true_pose(&self, time: f64) -> Affine2<f64> {
-        self.image_flow(0.0, time) * self.initial_pose
+    pub fn true_pose(&self, time: f64) -> Projective2<f64> {
+        self.image_flow(0.0, time) * nalgebra::convert::<_, Projective2<f64>>(self.initial_pose)
     }
 
     /// The map of the image plane between two times in seconds, the second not before the first.
     #[must_use]
-    pub fn image_flow(&self, from: f64, to: f64) -> Affine2<f64> {
+    pub fn image_flow(&self, from: f64, to: f64) -> Projective2<f64> {
         self.camera.image_map(&self.motion.flow(from, to))
     }
 

@@ -1,6 +1,6 @@
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
-use freeform_riccati::AffineMotion;
-use nalgebra::{Affine2, Point2, Rotation2, Translation2};
+use freeform_riccati::{ProjectiveMotion, is_affine};
+use nalgebra::{Affine2, Matrix2, Point2, Projective2, Rotation2, Translation2};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
@@ -46,7 +46,7 @@ pub struct Corruption {
 pub struct Simulator {
     scene: Scene,
     settings: Settings,
-    poses: Vec<Affine2<f64>>,
+    poses: Vec<Projective2<f64>>,
     other_shapes: Vec<(BuiltInShape, Shape)>,
 }
 
@@ -78,7 +78,7 @@ impl Simulator {
             let flow = scene.motion().try_flow(time(k - 1), time(k))?;
             poses.push(scene.camera().image_map(&flow) * poses[k - 1]);
         }
-        if let Some(k) = poses.iter().position(|pose| !can_be_pictured(pose)) {
+        if let Some(k) = poses.iter().position(|pose| !can_be_pictured(pose, scene.shape())) {
             return Err(SimulationError::PoseOutOfRange { time: time(k) });
         }
         let mut other_shapes = Vec::new();
@@ -109,13 +109,13 @@ impl Simulator {
 
     /// The map from the body frame to the image at a time in seconds, not negative.
     #[must_use]
-    pub fn true_pose(&self, time: f64) -> Affine2<f64> {
+    pub fn true_pose(&self, time: f64) -> Projective2<f64> {
         self.scene.true_pose(time)
     }
 
     /// The motion in the image at time 0, which is the motion at all times if it is constant.
     #[must_use]
-    pub fn image_motion(&self) -> AffineMotion {
+    pub fn image_motion(&self) -> ProjectiveMotion {
         self.scene.image_motion(0.0)
     }
 
@@ -209,16 +209,33 @@ impl Iterator for Frames<'_> {
     }
 }
 
-/// Whether every outline in this pose can be told from a point, from a line and from its distance to the origin.
-fn can_be_pictured(pose: &Affine2<f64>) -> bool {
+/// Whether every outline in this pose can be told from a point, from a line and from its distance to the origin, and no part of
+/// the object comes near the line that the pose moves to infinity.
+fn can_be_pictured(pose: &Projective2<f64>, shape: &Shape) -> bool {
     const RANGE: std::ops::Range<f64> = 1e-50..1e50;
+    /// Places of the outline that are looked at.
+    const PLACES: usize = 64;
+    /// Largest ratio of the magnifications, square roots of areas, of two parts of the object.
+    const MAGNIFICATION: f64 = 100.0;
     let matrix = pose.matrix();
     if matrix.iter().any(|value| !value.is_finite()) {
         return false;
     }
-    let linear = matrix.fixed_view::<2, 2>(0, 0);
+    if !is_affine(matrix) {
+        let depths = shape.sample(PLACES, 0.0).into_iter().map(|p| (matrix * p.to_homogeneous()).z);
+        let (least, most) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), w| (a.min(w), b.max(w)));
+        // Areas are magnified by the third power of 1/w.
+        if !(least > 0.0 && (most / least).powf(1.5) < MAGNIFICATION) {
+            return false;
+        }
+    }
+    // The affine map that is nearest about the middle of the object.
+    let centre = matrix * shape.centroid().to_homogeneous();
+    let image = centre.xy() / centre.z;
+    let by_row = |row: usize, column: usize| (matrix[(row, column)] - image[row] * matrix[(2, column)]) / centre.z;
+    let linear = Matrix2::from_fn(by_row);
     let size = linear.norm();
-    let distance = matrix[(0, 2)].hypot(matrix[(1, 2)]);
+    let distance = image.norm();
     let flatness = (linear[(0, 0)] / size * linear[(1, 1)] - linear[(0, 1)] / size * linear[(1, 0)]) / size;
     RANGE.contains(&size) && distance < 1e10 * size && flatness.abs() > 1e-6
 }

@@ -18,6 +18,7 @@ Examples:
   freeform evaluate --acquisition --shape bird van --runs 200 --format json
   freeform evaluate --suite --shape masks/*.png --output accuracy.md
   freeform evaluate --suite arc --runs 5 --method filter
+  freeform evaluate --suite stress --kinds round/ --runs 10
 
 Output, for each shape, and pooled over shapes and parameters:
   RMSE      root mean square error of a parameter, in the image
@@ -49,7 +50,8 @@ pub(crate) struct EvaluateArgs {
     #[command(flatten)]
     pub(crate) motion_in_space: TrueMotionArgs,
 
-    /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine]
+    /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine,
+    /// projective with --projective]
     #[arg(long, value_enum)]
     pub(crate) motion: Option<MotionChoice>,
 
@@ -80,32 +82,44 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
     pub(crate) wrong_frames: f64,
 
-    /// Sequences of each shape and length
-    #[arg(long, value_name = "COUNT", value_parser = at_least_one, default_value_t = 50)]
-    pub(crate) runs: usize,
+    /// Sequences of each shape and length, or of each kind [default: 50; --suite stress: 20]
+    #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
+    pub(crate) runs: Option<usize>,
 
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// Methods to evaluate
-    #[arg(long, value_parser = methods(), value_delimiter = ',', default_values = ["filter", "moments", "icp"])]
+    /// Methods to evaluate [default: filter,moments,icp; for projective motion, which moments do not have, filter,icp]
+    #[arg(long, value_parser = methods(), value_delimiter = ',')]
     pub(crate) method: Vec<Method>,
 
     /// Evaluate the start instead of the motion: how often the pose in the second of two frames is found
     ///
     /// Between the two frames the turn is uniform within 60 degrees and the shift uniform up to half the size of the
     /// object. The pose is found if the turn is right to 6 degrees and the centre to a tenth of the size.
-    #[arg(long, conflicts_with_all = ["omega", "b", "affine", "scale", "frames", "seconds", "fps", "wrong_frames"])]
+    #[arg(long, conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "frames", "seconds", "fps", "wrong_frames"])]
     pub(crate) acquisition: bool,
 
     /// Evaluate the settings of docs/accuracy.md, or those whose name contains TEXT, and print Markdown
     ///
     /// Shapes: bird, glider, phone, van, shoe and hat, and those of --shape. Acquisition has ten times as many runs as --runs.
+    ///
+    /// 'stress' is another suite, that of docs/honesty.md: more than a hundred kinds of sequences that are not what an estimator
+    /// expects, in the classes plain, noise, family, dynamics, round and symmetry. A table tells how often a stated value was more
+    /// than four standard deviations off without a word, how often nothing was stated, and how often the 95 % intervals held.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "",
-          conflicts_with_all = ["omega", "b", "affine", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
+          conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
                                 "noise", "occlusion", "outliers", "wrong_frames", "acquisition"])]
     pub(crate) suite: Option<String>,
+
+    /// With --suite stress: only kinds whose class and name, as in 'noise/camera shake', contain TEXT
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) kinds: Option<String>,
+
+    /// With --suite stress: list the kinds and what they are
+    #[arg(long)]
+    pub(crate) list: bool,
 
     /// Number of threads [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
@@ -115,7 +129,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long)]
     pub(crate) no_timing: bool,
 
-    /// Format of the result [default: table; --suite: markdown]
+    /// Format of the result [default: table; --suite: markdown; --suite stress: table]
     #[arg(long, value_enum)]
     pub(crate) format: Option<EvaluateFormat>,
 

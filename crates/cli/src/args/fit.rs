@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use freeform_motion::curve_fit::{Degree, FitSettings, Method};
+use freeform_motion::curve_fit::{Degree, FitSettings, Method, Normalise};
 
 use super::pictures::{PictureOptions, picture_inputs};
 use super::values::{degree, not_negative, positive};
@@ -67,6 +67,18 @@ pub(crate) struct FitOptions {
     /// Distance of the outer level sets, in units of the root mean square radius [default: 0.1]
     #[arg(long, value_name = "DISTANCE", value_parser = positive)]
     pub(crate) offset: Option<f64>,
+
+    /// In which coordinates each outline is fitted
+    #[arg(long, value_enum, default_value_t = NormaliseChoice::Similarity)]
+    pub(crate) normalise: NormaliseChoice,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum NormaliseChoice {
+    /// Centred and scaled: the curve follows turns, shifts and changes of scale
+    Similarity,
+    /// Moved to a circle of inertia: the curve, its lines and its invariants follow every affine map (whole outlines only)
+    Affine,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -108,6 +120,11 @@ impl FitOptions {
             return Err(Failure::unusable("--margin is for --method bounded only"));
         }
         let default = FitSettings::default();
-        Ok(FitSettings { degree: self.degree, method, offset: self.offset.unwrap_or(default.offset), ..default })
+        let normalise = match self.normalise {
+            NormaliseChoice::Similarity => Normalise::Similarity,
+            NormaliseChoice::Affine => Normalise::Affine,
+        };
+        let offset = self.offset.unwrap_or(default.offset);
+        Ok(FitSettings { degree: self.degree, method, offset, normalise, ..default })
     }
 }

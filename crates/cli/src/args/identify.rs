@@ -4,13 +4,14 @@ use std::path::PathBuf;
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Args, Command, ValueEnum};
-use freeform_motion::TrackerSettings;
 use freeform_motion::curve_fit::{Degree, FitSettings};
-use freeform_motion::riccati::{AffineMotion, CameraScale, MotionModel};
+use freeform_motion::outline_filter::{Dynamics, FilterSettings};
+use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion};
 use freeform_motion::tracker::{Method, MethodSettings};
+use freeform_motion::{Rectification, TrackerSettings};
 
 use super::pictures::{PictureOptions, picture_inputs};
-use super::values::{camera_scale, degree, motion};
+use super::values::{camera_scale, degree, length, motion, rectification};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -19,6 +20,7 @@ Examples:
   freeform simulate --seconds 5 | freeform identify - --format json
   freeform identify 'frames/*.jpg' --ring dark --fps 15 --overlay drawn
   freeform identify outlines.csv --trajectory poses.csv --smooth
+  freeform identify frames/ --rectify plane.txt
   freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
 
 A CSV file has a header frame,time,x,y and optional columns object and arc. The rows of an outline follow the contour. \
@@ -35,11 +37,12 @@ pub(crate) struct IdentifyArgs {
     #[command(flatten)]
     pub(crate) options: TrackOptions,
 
-    /// The true parameters (OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2), in the units of the result
+    /// The true parameters (OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2 or A1,...,B2,C1,C2), in the units of the
+    /// result
     ///
     /// They are shown next to the result and in figures, and are not used in the identification.
     #[arg(long, value_name = "LIST", value_parser = motion, allow_hyphen_values = true)]
-    pub(crate) truth: Option<AffineMotion>,
+    pub(crate) truth: Option<ProjectiveMotion>,
 
     /// Format of the result
     #[arg(long, value_enum, default_value_t = IdentifyFormat::Table)]
@@ -57,7 +60,7 @@ pub(crate) struct IdentifyArgs {
     ///
     /// The pose is relative to the first frame. Rigid: angle (rad, positive if omega is), x and y, the present position of the
     /// mean of the points of the first outline. Similarity: scale, then these. Affine: the matrix m11, m12, m21, m22, then x
-    /// and y. The fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found
+    /// and y; projective also m31 and m32. The fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found
     /// again, while it is lost, and in a frame that is not an outline. In a rejected frame they are the prediction. Not
     /// available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
@@ -152,6 +155,29 @@ pub(crate) struct TrackOptions {
     /// Camera scale f/Z0; b is divided by it, which gives the velocity in space
     #[arg(long, value_name = "F_OVER_Z0", value_parser = camera_scale)]
     pub(crate) scale: Option<CameraScale>,
+
+    /// Map from the picture to the plane that the objects move in: nine numbers, row by row, or a file of them
+    ///
+    /// For a camera that looks at a table or a floor from aside. A rigid motion in the plane then has its three parameters, in the
+    /// unit of the plane. 'freeform rectify' finds the map from four points.
+    #[arg(long, value_name = "FILE|H11,...,H33", value_parser = rectification, allow_hyphen_values = true,
+          conflicts_with = "scale")]
+    pub(crate) rectify: Option<Rectification>,
+
+    /// What is assumed of how the motion goes on from frame to frame; not used by the adaptive method, nor for projective
+    /// motion
+    ///
+    /// With 'auto', the three others are followed side by side and weighted by their probabilities. With 'generator', the path of an
+    /// object tells its turn also if its outline does not, as for a disc on a turntable.
+    #[arg(long, value_enum, default_value_t = DynamicsChoice::Auto)]
+    pub(crate) dynamics: DynamicsChoice,
+
+    /// How far a side of the outline may lie off in all frames, such as by a shadow, in the unit of the outlines, or of the
+    /// plane with --rectify
+    ///
+    /// It widens the standard deviations. The part that comes from it is also given by itself, as std_systematic.
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) edge_uncertainty: Option<f64>,
 }
 
 impl TrackOptions {
@@ -163,9 +189,14 @@ impl TrackOptions {
                 settings.fit.degree = degree;
                 MethodSettings::Adaptive(settings)
             }
+            (MethodSettings::Filter(settings), _) => MethodSettings::Filter(FilterSettings {
+                dynamics: self.dynamics.into(),
+                edge_uncertainty: self.edge_uncertainty.unwrap_or(0.0),
+                ..settings
+            }),
             (method, _) => method,
         };
-        TrackerSettings { method, scale: self.scale }
+        TrackerSettings { method, scale: self.scale, rectification: self.rectify }
     }
 
     /// Degree of the curve that is drawn if the method fits none.
@@ -182,6 +213,8 @@ pub(crate) enum MotionChoice {
     Similarity,
     /// a1, a2, a3, a4, b1, b2
     Affine,
+    /// a1, a2, a3, a4, b1, b2, c1, c2
+    Projective,
 }
 
 impl MotionChoice {
@@ -190,6 +223,30 @@ impl MotionChoice {
             Self::Rigid => MotionModel::Rigid,
             Self::Similarity => MotionModel::Similarity,
             Self::Affine => MotionModel::Affine,
+            Self::Projective => MotionModel::Projective,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DynamicsChoice {
+    /// The three below side by side
+    Auto,
+    /// Constant generator: the velocity of the middle turns with the object
+    Generator,
+    /// Constant angular velocity, and a constant velocity of the middle
+    Velocity,
+    /// Nearly constant accelerations
+    Accelerating,
+}
+
+impl From<DynamicsChoice> for Dynamics {
+    fn from(choice: DynamicsChoice) -> Self {
+        match choice {
+            DynamicsChoice::Auto => Self::Auto,
+            DynamicsChoice::Generator => Self::Generator,
+            DynamicsChoice::Velocity => Self::Velocity,
+            DynamicsChoice::Accelerating => Self::Accelerating,
         }
     }
 }
@@ -236,7 +293,7 @@ impl TypedValueParser for MethodParser {
 pub(crate) enum IdentifyFormat {
     /// For reading
     Table,
-    /// One JSON object, schema freeform.identify/1
+    /// One JSON object, schema freeform.identify/2
     Json,
     /// One row per object and parameter
     Csv,

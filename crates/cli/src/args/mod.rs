@@ -1,9 +1,12 @@
 //! What can be asked for on the command line.
+mod dynamics;
 mod evaluate;
 mod fit;
 mod identify;
 mod outline;
 mod pictures;
+mod recognise;
+mod rectify;
 mod reproduce;
 mod simulate;
 mod simulated;
@@ -15,9 +18,13 @@ use clap::{Args, CommandFactory, FromArgMatches as _, Parser, Subcommand, error:
 
 pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat};
 pub(crate) use fit::{FitArgs, FitFormat};
-pub(crate) use identify::{IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions};
+pub(crate) use identify::{
+    DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions,
+};
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{PictureOptions, through_ffmpeg};
+pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
+pub(crate) use rectify::RectifyArgs;
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
@@ -55,6 +62,8 @@ pub(crate) enum Command {
     Identify(IdentifyArgs),
     Track(TrackArgs),
     Outline(OutlineArgs),
+    Recognise(RecogniseArgs),
+    Rectify(RectifyArgs),
     Evaluate(EvaluateArgs),
     Reproduce(ReproduceArgs),
     Completions(CompletionsArgs),

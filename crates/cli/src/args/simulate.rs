@@ -2,6 +2,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::dynamics::DynamicsArgs;
+use super::identify::MotionChoice;
 use super::simulated::{DisturbanceArgs, TrueMotionArgs};
 use super::values::positive;
 
@@ -10,17 +12,23 @@ Examples:
   freeform simulate > outlines.csv
   freeform simulate --shape glider --omega -1.0472 --b 0,4 --seconds 20 --output glider.csv
   freeform simulate --shape mask.png --affine 0.1,1,-1,-0.1,0.2,0 --scale 1 --noise 0.002
+  freeform simulate --motion projective --projective 0,1.6,-1.6,0,-3,4,-0.015,0.02
+  freeform simulate --shape circle --dynamics velocity --omega 2 --velocity 10,0
+  freeform simulate --dynamics accelerating --velocity 3,8 --acceleration 0,0,-9.81
+  freeform simulate --dynamics oscillating --omega 1 --velocity 2,0 --period 3 --amplitude 0.5
   freeform simulate --occlusion 0.2 --outliers 0.05 --seed 7 | freeform identify -
 
 Shapes: plane, van, glass_vase, cd_box, shoe, car, vase, glider, phone, hat, bird, boomerang, circle, ellipse, square.
 
-The first lines of the output are comments with the command and the true motion. 'freeform identify' prints this truth \
-next to its result.";
+The first lines of the output are comments with the command and the true motion: omega and b, and the velocity v of the \
+middle of the object in the last frame. Where the motion changes with time, all of it is that in the last frame, whose \
+time is told. 'freeform identify' prints this truth next to its result.";
 
 /// Make outlines of a moving object as CSV.
 ///
 /// The object has unit size in the image (the largest distance between two of its points is 1) and starts at the origin.
-/// Each frame has new random points of the outline. The motion is given in space: the image moves with b times f/Z0.
+/// Each frame has new random points of the outline. The motion is given in space: the image moves with b times f/Z0. It is
+/// that at time 0 where --dynamics lets it change.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct SimulateArgs {
@@ -32,6 +40,13 @@ pub(crate) struct SimulateArgs {
 
     #[command(flatten)]
     pub(crate) motion_in_space: TrueMotionArgs,
+
+    /// Family of motions that must hold the motion [default: any]
+    #[arg(long, value_enum)]
+    pub(crate) motion: Option<MotionChoice>,
+
+    #[command(flatten)]
+    pub(crate) dynamics: DynamicsArgs,
 
     /// Frames per second
     #[arg(long, value_parser = positive, default_value_t = 30.0)]

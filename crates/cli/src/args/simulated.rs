@@ -1,9 +1,9 @@
 //! Options of the simulation, shared by several commands.
 use clap::Args;
-use freeform_motion::riccati::{AffineMotion, RigidMotion};
+use freeform_motion::riccati::{AffineMotion, MotionModel, ProjectiveMotion, RigidMotion};
 use freeform_motion::sim_camera::{Camera, SimulationError};
 
-use super::values::{affine, finite, fraction, not_negative, pair, positive};
+use super::values::{affine, finite, fraction, not_negative, pair, positive, projective};
 
 /// The true motion in space and the camera.
 #[derive(Debug, Args)]
@@ -22,6 +22,12 @@ pub(crate) struct TrueMotionArgs {
           conflicts_with_all = ["omega", "b"])]
     affine: Option<AffineMotion>,
 
+    /// A projective motion instead of --omega and --b: x' = a1 x + a2 y + b1 - x (c1 x + c2 y), y' = a3 x + a4 y + b2 - y (c1 x +
+    /// c2 y)
+    #[arg(long, value_name = "A1,...,A4,B1,B2,C1,C2", value_parser = projective, allow_hyphen_values = true,
+          conflicts_with_all = ["omega", "b", "affine"])]
+    projective: Option<ProjectiveMotion>,
+
     /// Camera scale f/Z0: image lengths per space length
     #[arg(long, value_name = "F_OVER_Z0", value_parser = positive, default_value_t = 0.1)]
     scale: f64,
@@ -29,14 +35,18 @@ pub(crate) struct TrueMotionArgs {
 
 impl TrueMotionArgs {
     /// The motion in space.
-    pub(crate) fn motion(&self) -> AffineMotion {
+    pub(crate) fn motion(&self) -> ProjectiveMotion {
         let rigid = RigidMotion { omega: self.omega, b1: self.b[0], b2: self.b[1] };
-        self.affine.unwrap_or_else(|| rigid.into())
+        self.projective.or(self.affine.map(Into::into)).unwrap_or_else(|| rigid.into())
     }
 
-    /// Whether the motion was given by --affine.
-    pub(crate) const fn is_affine(&self) -> bool {
-        self.affine.is_some()
+    /// The family of the option that gave the motion.
+    pub(crate) const fn family(&self) -> MotionModel {
+        match (self.affine, self.projective) {
+            (_, Some(_)) => MotionModel::Projective,
+            (Some(_), None) => MotionModel::Affine,
+            (None, None) => MotionModel::Rigid,
+        }
     }
 
     pub(crate) fn camera(&self) -> Result<Camera, SimulationError> {

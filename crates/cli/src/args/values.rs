@@ -1,6 +1,8 @@
 //! Parsers of the values of options.
+use freeform_motion::Rectification;
 use freeform_motion::curve_fit::Degree;
-use freeform_motion::riccati::{AffineMotion, CameraScale, RigidMotion, SimilarityMotion};
+use freeform_motion::riccati::{AffineMotion, CameraScale, ProjectiveMotion, RigidMotion, SimilarityMotion};
+use nalgebra::{Matrix3, Point2, Projective2};
 
 /// A finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
@@ -58,6 +60,29 @@ fn list(text: &str) -> Result<Vec<f64>, String> {
     text.split(',').map(finite).collect()
 }
 
+/// As many numbers as there are names, such as `VX,VY`.
+pub(crate) fn numbers<const N: usize>(
+    names: &'static str,
+) -> impl Fn(&str) -> Result<[f64; N], String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let list = list(text)?;
+        let count = list.len();
+        list.try_into().map_err(|_| format!("expected {names}, found {count} number(s)"))
+    }
+}
+
+/// A length that is not negative.
+pub(crate) fn length(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if value >= 0.0 { Ok(value) } else { Err(format!("{text} is negative")) }
+}
+
+/// A share of a whole, up to all of it.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let value = finite(text)?;
+    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err(format!("{text} is not in [0, 1]")) }
+}
+
 /// `B1,B2`.
 pub(crate) fn pair(text: &str) -> Result<[f64; 2], String> {
     let list = list(text)?;
@@ -73,17 +98,55 @@ pub(crate) fn affine(text: &str) -> Result<AffineMotion, String> {
     }
 }
 
-/// The parameters of a rigid, similarity or affine motion.
-pub(crate) fn motion(text: &str) -> Result<AffineMotion, String> {
+/// `A1,A2,A3,A4,B1,B2,C1,C2`.
+pub(crate) fn projective(text: &str) -> Result<ProjectiveMotion, String> {
+    match list(text)?[..] {
+        [a1, a2, a3, a4, b1, b2, c1, c2] => Ok(ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }),
+        ref other => Err(format!("expected A1,A2,A3,A4,B1,B2,C1,C2, found {} number(s)", other.len())),
+    }
+}
+
+/// The parameters of a rigid, similarity, affine or projective motion.
+pub(crate) fn motion(text: &str) -> Result<ProjectiveMotion, String> {
     match list(text)?[..] {
         [omega, b1, b2] => Ok(RigidMotion { omega, b1, b2 }.into()),
         [sigma, omega, b1, b2] => Ok(SimilarityMotion { sigma, omega, b1, b2 }.into()),
-        [a1, a2, a3, a4, b1, b2] => Ok(AffineMotion { a1, a2, a3, a4, b1, b2 }),
+        [a1, a2, a3, a4, b1, b2] => Ok(AffineMotion { a1, a2, a3, a4, b1, b2 }.into()),
+        [a1, a2, a3, a4, b1, b2, c1, c2] => Ok(ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }),
         ref other => Err(format!(
-            "expected OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2, found {} number(s)",
+            "expected OMEGA,B1,B2 or SIGMA,OMEGA,B1,B2 or A1,...,A4,B1,B2 or A1,...,B2,C1,C2, found {} number(s)",
             other.len()
         )),
     }
+}
+
+/// A map from the picture to a plane: nine numbers row by row, or a file with them, lines that begin with # left out.
+pub(crate) fn rectification(text: &str) -> Result<Rectification, String> {
+    let numbers = match list(text) {
+        Ok(numbers) => numbers,
+        Err(_) => {
+            let content = std::fs::read_to_string(text).map_err(|error| format!("{text}: {error}"))?;
+            let lines = content.lines().map(|line| line.split('#').next().unwrap_or_default());
+            let fields = lines.flat_map(|line| line.split(|c: char| c == ',' || c.is_whitespace()));
+            let numbers = fields.filter(|field| !field.is_empty()).map(finite);
+            numbers.collect::<Result<_, _>>().map_err(|error| format!("{text}: {error}"))?
+        }
+    };
+    let count = numbers.len();
+    let entries: [f64; 9] = numbers.try_into().map_err(|_| format!("expected nine numbers, found {count}"))?;
+    let map = Projective2::from_matrix_unchecked(Matrix3::from_row_slice(&entries));
+    Rectification::new(&map).map_err(|error| error.to_string())
+}
+
+/// `X,Y=U,V`: a point of a picture, and the same point in a plane.
+pub(crate) fn point_pair(text: &str) -> Result<(Point2<f64>, Point2<f64>), String> {
+    let expected = || format!("expected X,Y=U,V, found {text:?}");
+    let (picture, plane) = text.split_once('=').ok_or_else(expected)?;
+    let point = |text: &str| {
+        let [x, y]: [f64; 2] = list(text)?.try_into().map_err(|_| expected())?;
+        Ok::<_, String>(Point2::new(x, y))
+    };
+    Ok((point(picture)?, point(plane)?))
 }
 
 /// 2, 4, 6 or 8.

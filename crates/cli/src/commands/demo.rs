@@ -3,14 +3,13 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{OutlineFrame, WriteError};
-use freeform_motion::riccati::AffineMotion;
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 use freeform_motion::tracker::{Method, ObjectResult, Observation};
 use freeform_motion::{PipelineSettings, Tracker};
 
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
-use crate::args::{DemoArgs, IdentifyMethod, MotionChoice, TrackOptions};
+use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::fitted_outline::FittedOutline;
@@ -21,7 +20,7 @@ use crate::output::{
     Findings, Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
 };
 use crate::overlay::CurveFitter;
-use crate::truth::SimulatedMotion;
+use crate::truth::{SimulatedMotion, Truth};
 
 /// Length of the sequence in seconds: the time that the paper's figures show.
 const SECONDS: f64 = 30.0;
@@ -44,9 +43,16 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let length = SequenceLength::Seconds(SECONDS);
     let camera = Settings { fps: 30.0, length, noise: PaperExperiment::NOISE, ..Settings::default() };
     let simulator = Simulator::new(scene, camera).map_err(Failure::unusable)?;
-    let truth = SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale }.seen_at(Some(scale));
-    let by_filter =
-        TrackOptions { motion: MotionChoice::Rigid, method: IdentifyMethod::Filter, degree: None, scale: Some(scale) };
+    let truth = SimulatedMotion::of(&simulator).seen_at(Some(scale));
+    let by_filter = TrackOptions {
+        motion: MotionChoice::Rigid,
+        method: IdentifyMethod::Filter,
+        degree: None,
+        scale: Some(scale),
+        rectify: None,
+        dynamics: DynamicsChoice::Auto,
+        edge_uncertainty: None,
+    };
     let by_adaptive_law = TrackOptions { method: IdentifyMethod::Adaptive, ..by_filter.clone() };
 
     let mut filter = Identification::new(by_filter.clone(), &folder.join(TRACE))?;
@@ -103,7 +109,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
 fn print(
     sink: &mut Sink,
     [filter, adaptive]: [&Found; 2],
-    truth: &AffineMotion,
+    truth: &Truth,
     b: &MeaningOfB,
     folder: &Path,
 ) -> io::Result<()> {
@@ -149,7 +155,7 @@ impl Identification {
     }
 
     /// Writes the trace and the figure, and prints the warnings.
-    fn finish(self, figure: &Path, truth: &AffineMotion) -> Result<Found, Failure> {
+    fn finish(self, figure: &Path, truth: &Truth) -> Result<Found, Failure> {
         let Self { options, tracker, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
         WholeFile::write(figure, &parameter_figure(&histories, options.motion.model(), Some(truth)))?;

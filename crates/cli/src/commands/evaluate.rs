@@ -2,7 +2,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use freeform_experiments::monte_carlo::{AcquisitionSetting, Setting, Study, suite};
+use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, Setting, Study, suite};
+use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{BuiltInShape, SequenceLength, Settings, Shape};
 
 use super::simulate::shape;
@@ -13,17 +14,23 @@ use crate::output::{
 };
 use crate::progress::Progress;
 
+/// Sequences of each shape and length where none are asked for.
+const RUNS: usize = 50;
+
 /// Simulates, identifies and prints.
 pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
+    if args.suite.as_deref() == Some(super::stress::NAME) {
+        return super::stress::run(args);
+    }
+    let misplaced = [("--kinds", args.kinds.is_some()), ("--list", args.list)];
+    if let Some((option, _)) = misplaced.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(Failure::unusable(format_args!("{option} is for --suite stress")));
+    }
     let study = study(args)?;
     study.check().map_err(Failure::of_experiment)?;
     // The output is refused before the work, not after it.
     let sink = Sink::open(&args.output)?;
-    let mut pool = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = args.threads {
-        pool = pool.num_threads(threads);
-    }
-    let pool = pool.build().map_err(Failure::unusable)?;
+    let pool = thread_pool(args)?;
     let progress = Progress::of_runs(study.run_count() as u64);
     let report = pool.install(|| study.run(&|| progress.advance())).map_err(Failure::of_experiment)?;
     drop(progress);
@@ -31,6 +38,15 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
         return Err(Failure::no_result("every run of every method was lost"));
     }
     write(args, &Evaluated { report, timing: !args.no_timing }, sink)
+}
+
+/// As many threads as asked for.
+pub(super) fn thread_pool(args: &EvaluateArgs) -> Result<rayon::ThreadPool, Failure> {
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = args.threads {
+        pool = pool.num_threads(threads);
+    }
+    pool.build().map_err(Failure::unusable)
 }
 
 fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
@@ -46,15 +62,22 @@ fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
         }
         shapes.push(shape);
     }
+    let runs = args.runs.unwrap_or(RUNS);
     let (settings, acquisitions, acquisition_runs) = match &args.suite {
         Some(text) => {
             let (settings, acquisitions) = suite::containing(text).map_err(Failure::of_experiment)?;
-            (settings, acquisitions, suite::ACQUISITION_RUNS.saturating_mul(args.runs))
+            (settings, acquisitions, suite::ACQUISITION_RUNS.saturating_mul(runs))
         }
-        None if args.acquisition => (Vec::new(), vec![acquisition(args)], args.runs),
-        None => (settings(args)?, Vec::new(), args.runs),
+        None if args.acquisition => (Vec::new(), vec![acquisition(args)], runs),
+        None => (settings(args)?, Vec::new(), runs),
     };
-    let (methods, runs, seed) = (args.method.clone(), args.runs, args.seed);
+    let is_projective = settings.iter().any(|setting| setting.model == MotionModel::Projective);
+    let methods = match (args.method.is_empty(), is_projective) {
+        (false, _) => args.method.clone(),
+        (true, false) => vec![Method::Filter, Method::Moments, Method::Icp],
+        (true, true) => vec![Method::Filter, Method::Icp],
+    };
+    let seed = args.seed;
     Ok(Study { shapes, settings, acquisitions, methods, runs, acquisition_runs, seed })
 }
 
@@ -71,10 +94,10 @@ fn named_by_file(shape: Shape, path: &str, others: &[Shape]) -> Shape {
 fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
     let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
     let motion = camera.image_motion(&args.motion_in_space.motion());
-    let default = if args.motion_in_space.is_affine() { MotionChoice::Affine } else { MotionChoice::Rigid };
-    let model = args.motion.unwrap_or(default).model();
+    let family = args.motion_in_space.family();
+    let model = args.motion.map_or(family, MotionChoice::model);
     if model.parameters_of_motion(&motion).is_none() {
-        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --affine")));
+        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --{family}")));
     }
     let of_seconds = |seconds: &f64| {
         let length = SequenceLength::Seconds(*seconds);

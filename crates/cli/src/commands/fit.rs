@@ -52,14 +52,15 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         if !is_wanted(frame.frame) {
             continue;
         }
-        match fitter.fit(&frame.outline) {
-            Ok(fit) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
+        match fitter.fit_with_covariance(&frame.outline) {
+            Ok((fit, _)) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
                 let place = format!("{name}: frame {} of object {:?}", frame.frame, frame.object);
                 reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
             }
-            Ok(fit) => {
+            Ok((fit, covariance)) => {
                 let stray_parts = fit.stray_places(&frame.outline);
-                let fitted = FittedOutline { stray_parts, ..FittedOutline::new(&frame, fit) };
+                let fitted = FittedOutline::new(&frame, fit).with_deviations(&covariance);
+                let fitted = FittedOutline { stray_parts, ..fitted };
                 collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;
             }
             Err(error) => {

@@ -4,11 +4,10 @@ use std::path::Path;
 use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::riccati::AffineMotion;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
-use crate::args::{IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::history::History;
@@ -23,6 +22,7 @@ use crate::output::{
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
 use crate::reader::{Event, Pace, follow};
+use crate::truth::Truth;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
@@ -30,11 +30,16 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
     let name = input.name.clone();
-    let truth = args.truth.or_else(|| input.truth.map(|truth| truth.seen_at(args.options.scale)));
+    let of_file = input.truth.filter(|_| args.truth.is_none());
+    if !args.quiet && of_file.is_some() && args.options.rectify.is_some() {
+        warn("the truth in the file is that in the picture, not in the plane of --rectify, so it is not shown");
+    }
+    let of_file = of_file.filter(|_| args.options.rectify.is_none());
+    let truth = args.truth.map(Truth::from).or_else(|| of_file.map(|truth| truth.seen_at(args.options.scale)));
     let model = args.options.motion.model();
-    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth).is_none()) {
+    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth.motion).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
-        warn(&format!("{origin} is not a {model} motion, so it is not shown"));
+        warn(&format!("{origin} is no {model} motion, so it is not shown"));
     }
     let mut files = Files::create(args)?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
@@ -62,6 +67,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let is_found = results.iter().any(|result| result.estimate.is_some());
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
     let b = match input.pictures() {
+        _ if args.options.rectify.is_some() => MeaningOfB::in_plane(),
         Some(pictures) => pictures.meaning_of_b(args.options.scale),
         None => MeaningOfB::in_coordinates(args.options.scale),
     };
@@ -88,7 +94,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         for result in results.iter().filter(|_| !args.quiet) {
             result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
-        print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures())
+        print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures() || args.options.rectify.is_some())
     } else {
         // The failure has the other reasons.
         for result in results.iter().filter(|_| !args.quiet) {
@@ -113,6 +119,11 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
         warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
+    }
+    if args.options.dynamics != DynamicsChoice::Auto && args.options.motion == MotionChoice::Projective && !args.quiet {
+        warn(
+            "--dynamics: not used for projective motion, whose generator is taken for constant until it is seen to change",
+        );
     }
     Ok(())
 }
@@ -156,7 +167,7 @@ impl<'a> Files<'a> {
     }
 
     /// Moves the files to their destinations. A file without content is not written.
-    fn finish(self, tracker: &Tracker, truth: Option<&AffineMotion>, results: &[ObjectResult]) -> Result<(), Failure> {
+    fn finish(self, tracker: &Tracker, truth: Option<&Truth>, results: &[ObjectResult]) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
         let not_written = |options: &[(&str, bool)], reason: &str| {
@@ -199,17 +210,17 @@ impl<'a> Files<'a> {
 fn print(
     args: &IdentifyArgs,
     results: &[ObjectResult],
-    truth: Option<&AffineMotion>,
+    truth: Option<&Truth>,
     b: &MeaningOfB,
     left_out: &LeftOut,
-    has_pictures: bool,
+    says_b: bool,
 ) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let format = if args.json { IdentifyFormat::Json } else { args.format };
     let written = match format {
         IdentifyFormat::Table => {
             let table = write_identify_table(&mut sink, results, truth, b);
-            table.and_then(|()| if has_pictures { writeln!(sink, "b: {b}") } else { Ok(()) })
+            table.and_then(|()| if says_b { writeln!(sink, "b: {b}") } else { Ok(()) })
         }
         IdentifyFormat::Json => write_identify_json(&mut sink, results, b, left_out),
         IdentifyFormat::Csv => write_parameters(&mut sink, results),
@@ -255,6 +266,9 @@ pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str
         MethodSettings::Adaptive(settings) => listed.extend(fit_settings(&settings.fit)),
     }
     listed.push(("Camera scale f/Z0", scale));
+    if options.rectify.is_some() {
+        listed.push(("Coordinates", "of the plane that --rectify leads to".to_owned()));
+    }
     listed
 }
 

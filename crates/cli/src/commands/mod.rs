@@ -6,9 +6,14 @@ mod fit;
 mod identify;
 mod man;
 mod outline;
+mod recognise;
+mod rectify;
 mod reproduce;
 mod simulate;
+mod stress;
 mod track;
+
+pub(crate) use recognise::RecognisedObject;
 
 use crate::args::{Cli, Command};
 use crate::failure::Failure;
@@ -24,6 +29,8 @@ pub(crate) fn run(cli: &Cli) -> Result<(), Failure> {
         Command::Identify(args) => identify::run(args),
         Command::Track(args) => track::run(args),
         Command::Outline(args) => outline::run(args),
+        Command::Recognise(args) => recognise::run(args),
+        Command::Rectify(args) => rectify::run(args),
         Command::Evaluate(args) => evaluate::run(args),
         Command::Reproduce(args) => reproduce::run(args),
         Command::Completions(args) => completions::run(args),

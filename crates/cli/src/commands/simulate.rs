@@ -4,7 +4,7 @@ use std::path::Path;
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineWriter, WriteError, WriterOptions, read_shape};
 use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator};
 
-use crate::args::{DisturbanceArgs, SimulateArgs};
+use crate::args::{DisturbanceArgs, MotionChoice, SimulateArgs};
 use crate::command_line::command_line;
 use crate::failure::Failure;
 use crate::output::Sink;
@@ -40,8 +40,7 @@ pub(crate) fn write_sequence(
     mut observe: impl FnMut(&OutlineFrame) -> Result<(), Failure>,
 ) -> Result<(), SequenceError> {
     let write = |error| SequenceError::Write(WriteError::Io(error));
-    let truth =
-        SimulatedMotion { motion: simulator.scene().motion().at(0.0), scale: simulator.scene().camera().scale() };
+    let truth = SimulatedMotion::of(simulator);
     writeln!(sink, "# {}", command_line()).and_then(|()| writeln!(sink, "# {truth}")).map_err(write)?;
     let arc_column = simulator.settings().occlusion.fraction > 0.0;
     // Objects have about unit size in the image; far below the noise there is nothing to tell.
@@ -60,7 +59,15 @@ pub(crate) fn write_sequence(
 
 fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
     let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
-    let scene = Scene::new(shape(&args.shape)?, args.motion_in_space.motion(), camera);
+    let given = args.motion_in_space.motion();
+    if let Some(model) = args.motion.map(MotionChoice::model)
+        && model.parameters_of_motion(&given).is_none()
+    {
+        let family = args.motion_in_space.family();
+        return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --{family}")));
+    }
+    let motion = args.dynamics.motion(&args.motion_in_space)?;
+    let scene = Scene::new(shape(&args.shape)?, motion, camera);
     let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
     let settings = Settings {
         fps: args.fps,

@@ -1,13 +1,14 @@
 use freeform_experiments::figure::{Curve, Look, Panel};
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
-use freeform_motion::riccati::{AffineMotion, MotionModel};
+use freeform_motion::riccati::MotionModel;
 use nalgebra::Point2;
 
 use super::number::short;
 use crate::fitted_outline::FittedOutline;
 use crate::history::History;
 use crate::plot::stacked_svg;
+use crate::truth::Truth;
 
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
@@ -67,7 +68,7 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
 }
 
 /// The parameters of all objects against time, as a file.
-pub(crate) fn parameter_figure(histories: &[History], model: MotionModel, truth: Option<&AffineMotion>) -> String {
+pub(crate) fn parameter_figure(histories: &[History], model: MotionModel, truth: Option<&Truth>) -> String {
     let several = histories.len() > 1;
     let panels = histories.iter().flat_map(|history| {
         let prefix = if several { format!("Object {}: ", history.object) } else { String::new() };
@@ -81,9 +82,11 @@ pub(crate) fn parameter_panels(
     history: &History,
     prefix: &str,
     model: MotionModel,
-    truth: Option<&AffineMotion>,
+    truth: Option<&Truth>,
 ) -> Vec<Panel> {
-    let truth = truth.and_then(|motion| model.parameters_of_motion(motion));
+    // A level line would be wrong of a motion that changes.
+    let constant = truth.filter(|truth| truth.is_constant);
+    let truth = constant.and_then(|truth| model.parameters_of_motion(&truth.motion));
     let names = model.parameter_names().iter().zip(model.units()).enumerate();
     names
         .map(|(index, (name, unit))| {

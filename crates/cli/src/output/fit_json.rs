@@ -4,7 +4,7 @@ use freeform_motion::curve_fit::exponents;
 use freeform_motion::decompose::{AffineInvariants, DecompositionError};
 use serde_json::{Map, Value, json};
 
-use crate::fitted_outline::{FittedOutline, Parts};
+use crate::fitted_outline::{Deviations, FittedOutline, Parts};
 
 /// The fits as one JSON object.
 pub(crate) fn write_fits_json(sink: &mut impl Write, fits: &[FittedOutline]) -> io::Result<()> {
@@ -20,6 +20,7 @@ fn outline_json(fitted: &FittedOutline) -> Value {
     let coefficients: Map<String, Value> =
         exponents(degree).zip(polynomial.coefficients()).map(|((i, j), a)| (format!("a_{i}{j}"), json!(a))).collect();
     let parts = fitted.parts.as_ref();
+    let deviations = fitted.deviations.as_ref();
     json!({
         "object": fitted.object,
         "frame": fitted.frame,
@@ -34,8 +35,9 @@ fn outline_json(fitted: &FittedOutline) -> Value {
         "residual": {"algebraic": diagnostics.algebraic_residual, "geometric": diagnostics.geometric_residual},
         "stray_parts": fitted.stray_parts.iter().map(|p| json!({"x": p.x, "y": p.y})).collect::<Vec<_>>(),
         "levels": parts.map_or_else(|_| Vec::new(), levels_json),
-        "related_points": parts.map_or_else(|_| Vec::new(), related_points_json),
+        "related_points": parts.map_or_else(|_| Vec::new(), |parts| related_points_json(parts, deviations)),
         "invariants": parts.ok().and_then(|parts| parts.invariants.as_ref()).map(AffineInvariants::values),
+        "invariants_std": deviations.map(|d| &d.invariants).filter(|list| !list.is_empty()),
         "decomposition_error": parts.err().map(DecompositionError::to_string),
     })
 }
@@ -52,9 +54,12 @@ fn levels_json(parts: &Parts) -> Vec<Value> {
     decomposition.levels().map(level).chain([constant]).collect()
 }
 
-fn related_points_json(parts: &Parts) -> Vec<Value> {
-    let points = parts.related_points.as_slice().iter();
+fn related_points_json(parts: &Parts, deviations: Option<&Deviations>) -> Vec<Value> {
+    let points = parts.related_points.as_slice().iter().enumerate();
     points
-        .map(|d| json!({"level": d.level, "pair": d.pair, "x": d.point.x, "y": d.point.y, "value": d.value}))
+        .map(|(index, d)| {
+            let std = deviations.and_then(|deviations| deviations.related_points.get(index));
+            json!({"level": d.level, "pair": d.pair, "x": d.point.x, "y": d.point.y, "std": std, "value": d.value})
+        })
         .collect()
 }

@@ -4,7 +4,7 @@ use freeform_motion::curve_fit::exponents;
 use nalgebra::{Complex, Point2};
 
 use super::number::{short, significant};
-use crate::fitted_outline::{FittedOutline, Parts};
+use crate::fitted_outline::{Deviations, FittedOutline, Parts};
 
 /// Digits of coefficients and lines.
 const DIGITS: usize = 6;
@@ -40,12 +40,12 @@ pub(crate) fn write_fit_table(sink: &mut impl Write, fitted: &FittedOutline, bla
         writeln!(sink, "    {}", row.join("   "))?;
     }
     match &fitted.parts {
-        Ok(parts) => write_parts(sink, parts),
+        Ok(parts) => write_parts(sink, parts, fitted.deviations.as_ref()),
         Err(error) => writeln!(sink, "  no lines        {error}"),
     }
 }
 
-fn write_parts(sink: &mut impl Write, parts: &Parts) -> io::Result<()> {
+fn write_parts(sink: &mut impl Write, parts: &Parts, deviations: Option<&Deviations>) -> io::Result<()> {
     let decomposition = &parts.decomposition;
     for level in decomposition.levels() {
         let coefficient = significant(decomposition.coefficient(level), DIGITS);
@@ -63,7 +63,10 @@ fn write_parts(sink: &mut impl Write, parts: &Parts) -> io::Result<()> {
     match &parts.invariants {
         Some(invariants) => {
             let values: Vec<String> = invariants.values().iter().map(|value| significant(*value, DIGITS)).collect();
-            writeln!(sink, "  invariants      {}", values.join(", "))
+            writeln!(sink, "  invariants      {}", values.join(", "))?;
+            let Some(deviations) = deviations else { return Ok(()) };
+            let values: Vec<String> = deviations.invariants.iter().map(|value| significant(*value, 2)).collect();
+            writeln!(sink, "    deviations    {}", values.join(", "))
         }
         None => writeln!(sink, "  invariants      none"),
     }

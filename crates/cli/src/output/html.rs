@@ -1,6 +1,5 @@
 use std::fmt::Write as _;
 
-use freeform_motion::riccati::AffineMotion;
 use freeform_motion::tracker::{FrameRanges, ObjectResult};
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
@@ -10,6 +9,7 @@ use crate::history::History;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::plot::{escape, panel_svg};
+use crate::truth::Truth;
 
 /// Number of left-out pictures that are listed with their reasons.
 const PICTURES_TOLD: usize = 10;
@@ -27,7 +27,7 @@ pub(crate) struct Report<'a> {
     pub(crate) meaning_of_b: MeaningOfB,
     /// One for each method.
     pub(crate) findings: Vec<Findings<'a>>,
-    pub(crate) truth: Option<&'a AffineMotion>,
+    pub(crate) truth: Option<&'a Truth>,
     /// Why no motion was found, where none was.
     pub(crate) no_motion: Option<&'a str>,
     /// What ended the reading before the end of the input.

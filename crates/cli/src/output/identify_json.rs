@@ -1,7 +1,8 @@
 use std::io::{self, Write};
 
+use freeform_motion::Warning;
 use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::outline_filter::Ambiguity;
+use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights};
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::tracker::{ObjectPhase, ObjectResult, Observation};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
@@ -21,7 +22,7 @@ pub(crate) fn write_identify_json(
     let pictures = left_out.pictures.iter().map(|(frame, reason)| PictureJson { frame: *frame, reason }).collect();
     let left_out = LeftOutJson { count: left_out.count, pictures };
     let b = MeaningJson { point: b.point, unit: &b.unit, scale: b.scale.map(CameraScale::value) };
-    let document = Document { schema: "freeform.identify/1", objects, b, left_out };
+    let document = Document { schema: "freeform.identify/2", objects, b, left_out };
     serde_json::to_writer_pretty(&mut *sink, &document)?;
     writeln!(sink)
 }
@@ -36,7 +37,7 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         time: observation.time,
         phase: observation.phase.map(ObjectPhase::name),
         accepted: observation.is_accepted(),
-        parameters: estimate.map(Parameters),
+        parameters: estimate.map(|estimate| Parameters(estimate, &[])),
         generator: estimate.and_then(generator_rows),
         reason: observation.rejection.as_ref().map(ToString::to_string),
         ambiguity: observation.ambiguity.as_ref().map(AmbiguityJson::from),
@@ -106,41 +107,89 @@ struct ObjectJson<'a>(&'a ObjectResult);
 impl Serialize for ObjectJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self(result) = self;
-        let mut object = serializer.serialize_struct("Object", 10)?;
+        let mut object = serializer.serialize_struct("Object", 11)?;
         object.serialize_field("object", &result.object)?;
         object.serialize_field("method", result.method.name())?;
         object.serialize_field("motion", &result.motion.to_string())?;
         object.serialize_field("frames", &result.frames)?;
         object.serialize_field("frames_rejected", &result.frames_rejected)?;
         match &result.estimate {
-            Some(estimate) => object.serialize_field("parameters", &Parameters(estimate))?,
+            Some(estimate) => object.serialize_field("parameters", &Parameters(estimate, &result.aliases))?,
             None => object.serialize_field("parameters", &NoParameters(result))?,
         }
         object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
         object.serialize_field("velocity", &result.velocity.as_ref().map(VelocityJson))?;
         object.serialize_field("ambiguity", &result.ambiguity.as_ref().map(AmbiguityJson::from))?;
-        let warnings: Vec<String> = result.warnings.iter().map(ToString::to_string).collect();
+        object.serialize_field("dynamics", &result.dynamics.map(DynamicsJson::from))?;
+        let warnings: Vec<WarningJson> = result.warnings.iter().map(WarningJson::from).collect();
         object.serialize_field("warnings", &warnings)?;
         object.end()
     }
 }
 
+/// The hypothesis of dynamics that holds, and the probabilities of all.
 #[derive(serde::Serialize)]
-struct ParameterJson {
-    value: Option<f64>,
-    std: Option<f64>,
-    unit: &'static str,
-    observable: bool,
+struct DynamicsJson {
+    held: &'static str,
+    weights: WeightsJson,
 }
 
-struct Parameters<'a>(&'a MotionEstimate);
+#[derive(serde::Serialize)]
+struct WeightsJson {
+    generator: f64,
+    velocity: f64,
+    accelerating: f64,
+}
+
+impl From<DynamicsWeights> for DynamicsJson {
+    fn from(weights: DynamicsWeights) -> Self {
+        let DynamicsWeights { generator, velocity, accelerating } = weights;
+        Self { held: weights.most_probable().name(), weights: WeightsJson { generator, velocity, accelerating } }
+    }
+}
+
+#[derive(serde::Serialize)]
+struct WarningJson {
+    code: &'static str,
+    message: String,
+}
+
+impl From<&Warning> for WarningJson {
+    fn from(warning: &Warning) -> Self {
+        Self { code: warning.code(), message: warning.to_string() }
+    }
+}
+
+#[derive(serde::Serialize)]
+struct ParameterJson<'a> {
+    value: Option<f64>,
+    std: Option<f64>,
+    std_random: Option<f64>,
+    std_systematic: Option<f64>,
+    unit: &'static str,
+    observable: bool,
+    /// Of omega alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    aliases: Option<&'a [f64]>,
+}
+
+/// An estimate, and other angular velocities that explain the outlines as well.
+struct Parameters<'a>(&'a MotionEstimate, &'a [f64]);
 
 impl Serialize for Parameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for parameter in self.0.parameters() {
-            let (value, std) = (parameter.value, parameter.standard_deviation);
-            let json = ParameterJson { value, std, unit: parameter.unit, observable: value.is_some() };
+            let value = parameter.value;
+            let json = ParameterJson {
+                value,
+                std: parameter.standard_deviation,
+                std_random: parameter.random_deviation,
+                std_systematic: parameter.systematic_deviation,
+                unit: parameter.unit,
+                observable: value.is_some(),
+                aliases: (parameter.name == "omega").then_some(self.1),
+            };
             map.serialize_entry(parameter.name, &json)?;
         }
         map.end()
@@ -155,7 +204,16 @@ impl Serialize for NoParameters<'_> {
         let mut map = serializer.serialize_map(None)?;
         let model = self.0.motion;
         for (name, &unit) in model.parameter_names().iter().zip(model.units()) {
-            map.serialize_entry(name, &ParameterJson { value: None, std: None, unit, observable: false })?;
+            let nothing = ParameterJson {
+                value: None,
+                std: None,
+                std_random: None,
+                std_systematic: None,
+                unit,
+                observable: false,
+                aliases: (*name == "omega").then_some(&[]),
+            };
+            map.serialize_entry(name, &nothing)?;
         }
         map.end()
     }
@@ -168,7 +226,6 @@ fn generator_rows(estimate: &MotionEstimate) -> Option<[[f64; 3]; 3]> {
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::Warning;
     use freeform_motion::riccati::MotionModel;
     use freeform_motion::tracker::Method;
     use serde_json::{Value, json};
@@ -188,6 +245,8 @@ mod tests {
             estimate: Some(estimate.with_unobservable(0).in_space(CameraScale::new(0.1).expect("a scale"))),
             velocity: None,
             ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
             warnings: vec![Warning::AffineBias, Warning::Lost],
         };
         let mut text = Vec::new();
@@ -195,15 +254,27 @@ mod tests {
         write_identify_json(&mut text, &[result], &b, &LeftOut::default()).expect("memory");
         let document: Value = serde_json::from_slice(&text).expect("JSON");
         let object = &document["objects"][0];
-        let nothing = json!({"value": null, "std": null, "unit": "rad/s", "observable": false});
+        let nothing = json!({
+            "value": null, "std": null, "std_random": null, "std_systematic": null, "unit": "rad/s", "observable": false,
+            "aliases": [],
+        });
         assert_eq!(object["parameters"]["omega"], nothing);
         assert_eq!(
             object["parameters"]["b2"],
-            json!({"value": 0.4 / 0.1, "std": 0.3 / 0.1, "unit": "1/s", "observable": true})
+            json!({
+                "value": 0.4 / 0.1, "std": 0.3 / 0.1, "std_random": 0.3 / 0.1, "std_systematic": 0.0, "unit": "1/s",
+                "observable": true,
+            })
         );
         assert_eq!(
             (&object["generator"], &object["warnings"]),
-            (&Value::Null, &json!([Warning::AffineBias.to_string(), "the object was lost at the end"]))
+            (
+                &Value::Null,
+                &json!([
+                    {"code": "affine_bias", "message": Warning::AffineBias.to_string()},
+                    {"code": "lost", "message": "the object was lost at the end"},
+                ])
+            )
         );
     }
 }

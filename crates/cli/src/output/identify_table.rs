@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use freeform_motion::riccati::{AffineMotion, ParameterKind};
+use freeform_motion::riccati::ParameterKind;
 use freeform_motion::significant;
 use freeform_motion::tracker::ObjectResult;
 
@@ -8,14 +8,15 @@ use super::aligned::write_aligned;
 use super::number::with_deviation;
 use super::velocity::{VELOCITY_NAMES, meaning_of_v};
 use crate::meaning_of_b::MeaningOfB;
+use crate::truth::Truth;
 
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
 
 /// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
-pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>, b: &MeaningOfB) -> Vec<Vec<String>> {
+pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningOfB) -> Vec<Vec<String>> {
     let model = result.motion;
-    let truth = truth.and_then(|motion| Some((motion, model.parameters_of_motion(motion)?)));
+    let truth = truth.and_then(|truth| Some((truth, model.parameters_of_motion(&truth.motion)?)));
     let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
     let is_ambiguous = |name| result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name));
     let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
@@ -36,19 +37,19 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&AffineMotion>
         .collect();
     if let Some(velocity) = &result.velocity {
         let deviations = velocity.standard_deviations();
-        let truth = truth.map(|(motion, _)| {
-            let ([x, y], AffineMotion { a1, a2, a3, a4, b1, b2 }) = (velocity.point.into(), *motion);
-            [a1 * x + a2 * y + b1, a3 * x + a4 * y + b2]
-        });
         // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
         // middle is only near that centre, and the true velocity differs between the two by the turn times their distance.
         let kinds = model.parameter_kinds().iter();
         let turn_is_known = kinds.zip(&found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
+        let (is_told, true_velocity) = match truth {
+            Some((truth, _)) if turn_is_known => (true, Some(truth.velocity_at(&velocity.point))),
+            Some((truth, _)) => (true, truth.middle_velocity),
+            None => (false, None),
+        };
         rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
             let known = Some((velocity.velocity[i], Some(deviations[i])));
-            let mut row =
-                row([name, "-", unit_of_b("1/s")], known, truth.filter(|_| turn_is_known).map(|truth| truth[i]));
-            if truth.is_some() && !turn_is_known {
+            let mut row = row([name, "-", unit_of_b("1/s")], known, true_velocity.map(|truth| truth[i]));
+            if is_told && true_velocity.is_none() {
                 row.extend(["-", "-"].map(str::to_owned));
             }
             row
@@ -86,7 +87,7 @@ fn error_text(value: f64, truth: f64) -> String {
 pub(crate) fn write_identify_table(
     sink: &mut impl Write,
     results: &[ObjectResult],
-    truth: Option<&AffineMotion>,
+    truth: Option<&Truth>,
     b: &MeaningOfB,
 ) -> io::Result<()> {
     for (index, result) in results.iter().enumerate() {
@@ -118,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_truth_stands_beside_the_velocity_of_an_object_whose_turn_is_not_observable() {
+    fn beside_the_velocity_of_an_object_without_an_observable_turn_stands_that_of_its_true_middle_or_none() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[0.0, 0.3, 0.4], Some(&[0.1, 0.01, 0.01]));
         let velocity = PointVelocity {
             point: Point2::new(0.001, 0.0),
@@ -135,13 +136,22 @@ mod tests {
             estimate: Some(estimate),
             velocity: Some(velocity),
             ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
             warnings: Vec::new(),
         };
-        let truth = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 }.into();
-        let rows = |estimate| parameter_rows(&result(estimate), Some(&truth), &MeaningOfB::in_coordinates(None));
+        let motion = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 };
+        let truth = Truth::from(motion);
+        let rows_beside =
+            |estimate, truth| parameter_rows(&result(estimate), Some(truth), &MeaningOfB::in_coordinates(None));
+        let rows = |estimate| rows_beside(estimate, &truth);
         let truth_of_v1 = |rows: &[Vec<String>]| rows[3][4..].to_vec();
         assert_eq!(truth_of_v1(&rows(estimate.with_unobservable(0))), ["-", "-"]);
         assert_eq!(truth_of_v1(&rows(estimate))[0], "0.300000");
+        // That of the true middle may be told, which the point of the estimate is not quite.
+        let truth = Truth { middle_velocity: Some([0.3125, 0.4]), ..truth };
+        assert_eq!(truth_of_v1(&rows_beside(estimate.with_unobservable(0), &truth))[0], "0.312500");
+        assert_eq!(truth_of_v1(&rows_beside(estimate, &truth))[0], "0.300000");
     }
 
     #[test]
@@ -157,6 +167,8 @@ mod tests {
             estimate,
             velocity: None,
             ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
             warnings: Vec::new(),
         };
         let velocity = PointVelocity {
@@ -171,7 +183,7 @@ mod tests {
             ObjectResult { ambiguity: Some(ambiguity), ..result(Some(estimate.with_unobservable(0))) },
             result(None),
         ];
-        let truth = RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 }.into();
+        let truth = Truth::from(RigidMotion { omega: 1.5, b1: -0.3, b2: 0.0 });
         let mut text = Vec::new();
         write_identify_table(&mut text, &results, Some(&truth), &MeaningOfB::in_coordinates(None)).expect("memory");
         insta::assert_snapshot!(String::from_utf8(text).expect("UTF-8"));

@@ -14,6 +14,9 @@ mod identify_json;
 mod identify_table;
 mod number;
 mod page;
+mod recognised;
+mod stress_json;
+mod stress_table;
 mod trajectory_csv;
 mod velocity;
 
@@ -32,4 +35,7 @@ pub(crate) use identify_json::{track_line, write_identify_json};
 pub(crate) use identify_table::write_identify_table;
 pub(crate) use number::short;
 pub(crate) use page::{write_page, write_section_files};
+pub(crate) use recognised::{write_recognised_json, write_recognised_table};
+pub(crate) use stress_json::{write_kinds_json, write_stress_json};
+pub(crate) use stress_table::{write_kinds, write_kinds_markdown, write_stress_markdown, write_stress_table};
 pub(crate) use trajectory_csv::write_trajectory;

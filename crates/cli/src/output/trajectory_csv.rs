@@ -15,6 +15,8 @@ pub(crate) fn write_trajectory(
     let names = || Trajectory::pose_names(model).iter().chain(model.parameter_names());
     let mut header: Vec<String> = ["object", "frame", "time", "accepted"].map(str::to_owned).into();
     header.extend(names().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
+    // The last column, so that those before it are where they always were.
+    header.push("segment".to_owned());
     writer.write_record(&header).map_err(io::Error::from)?;
     for (row, known) in trajectory.rows().iter().zip(trajectory.poses(scale)) {
         let mut fields = vec![
@@ -31,6 +33,7 @@ pub(crate) fn write_trajectory(
             }
             None => fields.extend(std::iter::repeat_n(String::new(), 2 * names().count())),
         }
+        fields.push(row.segment.to_string());
         writer.write_record(&fields).map_err(io::Error::from)?;
     }
     writer.flush()

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use freeform_motion::curve_fit::{Fit, Outline, PixelGrid, Rectangle};
+use freeform_motion::riccati::ProjectiveMotion;
 use image::Rgb;
 use nalgebra::{Matrix3, Point2};
 
@@ -118,7 +119,8 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
 
 /// The velocity at points around the outline, the longest arrow a fixed share of the object.
 fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &Rectangle, generator: &Matrix3<f64>) {
-    let velocity = |p: &Point2<f64>| (generator * p.to_homogeneous()).xy();
+    let motion = ProjectiveMotion::of_generator(generator);
+    let velocity = |p: &Point2<f64>| motion.velocity(p);
     let count = outline.points().count();
     let chosen: Vec<&Point2<f64>> = outline.points().step_by((count / ARROWS).max(1)).collect();
     let fastest = chosen.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);

@@ -1,5 +1,6 @@
 use std::path::{Path, PathBuf};
 
+use freeform_motion::Rectification;
 use freeform_motion::curve_fit::{Fit, FitSettings, Fitter};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::CameraScale;
@@ -18,6 +19,7 @@ pub(crate) struct ObservedOverlay {
     overlay: Overlay,
     curves: CurveFitter,
     scale: Option<CameraScale>,
+    plane: Option<Rectification>,
     /// Whether the objects are named.
     names: bool,
 }
@@ -36,7 +38,7 @@ impl ObservedOverlay {
             return Err(Failure::unusable(format_args!("{}: --overlay draws on pictures, this is CSV", input.name)));
         }
         let (overlay, curves) = (Overlay::open(path, inputs)?, CurveFitter::new(options)?);
-        Ok(Some(Self { overlay, curves, scale: options.scale, names: pictures.follows_all() }))
+        Ok(Some(Self { overlay, curves, scale: options.scale, plane: options.rectify, names: pictures.follows_all() }))
     }
 
     /// Draws one object, or a picture without any.
@@ -53,7 +55,11 @@ impl ObservedOverlay {
             accepted: observation.is_accepted(),
             fit: fitted.as_ref().map(|fitted| (&fitted.fit, fitted.parts.as_ref().ok())),
             generator: observation.estimate.and_then(|estimate| {
-                Some(self.scale.unwrap_or_default().generator_in_image(&estimate.known_generator()?))
+                let generator = estimate.known_generator()?;
+                Some(match &self.plane {
+                    Some(plane) => plane.generator_in_picture(&generator),
+                    None => self.scale.unwrap_or_default().generator_in_image(&generator),
+                })
             }),
         };
         self.overlay.draw(seen_in, &drawn)
@@ -66,15 +72,20 @@ impl ObservedOverlay {
 }
 
 /// The curve to draw of an outline: that of the method, or one fitted for the drawing where the method fits none.
-pub(crate) struct CurveFitter(Fitter);
+pub(crate) struct CurveFitter {
+    fitter: Fitter,
+    /// Whether the curves of the method are elsewhere than the outlines of the pictures.
+    is_rectified: bool,
+}
 
 impl CurveFitter {
     pub(crate) fn new(options: &TrackOptions) -> Result<Self, Failure> {
         let settings = FitSettings { degree: options.degree_drawn(), ..FitSettings::default() };
-        Fitter::new(settings).map(Self).map_err(Failure::unusable)
+        let fitter = Fitter::new(settings).map_err(Failure::unusable)?;
+        Ok(Self { fitter, is_rectified: options.rectify.is_some() })
     }
 
     pub(crate) fn of(&mut self, observation: &Observation, frame: &OutlineFrame) -> Option<Fit> {
-        observation.fit.or_else(|| self.0.fit(&frame.outline).ok())
+        observation.fit.filter(|_| !self.is_rectified).or_else(|| self.fitter.fit(&frame.outline).ok())
     }
 }

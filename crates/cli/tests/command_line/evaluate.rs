@@ -213,3 +213,63 @@ fn the_progress_bar_stays_away_from_a_pipe() {
     let output = freeform(&format!("{SMALL} --method moments")).output().expect("the binary runs");
     assert_eq!(stderr(&output), "");
 }
+
+/// A part of the stress suite that takes no time.
+const STRESS: &str = "evaluate --suite stress --kinds plain/3 --runs 2";
+
+#[test]
+fn the_stress_suite_prints_a_line_for_each_kind_and_class_and_one_for_all() {
+    let table = succeed("evaluate --suite stress --kinds frames --runs 1", "");
+    for line in ["3 frames", "8 frames", "dropped frames of 20 %", "straight, 15 frames"] {
+        assert!(table.contains(line), "{table}");
+    }
+    for start in ["  plain      all", "  dynamics   all", "  all        all"] {
+        assert!(table.lines().any(|line| line.starts_with(start)), "{start}: {table}");
+    }
+    assert!(table.contains("silent wrong") && table.contains("motion_changed"), "{table}");
+    let markdown = succeed(&format!("{STRESS} --format markdown"), "");
+    assert!(markdown.lines().any(|line| line.starts_with("| plain | 3 frames | 2 |")), "{markdown}");
+}
+
+#[test]
+fn the_stress_suite_gives_the_same_json_whatever_the_number_of_threads() {
+    let with = |more: &str| succeed(&format!("{STRESS} --format json {more}"), "");
+    let one = with("--threads 1 --seed 3");
+    assert_eq!(one, with("--threads 4 --seed 3"));
+    assert_ne!(one, with("--threads 4 --seed 4"));
+    let document = json(&one);
+    assert_eq!((&document["schema"], &document["runs"]), (&"freeform.stress/1".into(), &2.into()));
+    for summary in [&document["kinds"][0], &document["classes"]["plain"], &document["overall"]] {
+        assert!(summary["silent_wrong"].is_f64() && summary["warned"].is_f64(), "{summary}");
+        assert!(summary["quantities"]["omega"]["unstated"].is_f64(), "{summary}");
+    }
+    assert_eq!(document["kinds"][0]["class"], "plain");
+}
+
+#[test]
+fn the_kinds_of_the_stress_suite_are_listed_with_what_they_are() {
+    let all = succeed("evaluate --suite stress --list", "");
+    assert!(all.lines().count() > 80, "{all}");
+    let round = json(&succeed("evaluate --suite stress --list --kinds round/ --format json", ""));
+    let kinds = round["kinds"].as_array().expect("a list");
+    assert!(kinds.iter().all(|kind| kind["class"] == "round" && kind["explanation"].is_string()));
+    assert!(round["classes"]["round"].is_string());
+}
+
+#[test]
+fn the_stress_suite_refuses_what_has_no_meaning_there() {
+    for (arguments, word) in [
+        ("--suite stress --kinds nonsense", "nonsense"),
+        ("--suite stress --shape bird", "--shape"),
+        ("--suite stress --method icp", "--method"),
+        ("--suite stress --format csv", "json"),
+        ("--suite stress --noise 0.1", "--noise"),
+        ("--suite arc --kinds plain", "--kinds"),
+        ("--list", "--list"),
+    ] {
+        let output = run(&format!("evaluate {arguments}"), "");
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {}", stderr(&output));
+        let message = stderr(&output);
+        assert!(message.lines().count() == 1 && message.contains(word), "{arguments}: {message}");
+    }
+}

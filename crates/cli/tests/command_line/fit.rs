@@ -94,3 +94,46 @@ fn parts_of_the_curve_beside_the_outline_are_told() {
     let document = json(&succeed("fit - --frame 0 --format json", &sequence("--shape bird")));
     assert_eq!(document["outlines"][0]["stray_parts"], json("[]"));
 }
+
+/// The invariants of every outline.
+fn invariants(arguments: &str, csv: &str) -> Vec<Vec<f64>> {
+    let document = json(&succeed(&format!("fit - --format json {arguments}"), csv));
+    let outlines = document["outlines"].as_array().expect("a list").clone();
+    let values = |outline: &serde_json::Value| {
+        let list = outline["invariants"].as_array().expect("invariants").clone();
+        list.iter().map(|value| value.as_f64().expect("a number")).collect()
+    };
+    outlines.iter().map(values).collect()
+}
+
+fn largest_change(invariants: &[Vec<f64>]) -> f64 {
+    let changes = invariants[1..].iter().flat_map(|list| list.iter().zip(&invariants[0]).map(|(a, b)| (a - b).abs()));
+    changes.fold(0.0, f64::max)
+}
+
+#[test]
+fn the_invariants_of_an_unbounded_curve_keep_sign_and_order_as_the_outline_turns() {
+    let csv = succeed("simulate --shape glider --omega 1.57 --b 0,0 --fps 4 --seconds 1.5 --noise 0", "");
+    let change = largest_change(&invariants("--method 3l", &csv));
+    assert!(change < 0.01, "{change}");
+}
+
+#[test]
+fn the_invariants_of_a_sheared_outline_stay_where_it_is_normalised_affinely() {
+    let csv =
+        succeed("simulate --shape glider --affine 0.5,1,-0.4,-0.3,0,0 --scale 1 --fps 4 --seconds 1.5 --noise 0", "");
+    let [similarity, affine] =
+        ["similarity", "affine"].map(|choice| largest_change(&invariants(&format!("--normalise {choice}"), &csv)));
+    assert!(affine < 0.01 && similarity > 5.0 * affine, "{similarity} {affine}");
+}
+
+#[test]
+fn related_points_and_invariants_have_deviations() {
+    let document = json(&succeed("fit - --frame 2 --format json", &sequence("--noise 0.005")));
+    let outline = &document["outlines"][0];
+    let std = outline["invariants_std"].as_array().expect("deviations");
+    assert_eq!(std.len(), 4);
+    assert!(std.iter().all(|value| value.as_f64().is_some_and(|std| std > 0.0 && std < 1.0)), "{std:?}");
+    let point = &outline["related_points"][0]["std"];
+    assert!(point[0].as_f64().is_some_and(|std| std > 0.0 && std < 0.5), "{point}");
+}

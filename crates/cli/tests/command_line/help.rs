@@ -2,7 +2,7 @@ use crate::support::{freeform, run, stderr, stdout, succeed};
 
 #[test]
 fn every_command_has_a_help_with_examples() {
-    for command in ["demo", "simulate", "fit", "identify", "track", "outline", "evaluate", "reproduce"] {
+    for command in ["demo", "simulate", "fit", "identify", "track", "outline", "recognise", "evaluate", "reproduce"] {
         let help = succeed(&format!("{command} --help"), "");
         assert!(help.contains(&format!("  freeform {command}")), "{help}");
         assert!(help.contains("Example"), "{help}");

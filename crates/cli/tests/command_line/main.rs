@@ -1,14 +1,19 @@
 //! The contract of the command line, tested on the binary itself.
 mod bad_input;
+mod browser;
 mod evaluate;
 mod files;
 mod filter;
 mod fit;
+mod guides;
 mod help;
 mod identify;
 mod outline;
 mod pictures;
+mod projective;
 mod real_pictures;
+mod recognise;
+mod rectify;
 mod reproduce;
 mod simulate;
 mod support;

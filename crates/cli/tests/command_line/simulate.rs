@@ -12,10 +12,94 @@ fn the_head_holds_the_truth_and_the_rows_follow_the_header() {
     let csv = sequence("--omega -1.5 --b -1,2 --scale 0.5 --fps 10");
     let lines: Vec<&str> = csv.lines().collect();
     assert!(lines[0].starts_with("# freeform simulate"), "{}", lines[0]);
-    assert_eq!(lines[1], "# truth omega=-1.5 b1=-1 b2=2 scale=0.5");
+    // In the last frame, after 0.4 s, the velocity (-1, 2) of the middle has turned by 0.6 rad.
+    let (s, c) = 0.6_f64.sin_cos();
+    assert_eq!(lines[1].split(" v1=").next(), Some("# truth omega=-1.5 b1=-1 b2=2 scale=0.5"));
+    let told = truth(&csv);
+    let value = |name: &str| told.iter().find(|(key, _)| key == name).map(|(_, value)| *value);
+    assert!(value("v1").is_some_and(|v| (v - (-c - 2.0 * s)).abs() < 1e-12), "{}", lines[1]);
+    assert!(value("v2").is_some_and(|v| (v - (-s + 2.0 * c)).abs() < 1e-12), "{}", lines[1]);
+    assert_eq!(value("time"), None);
     assert_eq!(lines[2], "frame,time,x,y");
     assert_eq!(lines.len(), 3 + 5 * 120);
     assert!(lines[3].starts_with("0,0,"));
+}
+
+/// The fields of the comment line with the truth.
+fn truth(csv: &str) -> Vec<(String, f64)> {
+    let line = csv.lines().find_map(|line| line.strip_prefix("# truth ")).expect("a truth");
+    let fields = line.split_whitespace().map(|field| field.split_once('=').expect("a field"));
+    fields.map(|(name, value)| (name.to_owned(), value.parse().expect("a number"))).collect()
+}
+
+/// Mean of the points of each frame: the middle of a circle, to the noise over the root of their number.
+fn middles(csv: &str) -> Vec<[f64; 3]> {
+    let mut sums: Vec<[f64; 4]> = Vec::new();
+    for line in csv.lines().filter(|line| !line.starts_with(['#', 'f'])) {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().expect("a number")).collect();
+        if sums.len() <= fields[0] as usize {
+            sums.push([0.0; 4]);
+        }
+        let sum = sums.last_mut().expect("a frame");
+        let added = [fields[1], fields[2], fields[3], 1.0];
+        sum.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
+    }
+    sums.into_iter().map(|[t, x, y, n]| [t / n, x / n, y / n]).collect()
+}
+
+#[test]
+fn the_velocity_of_the_middle_in_the_head_is_that_of_the_simulated_path_at_its_end() {
+    for motion in [
+        "",
+        "--dynamics velocity --velocity 6,-2",
+        "--dynamics accelerating --velocity 3,8 --acceleration 0.5,0,-9.8",
+        "--dynamics stop-and-go --velocity 5,0 --period 0.8",
+        "--dynamics oscillating --velocity 5,1 --period 1.7 --amplitude 0.6",
+        "--projective 0,1.6,-1.6,0,-3,4,-0.012,0.016",
+    ] {
+        let arguments = format!("simulate --shape circle --points 3000 --noise 0 --fps 200 --seconds 1 {motion}");
+        let csv = succeed(&arguments, "");
+        let value = |name: &str| truth(&csv).into_iter().find(|(key, _)| key == name).map(|(_, value)| value);
+        assert_eq!(value("time").is_some(), motion.contains("dynamics"), "{motion}");
+        let path = middles(&csv);
+        let [from, to] = [path[path.len() - 3], path[path.len() - 1]];
+        for (axis, name) in [(1, "v1"), (2, "v2")] {
+            let found = (to[axis] - from[axis]) / (to[0] - from[0]) / 0.1;
+            let told = value(name).expect("a velocity");
+            assert!((found - told).abs() < 0.2, "{motion} {name}: {found} {told}");
+        }
+    }
+}
+
+#[test]
+fn the_truth_of_a_motion_that_changes_is_that_in_the_last_frame() {
+    let csv = succeed(
+        "simulate --fps 10 --seconds 1.05 --omega 1 --dynamics accelerating --velocity 1,0 --acceleration 0.5,0,2",
+        "",
+    );
+    let told = truth(&csv);
+    let value = |name: &str| told.iter().find(|(key, _)| key == name).expect("a field").1;
+    // The middle is at (1, 1) after a second, where it runs with (1, 2) and omega is 1.5.
+    for (name, expected) in
+        [("time", 1.0), ("omega", 1.5), ("v1", 1.0), ("v2", 2.0), ("b1", 1.0 - 1.5), ("b2", 2.0 + 1.5), ("scale", 0.1)]
+    {
+        assert!((value(name) - expected).abs() < 1e-9, "{name}: {}", value(name));
+    }
+}
+
+#[test]
+fn a_constant_generator_is_simulated_as_it_was_whether_it_is_named_or_not() {
+    let rows = |csv: String| csv.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(rows(sequence("")), rows(sequence("--dynamics generator")));
+}
+
+#[test]
+fn beside_the_velocity_of_a_disc_stands_that_of_its_middle_at_the_end() {
+    let csv = succeed("simulate --shape circle --seconds 1 --dynamics velocity --omega 2 --velocity 3,-1", "");
+    let table = succeed("identify -", &csv);
+    let row = |name: &str| table.lines().find(|line| line.trim_start().starts_with(name)).expect("a row").to_owned();
+    assert!(row("v1").contains("0.300000") && row("v2").contains("-0.100000"), "{table}");
+    assert!(row("omega").contains("unobservable"), "{table}");
 }
 
 #[test]
@@ -85,6 +169,21 @@ fn settings_out_of_range_are_refused_on_one_line() {
         "--shape nowhere/shape.csv",
         "--shape .",
         "--affine 1e300,0,0,1e300,0,0",
+        "--dynamics nonsense",
+        "--dynamics accelerating",
+        "--dynamics accelerating --acceleration 1,2",
+        "--dynamics velocity --acceleration 1,2,3",
+        "--dynamics velocity --affine 0,1,-1,0,0,0",
+        "--dynamics velocity --projective 0,1,-1,0,0,0,0,0",
+        "--dynamics velocity --velocity 1,2 --projective 0,1,-1,0,0,0,0,0",
+        "--dynamics velocity --velocity 1",
+        "--dynamics velocity --velocity 1,2 --b 1,2",
+        "--dynamics velocity --period 1",
+        "--dynamics stop-and-go --period 0",
+        "--dynamics stop-and-go --amplitude 0.5",
+        "--dynamics oscillating --amplitude 1.5",
+        "--velocity 1,2",
+        "--period 1",
     ] {
         let output = run(&format!("simulate {arguments}"), "");
         assert_eq!(output.status.code(), Some(2), "{arguments}: {}", stderr(&output));

@@ -19,13 +19,14 @@ fn number(rows: &[Vec<String>], row: usize, column: &str) -> f64 {
 #[test]
 fn the_trajectory_has_one_row_per_object_and_frame_with_pose_and_motion() {
     let rows = trajectory("", &(sequence("") + "20,5.0,1,1\n"));
-    let header = "object,frame,time,accepted,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std";
+    let header =
+        "object,frame,time,accepted,angle,angle_std,x,x_std,y,y_std,omega,omega_std,b1,b1_std,b2,b2_std,segment";
     assert_eq!(rows[0].join(","), header);
     assert_eq!(rows.len(), 1 + 16);
     assert!(rows.iter().all(|row| row.len() == rows[0].len()));
     // Nothing is known of the motion in the first frame, and nothing of a frame that is no outline.
-    assert_eq!(rows[1].join(","), format!("0,0,0,true{}", ",".repeat(12)));
-    assert_eq!(rows[16].join(","), format!("0,20,,false{}", ",".repeat(12)));
+    assert_eq!(rows[1].join(","), format!("0,0,0,true{},0", ",".repeat(12)));
+    assert_eq!(rows[16].join(","), format!("0,20,,false{},0", ",".repeat(12)));
     for row in 2..=15 {
         let (angle, std) = (number(&rows, row, "angle"), number(&rows, row, "angle_std"));
         let truth = std::f64::consts::FRAC_PI_2 * (row - 1) as f64 / 30.0;

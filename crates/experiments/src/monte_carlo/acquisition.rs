@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 use freeform_estimate::MotionEstimate;
-use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_riccati::{MotionModel, ProjectiveMotion, RigidMotion};
 use freeform_sim_camera::{Sampling, Shape};
 use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
@@ -76,11 +76,11 @@ impl Found {
 impl AcquisitionSetting {
     /// Whether it can be simulated.
     pub(super) fn check(&self, shape: &Shape) -> Result<(), ExperimentError> {
-        self.sequence(AffineMotion::default()).simulator(shape, 0).map(drop)
+        self.sequence(ProjectiveMotion::default()).simulator(shape, 0).map(drop)
     }
 
     /// Two frames a second apart.
-    fn sequence(&self, motion: AffineMotion) -> Setting {
+    fn sequence(&self, motion: ProjectiveMotion) -> Setting {
         Setting {
             name: self.name.clone(),
             model: self.model,
@@ -137,7 +137,7 @@ fn run(
 }
 
 /// The motion that in one second turns by an angle (rad, clockwise) and moves the centre by a shift.
-fn motion_with(turn: f64, centre: Vector2<f64>, shift: Vector2<f64>) -> AffineMotion {
+fn motion_with(turn: f64, centre: Vector2<f64>, shift: Vector2<f64>) -> ProjectiveMotion {
     let flow = |b1, b2| RigidMotion { omega: turn, b1, b2 }.flow(1.0).matrix().fixed_view::<2, 3>(0, 0).into_owned();
     let rotation = flow(0.0, 0.0).fixed_columns::<2>(0).into_owned();
     let columns = [flow(1.0, 0.0), flow(0.0, 1.0)].map(|map| map.column(2).into_owned());
@@ -147,7 +147,7 @@ fn motion_with(turn: f64, centre: Vector2<f64>, shift: Vector2<f64>) -> AffineMo
     RigidMotion { omega: turn, b1: b.x, b2: b.y }.into()
 }
 
-fn is_found(estimate: &MotionEstimate, motion: &AffineMotion, shape: &Shape) -> bool {
+fn is_found(estimate: &MotionEstimate, motion: &ProjectiveMotion, shape: &Shape) -> bool {
     let (found, truth) = (estimate.model().flow(estimate.values(), 1.0).into_inner(), motion.flow(1.0));
     let turn = (found[(0, 1)] - found[(1, 0)]).atan2(found[(0, 0)] + found[(1, 1)]);
     let off = (turn - motion.a2).sin().atan2((turn - motion.a2).cos());

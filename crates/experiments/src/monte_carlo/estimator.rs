@@ -1,6 +1,5 @@
 use freeform_curve_fit::Outline;
 use freeform_estimate::MotionEstimate;
-use freeform_identify::AdaptiveSettings;
 use freeform_motion::{Pipeline, PipelineSettings};
 use freeform_outline_filter::{FilterSettings, MotionFilter};
 use freeform_riccati::MotionModel;
@@ -54,7 +53,7 @@ pub(super) enum Estimator {
     Filter {
         filter: Box<MotionFilter>,
         /// What it held when it last held something: it holds nothing while it looks for the object again.
-        last_known: Option<MotionEstimate>,
+        last_known: Box<Option<MotionEstimate>>,
     },
     Adaptive(Box<Pipeline>),
     Moments(Box<AreaMomentEstimator>),
@@ -67,12 +66,9 @@ impl Estimator {
         Ok(match method {
             Method::Filter => {
                 let filter = MotionFilter::new(FilterSettings { model, ..FilterSettings::default() })?;
-                Self::Filter { filter: Box::new(filter), last_known: None }
+                Self::Filter { filter: Box::new(filter), last_known: Box::default() }
             }
-            Method::Adaptive => {
-                let identify = AdaptiveSettings { model, ..AdaptiveSettings::default() };
-                Self::Adaptive(Box::new(Pipeline::new(PipelineSettings { identify, ..PipelineSettings::default() })?))
-            }
+            Method::Adaptive => Self::Adaptive(Box::new(Pipeline::new(PipelineSettings::for_model(model))?)),
             Method::Moments => Self::Moments(Box::new(AreaMomentEstimator::new(model)?)),
             Method::Icp => Self::Registration(Box::new(RegistrationEstimator::new(model))),
         })
@@ -83,7 +79,7 @@ impl Estimator {
         match self {
             Self::Filter { filter, last_known } => {
                 let accepted = filter.step(time, outline).is_ok_and(|step| step.is_accepted());
-                *last_known = filter.estimate().or(*last_known);
+                **last_known = filter.estimate().or(**last_known);
                 accepted
             }
             Self::Adaptive(pipeline) => pipeline.push(time, outline).is_ok(),
@@ -95,7 +91,7 @@ impl Estimator {
     /// The motion, if any was found.
     pub(super) fn estimate(&self) -> Option<MotionEstimate> {
         match self {
-            Self::Filter { last_known, .. } => *last_known,
+            Self::Filter { last_known, .. } => **last_known,
             Self::Adaptive(pipeline) => pipeline.estimate(),
             Self::Moments(estimator) => estimator.estimate(),
             Self::Registration(estimator) => estimator.estimate(),

@@ -1,7 +1,6 @@
 use freeform_estimate::{BoundaryPoint, CramerRaoBound};
-use freeform_riccati::{AffineMotion, MotionModel};
+use freeform_riccati::{MotionModel, ProjectiveMotion, pull_back};
 use freeform_sim_camera::{Camera, Occlusion, Sampling, Scene, SequenceLength, Settings, Shape, Simulator};
-use nalgebra::Vector2;
 
 use crate::ExperimentError;
 
@@ -20,7 +19,7 @@ pub struct Setting {
     /// Family of motions that is identified; it must hold `motion`.
     pub model: MotionModel,
     /// The true motion in the image: image lengths per second and 1/s.
-    pub motion: AffineMotion,
+    pub motion: ProjectiveMotion,
     /// Length of each sequence, at least 2.
     pub frames: usize,
     /// Frames per second.
@@ -88,12 +87,14 @@ impl Setting {
         for frame in 0..self.frames {
             let time = frame as f64 / self.fps;
             let pose = self.motion.flow(time);
-            let linear = pose.matrix().fixed_view::<2, 2>(0, 0).into_owned();
-            let cofactor = linear.try_inverse().unwrap_or_default().transpose();
+            let back = pose.inverse();
             let places = (0..BOUND_PLACES).map(|i| {
                 let s = (i as f64 + 0.5) / BOUND_PLACES as f64;
-                let normal: Vector2<f64> = (cofactor * shape.normal_at(s).into_inner()).normalize();
-                BoundaryPoint { point: pose * shape.point_at(s), normal }
+                let body = shape.point_at(s);
+                let point = pose * body;
+                // Distances from the tangent pull back to the body as distances from the tangent there.
+                let normal = pull_back(back.matrix(), &point, &body, &shape.normal_at(s)).normalize();
+                BoundaryPoint { point, normal }
             });
             // For noise 1: the bound grows in proportion to the noise, which may be 0.
             bound.add_frame(time, places, 1.0, weight)?;

@@ -53,7 +53,8 @@ fn settings() -> Vec<Setting> {
         wrong_frames: 0.0,
         sampling: Sampling::Independent,
     };
-    let affine = |name: String, frames| Setting { model: MotionModel::Affine, motion: sheared, ..clean(name, frames) };
+    let affine =
+        |name: String, frames| Setting { model: MotionModel::Affine, motion: sheared.into(), ..clean(name, frames) };
     let mut settings: Vec<Setting> = [3, 8, 30, 120].map(|n| clean(format!("rigid, clean, {n} frames"), n)).into();
     settings
         .push(Setting { sampling: Sampling::default(), ..clean("rigid, clean, stratified, 120 frames".into(), 120) });

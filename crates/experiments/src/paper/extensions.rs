@@ -112,8 +112,8 @@ pub(super) fn affine(run: &Run) -> Result<Section, ExperimentError> {
         caption: format!(
             "The flight bird's outline under the affine motion a = ({a1}, {a2}; {a3}, {a4}), b = ({b1}, {b2}) in space, \
              identified with six parameters by the structured law over all pairs (above) and by the motion filter (below), from zero. \
-             The law keeps a bias: a 3L fit is not affine-equivariant, since offsets along the normals do not move \
-             affinely, so that the lines of the fitted quartic do not move exactly as the outline does."
+             Outlines are fitted in affine-normalised coordinates, since a 3L fit is not affine-equivariant otherwise: offsets \
+             along the normals do not move affinely."
         ),
         data: estimates_data(MotionModel::Affine, shown.map(|method| &tracks[method]), &sequence),
         figure: Figure {

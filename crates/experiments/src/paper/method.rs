@@ -21,7 +21,7 @@ impl Method {
     pub(super) fn law(model: MotionModel, law: AdaptiveLaw, pairs: PairChoice, start: &[f64]) -> Self {
         let identify =
             AdaptiveSettings { model, law, pairs, initial_values: start.to_vec(), ..AdaptiveSettings::default() };
-        Self::Adaptive(Box::new(PipelineSettings { identify, ..PipelineSettings::default() }))
+        Self::Adaptive(Box::new(PipelineSettings { identify, ..PipelineSettings::for_model(model) }))
     }
 
     /// The motion filter as it is by default.

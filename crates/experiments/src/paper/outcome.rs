@@ -122,14 +122,14 @@ mod tests {
     use freeform_riccati::CameraScale;
 
     use super::super::track::Moment;
-    use freeform_riccati::AffineMotion;
+    use freeform_riccati::ProjectiveMotion;
 
     use super::*;
 
     /// Omega off by some shares of itself, one frame a second; `None` for frames without an estimate.
     fn track(errors: &[Option<f64>]) -> (Track, Sequence) {
-        let truth = AffineMotion { a2: 1.0, a3: -1.0, b1: 1.0, ..AffineMotion::default() };
-        let off = |error: f64| AffineMotion { a2: 1.0 + error, a3: -1.0 - error, ..truth };
+        let truth = ProjectiveMotion { a2: 1.0, a3: -1.0, b1: 1.0, ..ProjectiveMotion::default() };
+        let off = |error: f64| ProjectiveMotion { a2: 1.0 + error, a3: -1.0 - error, ..truth };
         let moments = errors.iter().enumerate().map(|(k, error)| Moment { time: k as f64, motion: error.map(off) });
         let outline = Outline::closed([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| [x, y].into()).into());
         let frame = |k: usize| (k as f64, outline.clone().expect("a triangle"));

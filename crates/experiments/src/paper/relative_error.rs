@@ -1,4 +1,4 @@
-use freeform_riccati::AffineMotion;
+use freeform_riccati::ProjectiveMotion;
 
 /// A motion has settled once the error of its rates (omega, or the matrix a) stays below this share of them...
 pub(super) const SETTLED_RATES: f64 = 0.05;
@@ -15,9 +15,9 @@ pub(super) struct RelativeError {
 }
 
 impl RelativeError {
-    pub(super) fn of(found: &AffineMotion, truth: &AffineMotion) -> Self {
-        let rates = |m: &AffineMotion| nalgebra::Vector4::new(m.a1, m.a2, m.a3, m.a4);
-        let velocity = |m: &AffineMotion| nalgebra::Vector2::new(m.b1, m.b2);
+    pub(super) fn of(found: &ProjectiveMotion, truth: &ProjectiveMotion) -> Self {
+        let rates = |m: &ProjectiveMotion| nalgebra::Vector4::new(m.a1, m.a2, m.a3, m.a4);
+        let velocity = |m: &ProjectiveMotion| nalgebra::Vector2::new(m.b1, m.b2);
         Self {
             rates: (rates(found) - rates(truth)).norm() / rates(truth).norm(),
             velocity: (velocity(found) - velocity(truth)).norm() / velocity(truth).norm(),

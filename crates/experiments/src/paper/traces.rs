@@ -1,7 +1,7 @@
 //! What was found over time, as curves of a panel and as rows of a table.
 use std::ops::Range;
 
-use freeform_riccati::{AffineMotion, MotionModel};
+use freeform_riccati::{MotionModel, ProjectiveMotion};
 
 use super::curves::curve;
 use super::document::Table;
@@ -47,7 +47,7 @@ pub(super) fn times(track: &Track) -> Vec<f64> {
 }
 
 /// One parameter of a motion; `None` where the model does not hold it.
-fn parameter(model: MotionModel, motion: &AffineMotion, index: usize) -> Option<f64> {
+fn parameter(model: MotionModel, motion: &ProjectiveMotion, index: usize) -> Option<f64> {
     model.parameters_of_motion(motion).map(|values| values[index])
 }
 

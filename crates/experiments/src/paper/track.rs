@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 use freeform_estimate::MotionEstimate;
 use freeform_motion::Pipeline;
 use freeform_outline_filter::MotionFilter;
-use freeform_riccati::{AffineMotion, CameraScale, ParameterKind};
+use freeform_riccati::{CameraScale, ParameterKind, ProjectiveMotion};
 use freeform_sim_camera::Motion;
 
 use super::method::Method;
@@ -27,7 +27,7 @@ pub(super) struct Moment {
     /// In seconds.
     pub(super) time: f64,
     /// The motion in space; `None` where the method gives none, or not all of its parameters.
-    pub(super) motion: Option<AffineMotion>,
+    pub(super) motion: Option<ProjectiveMotion>,
 }
 
 impl Track {
@@ -66,11 +66,7 @@ impl Track {
 
     fn take(&mut self, time: f64, estimate: Option<MotionEstimate>, scale: CameraScale) {
         let complete = estimate.filter(|estimate| estimate.parameters().all(|p| p.value.is_some()));
-        let motion = complete.map(|estimate| {
-            let a = estimate.in_space(scale).generator();
-            let (a1, a2, a3, a4) = (a[(0, 0)], a[(0, 1)], a[(1, 0)], a[(1, 1)]);
-            AffineMotion { a1, a2, a3, a4, b1: a[(0, 2)], b2: a[(1, 2)] }
-        });
+        let motion = complete.map(|estimate| ProjectiveMotion::of_generator(&estimate.in_space(scale).generator()));
         self.moments.push(Moment { time, motion });
     }
 

@@ -8,7 +8,7 @@ use super::{
     origin_shift::OriginShift,
     pair_quality::PairQuality,
     running_law::{Frame, Last, RunningLaw},
-    settings::{AdaptiveSettings, PairChoice},
+    settings::{AdaptiveLaw, AdaptiveSettings, PairChoice},
 };
 use crate::error::IdentifyError;
 
@@ -43,6 +43,7 @@ enum Laws {
     Three(Vec<RunningLaw<3>>),
     Four(Vec<RunningLaw<4>>),
     Six(Vec<RunningLaw<6>>),
+    Eight(Vec<RunningLaw<8>>),
 }
 
 impl Laws {
@@ -54,6 +55,7 @@ impl Laws {
             Self::Three(laws) => take_all(laws, frame),
             Self::Four(laws) => take_all(laws, frame),
             Self::Six(laws) => take_all(laws, frame),
+            Self::Eight(laws) => take_all(laws, frame),
         }
     }
 
@@ -63,6 +65,7 @@ impl Laws {
             (Self::Three(laws), Self::Three(other)) => laws.clone_from_slice(other),
             (Self::Four(laws), Self::Four(other)) => laws.clone_from_slice(other),
             (Self::Six(laws), Self::Six(other)) => laws.clone_from_slice(other),
+            (Self::Eight(laws), Self::Eight(other)) => laws.clone_from_slice(other),
             (laws, other) => *laws = other.clone(),
         }
     }
@@ -72,6 +75,7 @@ impl Laws {
             Self::Three(laws) => laws.iter_mut().for_each(|law| law.shift_origin(shift, by_slopes)),
             Self::Four(laws) => laws.iter_mut().for_each(|law| law.shift_origin(shift, by_slopes)),
             Self::Six(laws) => laws.iter_mut().for_each(|law| law.shift_origin(shift, by_slopes)),
+            Self::Eight(laws) => laws.iter_mut().for_each(|law| law.shift_origin(shift, by_slopes)),
         }
     }
 }
@@ -80,7 +84,7 @@ impl AdaptiveIdentifier {
     /// An identifier that has seen nothing yet.
     ///
     /// # Errors
-    /// Am not stable, Q not symmetric positive definite, a model beyond affine, or initial values that do not fit it.
+    /// Am not stable, Q not symmetric positive definite, the printed law for projective motion, or initial values that do not fit it.
     pub fn new(settings: AdaptiveSettings) -> Result<Self, IdentifyError> {
         let lyapunov = solve_lyapunov(&settings.stability, &settings.definite)?;
         let needed = settings.model.parameter_count();
@@ -95,7 +99,10 @@ impl AdaptiveIdentifier {
             MotionModel::Rigid => Laws::Three(RunningLaw::candidates(&settings, lyapunov)),
             MotionModel::Similarity => Laws::Four(RunningLaw::candidates(&settings, lyapunov)),
             MotionModel::Affine => Laws::Six(RunningLaw::candidates(&settings, lyapunov)),
-            MotionModel::Projective => return Err(IdentifyError::UnsupportedModel { model: settings.model }),
+            MotionModel::Projective if settings.law == AdaptiveLaw::Printed => {
+                return Err(IdentifyError::UnsupportedModel { model: settings.model });
+            }
+            MotionModel::Projective => Laws::Eight(RunningLaw::candidates(&settings, lyapunov)),
         };
         let laws_before = laws.clone();
         Ok(Self {
@@ -199,6 +206,7 @@ impl AdaptiveIdentifier {
                 Laws::Three(laws) => laws[self.chosen_law(laws.len())].parameters(),
                 Laws::Four(laws) => laws[self.chosen_law(laws.len())].parameters(),
                 Laws::Six(laws) => laws[self.chosen_law(laws.len())].parameters(),
+                Laws::Eight(laws) => laws[self.chosen_law(laws.len())].parameters(),
             };
             let model = self.settings.model;
             let count = model.parameter_count();

@@ -1,4 +1,4 @@
-use freeform_riccati::{AffineMotion, MotionModel};
+use freeform_riccati::{AffineMotion, MAX_PARAMETERS, MotionModel};
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
 use super::{origin_shift::OriginShift, regressor::quadratic_terms, structured_law::PairInput};
@@ -38,7 +38,7 @@ impl PrintedLaw {
     }
 
     /// The parameters of a model that the matrices hold, entries that should be equal averaged.
-    pub(crate) fn parameters(&self, model: MotionModel) -> SVector<f64, 6> {
+    pub(crate) fn parameters(&self, model: MotionModel) -> SVector<f64, MAX_PARAMETERS> {
         let m = &self.matrices;
         let a1 = 0.5 * (m[(2, 2)] + m[(3, 3)]);
         let a4 = a1 - 0.5 * (m[(0, 0)] + m[(1, 1)]);
@@ -46,7 +46,7 @@ impl PrintedLaw {
         let (a2, b1) = (m[(0, 8)], m[(2, 8)]);
         let b2 = -0.5 * (m[(2, 0)] + m[(3, 1)]);
         let parameters = model.parameters_of(&AffineMotion { a1, a2, a3, a4, b1, b2 }.generator());
-        SVector::from_column_slice(&parameters[..6])
+        parameters.into()
     }
 }
 
@@ -89,7 +89,7 @@ mod tests {
             let rate = RealVariables::from(state).rate(&motion);
             prop_assert!((matrices_of(&motion) * signals(&state) - rate).norm() < 1e-12);
             let law = PrintedLaw::new(-Matrix4::identity(), Matrix4::identity(), &motion);
-            prop_assert!((law.parameters(MotionModel::Affine) - SVector::from(p)).norm() < 1e-12);
+            prop_assert!((law.parameters(MotionModel::Affine).fixed_rows::<6>(0) - SVector::from(p)).norm() < 1e-12);
         }
 
         #[test]

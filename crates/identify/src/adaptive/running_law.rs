@@ -1,5 +1,5 @@
 use freeform_decompose::{Line, MAX_PAIRS};
-use freeform_riccati::{AffineMotion, MotionModel, RealVariables};
+use freeform_riccati::{AffineMotion, MAX_PARAMETERS, MotionModel, RealVariables};
 use nalgebra::{Const, DimMin, Matrix3, Matrix4, SVector, Vector4};
 
 use super::{
@@ -74,6 +74,7 @@ where
             AdaptiveLaw::Structured => {
                 Law::Structured(StructuredLaw::new(regressor, settings.stability, lyapunov, initial))
             }
+            // Of a motion that is at most affine.
             AdaptiveLaw::Printed => {
                 let generator = settings.model.generator(initial.as_slice());
                 Law::Printed(PrintedLaw::new(settings.stability, lyapunov, &affine_motion(&generator)))
@@ -90,8 +91,8 @@ where
         pairs.iter().map(running).collect()
     }
 
-    pub(super) fn parameters(&self) -> SVector<f64, 6> {
-        let mut parameters = SVector::<f64, 6>::zeros();
+    pub(super) fn parameters(&self) -> SVector<f64, MAX_PARAMETERS> {
+        let mut parameters = SVector::<f64, MAX_PARAMETERS>::zeros();
         let mut fill = |values: &[f64]| parameters.as_mut_slice()[..values.len()].copy_from_slice(values);
         match &self.law {
             Law::Structured(law) => fill(law.parameters().as_slice()),

@@ -5,7 +5,7 @@ use nalgebra::{Matrix4, Vector4};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AdaptiveLaw {
     /// Equation 21 as printed: all entries of A, B and C, 36 numbers, of which the motion is read off. One line pair excites
-    /// some of them so little that they take many minutes, of exact lines; it is here for comparison.
+    /// some of them so little that they take many minutes, of exact lines; it is here for comparison. At most affine motion.
     Printed,
     /// Equation 21 with the structure that equations 14 to 17 give A, B and C: only the motion parameters are adapted,
     /// `theta' = -W' P e`.
@@ -29,7 +29,7 @@ pub enum PairChoice {
 /// Settings of an [`AdaptiveIdentifier`](crate::AdaptiveIdentifier).
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdaptiveSettings {
-    /// Motion model: rigid, similarity or affine.
+    /// Motion model; the printed law is for rigid, similarity and affine motion.
     pub model: MotionModel,
     /// How the parameters are adapted.
     pub law: AdaptiveLaw,

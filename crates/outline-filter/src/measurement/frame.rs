@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point2};
 use super::Measurement;
 use crate::{belief::CellInformation, map::Contour};
 
-/// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius.
+/// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius, and the unit of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Reference {
@@ -13,12 +13,19 @@ pub(crate) struct Reference {
     pub(crate) origin: Point2<f64>,
     /// Image lengths.
     pub(crate) radius: f64,
+    /// Seconds. A power of two, so that nothing is rounded by it.
+    pub(crate) time_unit: f64,
 }
 
 impl Reference {
-    /// Of an outline.
+    /// Of an outline, with a unit of time of one second.
     pub(crate) fn of(outline: &Outline) -> Self {
-        Self { origin: outline.centroid(), radius: outline.rms_radius() }
+        Self { origin: outline.centroid(), radius: outline.rms_radius(), time_unit: 1.0 }
+    }
+
+    /// Units of time in a second: what a rate by the unit is multiplied by to be one by the second.
+    pub(crate) fn per_second(&self) -> f64 {
+        1.0 / self.time_unit
     }
 
     /// Normalised coordinates to image coordinates.

@@ -26,6 +26,11 @@ impl NegativeLogLikelihood {
         self.squares - other.squares > tuning::SIGNIFICANT * unit * (tuning::VARIANCE * other.weighted).sqrt()
     }
 
+    /// Whether the mean square of the innovations is no more than so many times that of another, which is noise at least.
+    pub(crate) fn is_within(&self, times: f64, other: &Self) -> bool {
+        self.points > 0.0 && self.squares / self.points <= times * (other.squares / other.points).max(1.0)
+    }
+
     pub(crate) fn add(&mut self, other: &Self) {
         self.squares += other.squares;
         self.points += other.points;

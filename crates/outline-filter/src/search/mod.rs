@@ -1,6 +1,8 @@
 //! Global registration: an object that is known as a track looked for in a frame, without a guess of how it has moved.
 mod landmarks;
 mod registration;
+mod symmetry;
 
 pub(crate) use landmarks::Landmarks;
 pub(crate) use registration::{RegisteredPose, register};
+pub(crate) use symmetry::symmetry_order;

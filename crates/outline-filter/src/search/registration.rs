@@ -1,12 +1,12 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point, pull_back};
-use nalgebra::{Matrix3, Point2, Rotation2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::Landmarks;
 use crate::{
     map::median,
     measurement::View,
-    track::Track,
-    tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning},
+    track::{Track, turn_between, wrapped},
+    tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning, symmetry as of_symmetry},
 };
 
 /// A pose that fits a frame.
@@ -21,11 +21,13 @@ pub(crate) struct RegisteredPose {
 }
 
 /// Poses that bring the outline of a track onto the normalised points of a frame, at most four (eight with a model of more parameters).
-/// `landmarks` are the related points of the track in its present pose, and those of the frame.
+/// `landmarks` are the related points of the track in its present pose, and those of the frame; `symmetry` is the order of that of the
+/// outline, of which the smallest turns either way are among the poses.
 pub(crate) fn register(
     track: &Track,
     points: &[Point2<f64>],
     landmarks: Option<[Landmarks; 2]>,
+    symmetry: usize,
 ) -> Vec<RegisteredPose> {
     let view = track.view();
     let (map, model, pose) = (view.map, track.model(), track.body_pose());
@@ -67,6 +69,23 @@ pub(crate) fn register(
     best = best.iter().map(|h| refined(track, points, MotionModel::Rigid, &h.pose, tuning::REFINEMENT_STEPS)).collect();
     best.retain(|h| h.score.is_finite());
     keep(&mut best, tuning::KEPT);
+    if symmetry > 1
+        && let Some(first) = best.first().copied()
+    {
+        let pitch = std::f64::consts::TAU / symmetry as f64;
+        let nearest = (first.turn / pitch).round();
+        for step in -(of_symmetry::TRIED as i32)..=of_symmetry::TRIED as i32 {
+            // From the turn nearest to none.
+            let angle = pitch * (f64::from(step) - nearest);
+            let turn = first.turn + angle;
+            let is_there = |h: &RegisteredPose| wrapped(h.turn - turn).abs() < of_symmetry::SAME * pitch;
+            if !best.iter().any(is_there) {
+                let start = track.turned(&first.pose, angle);
+                best.push(refined(track, points, MotionModel::Rigid, &start, tuning::REFINEMENT_STEPS));
+            }
+        }
+        best.retain(|h| h.score.is_finite());
+    }
     if model != MotionModel::Rigid {
         // More parameters start from fewer. They may also lead astray where arcs are missing, so that the rigid poses stay.
         let more = best.clone().into_iter().map(|found| {
@@ -96,17 +115,7 @@ fn keep(list: &mut Vec<RegisteredPose>, count: usize) {
 }
 
 fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {
-    let turn = (a.turn - b.turn + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-    turn.abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < tuning::SAME_POSE
-}
-
-/// The turn that takes one point to another.
-fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -> Matrix3<f64> {
-    let rotation = Rotation2::new(angle);
-    let shift = to - rotation * from;
-    let mut map = rotation.to_homogeneous();
-    (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
-    map
+    wrapped(a.turn - b.turn).abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < tuning::SAME_POSE
 }
 
 /// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals.

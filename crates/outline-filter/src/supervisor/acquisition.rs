@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     measurement::{NegativeLogLikelihood, Tolerance},
-    search::{Landmarks, RegisteredPose, register},
+    search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
     tuning::supervisor::LARGEST_INNOVATION,
     update::Gate,
@@ -41,7 +41,7 @@ impl MotionFilter {
         let nearest = candidates.iter().max_by(|a, b| agreement(a).total_cmp(&agreement(b)))?.outcome;
         let lost = self.phase == Phase::Lost;
         candidates.retain(|candidate| candidate.outcome.is_accepted());
-        let (taken, others) = Hypotheses::among(candidates);
+        let (taken, others) = Hypotheses::among(candidates, self.symmetry, seconds);
         self.hypotheses = others;
         let outcome = taken.as_ref().map_or(nearest, |candidate| candidate.outcome);
         if let Some(taken) = taken {
@@ -66,7 +66,12 @@ impl MotionFilter {
         let pose = *best.track.body_pose();
         let Some(track) = self.track.as_mut().filter(|track| !track.turn_is_unseen()) else { return candidates };
         if track.shows_turn(outline, &pose, &mut self.frame) {
-            return candidates;
+            let symmetry = symmetry_order(track, outline, &pose, &mut self.frame);
+            if symmetry == self.symmetry {
+                return candidates;
+            }
+            self.symmetry = symmetry;
+            return self.measured(outline, seconds, tolerance);
         }
         track.hide_turn();
         self.measured(outline, seconds, tolerance)
@@ -80,7 +85,7 @@ impl MotionFilter {
         });
         self.frame.load(outline, track.reference());
         let mut candidates = Vec::new();
-        for found in register(track, &self.frame.points, landmarks) {
+        for found in register(track, &self.frame.points, landmarks, self.symmetry) {
             let Some((mut track, turn)) = self.moved(&found, seconds).map(|track| (track, found.turn)) else {
                 continue;
             };

@@ -23,7 +23,8 @@ impl MotionFilter {
         self.estimate()?;
         let estimate = self.track.as_ref()?.estimate()?;
         let doubts = self.hypotheses.doubts(&estimate);
-        let parameters = estimate.parameters().zip(doubts).filter(|(_, doubtful)| *doubtful);
+        let parameters =
+            estimate.parameters().zip(doubts).filter(|(parameter, doubtful)| *doubtful && parameter.value.is_some());
         let parameters: Vec<_> = parameters.map(|(parameter, _)| parameter.name).collect();
         (!parameters.is_empty()).then(|| Ambiguity { turn: self.hypotheses.taken(), rival_turns, parameters })
     }

@@ -1,4 +1,6 @@
 //! Hypotheses: turns that explain the frames as well as the one taken, followed until a frame decides.
+use std::f64::consts::TAU;
+
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
 
@@ -6,10 +8,15 @@ use super::{
     settings::FilterSettings,
     tracking::{gate, largest_innovation},
 };
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
-    track::{Comparison, Outcome, Track},
-    tuning::hypotheses as tuning,
+    track::{Comparison, Outcome, Track, wrapped},
+    tuning::{
+        hypotheses as tuning,
+        symmetry::{OFF_MULTIPLE, SAME},
+    },
     update::Gate,
 };
 
@@ -30,6 +37,17 @@ struct Hypothesis {
     /// While it is followed.
     track: Option<Track>,
     likelihood: NegativeLogLikelihood,
+    ground: Ground,
+}
+
+/// Why a turn may have been another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Ground {
+    /// It explains the frames so far as well, and is followed until a frame decides.
+    Likeness,
+    /// The outline has a symmetry: no frame will decide, and the path of the object must not.
+    Symmetry,
 }
 
 /// All others, and what the one taken is compared with them by.
@@ -42,18 +60,24 @@ pub(super) struct Hypotheses {
     taken: f64,
     likelihood: NegativeLogLikelihood,
     frames: usize,
+    /// Angle of symmetry, rad.
+    pitch: f64,
+    /// Time that the turns were made in, in units of the filter.
+    acquired_over: f64,
 }
 
 impl Hypotheses {
-    /// Takes the smallest turn of all that are not significantly worse than the best.
-    pub(super) fn among(mut candidates: Vec<Candidate>) -> (Option<Candidate>, Self) {
+    /// Of an outline with a symmetry of some order, 1 where there is none, takes the smallest turn of all that are not significantly worse than the best.
+    pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
+        let pitch = TAU / symmetry as f64;
+        let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
         candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
         let Some(best) = candidates.first().map(|c| c.likelihood) else { return (None, Self::default()) };
         candidates.retain(|candidate| !candidate.likelihood.is_worse_than(&best));
         // The best of those with one turn stands for them.
         let mut different: Vec<Candidate> = Vec::new();
         for candidate in candidates {
-            if different.iter().all(|other| apart(other.turn, candidate.turn)) {
+            if different.iter().all(|other| wrapped(other.turn - candidate.turn).abs() > different_turn) {
                 different.push(candidate);
             }
         }
@@ -63,11 +87,38 @@ impl Hypotheses {
         let mut all = Self {
             taken: taken.as_ref().map_or(0.0, |c| c.turn),
             likelihood: taken.as_ref().map_or_else(NegativeLogLikelihood::default, |c| c.likelihood),
+            pitch,
+            acquired_over: seconds,
             ..Self::default()
         };
+        if taken.is_some() {
+            let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| all.taken + step * pitch).into();
+            if symmetry > 1 {
+                turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
+                turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+                turns.retain(|turn| (turn - all.taken).abs() > different_turn);
+            } else {
+                // A whole turn more or less looks the same; where it is surely the larger one it is not named.
+                turns.retain(|turn| is_doubtful(*turn, all.taken));
+            }
+            for turn in turns {
+                all.turns.push(turn);
+                let found =
+                    others.as_slice().iter().find(|candidate| wrapped(candidate.turn - turn).abs() < different_turn);
+                let likelihood = found.map_or_else(NegativeLogLikelihood::default, |candidate| candidate.likelihood);
+                let track = found.map(|candidate| candidate.track.clone());
+                all.list.push(Hypothesis { likelihood, track, ground: Ground::Symmetry });
+            }
+        }
+        let off_symmetry = |turn: f64| {
+            let steps = (turn - all.taken) / pitch;
+            symmetry == 1 || (steps - steps.round()).abs() > SAME
+        };
+        let others: Vec<Candidate> = others.filter(|candidate| off_symmetry(candidate.turn)).collect();
         for candidate in others {
             all.turns.push(candidate.turn);
-            all.list.push(Hypothesis { likelihood: candidate.likelihood, track: Some(candidate.track) });
+            let (likelihood, track) = (candidate.likelihood, Some(candidate.track));
+            all.list.push(Hypothesis { likelihood, track, ground: Ground::Likeness });
         }
         (taken, all)
     }
@@ -78,6 +129,11 @@ impl Hypotheses {
 
     pub(super) fn taken(&self) -> f64 {
         self.taken
+    }
+
+    /// Rates of turning, per unit of time, by which the others differ from the one taken.
+    pub(super) fn rates_apart(&self) -> impl Iterator<Item = f64> + '_ {
+        self.turns.iter().map(|turn| (turn - self.taken) / self.acquired_over)
     }
 
     /// Turns of those that the smaller turn cannot be taken for granted against.
@@ -91,13 +147,16 @@ impl Hypotheses {
     }
 
     fn is_doubtful(&self, index: usize) -> bool {
-        self.turns[index].abs() < tuning::SURELY_SMALLER * self.taken.abs()
+        is_doubtful(self.turns[index], self.taken)
     }
 
     /// The parameters in which the motion of a doubtful hypothesis differs from an estimate.
     pub(super) fn doubts(&self, estimate: &MotionEstimate) -> [bool; MAX_PARAMETERS] {
         let mut doubts = [false; MAX_PARAMETERS];
         for hypothesis in (0..self.list.len()).filter(|i| self.is_doubtful(*i)).map(|i| &self.list[i]) {
+            if hypothesis.ground == Ground::Symmetry {
+                return [true; MAX_PARAMETERS];
+            }
             let Some(other) = hypothesis.track.as_ref().and_then(Track::estimate) else { continue };
             for ((doubt, parameter), other) in doubts.iter_mut().zip(estimate.parameters()).zip(other.values()) {
                 let known = parameter.value.zip(parameter.standard_deviation);
@@ -128,7 +187,11 @@ impl Hypotheses {
         let mut outcome = outcome;
         self.frames += 1;
         self.likelihood.add(&outcome.likelihood);
+        if outcome.is_accepted() {
+            self.compare_intervals(seconds);
+        }
         for index in (0..self.list.len()).rev() {
+            let ground = self.list[index].ground;
             let Some(other) = &mut self.list[index].track else { continue };
             other.predict(seconds);
             other.add_process_noise(&settings.process_noise, seconds);
@@ -138,18 +201,26 @@ impl Hypotheses {
             other.take_spread(found.measurement.spread);
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
-            if found.is_accepted() && (!outcome.is_accepted() || self.likelihood.is_worse_than(&of_other)) {
+            let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);
+            if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 if let Some(other) = &mut self.list[index].track {
                     std::mem::swap(other, track);
                 }
                 std::mem::swap(&mut self.likelihood, &mut self.list[index].likelihood);
                 std::mem::swap(&mut self.taken, &mut self.turns[index]);
-                if !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood) {
-                    self.remove(index);
+                let is_worse = !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood);
+                match ground {
+                    Ground::Likeness if is_worse => self.remove(index),
+                    Ground::Symmetry if is_worse => self.list[index].track = None,
+                    _ => {}
                 }
                 outcome = found;
             } else if outcome.is_accepted() && (!found.is_accepted() || of_other.is_worse_than(&self.likelihood)) {
-                self.remove(index);
+                match ground {
+                    Ground::Likeness => self.remove(index),
+                    // Its path is no evidence.
+                    Ground::Symmetry => self.list[index].track = None,
+                }
             }
         }
         if self.frames >= tuning::FOLLOWED {
@@ -160,6 +231,18 @@ impl Hypotheses {
             }
         }
         outcome
+    }
+
+    /// Leaves out turns of a symmetric outline that are no multiple of its angle apart over another interval between frames.
+    fn compare_intervals(&mut self, seconds: f64) {
+        for index in (0..self.list.len()).rev() {
+            if self.list[index].ground == Ground::Symmetry {
+                let apart = (self.turns[index] - self.taken) * seconds / (self.acquired_over * self.pitch);
+                if (apart - apart.round()).abs() > OFF_MULTIPLE {
+                    self.remove(index);
+                }
+            }
+        }
     }
 
     /// Cuts the maps of all hypotheses anew; those that cannot be are none any more.
@@ -180,9 +263,9 @@ impl Hypotheses {
     }
 }
 
-fn apart(a: f64, b: f64) -> bool {
-    let turn = (a - b + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
-    turn.abs() > tuning::DIFFERENT_TURN
+/// Whether a turn cannot be taken for granted against another.
+fn is_doubtful(other: f64, taken: f64) -> bool {
+    other.abs() < tuning::SURELY_SMALLER * taken.abs()
 }
 
 #[cfg(feature = "serde")]
@@ -193,7 +276,9 @@ impl Hypotheses {
         let is_sound = numbers.into_iter().all(|turn| turn.is_finite())
             && self.turns.len() == self.list.len()
             && self.likelihood.is_sound()
-            && self.list.iter().all(|hypothesis| hypothesis.likelihood.is_sound());
+            && self.list.iter().all(|hypothesis| hypothesis.likelihood.is_sound())
+            && self.frames < MOST_COUNTED
+            && (self.list.is_empty() || [self.pitch, self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
         is_sound && self.list.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
     }
 }

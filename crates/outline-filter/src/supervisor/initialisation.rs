@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 use nalgebra::{Affine2, Matrix3};
 
 use super::{
-    motion_change::MotionChange,
+    motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
     tracking::{Known, advance},
@@ -19,7 +19,7 @@ use crate::{
 /// A track cut anew, how the motion changes in the frames that it was cut from, and their poses.
 struct Remapped {
     track: Track,
-    change: MotionChange,
+    history: MotionHistory,
     poses: Vec<Matrix3<f64>>,
 }
 
@@ -51,13 +51,16 @@ impl MotionFilter {
     fn remap(&mut self) {
         let Some(track) = &self.track else { return };
         let remapper = Remapper { settings: &self.settings, window: &self.window };
-        let Some(cut) = remapper.settled(track, remapper.may_change(&self.change), &mut self.frame) else { return };
+        let Some(cut) = remapper.settled(track, remapper.may_change(&self.history), &mut self.frame) else { return };
         let frame = &mut self.frame;
         self.hypotheses.remap(|track| remapper.settled(track, false, frame).map(|cut| cut.track));
         self.track = Some(cut.track);
-        self.motion_changed = cut.change.is_seen();
-        // What the first few frames seem to say of it counts for nothing.
-        self.change = if cut.change.is_seen() { cut.change } else { MotionChange::default() };
+        self.motion_changed = cut.history.is_changing();
+        self.history = cut.history;
+        if !self.history.change.is_seen() {
+            // What the first few frames seem to say of it counts for nothing.
+            self.history.change = Default::default();
+        }
         self.window.take_poses(cut.poses);
     }
 
@@ -97,7 +100,7 @@ impl Remapper<'_> {
             }
             before = *cut.track.body_pose();
             let mut frames = self.window.by_motion(&cut.track);
-            if self.may_change(&cut.change) {
+            if self.may_change(&cut.history) {
                 frames.iter_mut().zip(&cut.poses).for_each(|(frame, pose)| frame.pose = *pose);
             }
             cut = self.cut(&cut.track, &frames, buffers)?;
@@ -106,21 +109,21 @@ impl Remapper<'_> {
     }
 
     /// Whether the motion changes, as is seen or as the settings say.
-    fn may_change(&self, change: &MotionChange) -> bool {
-        change.is_seen() || !self.settings.process_noise.is_none()
+    fn may_change(&self, history: &MotionHistory) -> bool {
+        history.is_changing() || !self.settings.process_noise.is_none()
     }
 
     fn cut(&self, track: &Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
-        let mut change = MotionChange::default();
+        let mut history = MotionHistory::default();
         let mut poses = vec![*track.first_body_pose()];
         let track = track.remapped(frames, 1, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());
             let (known, comparison) = (Known::ShowsObject, Comparison::NotAsked);
-            let outcome = advance(self.settings, (track, frame), &mut change, seconds, known, comparison);
+            let outcome = advance(self.settings, (track, frame), &mut history, seconds, known, comparison);
             poses.push(*track.body_pose());
             outcome.is_accepted()
         })?;
-        Some(Remapped { track, change, poses })
+        Some(Remapped { track, history, poses })
     }
 }
 

@@ -9,6 +9,7 @@ mod motion_filter;
 mod settings;
 #[cfg(feature = "serde")]
 mod state_bytes;
+mod statement;
 mod tracking;
 mod window;
 
@@ -18,3 +19,4 @@ pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use settings::FilterSettings;
 #[cfg(feature = "serde")]
 pub use state_bytes::{StateError, with_header, without_header};
+pub use statement::Unstated;

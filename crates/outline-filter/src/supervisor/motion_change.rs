@@ -1,5 +1,12 @@
 //! How fast the motion changes, estimated from the innovations.
-use crate::{prediction::ByKind, tuning::motion_change as tuning, update::PoseInnovation};
+#[cfg(feature = "serde")]
+use super::settings::FilterSettings;
+use crate::{
+    dynamics::{DynamicsFilter, FamilyTests},
+    prediction::ByKind,
+    tuning::motion_change as tuning,
+    update::PoseInnovation,
+};
 
 const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 
@@ -13,6 +20,23 @@ pub(crate) struct MotionChange {
     of_both: Evidence,
     /// Whether it has ever changed from one frame to the next by more than such variances tell.
     pub(crate) was_sudden: bool,
+}
+
+/// What is known of how a motion changes: by its innovations, and by hypotheses of its dynamics.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct MotionHistory {
+    pub(super) change: MotionChange,
+    /// None before the third frame, and where dynamics are not told.
+    pub(super) dynamics: Option<DynamicsFilter>,
+    pub(super) family: FamilyTests,
+}
+
+impl MotionHistory {
+    /// Whether the motion has been seen to change by more than a constant generator does.
+    pub(super) fn is_changing(&self) -> bool {
+        self.change.is_seen() || self.dynamics.as_ref().is_some_and(DynamicsFilter::leads)
+    }
 }
 
 /// One of them.
@@ -111,6 +135,15 @@ impl Evidence {
     /// Slope in standard deviations; 0 where there is none.
     fn deviations(&self) -> f64 {
         if self.frames > 0.0 { self.slope / self.frames.sqrt() } else { 0.0 }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionHistory {
+    /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
+    pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
+        let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
+        self.change.is_finite() && self.family.is_sound() && self.dynamics.as_ref().is_none_or(of_settings)
     }
 }
 

@@ -1,17 +1,20 @@
+use std::sync::OnceLock;
+
 use freeform_curve_fit::Outline;
-use freeform_estimate::{MotionEstimate, MotionState, PointVelocity, TimeNotIncreasing};
-use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{DMatrix, Point2, Projective2};
+use freeform_estimate::TimeNotIncreasing;
+use nalgebra::{Point2, Projective2};
 
 use super::{
     error::FilterError,
     hypotheses::Hypotheses,
-    motion_change::MotionChange,
+    motion_change::MotionHistory,
     settings::FilterSettings,
+    statement::Statement,
     tracking::{Known, advance},
     window::InitialisationWindow,
 };
 use crate::{
+    dynamics::{DynamicsFilter, DynamicsWeights},
     measurement::Frame,
     search::Landmarks,
     track::{Outcome, Track},
@@ -57,13 +60,13 @@ impl FilterStep {
 /// How many frames became what.
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Counts {
+pub(super) struct Counts {
     accepted: usize,
     rejected: usize,
     rejected_in_a_row: usize,
     /// Frames that the present track has taken, and that it has not.
-    taken: usize,
-    refused: usize,
+    pub(super) taken: usize,
+    pub(super) refused: usize,
     restarts: usize,
 }
 
@@ -107,17 +110,25 @@ pub struct MotionFilter {
     pub(super) track: Option<Track>,
     /// Of the first outline, in its image coordinates.
     pub(super) landmarks: Option<Landmarks>,
+    /// In units of time, as all times here.
     last_time: f64,
+    /// Seconds; one until it is chosen.
+    time_unit: Option<f64>,
+    /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
+    pub(super) symmetry: usize,
     /// Time that the track stands at.
     pub(super) track_time: f64,
-    counts: Counts,
-    pub(super) change: MotionChange,
+    pub(super) counts: Counts,
+    pub(super) history: MotionHistory,
     /// Whether the motion of the present track has ever been seen to change.
     pub(super) motion_changed: bool,
     pub(super) hypotheses: Hypotheses,
     pub(super) window: InitialisationWindow,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
+    /// What is stated after the last step, once it has been asked for.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) stated: OnceLock<Option<Statement>>,
 }
 
 impl MotionFilter {
@@ -133,13 +144,16 @@ impl MotionFilter {
             track: None,
             landmarks: None,
             last_time: f64::NEG_INFINITY,
+            time_unit: None,
+            symmetry: 1,
             track_time: 0.0,
             counts: Counts::default(),
-            change: MotionChange::default(),
+            history: MotionHistory::default(),
             motion_changed: false,
             hypotheses: Hypotheses::default(),
             window: InitialisationWindow::default(),
             frame: Frame::default(),
+            stated: OnceLock::new(),
         })
     }
 
@@ -148,14 +162,17 @@ impl MotionFilter {
     /// # Errors
     /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
-        TimeNotIncreasing::check(self.last_time, time)?;
+        TimeNotIncreasing::check(self.last_time * self.seconds_per_unit(), time)?;
+        self.stated.take();
+        self.choose_time_unit(time);
+        let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
             self.start(time, outline)?;
             self.counts.accepted += 1;
-            return Ok(FilterStep { time, phase: self.phase, measurement: None, rejection: None });
+            return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
         self.last_time = time;
-        let was_changing = self.change.variances().is_some();
+        let was_changing = self.history.is_changing();
         let outcome = match self.phase {
             Phase::Tracking => self.follow(time, outline),
             _ => self.acquire(time, outline),
@@ -165,7 +182,7 @@ impl MotionFilter {
             self.counts.accepted += 1;
             self.counts.taken += 1;
             self.counts.rejected_in_a_row = 0;
-            let changes = !was_changing && self.change.variances().is_some();
+            let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
             if self.track.as_mut().is_some_and(Track::may_show_turn) {
                 self.begin_with_turn(outline);
@@ -177,14 +194,35 @@ impl MotionFilter {
             self.fall_back(time, outline);
         }
         let measurement = outcome.map(|outcome| outcome.measurement);
-        Ok(FilterStep { time, phase: self.phase, measurement, rejection })
+        Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
+    }
+
+    /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
+    fn choose_time_unit(&mut self, time: f64) {
+        let interval = time - self.last_time;
+        if self.time_unit.is_some() || self.track.is_none() || !interval.is_finite() {
+            return;
+        }
+        let unit = interval.log2().round().exp2();
+        let unit = if unit.is_normal() && (1.0 / unit).is_normal() { unit } else { 1.0 };
+        self.time_unit = Some(unit);
+        self.last_time /= unit;
+        self.track_time /= unit;
+        self.window.divide_times(unit);
+        self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
+    }
+
+    pub(super) fn seconds_per_unit(&self) -> f64 {
+        self.time_unit.unwrap_or(1.0)
     }
 
     /// Begins a track with a first frame.
     fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
         let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
-        let track = Track::begin(self.settings.model, outline, &mut self.frame).ok_or(too_few)?;
+        let mut track = Track::begin(self.settings.model, outline, &mut self.frame).ok_or(too_few)?;
+        track.set_time_unit(self.seconds_per_unit());
         self.landmarks = Landmarks::of(outline);
+        self.symmetry = 1;
         self.begin_window(time, outline, &track);
         self.replace(track, time, Phase::Acquiring);
         self.last_time = time;
@@ -196,7 +234,7 @@ impl MotionFilter {
     pub(super) fn begin_window(&mut self, time: f64, outline: &Outline, track: &Track) {
         self.window = InitialisationWindow::begin(time, outline, track);
         self.hypotheses = Hypotheses::default();
-        (self.change, self.motion_changed) = (MotionChange::default(), false);
+        (self.history, self.motion_changed) = (MotionHistory::default(), false);
         (self.counts.taken, self.counts.refused) = (1, 0);
     }
 
@@ -224,10 +262,22 @@ impl MotionFilter {
         let known = if self.counts.rejected_in_a_row > 0 { Known::OthersRejected } else { Known::Nothing };
         let (frame, comparison) = (&mut self.frame, self.hypotheses.comparison());
         frame.load(outline, track.reference());
-        let outcome = advance(&self.settings, (track, frame), &mut self.change, seconds, known, comparison);
-        self.motion_changed |= self.change.is_seen();
+        let outcome = advance(&self.settings, (track, frame), &mut self.history, seconds, known, comparison);
+        self.motion_changed |= self.history.is_changing();
         track.take_spread(outcome.measurement.spread);
-        Some(self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds))
+        let turn = self.hypotheses.taken();
+        let outcome = self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
+        if self.hypotheses.taken() != turn {
+            self.history.dynamics = None;
+        }
+        Some(outcome)
+    }
+
+    /// Probabilities of the hypotheses of dynamics; `None` where they are not told: before the third frame, with process noise, and for
+    /// projective motion.
+    #[must_use]
+    pub fn dynamics(&self) -> Option<DynamicsWeights> {
+        self.history.dynamics.as_ref().map(DynamicsFilter::weights)
     }
 
     pub(super) fn time_of_last_frame(&self) -> f64 {
@@ -238,6 +288,7 @@ impl MotionFilter {
         self.track = Some(track);
         self.track_time = time;
         self.phase = phase;
+        self.history.dynamics = None;
     }
 
     /// The settings.
@@ -252,51 +303,11 @@ impl MotionFilter {
         self.phase
     }
 
-    /// The estimated motion, at the time of [`state`](Self::state). `None` before the second accepted frame, also after a restart of the
-    /// map by a frame that shows the turn of the object for the first time.
-    #[must_use]
-    pub fn estimate(&self) -> Option<MotionEstimate> {
-        if matches!(self.phase, Phase::Waiting | Phase::Acquiring) {
-            return None;
-        }
-        let estimate = self.track.as_ref()?.estimate()?;
-        let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
-        Some(doubts.filter(|(_, doubtful)| *doubtful).fold(estimate, |e, (j, _)| e.with_unobservable(j)))
-    }
-
-    /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`
-    /// if [`estimate`](Self::estimate) is.
-    #[must_use]
-    pub fn state(&self) -> Option<MotionState> {
-        let estimate = self.estimate()?;
-        let mut observable = [false; MAX_PARAMETERS];
-        observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
-        self.track.as_ref()?.state(self.track_time, observable)
-    }
-
-    /// Velocity of the middle of the object, which is the centre of its known outline, at the time of [`state`](Self::state). It may be
-    /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
-    /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
-    #[must_use]
-    pub fn velocity(&self) -> Option<PointVelocity> {
-        if self.hypotheses.are_doubtful() {
-            return None;
-        }
-        self.track.as_ref()?.velocity_of_middle(&self.state()?)
-    }
-
     /// The map of the image from the outline of the first frame to its place in the last accepted frame; after rejected frames, to its
     /// predicted place. `None` before the first frame.
     #[must_use]
     pub fn pose(&self) -> Option<Projective2<f64>> {
         self.track.as_ref().map(Track::pose)
-    }
-
-    /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not
-    /// finite.
-    #[must_use]
-    pub fn covariance(&self) -> Option<DMatrix<f64>> {
-        self.track.as_ref()?.covariance()
     }
 
     /// The outline as now known, image coordinates: one point per cell of its map. The points are not ordered if the map has grown.
@@ -351,10 +362,14 @@ impl MotionFilter {
 
 #[cfg(feature = "serde")]
 impl MotionFilter {
-    /// Whether the last time is finite, or there was none, and that of the track is.
+    /// Whether the last time is finite, or there was none, that of the track is, and the unit is a power of two.
     pub(super) fn times_are_sound(&self) -> bool {
         let before_first = self.last_time == f64::NEG_INFINITY && self.track.is_none();
-        (self.last_time.is_finite() || before_first) && self.track_time.is_finite()
+        let is_power_of_two = |unit: f64| unit > 0.0 && unit.is_normal() && unit == unit.log2().round().exp2();
+        let is_unit = |unit: f64| is_power_of_two(unit) && (1.0 / unit).is_normal();
+        (self.last_time.is_finite() || before_first)
+            && self.track_time.is_finite()
+            && self.time_unit.is_none_or(is_unit)
     }
 
     /// Whether no counter is near its end.

@@ -2,6 +2,7 @@ use freeform_estimate::ProcessNoise;
 use freeform_riccati::MotionModel;
 
 use super::error::FilterError;
+use crate::dynamics::Dynamics;
 
 /// Settings of a [`MotionFilter`](crate::MotionFilter).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,12 @@ pub struct FilterSettings {
     /// Whether the filter follows changes of a motion without process noise, as soon as the innovations show them. `true` by default;
     /// if `false`, the motion is assumed constant.
     pub adaptive: bool,
+    /// What is assumed of how the motion goes on from frame to frame; [`Dynamics::Auto`] by default. Without effect with process noise, or if
+    /// `adaptive` is `false`, and on projective motion.
+    pub dynamics: Dynamics,
+    /// Systematic uncertainty of the outlines, image lengths: how far all of a side may lie off in every frame, such as by a shadow or by
+    /// a threshold, not negative; 0 by default. It widens what is stated, and enters nothing else.
+    pub edge_uncertainty: f64,
     /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken, in (0, 1);
     /// 0.7 by default.
     pub smallest_agreement: f64,
@@ -28,6 +35,8 @@ impl Default for FilterSettings {
             model: MotionModel::Rigid,
             process_noise: ProcessNoise::default(),
             adaptive: true,
+            dynamics: Dynamics::Auto,
+            edge_uncertainty: 0.0,
             smallest_agreement: 0.7,
             patience: 2,
         }
@@ -40,6 +49,14 @@ impl FilterSettings {
         self.adaptive && self.process_noise.is_none()
     }
 
+    /// The hypotheses of dynamics that are followed.
+    pub(crate) fn followed_dynamics(&self) -> Option<Dynamics> {
+        if !self.process_noise.is_none() {
+            return None;
+        }
+        Some(if self.adaptive { self.dynamics } else { Dynamics::Generator })
+    }
+
     pub(crate) fn check(&self) -> Result<(), FilterError> {
         let fail = |setting, value, range| Err(FilterError::Setting { setting, value, range });
         let noise = self.process_noise;
@@ -49,6 +66,9 @@ impl FilterSettings {
             if !(value.is_finite() && value >= 0.0) {
                 return fail(setting, value, "finite and not negative");
             }
+        }
+        if !(self.edge_uncertainty.is_finite() && self.edge_uncertainty >= 0.0) {
+            return fail("edge uncertainty", self.edge_uncertainty, "finite and not negative");
         }
         if !(self.smallest_agreement > 0.0 && self.smallest_agreement < 1.0) {
             return fail("smallest agreement", self.smallest_agreement, "between 0 and 1");

@@ -1,18 +1,16 @@
 //! A filter as bytes and back.
 use super::motion_filter::{MotionFilter, Phase};
 use crate::track::Track;
+use crate::tuning::{saved_state::MOST_COUNTED, symmetry::LARGEST_ORDER};
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What the bytes hold, behind the version.
 const KIND: [u8; 4] = *b"filt";
 
 /// Version, kind and checksum.
 const HEADER: usize = 16;
-
-/// Counters of a filter stay below this: more frames than a camera sees in a thousand years.
-const MOST_COUNTED: usize = 1 << 48;
 
 /// Why bytes are no saved state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -98,23 +96,31 @@ impl MotionFilter {
         if self.settings.check().is_err() {
             return inconsistent("settings");
         }
-        let model = self.settings.model;
-        let restored = |track: &mut Track| track.model() == model && track.restore();
+        if !self.times_are_sound() {
+            return inconsistent("times");
+        }
+        let (model, unit) = (self.settings.model, self.seconds_per_unit());
+        let restored = |track: &mut Track| track.model() == model && track.restore(unit);
         if !self.track.as_mut().is_none_or(restored) {
             return inconsistent("track");
         }
         if !self.hypotheses.restore(restored) {
             return inconsistent("hypotheses");
         }
-        let is_waiting = self.phase == Phase::Waiting;
-        if is_waiting != self.track.is_none() || !self.times_are_sound() {
-            return inconsistent("phase and times");
+        if (self.phase == Phase::Waiting) != self.track.is_none() {
+            return inconsistent("phase");
+        }
+        if !(1..=LARGEST_ORDER).contains(&self.symmetry) {
+            return inconsistent("symmetry");
+        }
+        if !self.history.is_sound(&self.settings) {
+            return inconsistent("changes of the motion");
         }
         if !self.counts_are_below(MOST_COUNTED) {
             return inconsistent("counts");
         }
-        if !(self.change.is_finite() && self.landmarks.is_none_or(|landmarks| landmarks.is_finite())) {
-            return inconsistent("numbers");
+        if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
+            return inconsistent("landmarks");
         }
         if !self.window.is_sound() {
             return inconsistent("first frames");

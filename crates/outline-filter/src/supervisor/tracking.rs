@@ -1,6 +1,10 @@
 //! A track moved on to a frame, and the changes of its motion found.
-use super::{motion_change::MotionChange, settings::FilterSettings};
+use super::{
+    motion_change::{MotionChange, MotionHistory},
+    settings::FilterSettings,
+};
 use crate::{
+    dynamics::DynamicsFilter,
     measurement::Frame,
     track::{Comparison, Outcome, Track},
     tuning::update::SUDDEN,
@@ -35,16 +39,27 @@ pub(super) fn gate(settings: &FilterSettings, track: &Track) -> Gate {
 pub(super) fn advance(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
-    change: &mut MotionChange,
+    history: &mut MotionHistory,
     seconds: f64,
     known: Known,
     comparison: Comparison,
 ) -> Outcome {
-    track.predict(seconds);
-    track.add_process_noise(&settings.process_noise, seconds);
-    if let Some(variances) = change.variances() {
-        track.add_change(variances);
-    }
+    predict(settings, track, history, seconds);
+    // Errors that are larger than the model's, such as those of a camera that shakes, are no change of the motion.
+    let widening = history.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening);
+    let outcome = measured(settings, (track, frame), &mut history.change, (known, widening), comparison);
+    take(history, &outcome);
+    outcome
+}
+
+/// Measures a frame, and finds changes of the motion that are sudden.
+fn measured(
+    settings: &FilterSettings,
+    (track, frame): (&mut Track, &mut Frame),
+    change: &mut MotionChange,
+    (known, widening): (Known, f64),
+    comparison: Comparison,
+) -> Outcome {
     let parameters = track.model().parameter_count();
     let anywhere = match known {
         Known::ShowsObject => Gate { largest_noise: None, ..gate(settings, track) },
@@ -53,7 +68,7 @@ pub(super) fn advance(
     if !settings.finds_changes() && known == Known::ShowsObject {
         return track.update(frame, &anywhere, comparison);
     }
-    let as_before = Gate { largest_innovation: Some(largest_innovation(track)), ..anywhere };
+    let as_before = Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere };
     let mut outcome = track.update(frame, &as_before, comparison);
     if !settings.finds_changes() {
         return outcome;
@@ -75,4 +90,40 @@ pub(super) fn advance(
         change.take(&innovation, parameters);
     }
     outcome
+}
+
+/// Moves a track on to where its motion has led it, by what is known of its dynamics.
+fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHistory, seconds: f64) {
+    if history.dynamics.is_none()
+        && let Some(setting) = settings.followed_dynamics()
+    {
+        history.dynamics = track.begun_dynamics(setting);
+    }
+    track.predict(seconds);
+    track.add_process_noise(&settings.process_noise, seconds);
+    let (expected, null) = (track.centred_pose(), track.null_directions());
+    let moved = history.dynamics.as_mut().is_some_and(|dynamics| dynamics.predict(&expected, seconds, &null));
+    if !moved {
+        history.dynamics = None;
+    }
+    let leading = history.dynamics.as_mut().filter(|dynamics| dynamics.leads());
+    if let Some((dynamics, expected)) = leading.and_then(|d| d.combined(None).map(|expected| (d, expected))) {
+        track.expect(&expected);
+        dynamics.take_reference(&expected.pose);
+    } else if let Some(variances) = history.change.variances() {
+        track.add_change(variances);
+    }
+}
+
+/// Takes what an accepted frame tells of the pose, and of what the model leaves out.
+fn take(history: &mut MotionHistory, outcome: &Outcome) {
+    if !outcome.is_accepted() {
+        return;
+    }
+    if let Some((dynamics, measured)) = history.dynamics.as_mut().zip(outcome.pose.as_ref()) {
+        dynamics.update(measured);
+    }
+    if let Some(misfit) = &outcome.misfit {
+        history.family.take(misfit);
+    }
 }

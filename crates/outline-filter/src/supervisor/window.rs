@@ -39,6 +39,11 @@ impl InitialisationWindow {
         frames
     }
 
+    /// Takes another unit of time.
+    pub(super) fn divide_times(&mut self, unit: f64) {
+        self.frames.iter_mut().for_each(|(time, _)| *time /= unit);
+    }
+
     /// Forgets what is kept.
     pub(super) fn end(&mut self) {
         *self = Self { state: Window::Closed, ..Self::default() };

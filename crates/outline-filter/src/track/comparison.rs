@@ -1,9 +1,8 @@
 //! How well poses of an object explain a frame, compared with each other.
 use freeform_curve_fit::Outline;
-use freeform_riccati::map_point;
-use nalgebra::{Matrix3, Rotation2};
+use nalgebra::Matrix3;
 
-use super::Track;
+use super::{Track, wrapped};
 use crate::{
     map::TurnEvidence,
     measurement::{Frame, NegativeLogLikelihood},
@@ -25,15 +24,9 @@ impl Track {
 
     /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
     pub(crate) fn shows_turn(&self, outline: &Outline, pose: &Matrix3<f64>, frame: &mut Frame) -> bool {
-        let centre = map_point(pose, &self.map.middle());
-        let turned = (1..=tuning::OTHER_TURNS).map(|i| Rotation2::new(tuning::GOLDEN_ANGLE * i as f64));
-        let turned = turned.filter(|rotation| rotation.angle().abs() >= tuning::NEAR).map(|rotation| {
-            let shift = centre - rotation * centre;
-            let mut turned = rotation.to_homogeneous();
-            (turned[(0, 2)], turned[(1, 2)]) = (shift.x, shift.y);
-            turned * pose
-        });
-        let poses: Vec<_> = std::iter::once(*pose).chain(turned).collect();
+        let turns = (1..=tuning::OTHER_TURNS).map(|i| tuning::GOLDEN_ANGLE * i as f64);
+        let others = turns.filter(|turn| wrapped(*turn).abs() >= tuning::NEAR).map(|turn| self.turned(pose, turn));
+        let poses: Vec<_> = std::iter::once(*pose).chain(others).collect();
         let likelihoods = self.compared(outline, &poses, frame);
         let worse = likelihoods[1..].iter().filter(|other| other.is_worse_than(&likelihoods[0])).count();
         // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in

@@ -1,40 +1,102 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
 use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Matrix3};
 
 use super::Track;
-use crate::tuning::{null_space::TAKES_PART, supervisor::STEPS_KNOWN};
+use crate::{
+    belief::{StateMatrix, scaled_inverse},
+    dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
+    tuning::{
+        null_space::{TAKES_PART, TURNS_WITH},
+        supervisor::STEPS_KNOWN,
+    },
+    update::{hold, with_hold},
+};
 
 impl Track {
-    /// Covariance of the motion parameters in the order of the model, image units; `None` where it cannot be computed, or is beyond any
-    /// number.
-    pub(crate) fn covariance(&self) -> Option<DMatrix<f64>> {
+    /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
+    pub(crate) fn summary(&self) -> Option<Summary> {
+        self.summary_by(&self.belief.marginal)
+    }
+
+    fn summary_by(&self, marginal: &StateMatrix) -> Option<Summary> {
+        let belief = &self.belief;
+        let covariance = scaled_inverse(marginal, belief.parameter_count())? * self.noise.effective_variance();
+        let is_finite = covariance.iter().all(|e| e.is_finite());
+        is_finite.then_some(Summary { pose: belief.pose, motion: belief.motion, covariance })
+    }
+
+    /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
+    /// about the middle, normalised. Over the time that the motion is known from it may change by as much as it is.
+    pub(crate) fn systematic(&self, size: f64) -> [CentredDeviations; 2] {
+        let (model, k) = (self.belief.model, self.belief.parameter_count());
+        let (size, memory) = (size / self.reference.radius, &self.belief.memory);
+        let span = memory.shortest(k).max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE);
+        let cells = self.map.cells();
+        let mut levers = [0.0; MAX_PARAMETERS];
+        for cell in cells {
+            let along = model.normal_velocities(&(cell.centre - self.map.middle().coords), &cell.normal);
+            levers.iter_mut().zip(along).for_each(|(sum, v)| *sum += v * v / cells.len() as f64);
+        }
+        let pose = CentredDeviations::from_fn(|j, _| {
+            let lever = if j < k { levers[j].sqrt() } else { 0.0 };
+            // Half of an error of one side is a shift; what an outline hardly shows may be anything.
+            if lever > 0.0 { (0.5 * size / lever).min(1.0) } else { 0.0 }
+        });
+        [pose, pose * (std::f64::consts::SQRT_2 / span)]
+    }
+
+    /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.
+    pub(crate) fn begun_dynamics(&self, setting: Dynamics) -> Option<DynamicsFilter> {
+        let belief = &self.belief;
+        let null = self.map.null_directions(belief.model, &belief.pose);
+        let summary = self.summary_by(&with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref()))?;
+        DynamicsFilter::begin(belief.model, setting, &summary, self.map.middle(), belief.memory.step)
+    }
+
+    /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number.
+    pub(crate) fn covariance_of(&self, summary: &Summary) -> Option<DMatrix<f64>> {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
         let change = model.adjoint(&to_image, &to_image.try_inverse()?);
-        let state = self.belief.covariance_of(&self.belief.marginal, self.noise.effective_variance())?;
-        let change = DMatrix::from_fn(k, k, |i, j| change[i][j]);
-        let covariance = &change * state.view((k, k), (k, k)) * change.transpose();
+        let change = DMatrix::from_fn(k, k, |i, j| change[i][j] * self.reference.per_second());
+        let of_motion = DMatrix::from_fn(k, k, |i, j| summary.covariance[(k + i, k + j)]);
+        let covariance = &change * of_motion * change.transpose();
         // The products round apart where the image origin is far away.
         let symmetric = 0.5 * (&covariance + covariance.transpose());
         symmetric.iter().all(|e| e.is_finite()).then_some(symmetric)
+    }
+
+    /// Standard deviations of the motion parameters in the order of the model, image units.
+    pub(crate) fn deviations_of(&self, summary: &Summary) -> Option<Vec<f64>> {
+        Some(roots(&self.covariance_of(summary)?))
+    }
+
+    /// Covariance of the motion parameters as this track alone has it; `None` where it cannot be computed, or is beyond any number.
+    pub(crate) fn covariance(&self) -> Option<DMatrix<f64>> {
+        self.covariance_of(&self.summary()?)
+    }
+
+    /// The motion as this track alone has it: see [`estimate_of`](Self::estimate_of).
+    pub(crate) fn estimate(&self) -> Option<MotionEstimate> {
+        self.estimate_of(&self.summary()?)
     }
 
     /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that it is
     /// known from, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as
     /// unobservable; so is one that takes part in a motion which the outline does not show, such as the turning of a circle
     /// about its centre.
-    pub(crate) fn estimate(&self) -> Option<MotionEstimate> {
-        let covariance = self.covariance()?;
+    pub(crate) fn estimate_of(&self, summary: &Summary) -> Option<MotionEstimate> {
+        let covariance = self.covariance_of(summary)?;
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
         let from_image = to_image.try_inverse()?;
-        let generator = to_image * model.generator(&self.belief.motion[..k]) * from_image;
-        let values = model.parameters_of(&generator);
-        let deviations: Vec<f64> = covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
+        let generator = to_image * model.generator(&summary.motion[..k]) * from_image;
+        let values = model.parameters_of(&generator).map(|value| value * self.reference.per_second());
+        let deviations = roots(&covariance);
         let mut estimate = MotionEstimate::new(model, &values[..k], Some(&deviations));
-        let blind = self.blind_parameters();
+        let blind = self.blind_parameters(&summary.pose);
         let reach = self.reference.radius + self.reference.origin.coords.norm();
         let memory = &self.belief.memory;
         let shortest = memory.shortest(k);
@@ -45,25 +107,41 @@ impl Track {
                 ParameterKind::Perspective => (1.0 / reach, memory.effective[j]),
                 ParameterKind::Rate => (1.0, memory.effective[j]),
             };
-            if !self.is_worth(deviations[j], span, limit) || blind[j] {
+            let deviation = deviations[j] * self.reference.time_unit;
+            if !self.is_worth(deviation, span, limit) || blind[j] {
                 estimate = estimate.with_unobservable(j);
             }
         }
         Some(estimate)
     }
 
-    /// Pose and motion with their joint covariance at a time in seconds, with the parameters marked that `observable` says nothing is known of.
-    pub(crate) fn state(&self, time: f64, observable: [bool; MAX_PARAMETERS]) -> Option<MotionState> {
-        let (belief, variance) = (&self.belief, self.noise.effective_variance());
+    /// Pose and motion with their joint covariance at a time in the unit of the track, with the parameters marked that `observable` says nothing is known of.
+    pub(crate) fn state_of(
+        &self,
+        summary: &Summary,
+        time: f64,
+        observable: [bool; MAX_PARAMETERS],
+    ) -> Option<MotionState> {
+        let (belief, variance, k) = (&self.belief, self.noise.effective_variance(), self.belief.parameter_count());
+        let covariance = DMatrix::from_fn(2 * k, 2 * k, |i, j| summary.covariance[(i, j)]);
+        let per_second = self.reference.per_second();
+        // Motion by the second, pose as it is.
+        let in_seconds = |mut m: DMatrix<f64>| {
+            m.rows_mut(k, k).scale_mut(per_second);
+            m.columns_mut(k, k).scale_mut(per_second);
+            m
+        };
         let state = NormalisedState {
             model: belief.model,
-            time,
+            time: time * self.reference.time_unit,
             origin: self.reference.origin,
             radius: self.reference.radius,
-            pose: belief.pose,
-            motion: belief.motion,
-            covariance: belief.covariance_of(&belief.marginal, variance)?,
-            covariance_given_outline: belief.covariance_of(&belief.information.with_outline_given(), variance)?,
+            pose: summary.pose,
+            motion: summary.motion.map(|value| value * per_second),
+            covariance: in_seconds(covariance),
+            covariance_given_outline: in_seconds(
+                belief.covariance_of(&belief.information.with_outline_given(), variance)?,
+            ),
             observable,
         };
         Some(state.into())
@@ -73,7 +151,8 @@ impl Track {
     pub(crate) fn velocity_of_middle(&self, state: &MotionState) -> Option<PointVelocity> {
         let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.middle().coords));
         let span = self.belief.memory.shortest(self.belief.parameter_count());
-        let worth = |deviation: &f64| self.is_worth(*deviation, span, self.reference.radius);
+        let unit = self.reference.time_unit;
+        let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
     }
 
@@ -93,12 +172,12 @@ impl Track {
 
     /// Parameters, in image units, that take part in a motion which the outline does not show. The velocity at the origin of the image is
     /// one of them wherever the middle of a turn that is not seen is not there.
-    fn blind_parameters(&self) -> [bool; MAX_PARAMETERS] {
+    fn blind_parameters(&self, pose: &Matrix3<f64>) -> [bool; MAX_PARAMETERS] {
         let mut blind = [false; MAX_PARAMETERS];
         let (model, radius) = (self.belief.model, self.reference.radius);
         let to_image = self.reference.to_image();
         let Some(inverse) = to_image.try_inverse() else { return blind };
-        for null in self.map.null_directions(model, &self.belief.pose) {
+        for null in self.map.null_directions(model, pose) {
             let generator = to_image * model.generator(&null.direction[..model.parameter_count()]) * inverse;
             let direction = model.parameters_of(&generator);
             // In units of the object, so that lengths and angles compare.
@@ -109,10 +188,17 @@ impl Track {
             });
             let sizes: Vec<f64> = sizes.collect();
             let largest = sizes.iter().copied().fold(0.0, f64::max);
-            for (blind, size) in blind.iter_mut().zip(sizes) {
-                *blind |= size > TAKES_PART * largest;
+            let turns = self.turn_is_unseen();
+            for ((blind, size), kind) in blind.iter_mut().zip(sizes).zip(model.parameter_kinds()) {
+                let least = if turns && *kind == ParameterKind::Velocity { TURNS_WITH } else { TAKES_PART };
+                *blind |= size > least * largest;
             }
         }
         blind
     }
+}
+
+/// Standard deviations of a covariance.
+fn roots(covariance: &DMatrix<f64>) -> Vec<f64> {
+    covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect()
 }

@@ -10,6 +10,8 @@ mod remapping;
 mod sides;
 #[expect(clippy::module_inception, reason = "the module holds the type that the layer is about")]
 mod track;
+mod turn;
 
 pub(crate) use remapping::PlacedFrame;
 pub(crate) use track::{Comparison, Outcome, Track};
+pub(crate) use turn::{turn_between, wrapped};

@@ -6,13 +6,18 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Point2, Projective2};
 
 use super::first_pose::FirstPose;
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
     belief::Belief,
-    map::{Contour, OutlineMap, Resolution, TurnEvidence},
+    dynamics::{CentredPose, Summary},
+    map::{Contour, NullDirection, OutlineMap, Resolution, TurnEvidence},
     measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
-    tuning::{map::FEWEST_POINTS, update as tuning},
-    update::{FrameMeasurement, Gate, PoseInnovation, Rejection, commit, hold, with_hold},
+    tuning::{family, map::FEWEST_POINTS, update as tuning},
+    update::{
+        FrameMeasurement, Gate, Misfit, PoseInnovation, PoseMeasurement, Rejection, commit, hold, misfit, with_hold,
+    },
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
@@ -30,6 +35,8 @@ pub(crate) struct Track {
     pub(super) shape: ShapeNoise,
     /// The pose that it was begun in.
     pub(super) first_pose: FirstPose,
+    /// Frames taken.
+    frames: usize,
 }
 
 /// Whether a frame is to be compared with what other tracks make of it.
@@ -45,6 +52,10 @@ pub(crate) struct Outcome {
     pub(crate) measurement: FrameMeasurement,
     pub(crate) verdict: Result<(), Rejection>,
     pub(crate) innovation: PoseInnovation,
+    /// What the frame tells of the pose by itself, if it was taken.
+    pub(crate) pose: Option<PoseMeasurement>,
+    /// What it says of motions that the model leaves out; not looked for in every frame.
+    pub(crate) misfit: Option<Misfit>,
     /// Of the frame given what was known before it; none unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
 }
@@ -97,6 +108,7 @@ impl Track {
             noise: NoiseModel::new(sigma),
             shape: ShapeNoise::default(),
             first_pose: FirstPose::default(),
+            frames: 0,
         };
         track.grow_along(contours, frame);
         if track.map.cells().len() < 3 {
@@ -116,13 +128,38 @@ impl Track {
 
     pub(crate) fn add_process_noise(&mut self, noise: &ProcessNoise, seconds: f64) {
         let variance = self.noise.effective_variance();
-        self.belief.add_process_noise(noise, seconds, self.reference.radius, variance);
+        // Variances of a motion grow with the square of the unit, and with time itself.
+        let of_unit = self.reference.time_unit.powi(3);
+        self.belief.add_process_noise(noise, seconds * of_unit, self.reference.radius, variance);
     }
 
     /// Lets the motion have changed during the last step by variances per second of its rates and of the velocity of the middle.
     pub(crate) fn add_change(&mut self, variances: ByKind) {
         let variance = self.noise.effective_variance();
         self.belief.add_change(variances, &self.map.middle(), variance);
+    }
+
+    /// Takes it that the object is where hypotheses of its dynamics expect it, and moves as they say, as far as they know.
+    pub(crate) fn expect(&mut self, expected: &Summary) {
+        let variance = self.noise.effective_variance();
+        self.belief.pose = expected.pose;
+        self.belief.motion = expected.motion;
+        self.belief.add_covariance(&(expected.covariance / variance));
+    }
+
+    /// Takes a unit of time, in seconds, before anything is known of the motion.
+    pub(crate) fn set_time_unit(&mut self, seconds: f64) {
+        self.reference.time_unit = seconds;
+    }
+
+    /// The pose, with the object's middle in it.
+    pub(crate) fn centred_pose(&self) -> CentredPose {
+        CentredPose { pose: self.belief.pose, middle: self.map.middle() }
+    }
+
+    /// What its outline does not show.
+    pub(crate) fn null_directions(&self) -> Vec<NullDirection> {
+        self.map.null_directions(self.belief.model, &self.belief.pose)
     }
 
     /// Measures the loaded outline and takes it if the gate lets it through; otherwise nothing changes.
@@ -139,6 +176,8 @@ impl Track {
                     measurement,
                     verdict,
                     innovation: PoseInnovation::default(),
+                    pose: None,
+                    misfit: None,
                     likelihood: NegativeLogLikelihood::default(),
                 };
             }
@@ -155,7 +194,14 @@ impl Track {
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
         let correlation = correlation_of(&frame.measurements, measurement.noise.map(|noise| noise / radius));
         let verdict = gate.verdict(&measurement);
+        let (mut pose, mut found) = (None, None);
         if verdict.is_ok() {
+            pose = Some(PoseMeasurement::of(&self.belief, &proposal, frame).over(variance));
+            self.frames += 1;
+            let is_looked_at = self.frames <= family::ALL_OF_THE_FIRST || self.frames.is_multiple_of(family::EVERY);
+            if self.frames > family::MAP_KNOWN && is_looked_at {
+                found = misfit(&self.belief, frame, (&proposal.pose, &self.map.middle()), variance.sqrt());
+            }
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             if let Some(noise) = measurement.noise {
                 self.noise.take(noise / radius);
@@ -168,7 +214,7 @@ impl Track {
                 self.grow_along(contours, frame);
             }
         }
-        Outcome { measurement, verdict, innovation, likelihood }
+        Outcome { measurement, verdict, innovation, pose, misfit: found, likelihood }
     }
 
     /// Takes the spread of a frame, image lengths, used or not.
@@ -215,7 +261,8 @@ impl Track {
 
     /// Whether it was begun with an outline.
     pub(crate) fn is_begun_with(&self, outline: &Outline) -> bool {
-        self.reference == Reference::of(outline)
+        let Reference { origin, radius, .. } = Reference::of(outline);
+        (self.reference.origin, self.reference.radius) == (origin, radius)
     }
 
     pub(crate) fn belief(&self) -> &Belief {
@@ -319,13 +366,15 @@ impl Track {
 
 #[cfg(feature = "serde")]
 impl Track {
-    /// Builds what is not saved; false where what was saved is no track.
-    pub(crate) fn restore(&mut self) -> bool {
+    /// Builds what is not saved; false where what was saved is no track with such a unit of time, in seconds.
+    pub(crate) fn restore(&mut self, unit: f64) -> bool {
         let cells = self.map.cells().len();
-        let Reference { origin, radius } = self.reference;
+        let Reference { origin, radius, time_unit } = self.reference;
         origin.iter().all(|coordinate| coordinate.is_finite())
             && radius.is_normal()
             && radius > 0.0
+            && time_unit == unit
+            && self.frames < MOST_COUNTED
             && self.belief.is_sound(cells)
             && self.noise.is_sound(cells)
             && self.shape.is_sound(cells)

@@ -3,7 +3,9 @@ mod commit;
 mod gate;
 mod hold;
 mod innovation;
+mod misfit;
 mod normal_equations;
+mod pose_measurement;
 mod solve;
 
 pub(crate) use commit::commit;
@@ -11,4 +13,6 @@ pub(crate) use gate::Gate;
 pub use gate::{FrameMeasurement, Rejection};
 pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
+pub(crate) use misfit::{LEFT_OUT, Misfit, misfit};
 pub(crate) use normal_equations::accumulate;
+pub(crate) use pose_measurement::PoseMeasurement;

@@ -23,6 +23,8 @@ pub(crate) struct Proposal {
     pub(crate) dense: [[f64; STATE]; STATE],
     /// Information on pose and motion with the frame, the offsets eliminated.
     pub(crate) marginal: StateMatrix,
+    /// Right-hand side of pose and motion that the frame has added, the offsets not eliminated.
+    pub(super) right: StateVector,
     /// Linearisations taken.
     pub(crate) iterations: usize,
 }
@@ -44,6 +46,7 @@ impl View<'_> {
             pose: belief.pose,
             dense: belief.information.dense,
             marginal: belief.marginal,
+            right: StateVector::zeros(),
             iterations: 0,
         };
         let mut null = null.to_vec();
@@ -75,7 +78,7 @@ impl View<'_> {
                 return Err(proposal.iterations);
             }
             let iterations = proposal.iterations + 1;
-            proposal = Proposal { state: next, pose, dense: work.dense, marginal, iterations };
+            proposal = Proposal { state: next, pose, dense: work.dense, marginal, right, iterations };
             settled = step < tuning::SETTLED * self.noise.sigma;
         }
         Ok(proposal)
@@ -133,7 +136,14 @@ mod tests {
             frame.take_step(&work.cells, &state, &state, k);
             frame.cells.clone_from(&work.cells);
             let marginal = work.marginal();
-            let proposal = Proposal { state, pose: belief.pose, dense: work.dense, marginal, iterations: 1 };
+            let proposal = Proposal {
+                state,
+                pose: belief.pose,
+                dense: work.dense,
+                marginal,
+                right,
+                iterations: 1,
+            };
             let (motion, offsets) = (belief.motion, belief.offsets.clone());
             let (mut noise, mut shape) = (NoiseModel::new(1.0), ShapeNoise::default());
             noise.resize(cells);

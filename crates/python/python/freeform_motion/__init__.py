@@ -5,6 +5,7 @@ Angular velocity, pose and motion of objects without marks, with standard deviat
 - `identify` gives the motion of every object of a recording, `track` its pose and motion in every frame. Both take labelled masks, or a
   table of outline points (pandas, polars, pyarrow, or a mapping of arrays).
 - `MotionFilter` follows one object frame by frame, `Tracker` many objects by name. Both can be pickled and go on where they were.
+- `recognise` tells which known outline each object has; `Recogniser` and `Evidence` do it frame by frame.
 - `outlines` finds the outlines in a labelled mask; `simulate` makes outlines and masks of a moving object.
 - `fit` fits an implicit polynomial, `Decomposition` takes it apart into complex lines; `Pipeline` and `AdaptiveIdentifier` are the paper's
   method on top of them.
@@ -21,6 +22,7 @@ from ._native import (
     CramerRaoBound,
     Decomposition,
     Estimate,
+    Evidence,
     FilterStep,
     Fit,
     ImplicitPolynomial,
@@ -32,14 +34,18 @@ from ._native import (
     Parameter,
     Pipeline,
     PointVelocity,
+    Recogniser,
+    Recognition,
     ResultWarning,
     SimulatedFrame,
     Simulation,
     Tracker,
     fit,
+    homography,
     simulate,
 )
 from ._plot import plot
+from ._recognise import recognise
 from ._tables import outline_table
 
 __version__: str
@@ -60,6 +66,7 @@ __all__ = [
     "CramerRaoBound",
     "Decomposition",
     "Estimate",
+    "Evidence",
     "FilterStep",
     "Fit",
     "Identification",
@@ -72,15 +79,19 @@ __all__ = [
     "Parameter",
     "Pipeline",
     "PointVelocity",
+    "Recogniser",
+    "Recognition",
     "ResultWarning",
     "SimulatedFrame",
     "Simulation",
     "Tracker",
     "fit",
+    "homography",
     "identify",
     "outline_table",
     "outlines",
     "plot",
+    "recognise",
     "simulate",
     "track",
 ]

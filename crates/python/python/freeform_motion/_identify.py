@@ -2,28 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Sized
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._masks import label_array, times_of
-from ._native import LabelTracer, ObjectResult, Observation, Recorder, Tracker, identify_columns, track_columns
+from ._masks import check_masks, split_tracing, times_of, traced
+from ._native import ObjectResult, Observation, Recorder, Tracker, identify_columns, track_columns
 from ._progress import progress_bar
 from ._tables import kind_of, native_columns, table_like, with_names
-
-#: Options of `identify` and `track` that say how outlines are found in masks, and what they are by default.
-_TRACING: dict[str, Any] = {
-    "link": "labels",
-    "y_up": True,
-    "pixel_size": 1.0,
-    "pixel_aspect": 1.0,
-    "minimum_area": 9,
-    "smoothing": None,
-    "clipping": "close",
-}
-
 
 class Identification(Sequence[ObjectResult]):
     """The results of all objects: a sequence, also indexed by the names of the objects."""
@@ -59,8 +47,8 @@ class Identification(Sequence[ObjectResult]):
         Returns
         -------
         dict of ndarray
-            Columns `object`, `frames`, `frames_rejected`, then each parameter and its `_std`, NaN where it is not observable; `v1` and
-            `v2` with their `_std` for the velocity of the middle of the object.
+            Columns `object`, `frames`, `frames_rejected`, then each parameter and its `_std`, `_std_random` and `_std_systematic`, NaN where
+            it is not observable; `v1` and `v2` with their `_std` for the velocity of the middle of the object.
         """
         columns: dict[str, NDArray[Any]] = {
             "object": np.array(self.objects, dtype=np.str_),
@@ -71,7 +59,8 @@ class Identification(Sequence[ObjectResult]):
         names = next((estimate.names for estimate in estimates if estimate is not None), ())
         for index, name in enumerate(names):
             columns[name] = _column([None if e is None else e.values[index] for e in estimates])
-            columns[f"{name}_std"] = _column([None if e is None else e.std[index] for e in estimates])
+            for part in ("std", "std_random", "std_systematic"):
+                columns[f"{name}_{part}"] = _column([None if e is None else getattr(e, part)[index] for e in estimates])
         velocities = [result.velocity for result in self]
         for index, name in enumerate(("v1", "v2")):
             columns[name] = _column([None if v is None else v.velocity[index] for v in velocities])
@@ -121,7 +110,7 @@ def identify(
     **options
         For masks: `link` and the options of `outlines`. `link` is `labels` if a label stays with its object, `places` if objects are to
         be recognised from mask to mask by place, size and shape, `nearest` or `largest` for one object. For both: further settings of
-        `Tracker`.
+        `Tracker`, such as `dynamics`, `edge_uncertainty` and `rectify`.
 
     Returns
     -------
@@ -145,7 +134,7 @@ def identify(
     """
     tracing, tracker = _split(options, motion, method, scale)
     if kind_of(data) is not None:
-        _only_for_masks(tracing, times)
+        only_for_masks(tracing, times)
         with progress_bar(progress, None) as advance:
             identify_columns(tracker, native_columns(data, columns, fps), advance)
     else:
@@ -181,8 +170,9 @@ def track(
     table
         Of the kind of `data`, a dict of arrays for masks. One row per object and frame, in the order of the data: `object`, `frame`,
         `time`, `phase`, `accepted`; the pose (motion filter), for a rigid motion `angle`, `x` and `y`, each with its `_std`; the motion, for
-        a rigid one `omega`, `b1` and `b2`, each with its `_std`. NaN where something is not known. Angles are in radians since the
-        first frame and continuous; x and y say where the centre of the first outline is.
+        a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up where an object was given up and begun anew, with
+        another first outline. NaN where something is not known. Angles are in radians since the first frame and continuous; x and y say
+        where the centre of the first outline is.
 
     Raises
     ------
@@ -192,7 +182,7 @@ def track(
     tracing, tracker = _split(options, motion, method, scale)
     kind = kind_of(data)
     if kind is not None:
-        _only_for_masks(tracing, times)
+        only_for_masks(tracing, times)
         with progress_bar(progress, None) as advance:
             found = track_columns(tracker, native_columns(data, columns, fps), smooth, advance)
     else:
@@ -204,11 +194,12 @@ def track(
 
 
 def _split(options: dict[str, Any], motion: str, method: str, scale: float | None) -> tuple[dict[str, Any], Tracker]:
-    tracing = {name: options.pop(name) for name in _TRACING if name in options}
-    return tracing, Tracker(motion, method=method, scale=scale, **options)
+    tracing, settings = split_tracing(options)
+    return tracing, Tracker(motion, method=method, scale=scale, **settings)
 
 
-def _only_for_masks(tracing: dict[str, Any], times: Any) -> None:
+def only_for_masks(tracing: dict[str, Any], times: Any = None) -> None:
+    """Refuses options of masks where the data are a table."""
     given = [*tracing, *(["times"] if times is not None else [])]
     if given:
         raise TypeError(f"{', '.join(given)}: only for masks, but the data are a table")
@@ -222,24 +213,16 @@ def _follow_masks(
     tracing: dict[str, Any],
     progress: bool | None,
 ) -> Iterator[Observation]:
-    if isinstance(masks, np.ndarray) and masks.ndim != 3:
-        raise ValueError(f"masks: shape (frames, height, width) is needed, this is {masks.shape}")
-    if not isinstance(masks, Iterable) or isinstance(masks, (str, bytes)):
-        raise TypeError(f"masks or a table are needed, this is {type(masks).__name__}")
-    tracer = LabelTracer(**{**_TRACING, **tracing})
+    check_masks(masks)
     seconds = times_of(masks, fps, times)
     known: set[int] = set()
-    with progress_bar(progress, len(masks) if isinstance(masks, Sized) else None) as advance:
-        for frame, mask in enumerate(masks):
-            time = next(seconds, None)
-            if time is None:
-                raise ValueError(f"times: there is none for mask {frame}")
-            found, refused = tracer.trace(frame, label_array(mask, frame))
-            for name, outline in found:
-                known.add(name)
-                yield tracker.push(str(name), frame, time, outline)
-            for name, reason in refused:
-                if name in known:
-                    yield tracker.reject(str(name), frame, reason)
-            if advance is not None:
-                advance(1)
+    for frame, (found, refused) in enumerate(traced(masks, tracing, progress)):
+        time = next(seconds, None)
+        if time is None:
+            raise ValueError(f"times: there is none for mask {frame}")
+        for name, outline in found:
+            known.add(name)
+            yield tracker.push(str(name), frame, time, outline)
+        for name, reason in refused:
+            if name in known:
+                yield tracker.reject(str(name), frame, reason)

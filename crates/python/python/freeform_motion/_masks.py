@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sized
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._native import LabelTracer, Outline
+from ._progress import progress_bar
 
-#: How the objects of a mask are named, see `identify`.
-LINKS = ("labels", "places", "nearest", "largest")
+#: Options that say how outlines are found in masks, and what they are by default.
+_TRACING: dict[str, Any] = {
+    "link": "labels",
+    "y_up": True,
+    "pixel_size": 1.0,
+    "pixel_aspect": 1.0,
+    "minimum_area": 9,
+    "smoothing": None,
+    "clipping": "close",
+}
 
 
 def outlines(
@@ -86,6 +95,32 @@ def label_array(labels: Any, frame: int | None = None) -> NDArray[np.int64]:
         hint = "; make a mask of a picture first, such as picture > level" if array.dtype.kind == "f" else ""
         raise TypeError(f"{place}: labels are whole numbers, these are of type {array.dtype}{hint}")
     return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def check_masks(masks: Any) -> None:
+    """Refuses what cannot be masks."""
+    if isinstance(masks, np.ndarray) and masks.ndim != 3:
+        raise ValueError(f"masks: shape (frames, height, width) is needed, this is {masks.shape}")
+    if not isinstance(masks, Iterable) or isinstance(masks, (str, bytes)):
+        raise TypeError(f"masks or a table are needed, this is {type(masks).__name__}")
+
+
+def split_tracing(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Options that say how outlines are found in masks, and the others."""
+    tracing = {name: value for name, value in options.items() if name in _TRACING}
+    return tracing, {name: value for name, value in options.items() if name not in tracing}
+
+
+def traced(
+    masks: Iterable[Any], tracing: Mapping[str, Any], progress: bool | None
+) -> Iterator[tuple[list[tuple[int, Outline]], list[tuple[int, str]]]]:
+    """The objects of every mask with their outlines, and those without one with the reason."""
+    tracer = LabelTracer(**{**_TRACING, **tracing})
+    with progress_bar(progress, len(masks) if isinstance(masks, Sized) else None) as advance:
+        for frame, mask in enumerate(masks):
+            yield tracer.trace(frame, label_array(mask, frame))
+            if advance is not None:
+                advance(1)
 
 
 def times_of(masks: Any, fps: float | None, times: Any) -> Iterator[float]:

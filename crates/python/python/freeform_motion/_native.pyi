@@ -12,6 +12,7 @@ __all__ = [
     "CramerRaoBound",
     "Decomposition",
     "Estimate",
+    "Evidence",
     "FilterStep",
     "Fit",
     "ImplicitPolynomial",
@@ -24,13 +25,17 @@ __all__ = [
     "Parameter",
     "Pipeline",
     "PointVelocity",
+    "Recogniser",
+    "Recognition",
     "Recorder",
     "ResultWarning",
     "SimulatedFrame",
     "Simulation",
     "Tracker",
     "fit",
+    "homography",
     "identify_columns",
+    "outlines_of_columns",
     "simulate",
     "track_columns",
 ]
@@ -73,6 +78,10 @@ class Parameter:
     def value(self) -> float | None: ...
     @property
     def std(self) -> float | None: ...
+    @property
+    def std_random(self) -> float | None: ...
+    @property
+    def std_systematic(self) -> float | None: ...
 
 @final
 class Estimate:
@@ -86,6 +95,10 @@ class Estimate:
     def values(self) -> _Floats: ...
     @property
     def std(self) -> _Floats: ...
+    @property
+    def std_random(self) -> _Floats: ...
+    @property
+    def std_systematic(self) -> _Floats: ...
     @property
     def observable(self) -> NDArray[np.bool_]: ...
     @property
@@ -154,6 +167,8 @@ class MotionFilter:
         *,
         process_noise: tuple[float, float] = (0.0, 0.0),
         adaptive: bool = True,
+        dynamics: str = "auto",
+        edge_uncertainty: float = 0.0,
         smallest_agreement: float = 0.7,
         patience: int = 2,
     ) -> MotionFilter: ...
@@ -183,6 +198,14 @@ class MotionFilter:
     @property
     def rival_turns(self) -> list[float]: ...
     @property
+    def aliases(self) -> _Floats: ...
+    @property
+    def dynamics(self) -> dict[str, float] | None: ...
+    @property
+    def wrong_family(self) -> str | None: ...
+    @property
+    def unstated(self) -> str | None: ...
+    @property
     def motion(self) -> str: ...
     def to_bytes(self) -> bytes: ...
     @staticmethod
@@ -199,8 +222,11 @@ class Tracker:
         *,
         method: str = "filter",
         scale: float | None = None,
+        rectify: ArrayLike | None = None,
         process_noise: tuple[float, float] = (0.0, 0.0),
         adaptive: bool = True,
+        dynamics: str = "auto",
+        edge_uncertainty: float = 0.0,
         smallest_agreement: float = 0.7,
         patience: int = 2,
     ) -> Tracker: ...
@@ -254,6 +280,8 @@ class Observation:
     @property
     def innovation(self) -> float | None: ...
     @property
+    def segment(self) -> int: ...
+    @property
     def warning(self) -> ResultWarning | None: ...
 
 @final
@@ -277,6 +305,10 @@ class ObjectResult:
     @property
     def rival_turns(self) -> _Floats: ...
     @property
+    def aliases(self) -> _Floats: ...
+    @property
+    def dynamics(self) -> dict[str, float] | None: ...
+    @property
     def warnings(self) -> list[ResultWarning]: ...
 
 @final
@@ -299,6 +331,7 @@ def fit(
     ridge_weight: float = 0.0,
     offset: float = 0.1,
     normal_half_window: float = 0.02,
+    normalise: str = "similarity",
 ) -> Fit: ...
 @final
 class Fit:
@@ -353,7 +386,7 @@ class Correspondence:
 
 @final
 class Pipeline:
-    def __new__(cls, motion: str = "rigid", *, law: str = "structured") -> Pipeline: ...
+    def __new__(cls, motion: str = "rigid", *, law: str | None = None) -> Pipeline: ...
     def push(self, time: float, outline: Outline | ArrayLike) -> Estimate | None: ...
     @property
     def estimate(self) -> Estimate | None: ...
@@ -381,6 +414,7 @@ def simulate(
     omega: float = 1.0,
     b: tuple[float, float] = (0.0, 0.0),
     affine: Sequence[float] | None = None,
+    projective: Sequence[float] | None = None,
     scale: float = 1.0,
     fps: float = 30.0,
     seconds: float = 4.0,
@@ -423,6 +457,40 @@ class CramerRaoBound:
     @property
     def observable(self) -> NDArray[np.bool_]: ...
 
+def homography(picture: ArrayLike, plane: ArrayLike) -> _Floats: ...
+@final
+class Recogniser:
+    def __new__(cls, *, tracing: float = 0.005, unknown: float = 0.5) -> Recogniser: ...
+    def learn(self, name: str, outline: Outline | ArrayLike) -> None: ...
+    @property
+    def names(self) -> list[str]: ...
+    def recognise(self, outline: Outline | ArrayLike) -> Recognition: ...
+    def __len__(self) -> int: ...
+
+@final
+class Evidence:
+    def __new__(cls, recogniser: Recogniser) -> Evidence: ...
+    def add(self, outline: Outline | ArrayLike) -> None: ...
+    @property
+    def recognition(self) -> Recognition | None: ...
+
+@final
+class Recognition:
+    @property
+    def name(self) -> str | None: ...
+    @property
+    def probability(self) -> float: ...
+    @property
+    def map(self) -> _Floats | None: ...
+    @property
+    def candidates(self) -> list[tuple[str, float]]: ...
+    @property
+    def frames(self) -> int: ...
+    @property
+    def frames_rejected(self) -> int: ...
+    @property
+    def first_rejection(self) -> str | None: ...
+
 @final
 class LabelTracer:
     def __new__(
@@ -446,6 +514,7 @@ class Recorder:
     def take(self, observation: Observation) -> None: ...
     def columns(self, tracker: Tracker, smooth: bool) -> dict[str, Any]: ...
 
+def outlines_of_columns(columns: NativeColumns) -> list[tuple[str, Outline]]: ...
 def identify_columns(
     tracker: Tracker, columns: NativeColumns, progress: Callable[[int], object] | None = None
 ) -> None: ...

@@ -2,8 +2,10 @@
 //! curves moved as a whole.
 mod alpha_beta;
 mod decomposition;
+mod homography;
 mod integrate;
 mod lift;
 mod lines;
 mod motions;
+mod plane_in_space;
 mod support;

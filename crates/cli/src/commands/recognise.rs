@@ -1,0 +1,117 @@
+use freeform_motion::outline_io::{OutlineFrame, read_shape};
+use freeform_motion::recognise::{Evidence, RecogniseError, RecogniseSettings, Recogniser, Recognition};
+
+use crate::args::{RecogniseArgs, RecogniseFormat};
+use crate::failure::{Failure, warn};
+use crate::input::Input;
+use crate::left_out::MissingWarnings;
+use crate::output::{Sink, write_recognised_json, write_recognised_table};
+use crate::progress::Progress;
+use crate::seen::Item;
+
+/// What is known of one object.
+pub(crate) struct RecognisedObject {
+    pub(crate) object: String,
+    /// Frames that were compared, and frames that could not be.
+    pub(crate) frames: usize,
+    pub(crate) frames_rejected: usize,
+    pub(crate) recognition: Recognition,
+}
+
+/// Names every object of the input.
+pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
+    let mut recogniser = learnt(args)?;
+    let input = Input::open(&args.inputs, &args.pictures)?;
+    let name = input.name.clone();
+    let mut sink = Sink::stdout();
+    let mut objects: Vec<SeenObject> = Vec::new();
+    let (mut reasons, mut warnings, mut failure) = (Vec::new(), MissingWarnings::default(), None);
+    let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
+    for item in input {
+        progress.advance();
+        match item {
+            Ok(Item::Outline(frame, _)) => seen(&mut objects, &frame.object).take(&mut recogniser, &frame),
+            Ok(Item::NoOutline { object, reason, .. }) => {
+                seen(&mut objects, &object).frames_rejected += 1;
+                reasons.push(reason);
+            }
+            Ok(Item::Gap(missing)) => reasons.extend(warnings.take(&missing)),
+            Err(error) => {
+                failure = Some(error);
+                break;
+            }
+        }
+    }
+    drop(progress);
+    let refused = |object: &SeenObject| {
+        let error = object.first_refusal.as_ref()?;
+        Some(format!("{name}: {} frame(s) of object {:?} left out: {error}", object.frames_rejected, object.object))
+    };
+    reasons.extend(objects.iter().filter_map(refused));
+    let recognised: Vec<_> = objects.into_iter().filter_map(|object| object.recognised(&recogniser)).collect();
+    if recognised.is_empty() {
+        let nothing = reasons.into_iter().next().unwrap_or_else(|| format!("{name}: no outline in the file"));
+        return Err(failure.unwrap_or_else(|| Failure::no_result(nothing)));
+    }
+    reasons.extend(warnings.finish());
+    reasons.iter().for_each(|reason| warn(reason));
+    let names: Vec<&str> = recogniser.names().collect();
+    match args.format {
+        RecogniseFormat::Table => write_recognised_table(&mut sink, &recognised, &names),
+        RecogniseFormat::Json => write_recognised_json(&mut sink, &recognised, &names),
+    }
+    .map_err(|error| sink.failure(&error))?;
+    let printed = sink.finish();
+    failure.map_or(printed, Err)
+}
+
+/// A recogniser that has learnt the known outlines under the names of their files, as given.
+fn learnt(args: &RecogniseArgs) -> Result<Recogniser, Failure> {
+    let mut recogniser = Recogniser::new(RecogniseSettings::default()).map_err(Failure::unusable)?;
+    for path in &args.known {
+        let outline = read_shape(path).map_err(Failure::unusable)?;
+        let name = path.display().to_string();
+        recogniser.learn(name, &outline).map_err(|error| {
+            let name = path.display();
+            Failure::unusable(format_args!("{name}: cannot serve as a known outline: {error}"))
+        })?;
+    }
+    Ok(recogniser)
+}
+
+/// An object while its frames are read.
+struct SeenObject {
+    object: String,
+    evidence: Evidence,
+    frames_rejected: usize,
+    first_refusal: Option<RecogniseError>,
+}
+
+/// The object of a name, which may be new.
+fn seen<'a>(objects: &'a mut Vec<SeenObject>, name: &str) -> &'a mut SeenObject {
+    let place = objects.iter().position(|object| object.object == name).unwrap_or_else(|| {
+        let object = name.to_owned();
+        objects.push(SeenObject { object, evidence: Evidence::new(), frames_rejected: 0, first_refusal: None });
+        objects.len() - 1
+    });
+    &mut objects[place]
+}
+
+impl SeenObject {
+    fn take(&mut self, recogniser: &mut Recogniser, frame: &OutlineFrame) {
+        match recogniser.compare(&frame.outline) {
+            Ok(comparisons) => self.evidence.add(&comparisons),
+            Err(error) => {
+                self.frames_rejected += 1;
+                self.first_refusal.get_or_insert(error);
+            }
+        }
+    }
+
+    /// `None` where no frame could be compared.
+    fn recognised(self, recogniser: &Recogniser) -> Option<RecognisedObject> {
+        let recognition = self.evidence.recognition(recogniser.settings())?;
+        let Self { object, evidence, frames_rejected, .. } = self;
+        Some(RecognisedObject { object, frames: evidence.frames(), frames_rejected, recognition })
+    }
+}

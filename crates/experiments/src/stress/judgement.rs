@@ -1,0 +1,260 @@
+use std::fmt;
+
+use freeform_motion::tracker::ObjectResult;
+use nalgebra::{Point2, Vector2};
+
+use super::sequence::Truth;
+
+/// Codes of warnings that do not question a value that is stated: that others are not, that single frames were not used, that the
+/// values are those at the end, or that there are others (which count where one of them is the true one). Every other warning makes up for a wrong value.
+pub const NOTES: [&str; 7] = [
+    "aliases",
+    "not_observable",
+    "rotation_not_observable",
+    "frame_rejected",
+    "more_frames_rejected",
+    "frames_rejected",
+    "motion_changed",
+];
+
+/// Error in standard deviations beyond which a value is wrong.
+pub(super) const WRONG: f64 = 4.0;
+
+/// How much nearer to the truth than the stated value an alias must be to have told it.
+const NEARER: f64 = 0.1;
+
+/// Something that is stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Angular velocity.
+    Omega,
+    /// Velocity at the origin of the picture, two components.
+    B,
+    /// Velocity of the middle of the object, two components.
+    V,
+}
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Omega, Self::B, Self::V];
+
+    /// Its name in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Omega => "omega",
+            Self::B => "b",
+            Self::V => "v",
+        }
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// What came of one run.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Outcome {
+    /// One entry per number that is judged: what it is, and its error in standard deviations, `None` where it is not stated.
+    pub(super) numbers: Vec<(Quantity, Option<f64>)>,
+    /// Whether a warning questions the values.
+    pub(super) warned: bool,
+    /// Whether another angular velocity was named beside the stated one, or in its place, which is the true one.
+    pub(super) alias_told: bool,
+    pub(super) frames: usize,
+    pub(super) frames_rejected: usize,
+}
+
+impl Outcome {
+    /// Judges the result for an object; `frame_rate` in the unit of time of the result.
+    pub(super) fn of(result: Option<&ObjectResult>, truth: &Truth, frame_rate: f64, judges_middle: bool) -> Self {
+        let stated = |index: usize| {
+            let parameter = result?.estimate.as_ref()?.parameters().nth(index)?;
+            Some((parameter.value?, parameter.standard_deviation.unwrap_or(0.0)))
+        };
+        let error =
+            |stated: Option<(f64, f64)>, truth: f64| stated.map(|(value, std)| in_deviations(value - truth, std));
+        let mut numbers = vec![
+            (Quantity::Omega, error(stated(0), truth.omega)),
+            (Quantity::B, error(stated(1), truth.b.x)),
+            (Quantity::B, error(stated(2), truth.b.y)),
+        ];
+        if judges_middle {
+            let velocity = result.and_then(|result| result.velocity);
+            // A stated turn belongs to the point that is stated with the velocity, not quite the middle.
+            let truth_at = |point: &Point2<f64>| match stated(0) {
+                Some(_) => truth.b + truth.omega * Vector2::new(point.y, -point.x),
+                None => truth.middle,
+            };
+            numbers.extend((0..2).map(|i| {
+                let stated = velocity.map(|v| (v.velocity[i], v.standard_deviations()[i], truth_at(&v.point)[i]));
+                (Quantity::V, stated.map(|(value, std, truth)| in_deviations(value - truth, std)))
+            }));
+        }
+        let warnings = result.map_or(&[][..], |result| &result.warnings);
+        let aliases = result.map_or_else(Vec::new, |result| told_aliases(result, frame_rate));
+        let off = |omega: f64| (omega - truth.omega).abs();
+        let stated_off = stated(0).map_or(f64::INFINITY, |(omega, _)| off(omega));
+        let tolerance = if stated_off.is_finite() { NEARER * stated_off } else { NEARER * truth.omega.abs() };
+        Self {
+            numbers,
+            warned: warnings.iter().any(|warning| !NOTES.contains(&warning.code())),
+            alias_told: aliases.into_iter().any(|alias| off(alias) <= tolerance),
+            frames: result.map_or(0, |result| result.frames),
+            frames_rejected: result.map_or(0, |result| result.frames_rejected),
+        }
+    }
+
+    /// Whether a stated value is wrong.
+    pub(super) fn is_off(&self) -> bool {
+        self.is_off_in(None)
+    }
+
+    /// Whether a stated value is wrong: of one quantity, or of any.
+    pub(super) fn is_off_in(&self, quantity: Option<Quantity>) -> bool {
+        self.of_quantity(quantity).any(|error| error.is_some_and(is_wrong))
+    }
+
+    /// Whether a number is not stated: of one quantity, or of any.
+    pub(super) fn is_unstated_in(&self, quantity: Option<Quantity>) -> bool {
+        self.of_quantity(quantity).any(|error| error.is_none())
+    }
+
+    /// Whether nothing was said that would make up for a wrong value.
+    pub(super) fn is_silent(&self) -> bool {
+        !self.warned && !self.alias_told
+    }
+
+    fn of_quantity(&self, quantity: Option<Quantity>) -> impl Iterator<Item = Option<f64>> + '_ {
+        self.numbers.iter().filter(move |(q, _)| quantity.is_none_or(|wanted| *q == wanted)).map(|(_, error)| *error)
+    }
+}
+
+/// Whether a stated value with this error in deviations is wrong.
+fn is_wrong(error: f64) -> bool {
+    // Not a number is no right one either.
+    error.is_nan() || error.abs() > WRONG
+}
+
+/// An error in standard deviations; infinite where something is stated as exact and is not.
+fn in_deviations(error: f64, deviation: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / deviation.max(0.0) }
+}
+
+/// The other angular velocities that the result names, in its unit of time.
+fn told_aliases(result: &ObjectResult, frame_rate: f64) -> Vec<f64> {
+    let rivals = result.ambiguity.iter().flat_map(|ambiguity| &ambiguity.rival_turns);
+    // Turns are anticlockwise, omega is clockwise.
+    rivals.map(|turn| -turn * frame_rate).chain(result.aliases.iter().copied()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_estimate::{MotionEstimate, PointVelocity};
+    use freeform_motion::Warning;
+    use freeform_motion::tracker::Method;
+    use freeform_outline_filter::Ambiguity;
+    use freeform_riccati::MotionModel;
+    use nalgebra::Matrix2;
+
+    use super::*;
+
+    const TRUTH: Truth = Truth { omega: 2.0, b: Vector2::new(0.5, 0.0), middle: Vector2::new(1.0, 0.0) };
+
+    fn result(omega: f64) -> ObjectResult {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[omega, 0.5, 0.1], Some(&[0.01, 0.1, 0.1]));
+        ObjectResult {
+            object: "0".to_owned(),
+            method: Method::Filter,
+            motion: MotionModel::Rigid,
+            frames: 50,
+            frames_rejected: 1,
+            first_rejection: None,
+            estimate: Some(estimate),
+            velocity: None,
+            ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    fn judged(result: &ObjectResult) -> Outcome {
+        Outcome::of(Some(result), &TRUTH, 30.0, false)
+    }
+
+    #[test]
+    fn a_value_is_wrong_beyond_four_deviations_and_silent_without_a_word() {
+        assert!(!judged(&result(2.039)).is_off());
+        let off = judged(&result(2.041));
+        assert!(
+            off.is_off()
+                && off.is_silent()
+                && off.is_off_in(Some(Quantity::Omega))
+                && !off.is_off_in(Some(Quantity::B))
+        );
+        assert_eq!((off.frames, off.frames_rejected), (50, 1));
+        assert!(judged(&result(f64::NAN)).is_off());
+    }
+
+    #[test]
+    fn notes_do_not_make_up_for_a_wrong_value_and_warnings_do() {
+        let with = |warning| judged(&ObjectResult { warnings: vec![warning], ..result(3.0) });
+        for note in [
+            Warning::MotionChanged,
+            Warning::NotObservable { parameters: vec!["b1"] },
+            Warning::FramesRejected { rejected: 20, frames: 50 },
+        ] {
+            assert!(with(note).is_silent());
+        }
+        assert!(!with(Warning::Lost).is_silent() && !with(Warning::Restarted { times: 1 }).is_silent());
+    }
+
+    #[test]
+    fn an_alias_is_told_where_it_is_the_truth() {
+        let with = |turn: f64| {
+            let ambiguity = Ambiguity { turn: 0.1, rival_turns: vec![turn], parameters: vec!["omega"] };
+            judged(&ObjectResult { ambiguity: Some(ambiguity), ..result(-3.0) })
+        };
+        // Clockwise is positive in omega and negative in turns.
+        assert!(with(-2.0 / 30.0).alias_told);
+        assert!(!with(2.0 / 30.0).alias_told);
+    }
+
+    #[test]
+    fn what_is_not_stated_is_not_wrong() {
+        let mut none = result(99.0);
+        none.estimate = none.estimate.map(|estimate| estimate.with_unobservable(0));
+        let outcome = judged(&none);
+        assert!(!outcome.is_off() && outcome.is_unstated_in(None) && !outcome.is_unstated_in(Some(Quantity::B)));
+        let nothing = Outcome::of(None, &TRUTH, 30.0, true);
+        assert_eq!(nothing.numbers.len(), 5);
+        assert!(nothing.numbers.iter().all(|(_, error)| error.is_none()) && !nothing.is_off());
+    }
+
+    #[test]
+    fn the_velocity_is_held_against_that_of_its_point_if_the_turn_is_stated_and_else_of_the_middle() {
+        let point = Point2::new(0.0, 0.25);
+        let velocity =
+            |x: f64| PointVelocity { point, velocity: Vector2::new(x, 0.0), covariance: Matrix2::identity() * 1e-6 };
+        let off = |x: f64, omega_is_stated: bool| {
+            let mut result = ObjectResult { velocity: Some(velocity(x)), ..result(2.0) };
+            if !omega_is_stated {
+                result.estimate = result.estimate.map(|estimate| estimate.with_unobservable(0));
+            }
+            Outcome::of(Some(&result), &TRUTH, 30.0, true).is_off_in(Some(Quantity::V))
+        };
+        assert!(!off(1.0, true) && !off(1.0, false));
+        let truth_there = 0.5 + 2.0 * 0.25;
+        assert_eq!(truth_there, 1.0);
+        let elsewhere = Truth { middle: Vector2::new(0.9, 0.0), ..TRUTH };
+        let result = ObjectResult { velocity: Some(velocity(1.0)), ..result(2.0) };
+        assert!(!Outcome::of(Some(&result), &elsewhere, 30.0, true).is_off_in(Some(Quantity::V)));
+        let unknown =
+            ObjectResult { estimate: result.estimate.map(|estimate| estimate.with_unobservable(0)), ..result };
+        assert!(Outcome::of(Some(&unknown), &elsewhere, 30.0, true).is_off_in(Some(Quantity::V)));
+    }
+}

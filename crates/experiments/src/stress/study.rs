@@ -1,0 +1,152 @@
+use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
+use freeform_motion::{Tracker, TrackerSettings};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+use super::class::Class;
+use super::judgement::Outcome;
+use super::kind::Kind;
+use super::sequence::Sequence;
+use super::summary::Summary;
+use crate::ExperimentError;
+
+/// Kinds of sequences, and how many of each are made.
+#[derive(Debug, Clone)]
+pub struct StressStudy {
+    /// The kinds.
+    pub kinds: Vec<Kind>,
+    /// Sequences of each kind, at least 1.
+    pub runs: usize,
+    /// Everything random follows from it.
+    pub seed: u64,
+}
+
+/// What came of a [`StressStudy`].
+#[derive(Debug, Clone)]
+pub struct StressReport {
+    /// Sequences of each kind.
+    pub runs: usize,
+    /// What everything random followed from.
+    pub seed: u64,
+    /// One for each kind, in the order of the study.
+    pub kinds: Vec<KindReport>,
+    /// All runs of each class that has some.
+    pub classes: Vec<(Class, Summary)>,
+    /// All runs.
+    pub overall: Summary,
+}
+
+/// What came of one kind.
+#[derive(Debug, Clone)]
+pub struct KindReport {
+    /// The kind.
+    pub kind: Kind,
+    /// Its runs.
+    pub summary: Summary,
+}
+
+impl StressStudy {
+    /// Runs in all: how often [`run`](Self::run) calls its `progress`.
+    #[must_use]
+    pub fn run_count(&self) -> usize {
+        self.kinds.len() * self.runs
+    }
+
+    /// Carries out every run, over the threads of the present rayon pool. `progress` is called after each, from any of them. The same
+    /// seed gives the same report whatever the number of threads, and a kind the same figures whatever other kinds there are.
+    ///
+    /// # Errors
+    /// What the simulator or the tracker refuses.
+    pub fn run(&self, progress: &(dyn Fn() + Sync)) -> Result<StressReport, ExperimentError> {
+        let outcomes = (0..self.run_count()).into_par_iter().map(|job| {
+            let outcome = run(&self.kinds[job / self.runs], self.seed, job % self.runs);
+            progress();
+            outcome
+        });
+        let outcomes = outcomes.collect::<Result<Vec<Outcome>, ExperimentError>>()?;
+        let by_kind: Vec<(&Kind, &[Outcome])> = self.kinds.iter().zip(outcomes.chunks(self.runs.max(1))).collect();
+        let of_class = |class: Class| {
+            let mut outcomes =
+                by_kind.iter().filter(|(kind, _)| kind.class == class).flat_map(|(_, runs)| *runs).peekable();
+            outcomes.peek()?;
+            Some((class, Summary::of(outcomes)))
+        };
+        Ok(StressReport {
+            runs: self.runs,
+            seed: self.seed,
+            kinds: by_kind
+                .iter()
+                .map(|(kind, runs)| KindReport { kind: (*kind).clone(), summary: Summary::of(runs.iter()) })
+                .collect(),
+            classes: Class::ALL.into_iter().filter_map(of_class).collect(),
+            overall: Summary::of(outcomes.iter()),
+        })
+    }
+}
+
+/// One sequence, followed by a tracker with default settings.
+fn run(kind: &Kind, seed: u64, number: usize) -> Result<Outcome, ExperimentError> {
+    let recipe = &kind.recipe;
+    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ hash(&kind.path()));
+    rng.set_stream(number as u64);
+    let sequence = Sequence::new(recipe, &mut rng)?;
+    let truth = sequence.truth(recipe.frames - 1);
+    let mut tracker = Tracker::new(TrackerSettings::default())?;
+    for seen in sequence.frames(&mut rng) {
+        let frame = seen.index as u64;
+        let object = DEFAULT_OBJECT.to_owned();
+        match seen.outline {
+            Some(outline) => drop(tracker.push(&OutlineFrame { frame, time: seen.time, object, outline })),
+            None => drop(tracker.reject(&object, frame, format!("frame {frame} has no outline"))),
+        }
+    }
+    let frame_rate = recipe.fps / recipe.time_unit;
+    Ok(Outcome::of(tracker.results().first(), &truth, frame_rate, kind.judges_middle()))
+}
+
+/// A number that stands for a text, the same on every machine (FNV-1a, 64 bits).
+fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::{Quantity, kinds_containing};
+
+    fn report(text: &str, seed: u64) -> StressReport {
+        let kinds = kinds_containing(text).expect("some");
+        StressStudy { kinds, runs: 2, seed }.run(&|| ()).expect("a report")
+    }
+
+    #[test]
+    fn what_the_filter_assumes_is_stated_and_right() {
+        let report = report("plain/8 frames", 1);
+        assert_eq!(
+            (report.overall.runs, report.overall.silent_wrong, report.overall.unstated),
+            (2, Some(0.0), Some(0.0))
+        );
+        assert_eq!(report.classes.len(), 1);
+        let quantities: Vec<Quantity> = report.overall.quantities.iter().map(|of| of.quantity).collect();
+        assert_eq!(quantities, [Quantity::Omega, Quantity::B]);
+    }
+
+    #[test]
+    fn a_disc_states_no_turn_and_the_velocity_of_its_middle() {
+        let report = report("round/disc rolling to rest", 1);
+        let [omega, _, v] = &report.overall.quantities[..] else { panic!("{report:?}") };
+        assert_eq!((omega.unstated, v.unstated), (Some(1.0), Some(0.0)));
+    }
+
+    #[test]
+    fn a_kind_has_the_same_figures_whatever_other_kinds_there_are() {
+        let alone = report("plain/3 frames", 5);
+        let among_others = report("frames", 5);
+        let same = among_others.kinds.iter().find(|of| of.kind.name == "3 frames").expect("the kind");
+        assert_eq!(same.summary, alone.kinds[0].summary);
+        let classes: Vec<Class> = among_others.classes.iter().map(|(class, _)| *class).collect();
+        assert_eq!(classes, [Class::Plain, Class::Dynamics]);
+        assert_eq!(among_others.overall.runs, 2 * among_others.kinds.len());
+    }
+}

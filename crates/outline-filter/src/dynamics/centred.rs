@@ -1,0 +1,124 @@
+//! Coordinates about the object's middle: the rates, and the velocity of the middle.
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, map_point};
+use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
+
+use crate::{belief::StateMatrix, prediction::centred_change};
+
+/// Most parameters of a model that dynamics are told for, those of affine motion.
+pub(crate) const LARGEST: usize = 6;
+
+pub(crate) type CentredVector = SVector<f64, LARGEST>;
+pub(crate) type CentredMatrix = SMatrix<f64, LARGEST, LARGEST>;
+
+/// One entry for each parameter of any model, projective motion included.
+pub(crate) type CentredDeviations = SVector<f64, MAX_PARAMETERS>;
+
+/// A pose with the object's middle in it, which centred coordinates are taken about.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct CentredPose {
+    /// Body to image, normalised.
+    pub(crate) pose: Matrix3<f64>,
+    /// Of the object, in the body frame.
+    pub(crate) middle: Point2<f64>,
+}
+
+impl CentredPose {
+    /// The middle in the image.
+    pub(crate) fn centre(&self) -> Point2<f64> {
+        map_point(&self.pose, &self.middle)
+    }
+
+    pub(crate) fn linear(&self) -> Matrix2<f64> {
+        self.pose.fixed_view::<2, 2>(0, 0).into_owned()
+    }
+
+    /// Parameters about the image origin by those about the middle.
+    pub(crate) fn about_origin(self, model: MotionModel) -> Option<SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>> {
+        centred_change(model, &self.pose, &self.middle)
+    }
+
+    /// Parameters about the middle by those about the image origin.
+    pub(crate) fn about_middle(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
+        let (k, centre) = (model.parameter_count(), self.centre());
+        let shift = |x: f64, y: f64| Matrix3::new(1.0, 0.0, x, 0.0, 1.0, y, 0.0, 0.0, 1.0);
+        let change = model.adjoint(&shift(-centre.x, -centre.y), &shift(centre.x, centre.y));
+        SMatrix::from_fn(|i, j| if i < k && j < k { change[i][j] } else { 0.0 })
+    }
+}
+
+/// Pose and motion with their joint covariance at one time, normalised: what is believed, whichever the dynamics.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Summary {
+    /// Body to image.
+    pub(crate) pose: Matrix3<f64>,
+    pub(crate) motion: ParameterVector,
+    /// Of the error of the pose, on the left, and of the motion; what lies beyond their entries says nothing.
+    pub(crate) covariance: StateMatrix,
+}
+
+impl Summary {
+    /// This covariance with the errors about the middle multiplied by factors, one per parameter, those of pose and motion alike, and with
+    /// deviations about the middle added.
+    pub(crate) fn widened(
+        &self,
+        model: MotionModel,
+        middle: &Point2<f64>,
+        factors: &CentredDeviations,
+        added: [&CentredDeviations; 2],
+    ) -> Option<Self> {
+        let k = model.parameter_count();
+        let at = CentredPose { pose: self.pose, middle: *middle };
+        let (to, from) = (at.about_origin(model)?, at.about_middle(model));
+        let mut centred = carried(&of_both(&from, k), &self.covariance, 2 * k);
+        for i in 0..2 * k {
+            for j in 0..2 * k {
+                centred[(i, j)] *= factors[i % k] * factors[j % k];
+            }
+            centred[(i, i)] += added[i / k][i % k].powi(2);
+        }
+        Some(Self { covariance: carried(&of_both(&to, k), &centred, 2 * k), ..*self })
+    }
+}
+
+/// A change of k parameters as one of the errors of pose and motion.
+pub(super) fn of_both(change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>, k: usize) -> StateMatrix {
+    let mut both = StateMatrix::zeros();
+    for j in 0..k {
+        for i in 0..k {
+            both[(i, j)] = change[(i, j)];
+            both[(k + i, k + j)] = change[(i, j)];
+        }
+    }
+    both
+}
+
+/// `F P F'` over the first `n` entries, of which a state has two or three for each parameter.
+pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>, n: usize) -> SMatrix<f64, N, N> {
+    match n {
+        6 => carried_sized::<N, 6>(f, p),
+        8 => carried_sized::<N, 8>(f, p),
+        9 => carried_sized::<N, 9>(f, p),
+        12 => carried_sized::<N, 12>(f, p),
+        _ => f * p * f.transpose(),
+    }
+}
+
+fn carried_sized<const N: usize, const S: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    let (f, p) = (f.fixed_view::<S, S>(0, 0).into_owned(), p.fixed_view::<S, S>(0, 0).into_owned());
+    let mut carried = SMatrix::<f64, N, N>::zeros();
+    carried.fixed_view_mut::<S, S>(0, 0).copy_from(&(f * p * f.transpose()));
+    carried
+}
+
+/// Linear part of a generator and its velocity.
+pub(super) fn parts(generator: &Matrix3<f64>) -> (Matrix2<f64>, Vector2<f64>) {
+    (generator.fixed_view::<2, 2>(0, 0).into_owned(), generator.fixed_view::<2, 1>(0, 2).into_owned())
+}
+
+/// A linear map as a map of the plane.
+pub(super) fn as_map(linear: &Matrix2<f64>) -> Matrix3<f64> {
+    let mut map = Matrix3::identity();
+    map.fixed_view_mut::<2, 2>(0, 0).copy_from(linear);
+    map
+}

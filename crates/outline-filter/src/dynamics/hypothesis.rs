@@ -1,0 +1,258 @@
+//! One hypothesis of dynamics: pose, motion and accelerations about the object's middle, moved on and measured.
+use freeform_riccati::{MotionModel, map_point};
+use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
+
+use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts};
+
+/// Pose, motion and accelerations of the largest model.
+pub(super) const ENTRIES: usize = 3 * LARGEST;
+
+pub(super) type Entries = SVector<f64, ENTRIES>;
+pub(super) type EntryMatrix = SMatrix<f64, ENTRIES, ENTRIES>;
+
+/// What the motion does between frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Course {
+    /// The velocity of the middle turns with the object.
+    ConstantGenerator,
+    /// The velocity of the middle stays.
+    ConstantVelocity,
+    /// The accelerations change at random.
+    Accelerating {
+        /// Level of their density, in variances of a pose per fifth power of a step.
+        level: f64,
+        /// Whether the rates do as well, or the velocity of the middle alone, as of an object that spins while it falls.
+        rates: bool,
+    },
+}
+
+impl Course {
+    /// Whether accelerations are part of the state.
+    pub(super) fn has_accelerations(self) -> bool {
+        matches!(self, Self::Accelerating { .. })
+    }
+}
+
+/// State of one hypothesis. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j` its acceleration, k the number of
+/// parameters; all about the middle: rates first, then the velocity of the middle.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Hypothesis {
+    pub(super) course: Course,
+    pub(super) mean: Entries,
+    pub(super) covariance: EntryMatrix,
+}
+
+/// What a frame tells of the pose by itself, about the middle of the reference pose.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CentredMeasurement {
+    /// Information.
+    pub(super) information: CentredMatrix,
+    /// Error of the reference pose as measured.
+    pub(super) deviation: CentredVector,
+}
+
+/// Comparison of a measurement with a prediction.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Innovation {
+    pub(super) log_likelihood: f64,
+    /// Measured less predicted, about the middle, in its own standard deviations.
+    pub(super) standardised: CentredVector,
+}
+
+/// A step in time between two reference poses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step<'a> {
+    pub(super) model: MotionModel,
+    pub(super) seconds: f64,
+    pub(super) from: &'a CentredPose,
+    pub(super) to: &'a CentredPose,
+    /// Variance of a pose as one frame tells it, of every parameter.
+    pub(super) pose_variance: &'a CentredVector,
+}
+
+impl Hypothesis {
+    /// Number of entries in use.
+    pub(super) fn size(&self, k: usize) -> usize {
+        if self.course.has_accelerations() { 3 * k } else { 2 * k }
+    }
+
+    /// Moves on by a step; whether the numbers allow it.
+    pub(super) fn predict(&mut self, step: &Step<'_>) -> bool {
+        let (model, k, dt) = (step.model, step.model.parameter_count(), step.seconds);
+        let rates = k - 2;
+        let entry = |at: usize| CentredVector::from_fn(|j, _| if j < k { self.mean[at * k + j] } else { 0.0 });
+        let [error, motion, acceleration] = [entry(0), entry(1), entry(2)];
+        let (a, v) = parts(&model.generator(&motion.as_slice()[..k]));
+        let w = parts(&model.generator(&acceleration.as_slice()[..k])).1;
+        let of_rates = |of: &CentredVector, seconds: f64| {
+            let only = CentredVector::from_fn(|j, _| if j < rates { of[j] } else { 0.0 });
+            parts(&model.flow(&only.as_slice()[..k], seconds).into_inner()).0
+        };
+        let (turn, shift, later) = match self.course {
+            Course::ConstantGenerator => {
+                let (turn, shift) = parts(&model.flow(&motion.as_slice()[..k], dt).into_inner());
+                (turn, shift, turn * v)
+            }
+            _ => (of_rates(&(motion + 0.5 * dt * acceleration), dt), v * dt + 0.5 * dt * dt * w, v + dt * w),
+        };
+        let Some(before) = step.to.linear().try_inverse() else { return false };
+        let relative = turn * of_rates(&error, 1.0) * step.from.linear() * before;
+        let Some(off) = model.motion_between(&as_map(&relative), 1.0) else { return false };
+        let centre = step.from.centre() + Vector2::new(error[k - 2], error[k - 1]) + shift - step.to.centre();
+        let transition = self.transition(step, (&turn, &a, &v, &later));
+        for j in 0..rates {
+            self.mean[j] = off[j];
+            self.mean[k + j] += dt * acceleration[j];
+        }
+        (self.mean[k - 2], self.mean[k - 1]) = (centre.x, centre.y);
+        (self.mean[2 * k - 2], self.mean[2 * k - 1]) = (later.x, later.y);
+        self.covariance = carried(&transition, &self.covariance, self.size(k));
+        if let Course::Accelerating { level, rates: all } = self.course {
+            for j in if all { 0 } else { rates }..k {
+                let density = level * step.pose_variance[j] / dt.powi(5);
+                for (row, column, factor) in [
+                    (0, 0, dt.powi(5) / 20.0),
+                    (0, 1, dt.powi(4) / 8.0),
+                    (0, 2, dt.powi(3) / 6.0),
+                    (1, 1, dt.powi(3) / 3.0),
+                    (1, 2, dt.powi(2) / 2.0),
+                    (2, 2, dt),
+                ] {
+                    let (r, c) = (row * k + j, column * k + j);
+                    self.covariance[(r, c)] += factor * density;
+                    if r != c {
+                        self.covariance[(c, r)] += factor * density;
+                    }
+                }
+            }
+        }
+        self.mean.iter().all(|e| e.is_finite()) && self.covariance.iter().all(|e| e.is_finite())
+    }
+
+    /// Propagation of errors over a step: `turn` is the linear part of the motion over it, a and v are rates and velocity before it, and
+    /// `later` is the velocity after it.
+    fn transition(
+        &self,
+        step: &Step<'_>,
+        (turn, a, v, later): (&Matrix2<f64>, &Matrix2<f64>, &Vector2<f64>, &Vector2<f64>),
+    ) -> EntryMatrix {
+        let (model, k, dt) = (step.model, step.model.parameter_count(), step.seconds);
+        let rates = k - 2;
+        let mut f = EntryMatrix::identity();
+        let map = as_map(turn);
+        let back = map.try_inverse().unwrap_or(map);
+        let carried = model.adjoint(&map, &back);
+        for i in 0..rates {
+            for j in 0..rates {
+                let own = f64::from(u8::from(i == j));
+                f[(i, j)] = carried[i][j];
+                f[(i, k + j)] = 0.5 * dt * (own + carried[i][j]);
+            }
+        }
+        for i in rates..k {
+            f[(i, k + i)] = dt;
+        }
+        match self.course {
+            Course::ConstantGenerator => {
+                let middle = 0.5 * (v + later);
+                let by_velocity = Matrix2::identity() * dt + 0.5 * dt * dt * a;
+                for i in 0..2 {
+                    for j in 0..2 {
+                        f[(rates + i, k + rates + j)] = by_velocity[(i, j)];
+                        f[(k + rates + i, k + rates + j)] = turn[(i, j)];
+                    }
+                }
+                for (j, basis) in model.basis().iter().enumerate().take(rates) {
+                    let by_rate = parts(basis).0 * middle;
+                    for i in 0..2 {
+                        f[(k + rates + i, k + j)] = dt * by_rate[i];
+                        f[(rates + i, k + j)] = 0.5 * dt * dt * by_rate[i];
+                    }
+                }
+            }
+            Course::ConstantVelocity => {}
+            Course::Accelerating { .. } => {
+                for j in 0..k {
+                    f[(j, 2 * k + j)] = 0.5 * dt * dt;
+                    f[(k + j, 2 * k + j)] = dt;
+                }
+            }
+        }
+        f
+    }
+
+    /// Compares a measurement of the pose with what was predicted, and takes it; `None` where the numbers do not allow it.
+    pub(super) fn update(&mut self, measurement: &CentredMeasurement, model: MotionModel) -> Option<Innovation> {
+        match model.parameter_count() {
+            3 => self.update_sized::<3>(measurement),
+            4 => self.update_sized::<4>(measurement),
+            _ => self.update_sized::<LARGEST>(measurement),
+        }
+    }
+
+    fn update_sized<const K: usize>(&mut self, measurement: &CentredMeasurement) -> Option<Innovation>
+    where
+        Const<K>: DimMin<Const<K>, Output = Const<K>>,
+    {
+        let n = self.size(K);
+        let information = measurement.information.fixed_view::<K, K>(0, 0).into_owned();
+        let predicted = self.covariance.fixed_view::<K, K>(0, 0).into_owned();
+        let off = measurement.deviation.fixed_rows::<K>(0) - self.mean.fixed_rows::<K>(0);
+        // (I + W P)^-1 W, which is (W^-1 + P)^-1, also where W is singular.
+        let factor = (SMatrix::<f64, K, K>::identity() + information * predicted).lu();
+        let weight = factor.solve(&information)?;
+        let determinant = factor.determinant();
+        let pulled = weight * off;
+        let squared = off.dot(&pulled);
+        if !(determinant > 0.0 && squared.is_finite()) {
+            return None;
+        }
+        // By columns of the covariance of all entries with the pose.
+        let columns = self.covariance.fixed_columns::<K>(0).into_owned();
+        self.mean += columns * pulled;
+        let gain = columns * weight;
+        for j in 0..n {
+            for i in 0..=j {
+                let less: f64 =
+                    (0..K).map(|l| 0.5 * (gain[(i, l)] * columns[(j, l)] + gain[(j, l)] * columns[(i, l)])).sum();
+                let left = self.covariance[(i, j)] - less;
+                (self.covariance[(i, j)], self.covariance[(j, i)]) = (left, left);
+            }
+        }
+        let mut standardised = CentredVector::zeros();
+        for j in 0..K {
+            // The variance of one entry, that of the measurement taken by itself.
+            let own = information[(j, j)];
+            if own > 0.0 {
+                standardised[j] = off[j] / (1.0 / own + predicted[(j, j)]).sqrt();
+            }
+        }
+        Some(Innovation { log_likelihood: -0.5 * (determinant.ln() + squared), standardised })
+    }
+
+    /// Takes it that nothing happens in a direction that the outline does not show, given with its dual.
+    pub(super) fn hold(&mut self, direction: &CentredVector, dual: &CentredVector, k: usize) {
+        let mut projection = EntryMatrix::identity();
+        for block in 0..3 {
+            for i in 0..k {
+                (0..k).for_each(|j| projection[(block * k + i, block * k + j)] -= direction[i] * dual[j]);
+            }
+        }
+        self.mean = projection * self.mean;
+        self.covariance = projection * self.covariance * projection.transpose();
+    }
+
+    /// The velocity of the middle taken at another point of the object.
+    pub(super) fn move_middle(&mut self, model: MotionModel, from: &CentredPose, to: &CentredPose) {
+        let k = model.parameter_count();
+        let apart = map_point(&from.pose, &to.middle) - from.centre();
+        let carried = parts(&model.generator(&self.mean.as_slice()[k..2 * k])).0 * apart;
+        self.mean[2 * k - 2] += carried.x;
+        self.mean[2 * k - 1] += carried.y;
+        let carried = parts(&model.generator(&self.mean.as_slice()[2 * k..3 * k])).0 * apart;
+        self.mean[3 * k - 2] += carried.x;
+        self.mean[3 * k - 1] += carried.y;
+    }
+}

@@ -1,0 +1,239 @@
+//! Standardised innovations over time: how much wider than the model's an error of the estimate is.
+//!
+//! If points have independent errors, innovations are white with unit variance. Errors that are smooth along the contour or slow in time
+//! make them larger, or dependent. The variance of a weighted mean of a stationary series is its long-run variance, over the number of
+//! its members; it is estimated by prewhitening and equal-weighted cosines (E. Lazarus, D. Lewis, J. Stock and M. Watson, HAR inference:
+//! Recommendations for practice, 2018).
+use super::centred::{CentredVector, LARGEST};
+use crate::tuning::innovations as tuning;
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::MOST_COUNTED;
+
+/// Sums over frames of standardised innovations, in constant memory: means over blocks of frames that double.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct InnovationSeries {
+    frames: usize,
+    last: CentredVector,
+    squares: CentredVector,
+    /// Products of neighbours in time.
+    products: CentredVector,
+    /// Sums over blocks.
+    blocks: Vec<CentredVector>,
+    /// Frames of each block, and in the last one.
+    length: usize,
+    filled: usize,
+}
+
+impl Default for InnovationSeries {
+    fn default() -> Self {
+        Self {
+            frames: 0,
+            last: CentredVector::zeros(),
+            squares: CentredVector::zeros(),
+            products: CentredVector::zeros(),
+            blocks: Vec::with_capacity(tuning::BLOCKS),
+            length: 1,
+            filled: 0,
+        }
+    }
+}
+
+impl InnovationSeries {
+    /// Takes the innovation of a frame, in its standard deviations.
+    pub(crate) fn take(&mut self, innovation: &CentredVector, k: usize) {
+        let e = innovation.map(|e| e.clamp(-tuning::CLIPPED, tuning::CLIPPED));
+        for j in 0..k.min(LARGEST) {
+            self.squares[j] += e[j] * e[j];
+            self.products[j] += e[j] * self.last[j];
+        }
+        self.last = e;
+        self.frames += 1;
+        if self.filled == self.length || self.blocks.is_empty() {
+            if self.blocks.len() == tuning::BLOCKS {
+                for i in 0..tuning::BLOCKS / 2 {
+                    self.blocks[i] = self.blocks[2 * i] + self.blocks[2 * i + 1];
+                }
+                self.blocks.truncate(tuning::BLOCKS / 2);
+                self.length *= 2;
+            }
+            self.blocks.push(CentredVector::zeros());
+            self.filled = 0;
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            *block += e;
+        }
+        self.filled += 1;
+    }
+
+    /// Frames taken.
+    pub(crate) fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Factors, at least 1, by which the deviations of k parameters about the middle are to be widened.
+    pub(crate) fn spread(&self, k: usize) -> CentredVector {
+        let mut factors = CentredVector::from_element(1.0);
+        let n = self.frames as f64;
+        if self.frames >= tuning::FEWEST_FRAMES {
+            let correlation = self.correlation(k);
+            let is_dependent = self.is_dependent(correlation, k);
+            for j in 0..k {
+                let variance = (tuning::PRIOR_FRAMES + self.squares[j]) / (tuning::PRIOR_FRAMES + n);
+                let mut factor = variance.sqrt();
+                if is_dependent {
+                    let long_run = self.long_run_variance(j, correlation, 1);
+                    factor = factor.max(tuning::STUDENT * long_run.sqrt());
+                }
+                factors[j] = factor.max(1.0);
+            }
+        }
+        factors
+    }
+
+    /// Mean square of one component.
+    pub(crate) fn mean_square(&self, j: usize) -> f64 {
+        if self.frames > 0 { self.squares[j] / self.frames as f64 } else { 0.0 }
+    }
+
+    /// Mean of one component of k, in its deviations, dependence from frame to frame allowed for.
+    pub(crate) fn drift(&self, j: usize, k: usize) -> f64 {
+        let n = self.frames as f64;
+        if self.frames == 0 {
+            return 0.0;
+        }
+        let sum: f64 = self.blocks.iter().map(|block| block[j]).sum();
+        let correlation = self.correlation(k);
+        let variance = if self.is_dependent(correlation, k) {
+            // The first cosine is left to the mean: what drifts is in both.
+            tuning::STUDENT.powi(2) * self.long_run_variance(j, correlation, 2)
+        } else {
+            1.0
+        };
+        sum / (n * variance.max(1.0)).sqrt()
+    }
+
+    /// How much larger the slow part of one component is than that of a white series of unit variance, in deviations: of the sum of the
+    /// squares of its mean and first cosines, by Fisher's approximation of the chi-square distribution.
+    pub(crate) fn slow_part(&self, j: usize) -> f64 {
+        let count = self.blocks.len();
+        if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
+            return 0.0;
+        }
+        let n = self.frames as f64;
+        let sum: f64 = (0..=tuning::SLOW)
+            .map(|c| {
+                let angle = std::f64::consts::PI * c as f64 / count as f64;
+                let terms =
+                    self.blocks.iter().enumerate().map(|(t, block)| block[j] * (angle * (t as f64 + 0.5)).cos());
+                let projected: f64 = terms.sum();
+                projected * projected * if c == 0 { 1.0 } else { 2.0 } / n
+            })
+            .sum();
+        (2.0 * sum).sqrt() - (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt()
+    }
+
+    /// Correlation of neighbours in time, over k components.
+    fn correlation(&self, k: usize) -> f64 {
+        let (squares, products): (f64, f64) =
+            (0..k).fold((0.0, 0.0), |(s, p), j| (s + self.squares[j], p + self.products[j]));
+        if squares > 0.0 { products / squares } else { 0.0 }
+    }
+
+    fn is_dependent(&self, correlation: f64, k: usize) -> bool {
+        let deviation = 1.0 / (k as f64 * self.frames as f64).sqrt();
+        self.frames >= tuning::FEWEST_CORRELATED && correlation > tuning::CORRELATED * deviation
+    }
+
+    /// Long-run variance of one component, by prewhitening with a correlation of neighbours and cosines from a `first` one on.
+    fn long_run_variance(&self, j: usize, correlation: f64, first: usize) -> f64 {
+        let n = self.frames as f64;
+        let rho = correlation.clamp(0.0, tuning::LARGEST_CORRELATION);
+        let corrected = (rho + (1.0 + 3.0 * rho) / n).min(tuning::LARGEST_CORRELATION);
+        // Over blocks of L frames the correlation of neighbours is rho^L.
+        let count = self.blocks.len();
+        let of_block = rho.powi(self.length as i32);
+        let whitened =
+            (0..count).map(|t| self.blocks[t][j] - if t > 0 { of_block * self.blocks[t - 1][j] } else { 0.0 });
+        let cosines = tuning::COSINES.min(count.saturating_sub(first)).max(1);
+        let mut projected = [0.0; tuning::COSINES];
+        for (t, x) in whitened.enumerate() {
+            // cos((c + 1) u) = 2 cos(u) cos(c u) - cos((c - 1) u)
+            let step = (std::f64::consts::PI * (t as f64 + 0.5) / count as f64).cos();
+            let (mut before, mut cosine) = (1.0, step);
+            for _ in 1..first {
+                (before, cosine) = (cosine, 2.0 * step * cosine - before);
+            }
+            for sum in &mut projected[..cosines] {
+                *sum += x * cosine;
+                (before, cosine) = (cosine, 2.0 * step * cosine - before);
+            }
+        }
+        let sum: f64 = projected[..cosines].iter().map(|p| 2.0 * p * p / count as f64).sum();
+        // Sums over blocks have the variance of so many frames.
+        let per_frame = sum / (cosines as f64 * self.length as f64);
+        let recoloured = 1.0 - corrected.powi(self.length as i32);
+        per_frame / (recoloured * recoloured)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl InnovationSeries {
+    /// Whether the blocks are those of so many frames; numbers that are not finite say nothing.
+    pub(super) fn is_sound(&self) -> bool {
+        let Self { frames, blocks, length, filled, .. } = self;
+        let full = blocks.len().saturating_sub(1);
+        let counted = full.checked_mul(*length).and_then(|before| before.checked_add(*filled));
+        blocks.len() <= tuning::BLOCKS
+            && *frames < MOST_COUNTED
+            && length.is_power_of_two()
+            && *length < MOST_COUNTED
+            && filled <= length
+            && counted == Some(*frames)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    /// Factors for autoregressive series of unit variance, over many runs: their root mean square.
+    fn factor(correlation: f64, frames: usize) -> f64 {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let runs = 200;
+        let mut sum = 0.0;
+        for _ in 0..runs {
+            let mut series = InnovationSeries::default();
+            let mut x = CentredVector::from_fn(|_, _| normal());
+            for _ in 0..frames {
+                x = correlation * x
+                    + (1.0 - correlation * correlation).sqrt() * CentredVector::from_fn(|_, _| normal());
+                series.take(&x, 3);
+            }
+            sum += series.spread(3)[0].powi(2);
+        }
+        (sum / f64::from(runs)).sqrt()
+    }
+
+    #[test]
+    fn white_innovations_hardly_widen_deviations() {
+        for frames in [30, 120, 500] {
+            let factor = factor(0.0, frames);
+            assert!((1.0..1.12).contains(&factor), "{frames}: {factor}");
+        }
+    }
+
+    #[test]
+    fn slow_innovations_widen_deviations_as_their_long_run_variance_does() {
+        for (correlation, frames) in [(0.5, 200), (0.9, 200), (0.9, 1000)] {
+            let expected = ((1.0 + correlation) / (1.0_f64 - correlation)).sqrt();
+            let found = factor(correlation, frames);
+            assert!((0.8..2.0).contains(&(found / expected)), "{correlation} {frames}: {found} {expected}");
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! The hypotheses side by side.
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+use nalgebra::SMatrix;
+
+use super::{
+    centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
+    hypothesis::{CentredMeasurement, Course, Entries, EntryMatrix, Hypothesis, Step},
+    innovations::InnovationSeries,
+    mixing::{Accelerations, mix},
+    setting::{Dynamics, DynamicsWeights},
+};
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::SUM_OFF;
+use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
+
+/// Hypotheses at most.
+const MOST: usize = 2 + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
+
+type Weights = [f64; MOST];
+
+/// Hypotheses of how the motion goes on, each with a state of its own, and their probabilities.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct DynamicsFilter {
+    model: MotionModel,
+    setting: Dynamics,
+    hypotheses: Vec<Hypothesis>,
+    /// In the same order; zeros behind them.
+    weights: Weights,
+    /// What the errors of all poses are taken from.
+    reference: CentredPose,
+    /// Variance of a pose as one frame tells it.
+    pose_variance: CentredVector,
+    pub(crate) series: InnovationSeries,
+    leads: bool,
+}
+
+impl DynamicsFilter {
+    /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
+    /// (projective), and numbers that do not allow it.
+    pub(crate) fn begin(
+        model: MotionModel,
+        setting: Dynamics,
+        summary: &Summary,
+        middle: nalgebra::Point2<f64>,
+        seconds: f64,
+    ) -> Option<Self> {
+        let k = model.parameter_count();
+        if k > LARGEST || seconds <= 0.0 {
+            return None;
+        }
+        let reference = CentredPose { pose: summary.pose, middle };
+        let change = reference.about_middle(model);
+        let (mean, covariance) = centred(&change, summary, k);
+        let pose_variance =
+            CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
+        let courses = courses(setting);
+        let mut filter = Self {
+            model,
+            setting,
+            hypotheses: Vec::with_capacity(MOST),
+            weights: [0.0; MOST],
+            reference,
+            pose_variance,
+            series: InnovationSeries::default(),
+            leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
+        };
+        for course in courses {
+            let mut hypothesis = Hypothesis { course, mean, covariance };
+            if course.has_accelerations() {
+                let prior = Accelerations::of(course).prior(&pose_variance, k, seconds);
+                // The motion known so far is the mean over the step: half of it ago.
+                for j in 0..k {
+                    let (u, a) = (k + j, 2 * k + j);
+                    hypothesis.covariance[(a, a)] = prior[j];
+                    hypothesis.covariance[(u, u)] += 0.25 * seconds * seconds * prior[j];
+                    hypothesis.covariance[(u, a)] = 0.5 * seconds * prior[j];
+                    hypothesis.covariance[(a, u)] = 0.5 * seconds * prior[j];
+                }
+            }
+            filter.weights[filter.hypotheses.len()] = match course {
+                Course::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
+                Course::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
+                Course::Accelerating { .. } => tuning::PRIOR_OF_EACH_LEVEL,
+            };
+            filter.hypotheses.push(hypothesis);
+        }
+        filter.normalise();
+        Some(filter)
+    }
+
+    fn normalise(&mut self) {
+        let sum: f64 = self.weights.iter().sum();
+        if sum > 0.0 && sum.is_finite() {
+            self.weights.iter_mut().for_each(|weight| *weight /= sum);
+        } else {
+            let count = self.hypotheses.len();
+            self.weights[..count].fill(1.0 / count as f64);
+        }
+    }
+
+    /// Moves all hypotheses on by a step, after mixing their states; `pose` is where the object is predicted otherwise.
+    /// Whether the numbers allow it.
+    pub(crate) fn predict(&mut self, pose: &CentredPose, seconds: f64, null: &[NullDirection]) -> bool {
+        let moved = CentredPose { pose: self.reference.pose, middle: pose.middle };
+        for hypothesis in &mut self.hypotheses {
+            hypothesis.move_middle(self.model, &self.reference, &moved);
+        }
+        self.reference = moved;
+        mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
+        let step =
+            Step { model: self.model, seconds, from: &self.reference, to: pose, pose_variance: &self.pose_variance };
+        let possible = self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step));
+        self.reference = *pose;
+        self.hold(null);
+        possible
+    }
+
+    /// Takes it that nothing happens in null directions of the reference pose.
+    fn hold(&mut self, null: &[NullDirection]) {
+        let Some(to) = self.reference.about_origin(self.model).filter(|_| !null.is_empty()) else { return };
+        let (from, k) = (self.reference.about_middle(self.model), self.model.parameter_count());
+        for NullDirection { direction, dual } in null {
+            let direction = from * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*direction);
+            let dual = to.transpose() * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*dual);
+            let short = |v: &nalgebra::SVector<f64, MAX_PARAMETERS>| {
+                CentredVector::from_fn(|i, _| if i < k { v[i] } else { 0.0 })
+            };
+            for hypothesis in &mut self.hypotheses {
+                hypothesis.hold(&short(&direction), &short(&dual), k);
+            }
+        }
+    }
+
+    /// Takes what an accepted frame tells of the pose: the error of the reference pose.
+    pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
+        let k = self.model.parameter_count();
+        let Some(to) = self.reference.about_origin(self.model) else { return };
+        let information = to.transpose() * measured.information * to;
+        let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
+        let pulled = to.transpose() * measured.pulled;
+        let Some(deviation) =
+            solved(&information, &CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 }), k)
+        else {
+            return;
+        };
+        for j in 0..k {
+            let own = information[(j, j)];
+            let variance = if own > 0.0 { (1.0 / own).min(tuning::LARGEST_VARIANCE) } else { tuning::LARGEST_VARIANCE };
+            self.pose_variance[j] += tuning::VARIANCE_GAIN * (variance - self.pose_variance[j]);
+        }
+        let measurement = CentredMeasurement { information, deviation };
+        let mut logarithms = [f64::NEG_INFINITY; MOST];
+        let mut standardised = [None; MOST];
+        for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {
+            let innovation = hypothesis.update(&measurement, self.model);
+            logarithms[number] = innovation.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
+            standardised[number] = innovation.map(|i| i.standardised);
+        }
+        let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if !largest.is_finite() {
+            return;
+        }
+        for (weight, logarithm) in self.weights.iter_mut().zip(&logarithms) {
+            *weight *= (logarithm - largest).exp();
+        }
+        self.normalise();
+        let best = (0..self.weights.len()).max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]));
+        if let Some(e) = best.and_then(|best| standardised[best]) {
+            self.series.take(&e, k);
+        }
+        let weight = self.weights().generator;
+        if self.setting == Dynamics::Auto {
+            self.leads = if self.leads { weight < tuning::LEADS_UNTIL } else { weight < tuning::LEADS_FROM };
+        }
+    }
+
+    /// Probabilities of the three kinds of dynamics.
+    pub(crate) fn weights(&self) -> DynamicsWeights {
+        let mut weights = DynamicsWeights { generator: 0.0, velocity: 0.0, accelerating: 0.0 };
+        for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
+            match hypothesis.course {
+                Course::ConstantGenerator => weights.generator += weight,
+                Course::ConstantVelocity => weights.velocity += weight,
+                Course::Accelerating { .. } => weights.accelerating += weight,
+            }
+        }
+        weights
+    }
+
+    /// Whether the object must not be expected where a constant generator takes it.
+    pub(crate) fn leads(&self) -> bool {
+        self.leads
+    }
+
+    /// Factors, at least 1, by which the innovations say that deviations about the middle are to be widened.
+    pub(crate) fn factors(&self) -> CentredDeviations {
+        let spread = self.series.spread(self.model.parameter_count());
+        CentredDeviations::from_fn(|j, _| spread.get(j).copied().unwrap_or(1.0))
+    }
+
+    /// Mean square of the innovations, at least 1: how much larger than the model's errors are.
+    pub(crate) fn widening(&self) -> f64 {
+        let k = self.model.parameter_count();
+        (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
+    }
+
+    /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
+    fn least_weight(&self) -> f64 {
+        let mut sorted = self.weights;
+        sorted.sort_unstable_by(f64::total_cmp);
+        let mut sum = 0.0;
+        sorted
+            .into_iter()
+            .find(|weight| {
+                sum += weight;
+                sum > tuning::LEFT_OUT
+            })
+            .unwrap_or(0.0)
+    }
+
+    /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
+    /// outline as well.
+    pub(crate) fn combined(&self, given: Option<&Summary>) -> Option<Summary> {
+        let (model, k) = (self.model, self.model.parameter_count());
+        let change = self.reference.about_middle(model);
+        let of_given = match given {
+            None => None,
+            Some(summary) => {
+                let (mut mean, covariance) = centred(&change, summary, k);
+                let off = model.motion_between(&(summary.pose * self.reference.pose.try_inverse()?), 1.0)?;
+                let moved = change * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(off);
+                (0..k).for_each(|j| mean[j] = moved[j]);
+                Some((mean, covariance))
+            }
+        };
+        let least = self.least_weight();
+        let parts = || {
+            let weighted = self.hypotheses.iter().zip(&self.weights).filter(|(_, weight)| **weight >= least);
+            weighted.map(|(hypothesis, weight)| match &of_given {
+                Some((mean, covariance)) if hypothesis.course == Course::ConstantGenerator => {
+                    (*weight, mean, covariance)
+                }
+                _ => (*weight, &hypothesis.mean, &hypothesis.covariance),
+            })
+        };
+        let sum: f64 = parts().map(|(weight, ..)| weight).sum();
+        // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
+        let mean = match &of_given {
+            Some((mean, _)) => *mean,
+            _ => parts().fold(Entries::zeros(), |mean, (weight, x, _)| mean + x * (weight / sum)),
+        };
+        let mut covariance = EntryMatrix::zeros();
+        // Where one of them is stated, its interval reaches the others that are not left out.
+        let others = 1.0 - self.weights().generator / sum;
+        let reach = if of_given.is_some() && others > 0.0 { (tuning::REACH / others).max(1.0) } else { 1.0 };
+        for (weight, x, p) in parts() {
+            for j in 0..2 * k {
+                for i in 0..2 * k {
+                    covariance[(i, j)] += (weight / sum) * (p[(i, j)] + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
+                }
+            }
+        }
+        let to = self.reference.about_origin(model)?;
+        let large = |at: usize| {
+            nalgebra::SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 })
+        };
+        let (error, motion) = (to * large(0), to * large(1));
+        let pose = model.flow(&error.as_slice()[..k], 1.0).into_inner() * self.reference.pose;
+        let both = StateMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
+        let covariance = carried(&of_both(&to, k), &both, 2 * k);
+        pose.iter().all(|e| e.is_finite()).then_some(Summary { pose, motion: motion.into(), covariance })
+    }
+
+    /// Takes another reference pose, near the one before.
+    pub(crate) fn take_reference(&mut self, pose: &nalgebra::Matrix3<f64>) -> bool {
+        let to = CentredPose { pose: *pose, middle: self.reference.middle };
+        let (model, k) = (self.model, self.model.parameter_count());
+        let Some(inverse) = self.reference.pose.try_inverse() else { return false };
+        let Some(moved) = model.motion_between(&(pose * inverse), 1.0) else { return false };
+        let moved = self.reference.about_middle(model) * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(moved);
+        let apart = to.centre() - self.reference.centre();
+        for hypothesis in &mut self.hypotheses {
+            for j in 0..k - 2 {
+                hypothesis.mean[j] -= moved[j];
+            }
+            hypothesis.mean[k - 2] -= apart.x;
+            hypothesis.mean[k - 1] -= apart.y;
+        }
+        self.reference = to;
+        true
+    }
+}
+
+/// What the hypotheses of a setting say that the motion does.
+fn courses(setting: Dynamics) -> Vec<Course> {
+    let all = tuning::LEVELS.map(|level| Course::Accelerating { level, rates: true });
+    let of_velocity = tuning::LEVELS_OF_VELOCITY.map(|level| Course::Accelerating { level, rates: false });
+    let accelerating = all.into_iter().chain(of_velocity);
+    match setting {
+        Dynamics::Auto => {
+            [Course::ConstantGenerator, Course::ConstantVelocity].into_iter().chain(accelerating).collect()
+        }
+        Dynamics::Generator => vec![Course::ConstantGenerator],
+        Dynamics::Velocity => vec![Course::ConstantVelocity],
+        Dynamics::Accelerating => accelerating.collect(),
+    }
+}
+
+/// Motion and covariance of a summary about the middle.
+fn centred(
+    change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+    summary: &Summary,
+    k: usize,
+) -> (Entries, EntryMatrix) {
+    let motion = change * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
+    let mut mean = Entries::zeros();
+    (0..k).for_each(|j| mean[k + j] = motion[j]);
+    let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
+    let covariance = EntryMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
+    (mean, covariance)
+}
+
+/// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
+fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
+    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
+    let jitter =
+        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
+    let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
+    regular.lu().solve(b)
+}
+
+#[cfg(feature = "serde")]
+impl DynamicsFilter {
+    /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.
+    pub(crate) fn is_sound(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
+        let is_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        let count = self.hypotheses.len();
+        let followed = self.hypotheses.iter().map(|hypothesis| hypothesis.course);
+        let (weights, beyond) = self.weights.split_at(count.min(MOST));
+        self.model == model
+            && Some(self.setting) == setting
+            && model.parameter_count() <= LARGEST
+            && followed.eq(courses(self.setting))
+            && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
+            && weights.iter().all(|weight| (0.0..=1.0).contains(weight))
+            && (weights.iter().sum::<f64>() - 1.0).abs() < SUM_OFF
+            && beyond.iter().all(|weight| *weight == 0.0)
+            && is_finite(self.reference.pose.as_slice())
+            && is_finite(self.reference.middle.coords.as_slice())
+            && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
+            && self.series.is_sound()
+    }
+}

@@ -1,0 +1,149 @@
+//! Mixing: every hypothesis may have been one of the others a step ago.
+use freeform_riccati::MotionModel;
+
+use super::{
+    centred::{CentredVector, parts},
+    hypothesis::{Course, Entries, EntryMatrix, Hypothesis},
+};
+use crate::tuning::dynamics as tuning;
+
+/// Mean and covariance of all hypotheses together, as one course or another has its state.
+struct Pooled {
+    mean: Entries,
+    covariance: EntryMatrix,
+}
+
+/// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
+///
+/// The change has the same probability between any two, so that every mixture has two parts: the hypothesis itself, and all together.
+pub(super) fn mix(
+    hypotheses: &mut [Hypothesis],
+    weights: &mut [f64],
+    model: MotionModel,
+    (pose_variance, seconds): (&CentredVector, f64),
+) {
+    let (count, k) = (hypotheses.len(), model.parameter_count());
+    if count < 2 {
+        return;
+    }
+    let stays = 1.0 - tuning::TRANSITION * (count - 1) as f64;
+    let pooled = [Accelerations::All, Accelerations::OfVelocity].map(|accelerations| {
+        let prior = accelerations.prior(pose_variance, k, seconds);
+        Pooled::of(hypotheses, weights, accelerations, &prior, model)
+    });
+    let all: f64 = weights.iter().sum();
+    for (hypothesis, weight) in hypotheses.iter_mut().zip(weights) {
+        let of_all = match Accelerations::of(hypothesis.course) {
+            Accelerations::OfVelocity => &pooled[1],
+            Accelerations::All | Accelerations::None => &pooled[0],
+        };
+        let total = tuning::TRANSITION * all + (stays - tuning::TRANSITION) * *weight;
+        let [changed, own] = [tuning::TRANSITION * all / total, (stays - tuning::TRANSITION) * *weight / total];
+        let n = hypothesis.size(k);
+        let mut apart = [0.0; super::hypothesis::ENTRIES];
+        for (i, apart) in apart.iter_mut().enumerate().take(n) {
+            *apart = of_all.mean[i] - hypothesis.mean[i];
+            hypothesis.mean[i] += changed * *apart;
+        }
+        for j in 0..n {
+            for i in 0..n {
+                let entry = &mut hypothesis.covariance[(i, j)];
+                *entry = changed * of_all.covariance[(i, j)] + own * (*entry + changed * apart[i] * apart[j]);
+            }
+        }
+        *weight = total;
+    }
+}
+
+impl Pooled {
+    fn of(
+        hypotheses: &[Hypothesis],
+        weights: &[f64],
+        accelerations: Accelerations,
+        prior: &CentredVector,
+        model: MotionModel,
+    ) -> Self {
+        let k = model.parameter_count();
+        let all: f64 = weights.iter().sum();
+        let mut pooled = Self { mean: Entries::zeros(), covariance: EntryMatrix::zeros() };
+        let sources = || hypotheses.iter().zip(weights).filter(|(_, weight)| **weight > tuning::LEAST_SHARE * all);
+        let sum: f64 = sources().map(|(_, weight)| weight).sum();
+        for (source, weight) in sources() {
+            pooled.mean += accelerations.mean_of(source, model) * (weight / sum);
+        }
+        for (source, weight) in sources() {
+            let share = weight / sum;
+            let apart = accelerations.mean_of(source, model) - pooled.mean;
+            let known = if accelerations.are_part_of(source.course) { 3 * k } else { 2 * k };
+            for j in 0..3 * k {
+                for i in 0..3 * k {
+                    let own = if i < known && j < known { source.covariance[(i, j)] } else { 0.0 };
+                    pooled.covariance[(i, j)] += share * (own + apart[i] * apart[j]);
+                }
+            }
+            (known..3 * k).for_each(|i| pooled.covariance[(i, i)] += share * prior[i - 2 * k]);
+        }
+        if accelerations == Accelerations::OfVelocity {
+            for i in 2 * k..3 * k - 2 {
+                pooled.mean[i] = 0.0;
+                pooled.covariance.row_mut(i).fill(0.0);
+                pooled.covariance.column_mut(i).fill(0.0);
+            }
+        }
+        pooled
+    }
+}
+
+/// The accelerations that a course has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Accelerations {
+    None,
+    /// Of the velocity of the middle alone.
+    OfVelocity,
+    All,
+}
+
+impl Accelerations {
+    pub(super) fn of(course: Course) -> Self {
+        match course {
+            Course::Accelerating { rates: true, .. } => Self::All,
+            Course::Accelerating { rates: false, .. } => Self::OfVelocity,
+            Course::ConstantGenerator | Course::ConstantVelocity => Self::None,
+        }
+    }
+
+    /// Variances of accelerations of which nothing is known yet: such that a step moves the object by some deviations of a pose.
+    pub(super) fn prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
+        let unit = (tuning::FIRST_ACCELERATION / (seconds * seconds)).powi(2);
+        let first = match self {
+            Self::All => 0,
+            Self::OfVelocity => k - 2,
+            Self::None => k,
+        };
+        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
+    }
+
+    /// Whether a course has them all.
+    fn are_part_of(self, course: Course) -> bool {
+        let had = Self::of(course);
+        had != Self::None && (had == Self::All || self != Self::All)
+    }
+
+    /// The state of a hypothesis with these accelerations: those that it does not have follow from its motion.
+    fn mean_of(self, source: &Hypothesis, model: MotionModel) -> Entries {
+        if self.are_part_of(source.course) {
+            return source.mean;
+        }
+        let k = model.parameter_count();
+        let mut mean = source.mean;
+        match source.course {
+            // Along an arc the velocity of the middle turns all the time.
+            Course::ConstantGenerator => {
+                let (a, v) = parts(&model.generator(&source.mean.as_slice()[k..2 * k]));
+                mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(a * v));
+            }
+            Course::ConstantVelocity | Course::Accelerating { .. } => {}
+        }
+        mean
+    }
+}

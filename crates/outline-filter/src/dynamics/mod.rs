@@ -1,0 +1,18 @@
+//! How the motion changes: hypotheses of dynamics side by side, weighted by their likelihoods (an interacting multiple model: H. Blom and
+//! Y. Bar-Shalom, The interacting multiple model algorithm for systems with Markovian switching coefficients, 1988).
+//!
+//! The hypotheses share the measurement of a frame: what it tells of the pose, with the offsets of the outline eliminated. They carry no
+//! outline of their own.
+mod centred;
+mod family;
+mod hypothesis;
+mod innovations;
+mod interacting;
+mod mixing;
+mod setting;
+
+pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
+pub(crate) use family::FamilyTests;
+pub use family::WrongFamily;
+pub(crate) use interacting::DynamicsFilter;
+pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};

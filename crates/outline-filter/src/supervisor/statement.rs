@@ -1,0 +1,142 @@
+//! What is stated of the motion, with how well it is known, or why nothing is.
+use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::DMatrix;
+
+use super::motion_filter::{Counts, MotionFilter, Phase};
+use crate::{
+    dynamics::{CentredDeviations, Summary, WrongFamily},
+    tuning::statement as tuning,
+};
+
+/// Why nothing is stated of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unstated {
+    /// The object is lost.
+    Lost,
+    /// Too large a share of the frames was rejected for the others to be trusted.
+    ManyRejected {
+        /// Frames rejected since the object was begun with.
+        rejected: usize,
+        /// All of them.
+        frames: usize,
+    },
+}
+
+/// Pose and motion with their covariance, the hypotheses of dynamics taken together.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Statement {
+    /// Without the systematic part of the errors.
+    random: Summary,
+    /// With it.
+    all: Summary,
+}
+
+impl MotionFilter {
+    fn statement(&self) -> Option<&Statement> {
+        self.stated.get_or_init(|| self.stated_now()).as_ref()
+    }
+
+    fn stated_now(&self) -> Option<Statement> {
+        let track = self.track.as_ref()?;
+        let own = track.summary()?;
+        let (model, middle) = (self.settings.model, track.centred_pose().middle);
+        let none = CentredDeviations::zeros();
+        let mut random = own;
+        if let Some(dynamics) = &self.history.dynamics {
+            let summary = dynamics.combined((!dynamics.leads()).then_some(&own)).unwrap_or(own);
+            random = summary.widened(model, &middle, &dynamics.factors(), [&none, &none])?;
+        }
+        let size = self.settings.edge_uncertainty.hypot(self.misfit().map_or(0.0, |(_, size)| size));
+        if size <= 0.0 {
+            return Some(Statement { random, all: random });
+        }
+        let [pose, motion] = track.systematic(size);
+        let all = random.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
+        Some(Statement { random, all })
+    }
+
+    /// What the outlines do that their family of motions does not have, and the displacement that it makes, image lengths.
+    fn misfit(&self) -> Option<(WrongFamily, f64)> {
+        let track = self.track.as_ref()?;
+        let (family, size) = self.history.family.found(track.sigma())?;
+        Some((family, size * track.reference().radius))
+    }
+
+    /// What the outlines do that the motion model does not have, if that is beyond doubt: the model to try is another.
+    #[must_use]
+    pub fn wrong_family(&self) -> Option<WrongFamily> {
+        self.misfit().map(|(family, _)| family)
+    }
+
+    /// The estimated motion, at the time of [`state`](Self::state). `None` before the second accepted frame, also after a restart of the
+    /// map by a frame that shows the turn of the object for the first time.
+    #[must_use]
+    pub fn estimate(&self) -> Option<MotionEstimate> {
+        if matches!(self.phase, Phase::Waiting | Phase::Acquiring) {
+            return None;
+        }
+        let track = self.track.as_ref()?;
+        let Statement { random, all } = self.statement()?;
+        let estimate = track.estimate_of(all)?.with_random_part(&track.deviations_of(random)?);
+        let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
+        let is_stated = self.unstated().is_none();
+        let unknown =
+            doubts.take(self.settings.model.parameter_count()).filter(|(_, doubtful)| *doubtful || !is_stated);
+        Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
+    }
+
+    /// Why nothing is stated of the motion although frames have been taken; `None` where it is stated.
+    #[must_use]
+    pub fn unstated(&self) -> Option<Unstated> {
+        let Counts { taken, refused, .. } = self.counts;
+        let frames = taken + refused;
+        if self.phase == Phase::Lost {
+            Some(Unstated::Lost)
+        } else if refused >= tuning::FEWEST_REJECTED && refused as f64 > tuning::MOST_REJECTED * frames as f64 {
+            Some(Unstated::ManyRejected { rejected: refused, frames })
+        } else {
+            None
+        }
+    }
+
+    /// Other angular velocities, in rad/s, that explain the outlines as well as the one stated: those of the turns of
+    /// [`rival_turns`](Self::rival_turns). Empty for outlines without symmetry, and where omega is not one of the parameters.
+    #[must_use]
+    pub fn aliases(&self) -> Vec<f64> {
+        let names = self.settings.model.parameter_names();
+        let omega = names.iter().position(|name| *name == "omega");
+        let known = omega.and_then(|j| self.estimate()?.parameters().nth(j)?.value);
+        let Some(omega) = known else { return Vec::new() };
+        // Omega is positive clockwise where y points up, turns the other way.
+        self.hypotheses.rates_apart().map(|apart| omega - apart / self.seconds_per_unit()).collect()
+    }
+
+    /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`
+    /// if [`estimate`](Self::estimate) is.
+    #[must_use]
+    pub fn state(&self) -> Option<MotionState> {
+        let estimate = self.estimate()?;
+        let mut observable = [false; MAX_PARAMETERS];
+        observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
+        self.track.as_ref()?.state_of(&self.statement()?.all, self.track_time, observable)
+    }
+
+    /// Velocity of the middle of the object, which is the centre of its known outline, at the time of [`state`](Self::state). It may be
+    /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
+    /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
+    #[must_use]
+    pub fn velocity(&self) -> Option<PointVelocity> {
+        if self.hypotheses.are_doubtful() || self.unstated().is_some() {
+            return None;
+        }
+        self.track.as_ref()?.velocity_of_middle(&self.state()?)
+    }
+
+    /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not
+    /// finite.
+    #[must_use]
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        self.track.as_ref()?.covariance_of(&self.statement()?.all)
+    }
+}

@@ -1,0 +1,69 @@
+//! What a frame tells of the pose by itself, for whoever expects the object where it likes.
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::{SMatrix, SVector};
+
+use super::solve::Proposal;
+use crate::{
+    belief::{Belief, CellInformation},
+    measurement::Frame,
+};
+
+/// In normalised coordinates, of the error of the predicted pose, on the left; the outline taken as known before the frame.
+///
+/// What all poses have in common with the outline, such as the error of the first pose, is no part of it: it is the same in every frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PoseMeasurement {
+    /// Information W on the pose, the offsets eliminated.
+    pub(crate) information: SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+    /// W times the error that the frame asks for.
+    pub(crate) pulled: SVector<f64, MAX_PARAMETERS>,
+}
+
+impl PoseMeasurement {
+    /// Of a solved frame that has not been taken yet, in units of the noise: `frame.cells` have the information with it, those of the belief
+    /// without.
+    pub(crate) fn of(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
+        match belief.parameter_count() {
+            3 => Self::sized::<3>(belief, proposal, frame),
+            4 => Self::sized::<4>(belief, proposal, frame),
+            6 => Self::sized::<6>(belief, proposal, frame),
+            _ => Self::sized::<8>(belief, proposal, frame),
+        }
+    }
+
+    fn sized<const K: usize>(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
+        let before = &belief.information;
+        let mut information = [[0.0; K]; K];
+        let mut pulled = [0.0; K];
+        for i in 0..K {
+            pulled[i] = proposal.right[i];
+            (0..K).for_each(|j| information[i][j] = proposal.dense[i][j] - before.dense[i][j]);
+        }
+        let nothing = CellInformation::NOTHING;
+        for (number, (cell, right)) in frame.cells.iter().zip(&frame.right).enumerate() {
+            let known = before.cells.get(number).unwrap_or(&nothing);
+            if cell.own <= known.own {
+                continue;
+            }
+            let inverse = 1.0 / cell.own;
+            let mut added = [0.0; K];
+            (0..K).for_each(|i| added[i] = cell.coupling[i] - known.coupling[i]);
+            for i in 0..K {
+                let factor = added[i] * inverse;
+                pulled[i] -= factor * right;
+                (0..K).for_each(|j| information[i][j] -= factor * added[j]);
+            }
+        }
+        Self {
+            information: SMatrix::from_fn(|i, j| {
+                if i < K && j < K { 0.5 * (information[i][j] + information[j][i]) } else { 0.0 }
+            }),
+            pulled: SVector::from_fn(|i, _| if i < K { pulled[i] } else { 0.0 }),
+        }
+    }
+
+    /// In units of a variance of the noise.
+    pub(crate) fn over(&self, variance: f64) -> Self {
+        Self { information: self.information / variance, pulled: self.pulled / variance }
+    }
+}

@@ -1,0 +1,151 @@
+//! The motion filter where the motion changes.
+use crate::filter_support::{filter, filtered, frames_of, settings};
+use freeform_estimate::ProcessNoise;
+use freeform_outline_filter::{FilterSettings, MotionFilter, Phase};
+use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Motion, Settings};
+use nalgebra::Affine2;
+
+#[test]
+fn a_change_of_motion_is_noticed_and_the_new_motion_found() {
+    let before = AffineMotion::from(RigidMotion { omega: 1.5, b1: -0.3, b2: 0.4 });
+    let after = AffineMotion::from(RigidMotion { omega: -1.0, b1: 0.5, b2: 0.1 });
+    let motion = Motion::piecewise(vec![(0.0, before), (1.0, after)]).expect("two phases");
+    let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Bird, motion, settings(75, 2)));
+    assert_eq!((run.phase(), run.restarts()), (Phase::Tracking, 0));
+    let estimate = run.estimate().expect("an estimate");
+    for (parameter, truth) in estimate.parameters().zip([after.a2, after.b1, after.b2]) {
+        let error = parameter.value.expect("observable") - truth;
+        assert!(error.abs() < 0.01, "{}: {error}", parameter.name);
+    }
+}
+
+#[test]
+fn process_noise_lets_the_filter_follow_a_motion_that_drifts() {
+    let drifting = |t: f64| AffineMotion::from(RigidMotion { omega: 1.0 + 0.5 * t, b1: 0.2, b2: -0.1 });
+    let frames = frames_of(BuiltInShape::Bird, Motion::varying(drifting), settings(90, 4));
+    let noise = ProcessNoise { rates: 0.5, velocities: 0.1 };
+    let settings = FilterSettings { process_noise: noise, ..FilterSettings::default() };
+    let mut filter = MotionFilter::new(settings).expect("good settings");
+    for frame in &frames {
+        assert!(
+            filter.step(frame.time, &frame.outline).expect("increasing times").is_accepted(),
+            "frame {}",
+            frame.index
+        );
+    }
+    let estimate = filter.estimate().expect("an estimate");
+    let omega = estimate.parameters().next().expect("omega");
+    let error = omega.value.expect("observable") - (1.0 + 0.5 * frames[89].time);
+    assert!(error.abs() < 4.0 * omega.standard_deviation.expect("given"), "{error}");
+    let pose: Affine2<f64> = nalgebra::try_convert(filter.pose().expect("a pose")).expect("affine");
+    let truth = Motion::varying(drifting).flow(0.0, frames[89].time);
+    assert!((pose.matrix() - truth.matrix()).norm() < 0.02);
+}
+
+#[test]
+fn a_motion_that_changes_slowly_stays_known_without_being_announced() {
+    let omega = |t: f64| 1.5 + 0.5 * (0.4 * t).sin();
+    let changing = move |t: f64| AffineMotion::from(RigidMotion { omega: omega(t), b1: -0.3, b2: 0.4 });
+    let frames = frames_of(BuiltInShape::Bird, Motion::varying(changing), settings(600, 5));
+    let mut filter = filter(MotionModel::Rigid);
+    let (mut unknown, mut square, mut counted) = (0, 0.0, 0);
+    for frame in &frames {
+        filter.step(frame.time, &frame.outline).expect("increasing times");
+        if frame.time < 5.0 {
+            continue;
+        }
+        let estimate = filter.estimate().expect("an estimate");
+        unknown += estimate.parameters().filter(|p| p.value.is_none()).count();
+        square += (estimate.values()[0] - omega(frame.time)).powi(2);
+        counted += 1;
+    }
+    let error = (square / f64::from(counted)).sqrt();
+    println!("{unknown} unknown, omega off by {error}, {} frames rejected", filter.frames_rejected());
+    assert!(unknown == 0 && error < 0.1, "{unknown} unknown, omega off by {error}");
+}
+
+#[test]
+fn a_motion_that_changes_is_followed_without_being_told_to() {
+    let slow = |t: f64| AffineMotion::from(RigidMotion { omega: 1.0 + 0.5 * (1.5 * t).sin(), b1: 0.2, b2: -0.1 });
+    let frames = frames_of(BuiltInShape::Bird, Motion::varying(slow), settings(120, 4));
+    let mut filter = filter(MotionModel::Rigid);
+    for frame in &frames {
+        assert!(
+            filter.step(frame.time, &frame.outline).expect("increasing times").is_accepted(),
+            "frame {}",
+            frame.index
+        );
+    }
+    let omega = filter.estimate().expect("an estimate").parameters().next().expect("omega");
+    let error = omega.value.expect("observable") - slow(frames[119].time).a2;
+    assert!(error.abs() < 0.1, "{error}");
+}
+
+#[test]
+fn an_object_that_spins_evenly_and_travels_straight_keeps_its_angular_velocity_to_a_thousandth() {
+    for (omega, velocity) in [(1.28, [0.5, 0.0]), (-3.0, [0.3, -0.4]), (0.5, [-1.0, 0.2])] {
+        let [v, w] = velocity;
+        // The velocity belongs to the origin of the image, about which the middle does not turn.
+        let thrown =
+            move |t: f64| AffineMotion::from(RigidMotion { omega, b1: v - omega * w * t, b2: w + omega * v * t });
+        for seed in 0..3 {
+            let settings = Settings { noise: 0.003, ..settings(90, seed) };
+            let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Van, Motion::varying(thrown), settings));
+            let found = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+            let (value, std) = (found.value.expect("known"), found.standard_deviation.expect("known"));
+            let context = format!("{omega} {velocity:?}, seed {seed}: {value} {std}");
+            assert!((value - omega).abs() < 5.0 * std && std < 1e-3 * (1.0 + omega.abs()), "{context}");
+            assert!(run.motion_changed() && run.frames_rejected() <= 3, "{context}: {}", run.frames_rejected());
+        }
+    }
+}
+
+#[test]
+fn an_object_that_spins_and_travels_keeps_its_pose_where_its_map_is_cut_from_many_frames() {
+    let [omega, v, w] = [1.0, 1.2, 0.0];
+    let thrown = move |t: f64| AffineMotion::from(RigidMotion { omega, b1: v - omega * w * t, b2: w + omega * v * t });
+    for points in [60, 100, 200] {
+        for seed in 0..3 {
+            let settings = Settings { points, noise: 0.006, ..settings(48, seed) };
+            let frames = frames_of(BuiltInShape::Glider, Motion::varying(thrown), settings);
+            let mut run = MotionFilter::new(FilterSettings::default()).expect("settings");
+            let mut worst: f64 = 0.0;
+            for frame in &frames {
+                if run.step(frame.time, &frame.outline).expect("a later frame").is_accepted() {
+                    let pose = run.pose().expect("a pose").into_inner();
+                    let turn = (pose[(1, 0)] - pose[(0, 1)]).atan2(pose[(0, 0)] + pose[(1, 1)]);
+                    worst = worst.max((turn + omega * frame.time).abs());
+                }
+            }
+            let found = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+            let (value, std) = (found.value.expect("known"), found.standard_deviation.expect("known"));
+            let context = format!("{points} points, seed {seed}: {value} {std}, worst {worst}");
+            assert!((value - omega).abs() < 5.0 * std && std < 0.03 && worst < 0.05, "{context}");
+        }
+    }
+}
+
+#[test]
+fn an_object_that_takes_the_place_of_one_whose_motion_changed_has_not_changed_its_own() {
+    let swinging = |t: f64| AffineMotion::from(RigidMotion { omega: 3.0 * (4.0 * t).sin(), b1: 0.2, b2: -0.1 });
+    // With so many points that no map is ever cut anew.
+    let many = |seed| Settings { points: 1500, ..settings(60, seed) };
+    let mut run = filter(MotionModel::Rigid);
+    for frame in &frames_of(BuiltInShape::Bird, Motion::varying(swinging), many(0)) {
+        run.step(frame.time, &frame.outline).expect("increasing times");
+    }
+    assert!(run.motion_changed());
+    let steady = AffineMotion::from(RigidMotion { omega: 0.5, b1: 0.1, b2: 0.0 });
+    for frame in &frames_of(BuiltInShape::Phone, steady, many(1)) {
+        run.step(10.0 + frame.time, &frame.outline).expect("increasing times");
+    }
+    assert!(run.restarts() > 0 && !run.motion_changed(), "{} restarts", run.restarts());
+    let alone = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Phone, steady, many(1)));
+    let deviation = |run: &MotionFilter| {
+        let omega = run.estimate().expect("an estimate").parameters().next().expect("omega");
+        omega.standard_deviation.expect("known")
+    };
+    // It has half of the frames.
+    assert!(deviation(&run) < 6.0 * deviation(&alone), "{} {}", deviation(&run), deviation(&alone));
+}

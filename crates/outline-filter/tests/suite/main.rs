@@ -1,0 +1,9 @@
+//! One program for all of them, since each costs a link and its share of compiling.
+mod filter_changes;
+mod filter_motion;
+mod filter_observability;
+mod filter_support;
+mod recorded;
+mod recording;
+#[cfg(feature = "serde")]
+mod saved_state;

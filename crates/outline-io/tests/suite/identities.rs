@@ -1,0 +1,168 @@
+//! Objects keep their names from picture to picture.
+use crate::support::traced;
+use freeform_outline_io::{GrayImage, PictureSettings, Selection, TraceError, TraceSettings};
+use image::Luma;
+use nalgebra::Point2;
+
+/// Discs at these places.
+fn discs(places: &[(f64, f64, f64)]) -> GrayImage {
+    GrayImage::from_fn(200, 100, |x, y| {
+        let inside = |&(cx, cy, r): &(f64, f64, f64)| (f64::from(x) - cx).hypot(f64::from(y) - cy) < r;
+        Luma([if places.iter().any(inside) { 220 } else { 10 }])
+    })
+}
+
+#[test]
+fn objects_keep_their_names_while_they_pass_each_other_vanish_and_come_back() {
+    let pictures: Vec<GrayImage> = (0..40)
+        .map(|frame| {
+            let along = 4.0 * f64::from(frame);
+            let mut places = vec![(20.0 + along, 30.0, 12.0), (180.0 - along, 56.0, 9.0)];
+            if (12..16).contains(&frame) {
+                places.remove(1);
+            }
+            discs(&places)
+        })
+        .collect();
+    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+    for (frame, traced) in traced(pictures, settings).iter().enumerate() {
+        for (name, object) in traced.objects.as_ref().expect("objects") {
+            let along = 4.0 * frame as f64;
+            let expected = if *name == 0 { 20.0 + along } else { 180.0 - along };
+            assert!(*name < 2 && (object.centre.x - expected).abs() < 1.5, "frame {frame}: {name} {}", object.centre);
+        }
+    }
+}
+
+/// A square and a triangle of like area at these places, each turned by an angle.
+fn square_and_triangle(square: Option<(f64, f64)>, triangle: Option<(f64, f64)>, turn: f64) -> GrayImage {
+    let (sin, cos) = turn.sin_cos();
+    GrayImage::from_fn(240, 100, |x, y| {
+        let body = |(cx, cy): (f64, f64)| {
+            let (x, y) = (f64::from(x) - cx, f64::from(y) - cy);
+            (cos * x + sin * y, cos * y - sin * x)
+        };
+        let in_square = square.map(body).is_some_and(|(x, y)| x.abs() < 12.0 && y.abs() < 12.0);
+        let in_triangle =
+            triangle.map(body).is_some_and(|(x, y)| y > -12.0 && y < 24.0 && x.abs() < (24.0 - y) * 16.0 / 36.0);
+        Luma([if in_square || in_triangle { 220 } else { 10 }])
+    })
+}
+
+#[test]
+fn objects_of_like_size_keep_their_names_whether_they_pass_through_each_other_or_turn_back() {
+    for turns_back in [false, true] {
+        let along =
+            |frame: u32| if turns_back && frame > 20 { 3.0 * f64::from(40 - frame) } else { 3.0 * f64::from(frame) };
+        let pictures: Vec<GrayImage> = (0..40)
+            .map(|frame| {
+                let (square, triangle) = ((50.0 + along(frame), 46.0), (180.0 - along(frame), 50.0));
+                square_and_triangle(Some(square), Some(triangle), 0.05 * f64::from(frame))
+            })
+            .collect();
+        let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+        let seen = traced(pictures, settings);
+        let first = seen[0].objects.as_ref().expect("both");
+        let triangle = first.iter().find(|(_, object)| object.centre.x > 120.0).expect("the triangle").0;
+        let mut touching = 0;
+        for (frame, traced) in seen.iter().enumerate() {
+            let objects = match &traced.objects {
+                Ok(objects) => objects,
+                Err(error) => {
+                    assert_eq!(error, &TraceError::Touching { objects: 2 }, "frame {frame}");
+                    touching += 1;
+                    continue;
+                }
+            };
+            for (name, object) in objects {
+                let along = along(frame as u32);
+                let expected = if *name == triangle { 180.0 - along } else { 50.0 + along };
+                assert!(
+                    *name < 2 && (object.centre.x - expected).abs() < 3.0,
+                    "turns back: {turns_back}, frame {frame}: {name} at {}, not {expected}",
+                    object.centre
+                );
+            }
+        }
+        assert!((3..15).contains(&touching), "{touching}");
+    }
+}
+
+/// Two bars of 48 x 6 pixels, 10 pixels apart, that pass each other; in frame 10, when they are above each other, the camera is
+/// knocked by 7 pixels, so that each seems to be near where the other was.
+fn passing_bars(frame: u32) -> [(f64, f64); 2] {
+    let (along, knock) = (3.0 * f64::from(frame), if frame >= 10 { 7.0 } else { 0.0 });
+    [(70.0 + along, 40.0 + knock), (130.0 - along, 50.0 + knock)]
+}
+
+#[test]
+fn names_are_not_swapped_where_one_object_is_nearest_to_the_place_of_the_other() {
+    let pictures: Vec<GrayImage> = (0..20)
+        .map(|frame| {
+            let bars = passing_bars(frame);
+            GrayImage::from_fn(200, 100, |x, y| {
+                let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let inside = |&(cx, cy): &(f64, f64)| (x - cx).abs() < 24.0 && (y - cy).abs() < 3.0;
+                Luma([if bars.iter().any(inside) { 220 } else { 10 }])
+            })
+        })
+        .collect();
+    let trace = TraceSettings { y_up: false, ..TraceSettings::default() };
+    let settings = PictureSettings { selection: Selection::All, trace, ..PictureSettings::default() };
+    let seen = traced(pictures, settings);
+    let first = seen[0].objects.as_ref().expect("both bars");
+    let upper = first.iter().find(|(_, object)| object.centre.y < 45.0).expect("the upper bar").0;
+    for (frame, traced) in seen.iter().enumerate() {
+        let objects = traced.objects.as_ref().expect("both bars");
+        assert_eq!(objects.len(), 2, "frame {frame}");
+        let [of_upper, of_lower] = passing_bars(frame as u32).map(|(x, y)| Point2::new(x, y));
+        for (name, object) in objects {
+            let expected = if *name == upper { of_upper } else { of_lower };
+            assert!((object.centre - expected).norm() < 0.5, "frame {frame}: {name} at {}", object.centre);
+        }
+    }
+}
+
+#[test]
+fn objects_that_come_back_elsewhere_are_told_by_their_shape() {
+    // Where each was when they were last seen, the other comes back.
+    let pictures: Vec<GrayImage> = (0..16)
+        .map(|frame| match frame {
+            0..6 => square_and_triangle(Some((100.0, 50.0)), Some((145.0, 50.0)), 0.0),
+            6..10 => square_and_triangle(None, None, 0.0),
+            _ => square_and_triangle(Some((145.0, 50.0)), Some((100.0, 50.0)), 0.3),
+        })
+        .collect();
+    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+    let seen = traced(pictures, settings);
+    let place = |frame: usize, name: u64| {
+        let objects = seen[frame].objects.as_ref().expect("objects");
+        objects.iter().find(|(other, _)| *other == name).expect("both names").1.centre.x
+    };
+    for (name, other) in [(0, 1), (1, 0)] {
+        let (before, after) = (place(0, other), place(15, name));
+        assert!((after - before).abs() < 3.0, "object {name} at {after}, not {before}");
+    }
+}
+
+#[test]
+fn the_nearest_object_is_followed_where_a_larger_one_comes_in() {
+    let pictures: Vec<GrayImage> = (0..20)
+        .map(|frame| {
+            let mut places = vec![(30.0 + 3.0 * f64::from(frame), 30.0, 10.0)];
+            if frame > 5 {
+                places.push((150.0, 70.0, 20.0));
+            }
+            discs(&places)
+        })
+        .collect();
+    let mut with_gap = pictures.clone();
+    with_gap[10] = discs(&[(150.0, 70.0, 20.0)]);
+    let settings = PictureSettings { selection: Selection::Nearest, ..PictureSettings::default() };
+    for (frame, traced) in traced(with_gap, settings).iter().enumerate() {
+        match &traced.objects {
+            Ok(objects) => assert!((objects[0].1.centre.x - 30.5 - 3.0 * frame as f64).abs() < 1.0, "frame {frame}"),
+            Err(error) => assert!(frame == 10 && matches!(error, TraceError::NotNear { .. }), "{frame}: {error}"),
+        }
+    }
+}

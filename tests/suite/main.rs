@@ -1,0 +1,15 @@
+//! One program for all of them, since each costs a link and its share of compiling.
+mod arbitrary_input;
+mod checks;
+mod common;
+mod documents;
+mod hostile_geometry;
+mod observability;
+mod paper_experiments;
+mod projective;
+mod rectification;
+mod robustness;
+mod soak;
+mod tracker;
+#[cfg(feature = "serde")]
+mod tracker_state;
