@@ -69,7 +69,7 @@ def test_times_that_do_not_increase_leave_the_filter_as_it_was(bird, time):
         (lambda: ff.homography(SQUARE[:3], SQUARE[:3]), ValueError, "at least 4 are needed"),
         (lambda: ff.homography([[0, 0], [1, 0], [2, 0], [0, 1]], SQUARE), ValueError, "no three may lie on one line"),
         (lambda: ff.Recogniser(unknown=1.0), ValueError, r"unknown is 1, not in \(0, 1\)"),
-        (lambda: ff.Recogniser().recognise(SQUARE), ValueError, "no outline is known"),
+        (lambda: ff.Recogniser().recognise(ff.simulate("hat").true_outline()), ValueError, "no outline is known"),
         (lambda: ff.Recogniser().learn("arc", ff.Outline.from_arcs([SQUARE])), ValueError, "a part of the outline is hidden"),
         (lambda: ff.Evidence(3), TypeError, "Recogniser"),
         (lambda: ff.simulate(affine=[0] * 6, projective=[0] * 8), ValueError, "not both"),

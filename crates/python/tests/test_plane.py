@@ -38,5 +38,4 @@ def test_a_tracker_that_rectifies_goes_on_where_it_was(bird):
 
 def test_an_outline_beyond_the_horizon_is_rejected_with_the_reason(bird):
     tracker = ff.Tracker(rectify=ff.homography(seen(CORNERS), CORNERS))
-    far = seen(CORNERS) + [0.0, 1e5]
-    assert "horizon" in tracker.push("bird", 0, 0.0, far).rejection
+    assert "horizon" in tracker.push("bird", 0, 0.0, 1e5 * bird[0].outline.points).rejection
