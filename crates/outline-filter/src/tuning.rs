@@ -186,6 +186,8 @@ pub(crate) mod shape_noise {
 
 /// Solving for a frame, and the gate.
 pub(crate) mod update {
+    /// What makes the equations for a shift of the outline solvable where it does not show one, as a share of the largest entry.
+    pub(crate) const SINGULAR: f64 = 1e-9;
     /// Weight of the first pose, in points: it only fixes the gauge, since pose and offsets can move together.
     pub(crate) const GAUGE_WEIGHT: f64 = 10.0;
     /// Information on the motion that makes the first equations solvable, per squared second: next to nothing.
@@ -326,17 +328,23 @@ pub(crate) mod dynamics {
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
     pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.046;
-    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.004;
+    /// Of each of [`SHAKEN`].
+    pub(crate) const PRIOR_OF_SHAKEN: f64 = 0.002;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
+    /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
+    pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
-    /// twenty frames, six, two, and none.
-    pub(crate) const LEVELS: [f64; 4] = [1e-6, 1e-3, 1.0, 1e3];
+    /// sixty frames, fourteen, three, and none.
+    pub(crate) const LEVELS: [f64; 4] = [1e-9, 1e-5, 1e-1, 1e3];
+    /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
+    pub(crate) const MEMORY: f64 = 2.0;
     /// As these, where the velocity of the middle alone changes.
-    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-5, 1e-2];
+    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
     /// Probability that an interval of 95 % leaves out.
     pub(crate) const LEFT_OUT: f64 = 0.05;
     /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
     pub(crate) const REACH: f64 = 0.26;
-    /// Deviations of a pose that an acceleration which begins moves the object by in a step.
+    /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
     /// Share of a hypothesis below which it counts for nothing.
     pub(crate) const LEAST_SHARE: f64 = 1e-6;

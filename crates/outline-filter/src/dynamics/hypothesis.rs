@@ -2,6 +2,8 @@
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
 
+use crate::tuning::dynamics as tuning;
+
 use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts};
 
 /// Pose, motion and accelerations of the largest model.
@@ -16,6 +18,11 @@ pub(super) type EntryMatrix = SMatrix<f64, ENTRIES, ENTRIES>;
 pub(super) enum Course {
     /// The velocity of the middle turns with the object.
     ConstantGenerator,
+    /// As that, seen by a camera that shakes: poses have errors of their own, in every frame others.
+    Shaken {
+        /// In standard deviations of a pose as the points of a frame tell it.
+        deviations: f64,
+    },
     /// The velocity of the middle stays.
     ConstantVelocity,
     /// The accelerations change at random.
@@ -28,6 +35,24 @@ pub(super) enum Course {
 }
 
 impl Course {
+    /// Variances of accelerations of which nothing is known yet: such that they move the object by some deviations of a pose over the steps
+    /// that the level remembers. Larger ones are those of higher levels.
+    pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
+        let Self::Accelerating { level, rates } = self else { return CentredVector::zeros() };
+        let first = if rates { 0 } else { k - 2 };
+        let span = seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0);
+        let unit = (tuning::FIRST_ACCELERATION / (span * span)).powi(2);
+        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
+    }
+
+    /// Factor of the variance of a pose as the points of a frame tell it.
+    pub(super) fn shaking(self) -> f64 {
+        match self {
+            Self::Shaken { deviations } => 1.0 + deviations * deviations,
+            _ => 1.0,
+        }
+    }
+
     /// Whether accelerations are part of the state.
     pub(super) fn has_accelerations(self) -> bool {
         matches!(self, Self::Accelerating { .. })
@@ -91,7 +116,7 @@ impl Hypothesis {
             parts(&model.flow(&only.as_slice()[..k], seconds).into_inner()).0
         };
         let (turn, shift, later) = match self.course {
-            Course::ConstantGenerator => {
+            Course::ConstantGenerator | Course::Shaken { .. } => {
                 let (turn, shift) = parts(&model.flow(&motion.as_slice()[..k], dt).into_inner());
                 (turn, shift, turn * v)
             }
@@ -155,7 +180,7 @@ impl Hypothesis {
             f[(i, k + i)] = dt;
         }
         match self.course {
-            Course::ConstantGenerator => {
+            Course::ConstantGenerator | Course::Shaken { .. } => {
                 let middle = 0.5 * (v + later);
                 let by_velocity = Matrix2::identity() * dt + 0.5 * dt * dt * a;
                 for i in 0..2 {
@@ -197,7 +222,7 @@ impl Hypothesis {
         Const<K>: DimMin<Const<K>, Output = Const<K>>,
     {
         let n = self.size(K);
-        let information = measurement.information.fixed_view::<K, K>(0, 0).into_owned();
+        let information = measurement.information.fixed_view::<K, K>(0, 0) / self.course.shaking();
         let predicted = self.covariance.fixed_view::<K, K>(0, 0).into_owned();
         let off = measurement.deviation.fixed_rows::<K>(0) - self.mean.fixed_rows::<K>(0);
         // (I + W P)^-1 W, which is (W^-1 + P)^-1, also where W is singular.
@@ -229,7 +254,9 @@ impl Hypothesis {
                 standardised[j] = off[j] / (1.0 / own + predicted[(j, j)]).sqrt();
             }
         }
-        Some(Innovation { log_likelihood: -0.5 * (determinant.ln() + squared), standardised })
+        // The density of the innovation, without the factor that all hypotheses share.
+        let log_likelihood = -0.5 * (determinant.ln() + K as f64 * self.course.shaking().ln() + squared);
+        Some(Innovation { log_likelihood, standardised })
     }
 
     /// Takes it that nothing happens in a direction that the outline does not show, given with its dual.

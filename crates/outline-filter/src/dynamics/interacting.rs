@@ -6,7 +6,7 @@ use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
     hypothesis::{CentredMeasurement, Course, Entries, EntryMatrix, Hypothesis, Step},
     innovations::InnovationSeries,
-    mixing::{Accelerations, mix},
+    mixing::mix,
     setting::{Dynamics, DynamicsWeights},
 };
 #[cfg(feature = "serde")]
@@ -14,7 +14,7 @@ use crate::tuning::saved_state::SUM_OFF;
 use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
 
 /// Hypotheses at most.
-const MOST: usize = 2 + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
+const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
 
 type Weights = [f64; MOST];
 
@@ -32,6 +32,8 @@ pub(crate) struct DynamicsFilter {
     /// Variance of a pose as one frame tells it.
     pose_variance: CentredVector,
     pub(crate) series: InnovationSeries,
+    /// Factor of the variance of a pose by the most probable hypothesis.
+    shaking: f64,
     leads: bool,
 }
 
@@ -63,12 +65,13 @@ impl DynamicsFilter {
             reference,
             pose_variance,
             series: InnovationSeries::default(),
+            shaking: 1.0,
             leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
         };
         for course in courses {
             let mut hypothesis = Hypothesis { course, mean, covariance };
             if course.has_accelerations() {
-                let prior = Accelerations::of(course).prior(&pose_variance, k, seconds);
+                let prior = course.acceleration_prior(&pose_variance, k, seconds);
                 // The motion known so far is the mean over the step: half of it ago.
                 for j in 0..k {
                     let (u, a) = (k + j, 2 * k + j);
@@ -80,6 +83,7 @@ impl DynamicsFilter {
             }
             filter.weights[filter.hypotheses.len()] = match course {
                 Course::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
+                Course::Shaken { .. } => tuning::PRIOR_OF_SHAKEN,
                 Course::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
                 Course::Accelerating { .. } => tuning::PRIOR_OF_EACH_LEVEL,
             };
@@ -166,12 +170,21 @@ impl DynamicsFilter {
         }
         self.normalise();
         let best = (0..self.weights.len()).max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]));
-        if let Some(e) = best.and_then(|best| standardised[best]) {
+        if let Some((best, e)) = best.and_then(|best| Some((best, standardised[best]?))) {
             self.series.take(&e, k);
+            self.shaking = self.hypotheses[best].course.shaking();
         }
         let weight = self.weights().generator;
         if self.setting == Dynamics::Auto {
             self.leads = if self.leads { weight < tuning::LEADS_UNTIL } else { weight < tuning::LEADS_FROM };
+        }
+    }
+
+    /// Takes it that the outline has been corrected, so that poses measured against it are off by an error that they were not off by before.
+    pub(crate) fn follow_outline(&mut self, shift: &nalgebra::SVector<f64, MAX_PARAMETERS>) {
+        let error = self.reference.about_middle(self.model) * shift;
+        for hypothesis in &mut self.hypotheses {
+            (0..self.model.parameter_count()).for_each(|j| hypothesis.mean[j] += error[j]);
         }
     }
 
@@ -180,7 +193,7 @@ impl DynamicsFilter {
         let mut weights = DynamicsWeights { generator: 0.0, velocity: 0.0, accelerating: 0.0 };
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             match hypothesis.course {
-                Course::ConstantGenerator => weights.generator += weight,
+                Course::ConstantGenerator | Course::Shaken { .. } => weights.generator += weight,
                 Course::ConstantVelocity => weights.velocity += weight,
                 Course::Accelerating { .. } => weights.accelerating += weight,
             }
@@ -202,7 +215,7 @@ impl DynamicsFilter {
     /// Mean square of the innovations, at least 1: how much larger than the model's errors are.
     pub(crate) fn widening(&self) -> f64 {
         let k = self.model.parameter_count();
-        (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
+        self.shaking * (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
     }
 
     /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
@@ -299,7 +312,9 @@ fn courses(setting: Dynamics) -> Vec<Course> {
     let accelerating = all.into_iter().chain(of_velocity);
     match setting {
         Dynamics::Auto => {
-            [Course::ConstantGenerator, Course::ConstantVelocity].into_iter().chain(accelerating).collect()
+            let shaken = tuning::SHAKEN.map(|deviations| Course::Shaken { deviations });
+            let constant = [Course::ConstantGenerator, Course::ConstantVelocity];
+            constant.into_iter().chain(shaken).chain(accelerating).collect()
         }
         Dynamics::Generator => vec![Course::ConstantGenerator],
         Dynamics::Velocity => vec![Course::ConstantVelocity],
@@ -350,5 +365,6 @@ impl DynamicsFilter {
             && is_finite(self.reference.middle.coords.as_slice())
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
             && self.series.is_sound()
+            && (self.shaking == 1.0 || courses(self.setting).iter().any(|course| course.shaking() == self.shaking))
     }
 }

@@ -11,6 +11,8 @@ use crate::tuning::dynamics as tuning;
 struct Pooled {
     mean: Entries,
     covariance: EntryMatrix,
+    /// Share of those that know nothing of the accelerations.
+    without: f64,
 }
 
 /// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
@@ -27,10 +29,8 @@ pub(super) fn mix(
         return;
     }
     let stays = 1.0 - tuning::TRANSITION * (count - 1) as f64;
-    let pooled = [Accelerations::All, Accelerations::OfVelocity].map(|accelerations| {
-        let prior = accelerations.prior(pose_variance, k, seconds);
-        Pooled::of(hypotheses, weights, accelerations, &prior, model)
-    });
+    let pooled = [Accelerations::All, Accelerations::OfVelocity]
+        .map(|accelerations| Pooled::of(hypotheses, weights, accelerations, model));
     let all: f64 = weights.iter().sum();
     for (hypothesis, weight) in hypotheses.iter_mut().zip(weights) {
         let of_all = match Accelerations::of(hypothesis.course) {
@@ -51,21 +51,17 @@ pub(super) fn mix(
                 *entry = changed * of_all.covariance[(i, j)] + own * (*entry + changed * apart[i] * apart[j]);
             }
         }
+        let prior = hypothesis.course.acceleration_prior(pose_variance, k, seconds);
+        (2 * k..n).for_each(|i| hypothesis.covariance[(i, i)] += changed * of_all.without * prior[i - 2 * k]);
         *weight = total;
     }
 }
 
 impl Pooled {
-    fn of(
-        hypotheses: &[Hypothesis],
-        weights: &[f64],
-        accelerations: Accelerations,
-        prior: &CentredVector,
-        model: MotionModel,
-    ) -> Self {
+    fn of(hypotheses: &[Hypothesis], weights: &[f64], accelerations: Accelerations, model: MotionModel) -> Self {
         let k = model.parameter_count();
         let all: f64 = weights.iter().sum();
-        let mut pooled = Self { mean: Entries::zeros(), covariance: EntryMatrix::zeros() };
+        let mut pooled = Self { mean: Entries::zeros(), covariance: EntryMatrix::zeros(), without: 0.0 };
         let sources = || hypotheses.iter().zip(weights).filter(|(_, weight)| **weight > tuning::LEAST_SHARE * all);
         let sum: f64 = sources().map(|(_, weight)| weight).sum();
         for (source, weight) in sources() {
@@ -81,7 +77,7 @@ impl Pooled {
                     pooled.covariance[(i, j)] += share * (own + apart[i] * apart[j]);
                 }
             }
-            (known..3 * k).for_each(|i| pooled.covariance[(i, i)] += share * prior[i - 2 * k]);
+            pooled.without += if known < 3 * k { share } else { 0.0 };
         }
         if accelerations == Accelerations::OfVelocity {
             for i in 2 * k..3 * k - 2 {
@@ -96,7 +92,7 @@ impl Pooled {
 
 /// The accelerations that a course has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Accelerations {
+enum Accelerations {
     None,
     /// Of the velocity of the middle alone.
     OfVelocity,
@@ -104,23 +100,12 @@ pub(super) enum Accelerations {
 }
 
 impl Accelerations {
-    pub(super) fn of(course: Course) -> Self {
+    fn of(course: Course) -> Self {
         match course {
             Course::Accelerating { rates: true, .. } => Self::All,
             Course::Accelerating { rates: false, .. } => Self::OfVelocity,
-            Course::ConstantGenerator | Course::ConstantVelocity => Self::None,
+            Course::ConstantGenerator | Course::Shaken { .. } | Course::ConstantVelocity => Self::None,
         }
-    }
-
-    /// Variances of accelerations of which nothing is known yet: such that a step moves the object by some deviations of a pose.
-    pub(super) fn prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
-        let unit = (tuning::FIRST_ACCELERATION / (seconds * seconds)).powi(2);
-        let first = match self {
-            Self::All => 0,
-            Self::OfVelocity => k - 2,
-            Self::None => k,
-        };
-        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
     }
 
     /// Whether a course has them all.
@@ -138,7 +123,7 @@ impl Accelerations {
         let mut mean = source.mean;
         match source.course {
             // Along an arc the velocity of the middle turns all the time.
-            Course::ConstantGenerator => {
+            Course::ConstantGenerator | Course::Shaken { .. } => {
                 let (a, v) = parts(&model.generator(&source.mean.as_slice()[k..2 * k]));
                 mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(a * v));
             }

@@ -122,6 +122,9 @@ fn take(history: &mut MotionHistory, outcome: &Outcome) {
     }
     if let Some((dynamics, measured)) = history.dynamics.as_mut().zip(outcome.pose.as_ref()) {
         dynamics.update(measured);
+        if let Some(shift) = &outcome.outline_shift {
+            dynamics.follow_outline(shift);
+        }
     }
     if let Some(misfit) = &outcome.misfit {
         history.family.take(misfit);

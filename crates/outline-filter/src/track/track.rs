@@ -2,8 +2,8 @@ use std::sync::Arc;
 
 use freeform_curve_fit::Outline;
 use freeform_estimate::ProcessNoise;
-use freeform_riccati::{MotionModel, ParameterVector};
-use nalgebra::{Affine2, Matrix3, Point2, Projective2};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use nalgebra::{Affine2, Matrix3, Point2, Projective2, SVector};
 
 use super::first_pose::FirstPose;
 #[cfg(feature = "serde")]
@@ -16,7 +16,8 @@ use crate::{
     prediction::{ByKind, ShapeNoise},
     tuning::{family, map::FEWEST_POINTS, update as tuning},
     update::{
-        FrameMeasurement, Gate, Misfit, PoseInnovation, PoseMeasurement, Rejection, commit, hold, misfit, with_hold,
+        FrameMeasurement, Gate, Misfit, PoseInnovation, PoseMeasurement, Rejection, commit, hold, misfit,
+        outline_shift, with_hold,
     },
 };
 
@@ -54,6 +55,8 @@ pub(crate) struct Outcome {
     pub(crate) innovation: PoseInnovation,
     /// What the frame tells of the pose by itself, if it was taken.
     pub(crate) pose: Option<PoseMeasurement>,
+    /// The error of poses that it makes by correcting the outline.
+    pub(crate) outline_shift: Option<SVector<f64, MAX_PARAMETERS>>,
     /// What it says of motions that the model leaves out; not looked for in every frame.
     pub(crate) misfit: Option<Misfit>,
     /// Of the frame given what was known before it; none unless asked for.
@@ -177,6 +180,7 @@ impl Track {
                     verdict,
                     innovation: PoseInnovation::default(),
                     pose: None,
+                    outline_shift: None,
                     misfit: None,
                     likelihood: NegativeLogLikelihood::default(),
                 };
@@ -194,7 +198,7 @@ impl Track {
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
         let correlation = correlation_of(&frame.measurements, measurement.noise.map(|noise| noise / radius));
         let verdict = gate.verdict(&measurement);
-        let (mut pose, mut found) = (None, None);
+        let (mut pose, mut shift, mut found) = (None, None, None);
         if verdict.is_ok() {
             pose = Some(PoseMeasurement::of(&self.belief, &proposal, frame).over(variance));
             self.frames += 1;
@@ -202,6 +206,7 @@ impl Track {
             if self.frames > family::MAP_KNOWN && is_looked_at {
                 found = misfit(&self.belief, frame, (&proposal.pose, &self.map.middle()), variance.sqrt());
             }
+            shift = outline_shift(&self.map, self.belief.model, &proposal.pose, (&frame.shifts, &frame.cells));
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             if let Some(noise) = measurement.noise {
                 self.noise.take(noise / radius);
@@ -214,7 +219,7 @@ impl Track {
                 self.grow_along(contours, frame);
             }
         }
-        Outcome { measurement, verdict, innovation, pose, misfit: found, likelihood }
+        Outcome { measurement, verdict, innovation, pose, outline_shift: shift, misfit: found, likelihood }
     }
 
     /// Takes the spread of a frame, image lengths, used or not.

@@ -5,6 +5,7 @@ mod hold;
 mod innovation;
 mod misfit;
 mod normal_equations;
+mod outline_shift;
 mod pose_measurement;
 mod solve;
 
@@ -15,4 +16,5 @@ pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
 pub(crate) use misfit::{LEFT_OUT, Misfit, misfit};
 pub(crate) use normal_equations::accumulate;
+pub(crate) use outline_shift::outline_shift;
 pub(crate) use pose_measurement::PoseMeasurement;
