@@ -77,7 +77,7 @@ enum Reason {
 }
 
 impl Tracker {
-    /// Everything that the tracker knows, as bytes: 40 to 80 kB for each object. A tracker [made from them](Self::from_bytes) goes on as this
+    /// Everything that the tracker knows, as bytes: 50 to 100 kB for each object. A tracker [made from them](Self::from_bytes) goes on as this
     /// one would, to the last bit. The first four bytes are the version of the format, little-endian.
     ///
     /// ```

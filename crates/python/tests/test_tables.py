@@ -85,7 +85,7 @@ def test_an_object_given_up_and_begun_anew_has_another_segment(bird):
 
 
 def test_smoothed_poses_are_known_better_than_filtered_ones(table):
-    filtered, smoothed = ff.track(table), ff.track(table, smooth=True)
+    filtered, smoothed = (ff.track(table, smooth=smooth, adaptive=False) for smooth in (False, True))
     early = slice(4, 10)
     assert (smoothed["angle_std"][early] < filtered["angle_std"][early]).all()
     np.testing.assert_array_equal(smoothed["angle_std"][-2:], filtered["angle_std"][-2:])

@@ -51,5 +51,6 @@ fn take_frames(bytes: &[u8]) {
         // Any answer will do.
         let _ = filter.step(10.0 + frame.time, &frame.outline);
         let _ = (filter.state(), filter.velocity(), filter.ambiguity(), filter.outline_points().count());
+        let _ = (filter.aliases(), filter.dynamics(), filter.wrong_family(), filter.unstated());
     }
 }

@@ -49,7 +49,7 @@ pub enum StateError {
 }
 
 impl MotionFilter {
-    /// Everything that the filter knows, as bytes: 40 to 80 kB for an outline of 400 points. A filter [made from them](Self::from_bytes)
+    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points. A filter [made from them](Self::from_bytes)
     /// goes on as this one would, to the last bit. The first four bytes are the version of the format, little-endian.
     ///
     /// # Errors

@@ -171,6 +171,7 @@ fn forged_states_are_refused_or_can_be_worked_with() {
             // Any answer will do.
             let _ = filter.step(0.2 + index as f64 / 30.0, outline);
             let _ = (filter.state(), filter.velocity(), filter.ambiguity(), filter.outline_points().count());
+            let _ = (filter.aliases(), filter.dynamics(), filter.wrong_family(), filter.unstated());
         }
     }
     assert!(accepted > 15, "{accepted}");

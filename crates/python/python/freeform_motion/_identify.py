@@ -163,7 +163,7 @@ def track(
     data, fps, times, columns, motion, method, scale, progress, **options
         As of `identify`.
     smooth : bool
-        Whether later frames take part in the poses of earlier ones, for a constant motion.
+        Whether later frames take part in the poses of earlier ones, for a constant motion; `adaptive=False` says that it is one.
 
     Returns
     -------
