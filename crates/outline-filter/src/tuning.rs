@@ -340,6 +340,9 @@ pub(crate) mod dynamics {
     pub(crate) const MEMORY: f64 = 2.0;
     /// As these, where the velocity of the middle alone changes.
     pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
+    /// How far the point of an object that runs straight may be from its middle, in RMS radii, as a deviation: noise, hidden arcs, and bodies
+    /// that are not quite even.
+    pub(crate) const MIDDLE: f64 = 0.02;
     /// Probability that an interval of 95 % leaves out.
     pub(crate) const LEFT_OUT: f64 = 0.05;
     /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.

@@ -23,7 +23,8 @@ pub(super) enum Course {
         /// In standard deviations of a pose as the points of a frame tell it.
         deviations: f64,
     },
-    /// The velocity of the middle stays.
+    /// The velocity of a point of the object stays that is not quite the middle. In place of accelerations its state has the part of the
+    /// velocity of the middle that turns with the object.
     ConstantVelocity,
     /// The accelerations change at random.
     Accelerating {
@@ -37,7 +38,7 @@ pub(super) enum Course {
 impl Course {
     /// Variances of accelerations of which nothing is known yet: such that they move the object by some deviations of a pose over the steps
     /// that the level remembers. Larger ones are those of higher levels.
-    pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
+    fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
         let Self::Accelerating { level, rates } = self else { return CentredVector::zeros() };
         let first = if rates { 0 } else { k - 2 };
         let span = seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0);
@@ -53,9 +54,9 @@ impl Course {
         }
     }
 
-    /// Whether accelerations are part of the state.
-    pub(super) fn has_accelerations(self) -> bool {
-        matches!(self, Self::Accelerating { .. })
+    /// Whether the state has entries behind the motion.
+    pub(super) fn has_more_than_motion(self) -> bool {
+        matches!(self, Self::Accelerating { .. } | Self::ConstantVelocity)
     }
 }
 
@@ -100,7 +101,32 @@ pub(super) struct Step<'a> {
 impl Hypothesis {
     /// Number of entries in use.
     pub(super) fn size(&self, k: usize) -> usize {
-        if self.course.has_accelerations() { 3 * k } else { 2 * k }
+        if self.course.has_more_than_motion() { 3 * k } else { 2 * k }
+    }
+
+    /// Rates of the motion, as a linear map.
+    pub(super) fn rates(&self, model: MotionModel) -> Matrix2<f64> {
+        let k = model.parameter_count();
+        parts(&model.generator(&self.mean.as_slice()[k..2 * k])).0
+    }
+
+    /// Takes next to nothing to be known of the entries behind the motion, which depend on no others then; `share` of the variance is added.
+    pub(super) fn add_unknown(
+        &mut self,
+        model: MotionModel,
+        (pose_variance, seconds): (&CentredVector, f64),
+        share: f64,
+    ) {
+        let k = model.parameter_count();
+        if self.course == Course::ConstantVelocity {
+            let rates = self.rates(model) * tuning::MIDDLE;
+            let added = share * rates * rates.transpose();
+            let mut block = self.covariance.fixed_view_mut::<2, 2>(3 * k - 2, 3 * k - 2);
+            block += added;
+        } else {
+            let prior = self.course.acceleration_prior(pose_variance, k, seconds);
+            (2 * k..3 * k).for_each(|i| self.covariance[(i, i)] += share * prior[i - 2 * k]);
+        }
     }
 
     /// Moves on by a step; whether the numbers allow it.
@@ -108,7 +134,11 @@ impl Hypothesis {
         let (model, k, dt) = (step.model, step.model.parameter_count(), step.seconds);
         let rates = k - 2;
         let entry = |at: usize| CentredVector::from_fn(|j, _| if j < k { self.mean[at * k + j] } else { 0.0 });
-        let [error, motion, acceleration] = [entry(0), entry(1), entry(2)];
+        let [error, motion, mut acceleration] = [entry(0), entry(1), entry(2)];
+        let turning = Vector2::new(acceleration[k - 2], acceleration[k - 1]);
+        if self.course == Course::ConstantVelocity {
+            acceleration.fill(0.0);
+        }
         let (a, v) = parts(&model.generator(&motion.as_slice()[..k]));
         let w = parts(&model.generator(&acceleration.as_slice()[..k])).1;
         let of_rates = |of: &CentredVector, seconds: f64| {
@@ -120,7 +150,14 @@ impl Hypothesis {
                 let (turn, shift) = parts(&model.flow(&motion.as_slice()[..k], dt).into_inner());
                 (turn, shift, turn * v)
             }
-            _ => (of_rates(&(motion + 0.5 * dt * acceleration), dt), v * dt + 0.5 * dt * dt * w, v + dt * w),
+            Course::ConstantVelocity => {
+                let turn = of_rates(&motion, dt);
+                let turned = turn * turning - turning;
+                (turn, v * dt + 0.5 * dt * turned, v + turned)
+            }
+            Course::Accelerating { .. } => {
+                (of_rates(&(motion + 0.5 * dt * acceleration), dt), v * dt + 0.5 * dt * dt * w, v + dt * w)
+            }
         };
         let Some(before) = step.to.linear().try_inverse() else { return false };
         let relative = turn * of_rates(&error, 1.0) * step.from.linear() * before;
@@ -133,6 +170,9 @@ impl Hypothesis {
         }
         (self.mean[k - 2], self.mean[k - 1]) = (centre.x, centre.y);
         (self.mean[2 * k - 2], self.mean[2 * k - 1]) = (later.x, later.y);
+        if self.course == Course::ConstantVelocity {
+            self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
+        }
         self.covariance = carried(&transition, &self.covariance, self.size(k));
         if let Course::Accelerating { level, rates: all } = self.course {
             for j in if all { 0 } else { rates }..k {
@@ -197,7 +237,15 @@ impl Hypothesis {
                     }
                 }
             }
-            Course::ConstantVelocity => {}
+            Course::ConstantVelocity => {
+                let less = turn - Matrix2::identity();
+                for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let (row, column) = (rates + i, 2 * k + rates + j);
+                    f[(row, column)] = 0.5 * dt * less[(i, j)];
+                    f[(k + row, column)] = less[(i, j)];
+                    f[(2 * k + row, column)] = turn[(i, j)];
+                }
+            }
             Course::Accelerating { .. } => {
                 for j in 0..k {
                     f[(j, 2 * k + j)] = 0.5 * dt * dt;
@@ -275,10 +323,13 @@ impl Hypothesis {
     pub(super) fn move_middle(&mut self, model: MotionModel, from: &CentredPose, to: &CentredPose) {
         let k = model.parameter_count();
         let apart = map_point(&from.pose, &to.middle) - from.centre();
-        let carried = parts(&model.generator(&self.mean.as_slice()[k..2 * k])).0 * apart;
+        let carried = self.rates(model) * apart;
         self.mean[2 * k - 2] += carried.x;
         self.mean[2 * k - 1] += carried.y;
-        let carried = parts(&model.generator(&self.mean.as_slice()[2 * k..3 * k])).0 * apart;
+        let carried = match self.course {
+            Course::ConstantVelocity => carried,
+            _ => parts(&model.generator(&self.mean.as_slice()[2 * k..3 * k])).0 * apart,
+        };
         self.mean[3 * k - 2] += carried.x;
         self.mean[3 * k - 1] += carried.y;
     }

@@ -70,15 +70,17 @@ impl DynamicsFilter {
         };
         for course in courses {
             let mut hypothesis = Hypothesis { course, mean, covariance };
-            if course.has_accelerations() {
-                let prior = course.acceleration_prior(&pose_variance, k, seconds);
+            if course.has_more_than_motion() {
+                hypothesis.add_unknown(model, (&pose_variance, seconds), 1.0);
+            }
+            if let Course::Accelerating { .. } = course {
                 // The motion known so far is the mean over the step: half of it ago.
                 for j in 0..k {
                     let (u, a) = (k + j, 2 * k + j);
-                    hypothesis.covariance[(a, a)] = prior[j];
-                    hypothesis.covariance[(u, u)] += 0.25 * seconds * seconds * prior[j];
-                    hypothesis.covariance[(u, a)] = 0.5 * seconds * prior[j];
-                    hypothesis.covariance[(a, u)] = 0.5 * seconds * prior[j];
+                    let prior = hypothesis.covariance[(a, a)];
+                    hypothesis.covariance[(u, u)] += 0.25 * seconds * seconds * prior;
+                    hypothesis.covariance[(u, a)] = 0.5 * seconds * prior;
+                    hypothesis.covariance[(a, u)] = 0.5 * seconds * prior;
                 }
             }
             filter.weights[filter.hypotheses.len()] = match course {

@@ -40,19 +40,24 @@ pub(super) fn mix(
         let total = tuning::TRANSITION * all + (stays - tuning::TRANSITION) * *weight;
         let [changed, own] = [tuning::TRANSITION * all / total, (stays - tuning::TRANSITION) * *weight / total];
         let n = hypothesis.size(k);
+        // What a course has alone is as it was, or nothing is known of it.
+        let shared = if hypothesis.course == Course::ConstantVelocity { 2 * k } else { n };
         let mut apart = [0.0; super::hypothesis::ENTRIES];
-        for (i, apart) in apart.iter_mut().enumerate().take(n) {
+        for (i, apart) in apart.iter_mut().enumerate().take(shared) {
             *apart = of_all.mean[i] - hypothesis.mean[i];
             hypothesis.mean[i] += changed * *apart;
         }
         for j in 0..n {
             for i in 0..n {
                 let entry = &mut hypothesis.covariance[(i, j)];
-                *entry = changed * of_all.covariance[(i, j)] + own * (*entry + changed * apart[i] * apart[j]);
+                let of_all = if i < shared && j < shared { of_all.covariance[(i, j)] } else { 0.0 };
+                *entry = changed * of_all + own * (*entry + changed * apart[i] * apart[j]);
             }
         }
-        let prior = hypothesis.course.acceleration_prior(pose_variance, k, seconds);
-        (2 * k..n).for_each(|i| hypothesis.covariance[(i, i)] += changed * of_all.without * prior[i - 2 * k]);
+        let unknown = if shared < n { 1.0 } else { of_all.without };
+        if n > 2 * k {
+            hypothesis.add_unknown(model, (pose_variance, seconds), changed * unknown);
+        }
         *weight = total;
     }
 }
@@ -127,7 +132,11 @@ impl Accelerations {
                 let (a, v) = parts(&model.generator(&source.mean.as_slice()[k..2 * k]));
                 mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(a * v));
             }
-            Course::ConstantVelocity | Course::Accelerating { .. } => {}
+            Course::ConstantVelocity => {
+                let turning = source.mean.fixed_rows::<2>(3 * k - 2).into_owned();
+                mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(source.rates(model) * turning));
+            }
+            Course::Accelerating { .. } => {}
         }
         mean
     }

@@ -52,19 +52,47 @@ pub(super) struct NullSpace {
     pub(super) in_body: Vec<ParameterVector>,
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(super) frame: Matrix3<f64>,
+    pub(super) middle: Point2<f64>,
     pub(super) turn: TurnEvidence,
 }
 
 impl Default for NullSpace {
     fn default() -> Self {
-        Self { in_body: Vec::new(), frame: Matrix3::identity(), turn: TurnEvidence::default() }
+        Self {
+            in_body: Vec::new(),
+            frame: Matrix3::identity(),
+            middle: Point2::origin(),
+            turn: TurnEvidence::default(),
+        }
     }
 }
 
 impl OutlineMap {
-    /// Centre of the cells in the body frame.
+    /// The object's middle in the body frame: the centroid of the area that the outline encloses, which a body of even thickness turns
+    /// about where nothing holds it; the centre of the cells where the outline is not one closed contour.
     pub(crate) fn middle(&self) -> Point2<f64> {
-        Point2::new(self.null_space.frame[(0, 2)], self.null_space.frame[(1, 2)])
+        self.null_space.middle
+    }
+
+    /// Centroid of the area within the polygon of the cells, if they are one closed contour.
+    fn area_centroid(&self) -> Option<Point2<f64>> {
+        let origin = self.cells.first()?.centre;
+        let (mut last, mut here) = (0, self.cells[0].neighbours[1]);
+        let (mut area, mut moment) = (0.0, Vector2::zeros());
+        for _ in 1..self.cells.len() {
+            // Links may point either way.
+            let [a, b] = self.cells[here].neighbours;
+            let next = if a == last { b } else { a };
+            if here == 0 || a == here || b == here {
+                return None;
+            }
+            let (p, q) = (self.cells[last].centre - origin, self.cells[here].centre - origin);
+            let twice = p.perp(&q);
+            area += twice;
+            moment += twice * (p + q);
+            (last, here) = (here, next);
+        }
+        (here == 0 && area != 0.0).then(|| origin + moment / (3.0 * area))
     }
 
     /// What frames have said of the turn.
@@ -148,6 +176,7 @@ impl OutlineMap {
             levers += across * across.transpose() / count;
             levers_of_noise += variance / count * along * along.transpose();
         }
+        let middle = self.area_centroid().unwrap_or(centroid);
         let eigen = levers.symmetric_eigen();
         let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
         let space = &mut self.null_space;
@@ -160,7 +189,7 @@ impl OutlineMap {
                 space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
             }
         }
-        space.frame = to_body;
+        (space.frame, space.middle) = (to_body, middle);
         space.turn = match space.turn {
             TurnEvidence::Hidden => TurnEvidence::AsTheNormals,
             TurnEvidence::NewAndHidden => TurnEvidence::New,
