@@ -150,14 +150,15 @@ impl OutlineMap {
         let is_cell = |cell: &Cell| {
             cell.centre.iter().chain(&cell.normal).all(within) && cell.neighbours.iter().all(|number| *number < count)
         };
-        let NullSpace { in_body, frame, .. } = &self.null_space;
+        let NullSpace { in_body, frame, middle, .. } = &self.null_space;
         let is_sound = (3..=tuning::MOST_SAVED).contains(&count)
             && self.cells.iter().all(is_cell)
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
             && super::contour::is_half_window(self.half_window)
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
-            && in_body.iter().flatten().chain(frame).all(within);
+            && in_body.iter().flatten().chain(frame).all(within)
+            && middle.iter().all(|coordinate| coordinate.is_finite());
         if is_sound {
             let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
             self.field.build(&centres, self.spacing);
