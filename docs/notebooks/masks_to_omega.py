@@ -102,13 +102,14 @@ print(f"{inside:.0%} of the intervals of two deviations hold the truth; RMS erro
 assert inside > 0.8
 
 # %% [markdown]
-# ## What masks do not show
+# ## What outlines do not show
 #
 # The angular velocity of a disc cannot be seen. It is then NaN in arrays and None as a value, and a warning says so. The velocity
-# of its middle is known all the same.
+# of its middle is known all the same. Here with the points of outlines instead of masks:
 
 # %%
-disc = ff.identify(ff.simulate("circle", omega=1.0, b=(0.3, 0.0), seconds=2.0).masks(), fps=FPS)["1"]
+table = ff.outline_table(ff.simulate("circle", omega=1.0, b=(0.3, 0.0), seconds=2.0))
+disc = ff.identify(table)[0]
 print(disc.estimate["omega"], "|", [warning.code for warning in disc.warnings])
-print("middle:", disc.velocity.velocity.round(2), "+-", disc.velocity.std.round(3), "pixels/s")
+print("middle:", disc.velocity.velocity.round(3), "+-", disc.velocity.std.round(3), "lengths/s")
 assert disc.estimate["omega"].value is None
