@@ -12,6 +12,7 @@ const RUNS_KEPT: usize = 100;
 /// assert_eq!(FrameRanges::from_iter([1, 5, 6, 7]).to_string(), "1, 5-7");
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FrameRanges {
     runs: Vec<(u64, u64)>,
     beyond: u64,
@@ -27,6 +28,12 @@ impl FrameRanges {
             _ if is_full => self.beyond += 1,
             _ => self.runs.push((number, number)),
         }
+    }
+
+    /// Whether its runs can be added to.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound(&self) -> bool {
+        self.runs.len() <= RUNS_KEPT && self.beyond < 1 << 48
     }
 
     /// Whether there is no number.

@@ -70,6 +70,12 @@ impl Rectification {
         }
     }
 
+    /// The map from the picture to the plane, as it was given.
+    #[cfg(feature = "serde")]
+    pub(crate) fn plane_from_picture(&self) -> &Matrix3<f64> {
+        &self.plane_from_picture
+    }
+
     /// An outline of the picture in the plane.
     ///
     /// # Errors

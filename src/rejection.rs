@@ -28,6 +28,8 @@ pub enum RejectionCause {
     Filter(FilterError),
     /// Error of the pipeline.
     Pipeline(PipelineError),
+    /// What was told of a frame rejected before the state of the tracker was saved.
+    Saved(String),
 }
 
 impl fmt::Display for FrameRejection {
@@ -43,7 +45,7 @@ impl fmt::Display for FrameRejection {
 impl fmt::Display for RejectionCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoOutline(reason) => f.write_str(reason),
+            Self::NoOutline(reason) | Self::Saved(reason) => f.write_str(reason),
             Self::NotRectified(error) => error.fmt(f),
             Self::NotAccepted(rejection) => rejection.fmt(f),
             Self::Filter(error) => f.write_str(&with_causes(error)),

@@ -6,7 +6,7 @@ use nalgebra::{Point2, distance};
 use crate::Warning;
 
 /// Frames of an object that are looked at.
-const FRAMES: usize = 5;
+pub(super) const FRAMES: usize = 5;
 
 /// Points may be out of order if the line through them is longer than this many perimeters of their bounding box. Fewer than 40 points in
 /// random order may have a shorter line and pass. Deep notches make a contour about as long as seven perimeters.
@@ -22,8 +22,8 @@ const LONG_IF_SORTED: f64 = 2.0;
 /// Looks at the first frames of an object, whose rows should be in the order of the contour.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ContourOrder {
-    seen: usize,
-    warning: Option<Warning>,
+    pub(super) seen: usize,
+    pub(super) warning: Option<Warning>,
 }
 
 impl ContourOrder {

@@ -23,9 +23,9 @@ pub(super) enum Identifier {
 /// A filter, and what it knew before it began to look for the object again.
 #[derive(Debug, Clone)]
 pub(super) struct FilteredObject {
-    filter: MotionFilter,
+    pub(super) filter: MotionFilter,
     /// Time in seconds and motion when it was last known.
-    last_known: Option<(f64, MotionEstimate)>,
+    pub(super) last_known: Option<(f64, MotionEstimate)>,
 }
 
 /// What became of one frame.

@@ -13,6 +13,8 @@ mod queues;
 mod recording;
 mod result;
 mod settings;
+#[cfg(feature = "serde")]
+mod state_bytes;
 mod trajectory;
 
 use std::collections::HashMap;
@@ -21,6 +23,8 @@ use freeform_outline_io::OutlineFrame;
 
 use self::{identifier::Identifier, object::TrackedObject};
 
+#[cfg(feature = "serde")]
+pub use self::state_bytes::TrackerStateError;
 pub use self::{
     attendance::{Attendance, Sighting},
     observation::{ObjectPhase, Observation},

@@ -13,22 +13,22 @@ use crate::rejection::{FrameRejection, RejectionCause};
 use crate::warning::Warning;
 
 /// Rejected frames of an object that are kept with their reasons.
-const REJECTIONS_KEPT: usize = 10;
+pub(super) const REJECTIONS_KEPT: usize = 10;
 
 /// An object, what is known of it, and what became of its frames.
 #[derive(Debug, Clone)]
 pub(super) struct TrackedObject {
-    name: String,
-    identifier: Identifier,
-    scale: Option<CameraScale>,
-    rectification: Option<Rectification>,
-    contour_order: ContourOrder,
-    frames: usize,
-    rejected: usize,
+    pub(super) name: String,
+    pub(super) identifier: Identifier,
+    pub(super) scale: Option<CameraScale>,
+    pub(super) rectification: Option<Rectification>,
+    pub(super) contour_order: ContourOrder,
+    pub(super) frames: usize,
+    pub(super) rejected: usize,
     /// The first of them.
-    rejections: Vec<FrameRejection>,
+    pub(super) rejections: Vec<FrameRejection>,
     /// Numbers of the others.
-    rejected_later: FrameRanges,
+    pub(super) rejected_later: FrameRanges,
 }
 
 impl TrackedObject {

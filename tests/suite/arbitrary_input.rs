@@ -122,6 +122,12 @@ fn any_sequence_leaves_the_motion_filter_finite() {
     random_bytes(9, 150, 1200).for_each(|bytes| motion_filter(&bytes));
 }
 
+#[cfg(feature = "serde")]
+#[test]
+fn any_bytes_are_read_as_a_saved_filter_or_refused() {
+    random_bytes(12, 300, 60).for_each(|bytes| crate::checks::saved_state(&bytes));
+}
+
 #[test]
 fn what_the_targets_in_fuzz_have_found_stays_mended() {
     // An arc of two points has no inside; its bounded fit was the polynomial 0.

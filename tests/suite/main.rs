@@ -11,3 +11,5 @@ mod rectification;
 mod robustness;
 mod soak;
 mod tracker;
+#[cfg(feature = "serde")]
+mod tracker_state;

@@ -9,6 +9,8 @@ const COLLINEAR_RATIO: f64 = 1e-9;
 /// Points of one contour in the order in which they follow each other, either way round; the last is joined to the
 /// first, which is not repeated. At least three finite points that do not lie on one line.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<Point2<f64>>", into = "Vec<Point2<f64>>"))]
 pub struct ClosedOutline {
     points: Vec<Point2<f64>>,
 }
@@ -39,6 +41,8 @@ impl ClosedOutline {
 
 /// An ordered open piece of a contour, either way round: at least two finite points that are not all equal.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<Point2<f64>>", into = "Vec<Point2<f64>>"))]
 pub struct OpenArc {
     points: Vec<Point2<f64>>,
 }
@@ -63,6 +67,8 @@ impl OpenArc {
 /// What is seen of a partly hidden contour: one or more open arcs, all running the same way round, in the order in which
 /// the contour passes through them; not all on one line.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<OpenArc>", into = "Vec<OpenArc>"))]
 pub struct OpenOutline {
     arcs: Vec<OpenArc>,
 }
@@ -104,11 +110,54 @@ impl OpenOutline {
 
 /// What one frame shows of one object: the whole contour, or open arcs of it.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outline {
     /// The whole contour.
     Closed(ClosedOutline),
     /// Parts of the contour.
     Open(OpenOutline),
+}
+
+impl TryFrom<Vec<Point2<f64>>> for ClosedOutline {
+    type Error = OutlineError;
+
+    fn try_from(points: Vec<Point2<f64>>) -> Result<Self, OutlineError> {
+        Self::new(points)
+    }
+}
+
+impl From<ClosedOutline> for Vec<Point2<f64>> {
+    fn from(outline: ClosedOutline) -> Self {
+        outline.points
+    }
+}
+
+impl TryFrom<Vec<Point2<f64>>> for OpenArc {
+    type Error = OutlineError;
+
+    fn try_from(points: Vec<Point2<f64>>) -> Result<Self, OutlineError> {
+        Self::new(points)
+    }
+}
+
+impl From<OpenArc> for Vec<Point2<f64>> {
+    fn from(arc: OpenArc) -> Self {
+        arc.points
+    }
+}
+
+impl TryFrom<Vec<OpenArc>> for OpenOutline {
+    type Error = OutlineError;
+
+    fn try_from(arcs: Vec<OpenArc>) -> Result<Self, OutlineError> {
+        Self::in_sequence(arcs)
+    }
+}
+
+impl From<OpenOutline> for Vec<OpenArc> {
+    fn from(outline: OpenOutline) -> Self {
+        outline.arcs
+    }
 }
 
 /// One run of neighbouring points and whether its last point is joined to its first.

@@ -6,6 +6,7 @@ pub(crate) const MAX_PARAMETERS: usize = MotionModel::MAX_PARAMETERS;
 
 /// An identified motion in the image frame: one value per parameter of its model, and how well each is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionEstimate {
     model: MotionModel,
     values: [f64; MAX_PARAMETERS],

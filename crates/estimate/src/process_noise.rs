@@ -3,6 +3,7 @@ use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVect
 /// How fast the motion itself may change: standard deviations per square root of a second, of the motion about the centre of the first
 /// outline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProcessNoise {
     /// Of the rates of turning, growth and shear, in 1/s.
     pub rates: f64,

@@ -18,6 +18,8 @@
 //!
 //! `docs/motion-filter.md` of the repository derives the equations, each with its code and test.
 //!
+//! With the feature `serde` a filter can be saved and restored: `MotionFilter::to_bytes` and `MotionFilter::from_bytes`.
+//!
 //! [`MotionFilter`] processes frames one by one, as from a camera. [`estimate_batch`] estimates a constant motion from all frames of a
 //! recording together.
 //!
@@ -59,6 +61,8 @@ mod update;
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
 pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated};
+#[cfg(feature = "serde")]
+pub use supervisor::{StateError, with_header, without_header};
 pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]

@@ -29,6 +29,12 @@ pub(crate) mod map {
     pub(crate) const SHORTEST_RUN: usize = 2;
     /// Longest side of the picture of nearest cells, pixels: it stays within the second cache of a processor.
     pub(crate) const FIELD_PIXELS: f64 = 192.0;
+    /// Farthest that anything on a saved map may be from the centre of the first outline, in its radii; nothing followed comes near it.
+    #[cfg(feature = "serde")]
+    pub(crate) const FARTHEST: f64 = 1e9;
+    /// Most cells of a saved map: far more than [`MOST_TIMES_SEEN`] of [`MOST_CELLS`] make.
+    #[cfg(feature = "serde")]
+    pub(crate) const MOST_SAVED: usize = 1 << 20;
     /// Points further than this many spacings beyond a known end belong to what is not known yet.
     pub(crate) const BEYOND_END: f64 = 0.75;
 }
@@ -433,4 +439,13 @@ pub(crate) mod statement {
     pub(crate) const MOST_REJECTED: f64 = 0.4;
     /// Fewest frames rejected that say so.
     pub(crate) const FEWEST_REJECTED: usize = 5;
+}
+
+/// States that are read from bytes.
+#[cfg(feature = "serde")]
+pub(crate) mod saved_state {
+    /// Counters of a filter stay below this: more frames than a camera sees in a thousand years.
+    pub(crate) const MOST_COUNTED: usize = 1 << 48;
+    /// How far probabilities may sum to something else than 1, by rounding.
+    pub(crate) const SUM_OFF: f64 = 1e-6;
 }

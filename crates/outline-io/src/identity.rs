@@ -132,16 +132,18 @@ impl Known {
     }
 }
 
-/// Follows objects from picture to picture.
+/// Follows objects from picture to picture: gives those of each picture the names that they had before, as [`Selection`] says.
 #[derive(Debug)]
-pub(crate) struct Identities {
+pub struct Identities {
     selection: Selection,
     known: Vec<Known>,
     next_name: u64,
 }
 
 impl Identities {
-    pub(crate) fn new(selection: Selection) -> Self {
+    /// Before the first picture.
+    #[must_use]
+    pub fn new(selection: Selection) -> Self {
         Self { selection, known: Vec::new(), next_name: 0 }
     }
 
@@ -150,12 +152,11 @@ impl Identities {
         if self.selection == Selection::Largest { 1 } else { OBJECT_LIMIT }
     }
 
-    /// Names the objects of a picture, the most important of which comes first.
-    pub(crate) fn assign(
-        &mut self,
-        frame: u64,
-        traced: Vec<TracedOutline>,
-    ) -> Result<Vec<(u64, TracedOutline)>, TraceError> {
+    /// Names the objects of a picture, the most important of which comes first. Frames must increase.
+    ///
+    /// # Errors
+    /// No object is where the one followed should be; all objects touch others; no object at all where one is needed.
+    pub fn assign(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Result<Vec<(u64, TracedOutline)>, TraceError> {
         self.known.retain(|known| frame.saturating_sub(known.frame) <= PATIENCE + 1);
         match self.selection {
             Selection::Largest => Ok(traced.into_iter().take(1).map(|traced| (0, traced)).collect()),

@@ -18,6 +18,8 @@
 //! - [`OutlineReader`] and [`OutlineWriter`] stream outlines as CSV.
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
+//! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
+//! - [`OutlineColumns`] are outlines as columns of a table in memory.
 //! - [`read_shape`] reads one closed outline from either.
 mod affine_moment_invariants;
 mod assignment;
@@ -42,11 +44,13 @@ mod gif_animation;
 mod gif_interval;
 mod identity;
 mod jpeg_end;
+mod labels;
 mod latest_frames;
 mod morphology;
 mod natural_order;
 mod not_csv;
 mod object_mask;
+mod outline_columns;
 mod outline_rows;
 mod picture;
 mod picture_error;
@@ -71,8 +75,10 @@ pub use csv_writer::{OutlineWriter, WriterOptions};
 pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, WriteError};
 pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
-pub use identity::Selection;
+pub use identity::{Identities, Selection};
 pub use image::GrayImage;
+pub use labels::LabelMask;
+pub use outline_columns::{ColumnOutlines, ColumnsError, OutlineColumns};
 pub use picture::{decode_picture, read_picture, read_picture_channel};
 pub use picture_error::{PictureError, PictureErrorKind, TraceError};
 pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};

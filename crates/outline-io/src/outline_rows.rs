@@ -95,7 +95,7 @@ impl OutlineRows {
     }
 }
 
-fn closed_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {
+pub(crate) fn closed_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {
     let mut points = pieces.into_iter().next().unwrap_or_default();
     if points.len() > 1 && points.first() == points.last() {
         points.pop();
@@ -103,7 +103,7 @@ fn closed_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError
     Outline::closed(points)
 }
 
-fn open_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {
+pub(crate) fn open_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {
     let mut arcs = Vec::with_capacity(pieces.len());
     let mut refused = None;
     for points in pieces {

@@ -108,7 +108,7 @@ fn ring_outlines<'a>(
     let object_count = objects.len();
     let traced = objects.into_iter().map(move |object| {
         let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5 };
-        let seen = window.outline(picture, settings)?.ok_or(TraceError::NoRing)?;
+        let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::NoRing)?;
         Ok(seen.traced(object.pixel_count, object_count, 0.5))
     });
     Ok(Box::new(traced))
@@ -134,23 +134,23 @@ fn mask_outlines<'a>(
             field.blur(sigma);
         }
         let window = Window { left: mask.left, top: mask.top, field: &field, level: levels.threshold };
-        let seen = window.outline(picture, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
+        let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
         Ok(seen.traced(mask.pixel_count, object_count, threshold))
     });
     Ok(Box::new(traced))
 }
 
 /// A part of a picture with an object in it.
-struct Window<'a> {
-    left: usize,
-    top: usize,
-    field: &'a Field,
+pub(crate) struct Window<'a> {
+    pub(crate) left: usize,
+    pub(crate) top: usize,
+    pub(crate) field: &'a Field,
     /// Value on the outline.
-    level: f64,
+    pub(crate) level: f64,
 }
 
 /// What is seen of an object.
-struct Seen {
+pub(crate) struct Seen {
     outline: Outline,
     touches_border: bool,
     centre: Point2<f64>,
@@ -159,19 +159,19 @@ struct Seen {
 }
 
 impl Seen {
-    fn traced(self, pixel_count: u64, object_count: usize, threshold: f64) -> TracedOutline {
+    pub(crate) fn traced(self, pixel_count: u64, object_count: usize, threshold: f64) -> TracedOutline {
         let Self { outline, touches_border, centre, area, invariants } = self;
         TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area, invariants }
     }
 }
 
 impl Window<'_> {
-    /// The longest outer outline in the window; `None` where nothing passes the level.
-    fn outline(&self, picture: &GrayImage, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
+    /// The longest outer outline in the window of a picture of this height; `None` where nothing passes the level.
+    pub(crate) fn outline(&self, picture_height: u32, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
         let outer = self.field.outer_isoline(self.level, POINT_LIMIT);
         let outer = outer.map_err(|LineTooLong { most }| TraceError::TooManyPoints { limit: most })?;
         let Some(line) = outer else { return Ok(None) };
-        let grid = settings.pixel_grid(picture.height());
+        let grid = settings.pixel_grid(picture_height);
         let touches_border = line.iter().any(|crossing| crossing.at_edge);
         let to_point = |crossing: &Crossing| {
             grid.to_plane(self.left as f64 + crossing.x + 0.5, self.top as f64 + crossing.y + 0.5)

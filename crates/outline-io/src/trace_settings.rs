@@ -7,7 +7,7 @@ use crate::ring::Ring;
 use crate::threshold::{Levels, Threshold};
 
 /// Standard deviation of the smoothing of two-valued pictures where none is given, in pixels.
-const MASK_SIGMA: f64 = 1.0;
+pub(crate) const MASK_SIGMA: f64 = 1.0;
 
 /// Standard deviation of the smoothing of pictures with more grey values, in pixels.
 const GREY_SIGMA: f64 = 0.5;

@@ -9,6 +9,8 @@ const FRAMES: usize = 10;
 /// Root mean square distance between outlines of different objects, in radii of the disc that has their inertia: the median
 /// and the standard deviation of its logarithm, over pairs of silhouettes brought onto each other.
 const OF_OTHERS: (f64, f64) = (0.12, 0.5);
+/// Squared distance that is rounding, in the same unit: an outline compared with itself has none.
+const ROUNDING: f64 = 1e-24;
 /// Distance that counts for a frame in which the invariants left a known outline out.
 const LEFT_OUT: f64 = 0.12;
 
@@ -129,7 +131,7 @@ impl Sums {
             return f64::NEG_INFINITY;
         }
         let left_out = (frames - self.fits) as f64 * LEFT_OUT * LEFT_OUT;
-        let squared = (self.squared_distance + left_out) / frames as f64;
+        let squared = ((self.squared_distance + left_out) / frames as f64).max(ROUNDING);
         let ratio = squared / (self.squared_expected / self.fits as f64);
         let independent = INDEPENDENT * frames.min(FRAMES) as f64;
         // Densities over the logarithm of the distance. Noise that was taken for too large is no reason against an outline.

@@ -10,6 +10,7 @@ pub const MAX_PARAMETERS: usize = 8;
 
 /// What a parameter of a motion model is, and with it how it changes with the unit of length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ParameterKind {
     /// Rate of growth, turning or shear, per second: `sigma`, `omega`, `a1` to `a4`. The unit of length does not matter.
     Rate,
@@ -21,6 +22,7 @@ pub enum ParameterKind {
 
 /// Family of motions of the plane, and with it the meaning of a parameter vector theta: `A = sum theta_j E_j`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MotionModel {
     /// omega, b1, b2: see [`RigidMotion`](crate::RigidMotion).
     Rigid,

@@ -4,6 +4,8 @@ mod files;
 mod finite;
 mod hostile_input;
 mod stages;
+#[cfg(feature = "serde")]
+mod states;
 
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]
 pub(crate) use files::{csv_reader, names, picture_folder, picture_reader, picture_stream, tracing};
@@ -11,3 +13,6 @@ pub(crate) use files::{csv_reader, names, picture_folder, picture_reader, pictur
 pub(crate) use finite::{assert_covariance, assert_finite};
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]
 pub(crate) use stages::{adaptive_identifier, fit_and_decomposition, motion_filter};
+#[cfg(feature = "serde")]
+#[allow(unused_imports, reason = "every user takes a part")]
+pub(crate) use states::saved_state;

@@ -138,4 +138,6 @@ pub(crate) fn motion_filter(bytes: &[u8]) {
         assert!(filter.noise().is_some_and(f64::is_finite));
         assert!(filter.outline_points().all(|p| p.coords.iter().all(|c| c.is_finite())));
     }
+    #[cfg(feature = "serde")]
+    super::states::assert_restorable(&filter);
 }

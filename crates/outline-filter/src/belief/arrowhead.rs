@@ -10,6 +10,7 @@ pub(crate) type StateMatrix = SMatrix<f64, STATE, STATE>;
 
 /// What the offset of one cell has to do with the rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct CellInformation {
     /// Between pose and motion, and the offset.
     pub(crate) coupling: [f64; STATE],
@@ -24,6 +25,7 @@ impl CellInformation {
 /// Arrowhead information matrix over (pose error, motion, offsets) in units of the noise. The state has `2 k` entries, k the number of
 /// parameters; the rest of the fixed-size arrays is zero.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Arrowhead {
     pub(crate) k: usize,
     pub(crate) dense: [[f64; STATE]; STATE],

@@ -8,6 +8,7 @@ use super::{Arrowhead, StateMatrix, scaled_inverse};
 ///
 /// The error of the pose is on the left: with the generator X of the error xi, the true pose is `expm(X)` after the one held.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Belief {
     pub(crate) model: MotionModel,
     /// Body to image.
@@ -25,6 +26,7 @@ pub(crate) struct Belief {
 
 /// How long ago what is known of the motion goes back to.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Memory {
     /// Seconds of the last prediction.
     pub(crate) step: f64,
@@ -37,6 +39,7 @@ pub(crate) struct Memory {
 
 /// Whether the poses of earlier frames are known beside the present one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum EarlierPoses {
     Known,
     /// They are off by what nobody knows: something of them was forgotten as the map grew.
@@ -94,5 +97,23 @@ impl Memory {
     pub(crate) fn clear(&mut self) {
         self.span = 0.0;
         self.effective = [0.0; MAX_PARAMETERS];
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Belief {
+    /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
+    pub(crate) fn is_sound(&self, cells: usize) -> bool {
+        let Arrowhead { k, dense, cells: information } = &self.information;
+        let Memory { step, span, effective } = self.memory;
+        let of_cells = information.iter().flat_map(|cell| cell.coupling.iter().chain([&cell.own]));
+        let numbers = self.pose.iter().chain(&self.motion).chain(&self.offsets).chain(dense.iter().flatten());
+        let numbers = numbers.chain(of_cells).chain(&self.marginal).chain([&step, &span]);
+        *k == self.model.parameter_count()
+            && self.offsets.len() == cells
+            && information.len() == cells
+            && numbers.into_iter().all(|number| number.is_finite())
+            && !effective.iter().any(|seconds| seconds.is_nan())
+            && self.pose.try_inverse().is_some()
     }
 }

@@ -15,6 +15,7 @@ pub(crate) type CentredDeviations = SVector<f64, MAX_PARAMETERS>;
 
 /// A pose with the object's middle in it, which centred coordinates are taken about.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct CentredPose {
     /// Body to image, normalised.
     pub(crate) pose: Matrix3<f64>,

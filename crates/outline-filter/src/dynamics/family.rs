@@ -22,6 +22,7 @@ pub enum WrongFamily {
 
 /// Tests of what a family of motions leaves out, over frames.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct FamilyTests {
     series: InnovationSeries,
     /// Sum of squared displacements.
@@ -79,5 +80,13 @@ impl FamilyTests {
             (0..LEFT_OUT).filter(|i| self.series.mean_square(*i) > most || self.slow[*i] > tuning::SIGNIFICANT);
         let size = changes.map(|i| (self.squares[i] / n).sqrt()).max_by(f64::total_cmp)?;
         (size > least).then_some((WrongFamily::Shape, size))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl FamilyTests {
+    /// Whether more can be taken; numbers that are not finite say nothing.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.series.is_sound()
     }
 }

@@ -14,6 +14,7 @@ pub(super) type EntryMatrix = SMatrix<f64, ENTRIES, ENTRIES>;
 
 /// What the motion does between frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Course {
     /// The velocity of the middle turns with the object.
     ConstantGenerator,
@@ -62,6 +63,7 @@ impl Course {
 /// State of one hypothesis. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j` its acceleration, k the number of
 /// parameters; all about the middle: rates first, then the velocity of the middle.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Hypothesis {
     pub(super) course: Course,
     pub(super) mean: Entries,

@@ -6,9 +6,12 @@
 //! Recommendations for practice, 2018).
 use super::centred::{CentredVector, LARGEST};
 use crate::tuning::innovations as tuning;
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::MOST_COUNTED;
 
 /// Sums over frames of standardised innovations, in constant memory: means over blocks of frames that double.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct InnovationSeries {
     frames: usize,
     last: CentredVector,
@@ -171,6 +174,22 @@ impl InnovationSeries {
         let per_frame = sum / (cosines as f64 * self.length as f64);
         let recoloured = 1.0 - corrected.powi(self.length as i32);
         per_frame / (recoloured * recoloured)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl InnovationSeries {
+    /// Whether the blocks are those of so many frames; numbers that are not finite say nothing.
+    pub(super) fn is_sound(&self) -> bool {
+        let Self { frames, blocks, length, filled, .. } = self;
+        let full = blocks.len().saturating_sub(1);
+        let counted = full.checked_mul(*length).and_then(|before| before.checked_add(*filled));
+        blocks.len() <= tuning::BLOCKS
+            && *frames < MOST_COUNTED
+            && length.is_power_of_two()
+            && *length < MOST_COUNTED
+            && filled <= length
+            && counted == Some(*frames)
     }
 }
 

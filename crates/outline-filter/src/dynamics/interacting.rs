@@ -9,6 +9,8 @@ use super::{
     mixing::mix,
     setting::{Dynamics, DynamicsWeights},
 };
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::SUM_OFF;
 use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
 
 /// Hypotheses at most.
@@ -18,6 +20,7 @@ type Weights = [f64; MOST];
 
 /// Hypotheses of how the motion goes on, each with a state of its own, and their probabilities.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct DynamicsFilter {
     model: MotionModel,
     setting: Dynamics,
@@ -62,19 +65,7 @@ impl DynamicsFilter {
         let (mean, covariance) = centred(&change, summary, k);
         let pose_variance =
             CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
-        let all = tuning::LEVELS.map(|level| Course::Accelerating { level, rates: true });
-        let of_velocity = tuning::LEVELS_OF_VELOCITY.map(|level| Course::Accelerating { level, rates: false });
-        let accelerating = all.into_iter().chain(of_velocity);
-        let courses: Vec<Course> = match setting {
-            Dynamics::Auto => {
-                let shaken = tuning::SHAKEN.map(|deviations| Course::Shaken { deviations });
-                let constant = [Course::ConstantGenerator, Course::ConstantVelocity];
-                constant.into_iter().chain(shaken).chain(accelerating).collect()
-            }
-            Dynamics::Generator => vec![Course::ConstantGenerator],
-            Dynamics::Velocity => vec![Course::ConstantVelocity],
-            Dynamics::Accelerating => accelerating.collect(),
-        };
+        let courses = courses(setting);
         let mut filter = Self {
             model,
             setting,
@@ -324,6 +315,23 @@ impl DynamicsFilter {
     }
 }
 
+/// What the hypotheses of a setting say that the motion does.
+fn courses(setting: Dynamics) -> Vec<Course> {
+    let all = tuning::LEVELS.map(|level| Course::Accelerating { level, rates: true });
+    let of_velocity = tuning::LEVELS_OF_VELOCITY.map(|level| Course::Accelerating { level, rates: false });
+    let accelerating = all.into_iter().chain(of_velocity);
+    match setting {
+        Dynamics::Auto => {
+            let shaken = tuning::SHAKEN.map(|deviations| Course::Shaken { deviations });
+            let constant = [Course::ConstantGenerator, Course::ConstantVelocity];
+            constant.into_iter().chain(shaken).chain(accelerating).collect()
+        }
+        Dynamics::Generator => vec![Course::ConstantGenerator],
+        Dynamics::Velocity => vec![Course::ConstantVelocity],
+        Dynamics::Accelerating => accelerating.collect(),
+    }
+}
+
 /// Motion and covariance of a summary about the middle.
 fn centred(
     change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
@@ -345,4 +353,28 @@ fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<Ce
         |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
     let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
     regular.lu().solve(b)
+}
+
+#[cfg(feature = "serde")]
+impl DynamicsFilter {
+    /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.
+    pub(crate) fn is_sound(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
+        let is_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        let count = self.hypotheses.len();
+        let followed = self.hypotheses.iter().map(|hypothesis| hypothesis.course);
+        let (weights, beyond) = self.weights.split_at(count.min(MOST));
+        self.model == model
+            && Some(self.setting) == setting
+            && model.parameter_count() <= LARGEST
+            && followed.eq(courses(self.setting))
+            && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
+            && weights.iter().all(|weight| (0.0..=1.0).contains(weight))
+            && (weights.iter().sum::<f64>() - 1.0).abs() < SUM_OFF
+            && beyond.iter().all(|weight| *weight == 0.0)
+            && is_finite(self.reference.pose.as_slice())
+            && is_finite(self.reference.middle.coords.as_slice())
+            && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
+            && self.series.is_sound()
+            && (self.shaking == 1.0 || courses(self.setting).iter().any(|course| course.shaking() == self.shaking))
+    }
 }

@@ -2,6 +2,7 @@ use std::{fmt, str::FromStr};
 
 /// What is assumed of how the motion goes on from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dynamics {
     /// Three hypotheses side by side, weighted by their likelihoods: those below.
     #[default]

@@ -252,3 +252,9 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
+
+/// Whether a contour may be smoothed over so many points to either side.
+#[cfg(feature = "serde")]
+pub(super) fn is_half_window(points: usize) -> bool {
+    tuning::HALF_WINDOWS.contains(&points)
+}

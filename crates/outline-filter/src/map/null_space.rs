@@ -30,6 +30,7 @@ impl NullDirection {
 
 /// What frames have said of the turn about the object's middle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum TurnEvidence {
     /// As much as the normals of the cells promise.
     #[default]
@@ -46,6 +47,7 @@ pub(crate) enum TurnEvidence {
 
 /// The null directions of an outline in the body frame.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct NullSpace {
     pub(super) in_body: Vec<ParameterVector>,
     /// From centred coordinates of unit RMS radius to the body frame.

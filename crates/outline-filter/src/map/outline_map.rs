@@ -5,6 +5,7 @@ use crate::tuning::map as tuning;
 
 /// A stretch of the outline in the body frame.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Cell {
     pub(crate) centre: Point2<f64>,
     pub(crate) normal: Vector2<f64>,
@@ -16,8 +17,10 @@ pub(crate) struct Cell {
 ///
 /// Where the outline lies on the normal of a cell is not geometry but belief: `Belief::offsets`.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct OutlineMap {
     pub(super) cells: Vec<Cell>,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) field: NearestField,
     /// Length of a cell.
     pub(super) spacing: f64,
@@ -135,5 +138,31 @@ impl Resolution {
         let spacing =
             plenty.min(tuning::NOISE_PER_CELL * sigma).max(length / finest).min(length / tuning::CELLS_PER_LENGTH);
         (Self { spacing, half_window: window }, sigma)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl OutlineMap {
+    /// Builds what is not saved; false where the map is none. Coordinates are normalised.
+    pub(crate) fn restore(&mut self) -> bool {
+        let count = self.cells.len();
+        let within = |value: &f64| value.abs() <= tuning::FARTHEST;
+        let is_cell = |cell: &Cell| {
+            cell.centre.iter().chain(&cell.normal).all(within) && cell.neighbours.iter().all(|number| *number < count)
+        };
+        let NullSpace { in_body, frame, middle, .. } = &self.null_space;
+        let is_sound = (3..=tuning::MOST_SAVED).contains(&count)
+            && self.cells.iter().all(is_cell)
+            && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
+            && super::contour::is_half_window(self.half_window)
+            && self.most_seen <= tuning::MOST_SAVED
+            && in_body.len() <= freeform_riccati::MAX_PARAMETERS
+            && in_body.iter().flatten().chain(frame).all(within)
+            && middle.iter().all(|coordinate| coordinate.is_finite());
+        if is_sound {
+            let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
+            self.field.build(&centres, self.spacing);
+        }
+        is_sound
     }
 }

@@ -7,6 +7,7 @@ use crate::{belief::CellInformation, map::Contour};
 
 /// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius, and the unit of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Reference {
     /// Image coordinates.
     pub(crate) origin: Point2<f64>,

@@ -9,6 +9,7 @@ use crate::{
 
 /// Twice the negative logarithm of a likelihood, but for a constant, and how much chance there is in it.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct NegativeLogLikelihood {
     pub(crate) squares: f64,
     points: f64,
@@ -89,6 +90,14 @@ fn of_innovations(
     let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
     let squares = innovations.map(|innovation| innovation.map_or(tuning::UNKNOWN, square)).sum();
     NegativeLogLikelihood { squares, points, weighted: points * correlation }
+}
+
+#[cfg(feature = "serde")]
+impl NegativeLogLikelihood {
+    /// Whether no number is NaN.
+    pub(crate) fn is_sound(&self) -> bool {
+        ![self.squares, self.points, self.weighted].iter().any(|number| number.is_nan())
+    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::{map::median, tuning::noise as tuning};
 
 /// Whether a frame may show more noise than the contour of the first, none having been compared yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Tolerance {
     /// No more than by comparison with frames seen.
     Known,
@@ -13,6 +14,7 @@ pub(crate) enum Tolerance {
 
 /// Deviation of the noise on the points, normalised, and what goes with it.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct NoiseModel {
     pub(crate) sigma: f64,
     /// Frames that its estimate is worth.
@@ -28,6 +30,7 @@ pub(crate) struct NoiseModel {
 
 /// Spread of the last frames, good ones and bad ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct NoiseLevel {
     frames: [f64; tuning::FRAMES],
     count: usize,
@@ -35,6 +38,7 @@ struct NoiseLevel {
 
 /// How many times the variance of a mean along the contour is what independent errors give.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Correlation {
     ratio: f64,
     frames: f64,
@@ -152,4 +156,18 @@ pub(crate) fn spread(values: &mut Vec<f64>, measurements: &[Measurement]) -> f64
     values.clear();
     values.extend(measurements.iter().filter(|m| m.cell != NO_CELL).map(|m| m.residual.abs()));
     median(values).map_or(f64::INFINITY, |m| crate::tuning::measurement::MEDIAN_TO_DEVIATION * m)
+}
+
+#[cfg(feature = "serde")]
+impl NoiseModel {
+    /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
+    pub(crate) fn is_sound(&self, cells: usize) -> bool {
+        let Correlation { ratio, frames } = self.correlation;
+        let positive = |number: f64| number.is_finite() && number > 0.0;
+        positive(self.sigma)
+            && [self.weight, self.floor, ratio, frames].iter().all(|number| number.is_finite() && *number >= 0.0)
+            && !self.level.frames.iter().any(|spread| spread.is_nan())
+            && self.inflation.len() == cells
+            && self.inflation.iter().all(VarianceInflation::is_sound)
+    }
 }

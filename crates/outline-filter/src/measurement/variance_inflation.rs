@@ -3,6 +3,7 @@ use crate::tuning::noise as tuning;
 
 /// Running mean square of a cell's residuals in units of the noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct VarianceInflation {
     mean_square: f64,
     points: f64,
@@ -21,6 +22,14 @@ impl VarianceInflation {
         self.mean_square += (square - self.mean_square) * share;
         let uncertainty = (2.0 * share).sqrt();
         self.variance = (self.mean_square / (1.0 + tuning::INFLATION_SIGNIFICANT * uncertainty)).max(1.0);
+    }
+}
+
+#[cfg(feature = "serde")]
+impl VarianceInflation {
+    /// Whether its numbers can be worked with.
+    pub(super) fn is_sound(&self) -> bool {
+        self.mean_square.is_finite() && self.points.is_finite() && self.variance.is_finite() && self.variance >= 1.0
     }
 }
 

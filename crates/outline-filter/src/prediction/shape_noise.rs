@@ -7,6 +7,7 @@ use crate::{
 /// How fast the offsets change, from the correlation of their innovations in successive frames (R. Mehra, 1970); none until the
 /// evidence is significant.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ShapeNoise {
     /// Variance added to every offset per frame, in units of the noise.
     variance: f64,
@@ -89,6 +90,16 @@ impl ShapeNoise {
             cell.coupling.iter_mut().for_each(|entry| *entry *= kept);
             cell.own = own;
         }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl ShapeNoise {
+    /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
+    pub(crate) fn is_sound(&self, cells: usize) -> bool {
+        let numbers = [self.variance, self.repeated, self.uncertainty];
+        let is_finite = numbers.iter().chain(&self.last).all(|number| number.is_finite());
+        is_finite && self.variance >= 0.0 && self.last.len() == cells
     }
 }
 

@@ -6,6 +6,7 @@ use crate::measurement::Reference;
 
 /// Related points of one outline, those of the quartic's two line pairs.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Landmarks([Point2<f64>; 2]);
 
 impl Landmarks {
@@ -27,5 +28,13 @@ impl Landmarks {
     /// In normalised coordinates.
     pub(super) fn normalised(&self, reference: Reference) -> [Point2<f64>; 2] {
         self.0.map(|p| Point2::from((p - reference.origin) / reference.radius))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Landmarks {
+    /// Whether every coordinate is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.0.iter().flat_map(|p| &p.coords).all(|coordinate| coordinate.is_finite())
     }
 }

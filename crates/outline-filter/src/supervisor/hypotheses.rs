@@ -8,6 +8,8 @@ use super::{
     settings::FilterSettings,
     tracking::{gate, largest_innovation},
 };
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
     track::{Comparison, Outcome, Track, wrapped},
@@ -30,6 +32,7 @@ pub(super) struct Candidate {
 
 /// One other way in which the object may have turned.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Hypothesis {
     /// While it is followed.
     track: Option<Track>,
@@ -39,6 +42,7 @@ struct Hypothesis {
 
 /// Why a turn may have been another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Ground {
     /// It explains the frames so far as well, and is followed until a frame decides.
     Likeness,
@@ -48,6 +52,7 @@ enum Ground {
 
 /// All others, and what the one taken is compared with them by.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Hypotheses {
     list: Vec<Hypothesis>,
     /// Their turns, in the same order.
@@ -261,4 +266,19 @@ impl Hypotheses {
 /// Whether a turn cannot be taken for granted against another.
 fn is_doubtful(other: f64, taken: f64) -> bool {
     other.abs() < tuning::SURELY_SMALLER * taken.abs()
+}
+
+#[cfg(feature = "serde")]
+impl Hypotheses {
+    /// Whether turns belong to hypotheses, and all numbers can be worked with; `restore` makes their tracks usable, or tells that it cannot.
+    pub(super) fn restore(&mut self, restore: impl Fn(&mut Track) -> bool) -> bool {
+        let numbers = self.turns.iter().chain([&self.taken]);
+        let is_sound = numbers.into_iter().all(|turn| turn.is_finite())
+            && self.turns.len() == self.list.len()
+            && self.likelihood.is_sound()
+            && self.list.iter().all(|hypothesis| hypothesis.likelihood.is_sound())
+            && self.frames < MOST_COUNTED
+            && (self.list.is_empty() || [self.pitch, self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
+        is_sound && self.list.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
+    }
 }

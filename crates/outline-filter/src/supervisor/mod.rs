@@ -7,6 +7,8 @@ mod initialisation;
 mod motion_change;
 mod motion_filter;
 mod settings;
+#[cfg(feature = "serde")]
+mod state_bytes;
 mod statement;
 mod tracking;
 mod window;
@@ -15,4 +17,6 @@ pub use ambiguity::Ambiguity;
 pub use error::FilterError;
 pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use settings::FilterSettings;
+#[cfg(feature = "serde")]
+pub use state_bytes::{StateError, with_header, without_header};
 pub use statement::Unstated;

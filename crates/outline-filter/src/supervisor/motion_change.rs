@@ -1,4 +1,6 @@
 //! How fast the motion changes, estimated from the innovations.
+#[cfg(feature = "serde")]
+use super::settings::FilterSettings;
 use crate::{
     dynamics::{DynamicsFilter, FamilyTests},
     prediction::ByKind,
@@ -11,6 +13,7 @@ const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 /// Recursive maximum-likelihood estimates, by Fisher's scoring, of the variances by which the rates and the velocities of the motion change
 /// per second; none until the evidence is significant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MotionChange {
     kinds: [Change; 2],
     /// Of one variance for both: chance has no more than one occasion.
@@ -21,6 +24,7 @@ pub(crate) struct MotionChange {
 
 /// What is known of how a motion changes: by its innovations, and by hypotheses of its dynamics.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct MotionHistory {
     pub(super) change: MotionChange,
     /// None before the third frame, and where dynamics are not told.
@@ -37,6 +41,7 @@ impl MotionHistory {
 
 /// One of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Change {
     /// Normalised units, per second.
     variance: f64,
@@ -47,6 +52,7 @@ struct Change {
 /// Slope of the likelihood by a variance at none, of every frame in its own standard deviations, over the frames looked back on. Frames in
 /// which much is known count no more than others: their Fisher information is that of a variance of next to none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Evidence {
     slope: f64,
     /// Roots of the Fisher information: what the slope is for a unit variance.
@@ -129,6 +135,24 @@ impl Evidence {
     /// Slope in standard deviations; 0 where there is none.
     fn deviations(&self) -> f64 {
         if self.frames > 0.0 { self.slope / self.frames.sqrt() } else { 0.0 }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionHistory {
+    /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
+    pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
+        let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
+        self.change.is_finite() && self.family.is_sound() && self.dynamics.as_ref().is_none_or(of_settings)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionChange {
+    /// Whether every number is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        let evidence = |e: &Evidence| [e.slope, e.by_variance, e.frames].iter().all(|number| number.is_finite());
+        self.kinds.iter().all(|kind| kind.variance.is_finite() && evidence(&kind.evidence)) && evidence(&self.of_both)
     }
 }
 

@@ -24,6 +24,7 @@ use crate::{
 
 /// The phase of the filter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Phase {
     /// No frame yet.
     Waiting,
@@ -58,6 +59,7 @@ impl FilterStep {
 
 /// How many frames became what.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Counts {
     accepted: usize,
     rejected: usize,
@@ -101,6 +103,7 @@ pub(super) struct Counts {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionFilter {
     pub(super) settings: FilterSettings,
     pub(super) phase: Phase,
@@ -121,8 +124,10 @@ pub struct MotionFilter {
     pub(super) motion_changed: bool,
     pub(super) hypotheses: Hypotheses,
     pub(super) window: InitialisationWindow,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
     /// What is stated after the last step, once it has been asked for.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) stated: OnceLock<Option<Statement>>,
 }
 
@@ -352,5 +357,24 @@ impl MotionFilter {
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionFilter {
+    /// Whether the last time is finite, or there was none, that of the track is, and the unit is a power of two.
+    pub(super) fn times_are_sound(&self) -> bool {
+        let before_first = self.last_time == f64::NEG_INFINITY && self.track.is_none();
+        let is_power_of_two = |unit: f64| unit > 0.0 && unit.is_normal() && unit == unit.log2().round().exp2();
+        let is_unit = |unit: f64| is_power_of_two(unit) && (1.0 / unit).is_normal();
+        (self.last_time.is_finite() || before_first)
+            && self.track_time.is_finite()
+            && self.time_unit.is_none_or(is_unit)
+    }
+
+    /// Whether no counter is near its end.
+    pub(super) fn counts_are_below(&self, most: usize) -> bool {
+        let Counts { accepted, rejected, rejected_in_a_row, taken, refused, restarts } = self.counts;
+        [accepted, rejected, rejected_in_a_row, taken, refused, restarts].iter().all(|count| *count < most)
     }
 }

@@ -6,6 +6,7 @@ use crate::dynamics::Dynamics;
 
 /// Settings of a [`MotionFilter`](crate::MotionFilter).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FilterSettings {
     /// The motion model.
     pub model: MotionModel,

@@ -8,6 +8,7 @@ use crate::{
 
 /// Whether frames are still kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Window {
     #[default]
     Open,
@@ -16,6 +17,7 @@ enum Window {
 
 /// The frames that a map was begun from, kept until it has been cut from enough of them.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct InitialisationWindow {
     frames: Vec<(f64, Outline)>,
     /// What the map found of them.
@@ -98,6 +100,20 @@ impl InitialisationWindow {
     /// In the poses that the motion of a map puts them in: where they were if it has never changed.
     pub(super) fn by_motion(&self, track: &Track) -> Vec<PlacedFrame<'_>> {
         track.placed(self.frames.iter().map(|(time, outline)| (*time, outline)))
+    }
+}
+
+#[cfg(feature = "serde")]
+impl InitialisationWindow {
+    /// Whether frames and poses belong together and times increase.
+    pub(super) fn is_sound(&self) -> bool {
+        let points: usize = self.frames.iter().map(|(_, outline)| outline.point_count()).sum();
+        let increases = self.frames.is_sorted_by(|(a, _), (b, _)| a < b);
+        self.frames.len() == self.poses.len()
+            && points == self.points
+            && increases
+            && self.frames.iter().all(|(time, _)| time.is_finite())
+            && self.poses.iter().flatten().all(|entry| entry.is_finite())
     }
 }
 

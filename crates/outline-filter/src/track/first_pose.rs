@@ -9,6 +9,7 @@ type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 
 /// Body to image, and its covariance, which is none where that frame is the body frame.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct FirstPose {
     pub(super) pose: Matrix3<f64>,
     /// In normalised units.
@@ -55,5 +56,13 @@ impl Track {
                 .copy_from(&(covariance / self.noise.effective_variance()));
             self.belief.add_covariance(&added);
         }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl FirstPose {
+    /// Whether every number is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.pose.iter().chain(&self.covariance).all(|number| number.is_finite())
     }
 }

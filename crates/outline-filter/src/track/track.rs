@@ -6,6 +6,8 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Point2, Projective2};
 
 use super::first_pose::FirstPose;
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
     belief::Belief,
     dynamics::{CentredPose, Summary},
@@ -24,6 +26,7 @@ use crate::{
 /// ([`View::solve`]), judged ([`Gate::verdict`]), committed ([`commit`]); then the map grows by what is new.
 /// Copies share the map until one of them changes it.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Track {
     pub(super) reference: Reference,
     pub(super) map: Arc<OutlineMap>,
@@ -358,5 +361,24 @@ impl Track {
             }
             evidence => evidence == TurnEvidence::NewAndHidden,
         }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Track {
+    /// Builds what is not saved; false where what was saved is no track with such a unit of time, in seconds.
+    pub(crate) fn restore(&mut self, unit: f64) -> bool {
+        let cells = self.map.cells().len();
+        let Reference { origin, radius, time_unit } = self.reference;
+        origin.iter().all(|coordinate| coordinate.is_finite())
+            && radius.is_normal()
+            && radius > 0.0
+            && time_unit == unit
+            && self.frames < MOST_COUNTED
+            && self.belief.is_sound(cells)
+            && self.noise.is_sound(cells)
+            && self.shape.is_sound(cells)
+            && self.first_pose.is_finite()
+            && Arc::make_mut(&mut self.map).restore()
     }
 }

@@ -5,3 +5,5 @@ mod filter_observability;
 mod filter_support;
 mod recorded;
 mod recording;
+#[cfg(feature = "serde")]
+mod saved_state;

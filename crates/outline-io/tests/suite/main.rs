@@ -1,9 +1,11 @@
 //! One program for all of them, since each costs a link and its share of compiling.
 mod bad_pictures;
+mod columns;
 mod csv_bad_input;
 mod csv_cut_anywhere;
 mod csv_round_trip;
 mod identities;
+mod labels;
 mod pictures_as_people_have_them;
 mod sequences;
 mod support;

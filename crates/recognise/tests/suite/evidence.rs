@@ -81,3 +81,15 @@ fn a_shape_that_one_noisy_frame_leaves_open_is_named_by_ten() {
     let recognition = evidence.recognition(recogniser.settings()).expect("ten frames");
     assert_eq!(recognition.known, Some(index), "{recognition:?}");
 }
+
+#[test]
+fn outlines_that_are_known_to_the_last_bit_are_named_with_certainty() {
+    let mut recogniser = recogniser(&SHAPES);
+    for (index, shape) in SHAPES.iter().enumerate() {
+        let mut evidence = Evidence::new();
+        evidence.add(&recogniser.compare(&outline(*shape, 400, 0.0)).expect("a whole outline"));
+        let recognition = evidence.recognition(recogniser.settings()).expect("one frame");
+        assert_eq!(recognition.known, Some(index), "{recognition:?}");
+        assert!(recognition.probability > 0.999, "{recognition:?}");
+    }
+}

@@ -1,0 +1,165 @@
+//! A filter as bytes and back.
+use super::motion_filter::{MotionFilter, Phase};
+use crate::track::Track;
+use crate::tuning::{saved_state::MOST_COUNTED, symmetry::LARGEST_ORDER};
+
+/// Version of the format: another one for every change of what is saved.
+const VERSION: u32 = 2;
+
+/// What the bytes hold, behind the version.
+const KIND: [u8; 4] = *b"filt";
+
+/// Version, kind and checksum.
+const HEADER: usize = 16;
+
+/// Why bytes are no saved state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum StateError {
+    /// Fewer bytes than the header has.
+    #[error("{found} byte(s) are no saved state: at least {needed} are needed")]
+    TooShort {
+        /// Bytes given.
+        found: usize,
+        /// Bytes of the header.
+        needed: usize,
+    },
+    /// Saved by another version of this library.
+    #[error("the state has the format version {found}, this library reads version {supported}")]
+    Version {
+        /// Version of the bytes.
+        found: u32,
+        /// The version that can be read.
+        supported: u32,
+    },
+    /// Bytes of something else.
+    #[error("the bytes are not the state of a {expected}")]
+    Kind {
+        /// What was to be restored.
+        expected: &'static str,
+    },
+    /// Bytes were cut off, added or changed.
+    #[error("the state is damaged: its bytes do not agree with their checksum")]
+    Damaged,
+    /// The bytes are well-formed and describe no state.
+    #[error("the state is not consistent: {part}")]
+    Inconsistent {
+        /// What of it.
+        part: &'static str,
+    },
+}
+
+impl MotionFilter {
+    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points. A filter [made from them](Self::from_bytes)
+    /// goes on as this one would, to the last bit. The first four bytes are the version of the format, little-endian.
+    ///
+    /// # Errors
+    /// None for a filter; the encoder reports errors of its sink, and memory has none.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, StateError> {
+        let state = postcard::to_allocvec(self).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
+        Ok(with_header(KIND, &state))
+    }
+
+    /// A filter from the bytes of [`to_bytes`](Self::to_bytes). Bytes from anywhere may be given: everything is checked.
+    ///
+    /// ```
+    /// use freeform_curve_fit::Outline;
+    /// use freeform_outline_filter::{FilterSettings, MotionFilter};
+    /// use nalgebra::Point2;
+    ///
+    /// let mut filter = MotionFilter::new(FilterSettings::default())?;
+    /// let egg = |shift: f64| {
+    ///     let angles = (0..200).map(|i| std::f64::consts::TAU * f64::from(i) / 200.0);
+    ///     Outline::closed(angles.map(|t| Point2::new(shift + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.3 * t.sin())).collect())
+    /// };
+    /// (0..10).try_for_each(|k| filter.step(0.1 * f64::from(k), &egg(0.01 * f64::from(k)).expect("an egg")).map(drop))?;
+    /// let mut restored = MotionFilter::from_bytes(&filter.to_bytes()?)?;
+    /// assert_eq!(restored.step(1.0, &egg(0.1)?)?, filter.step(1.0, &egg(0.1)?)?);
+    /// assert_eq!(restored.state(), filter.state());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Bytes of another version or kind, damaged ones, and ones that describe no filter.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, StateError> {
+        let (mut filter, rest) = postcard::take_from_bytes::<Self>(without_header(KIND, "filter", bytes)?)
+            .map_err(|_| StateError::Inconsistent { part: "encoding" })?;
+        if !rest.is_empty() {
+            return Err(StateError::Inconsistent { part: "bytes left over" });
+        }
+        filter.restore()?;
+        Ok(filter)
+    }
+
+    /// Builds what is not saved and checks the rest.
+    fn restore(&mut self) -> Result<(), StateError> {
+        let inconsistent = |part| Err(StateError::Inconsistent { part });
+        if self.settings.check().is_err() {
+            return inconsistent("settings");
+        }
+        if !self.times_are_sound() {
+            return inconsistent("times");
+        }
+        let (model, unit) = (self.settings.model, self.seconds_per_unit());
+        let restored = |track: &mut Track| track.model() == model && track.restore(unit);
+        if !self.track.as_mut().is_none_or(restored) {
+            return inconsistent("track");
+        }
+        if !self.hypotheses.restore(restored) {
+            return inconsistent("hypotheses");
+        }
+        if (self.phase == Phase::Waiting) != self.track.is_none() {
+            return inconsistent("phase");
+        }
+        if !(1..=LARGEST_ORDER).contains(&self.symmetry) {
+            return inconsistent("symmetry");
+        }
+        if !self.history.is_sound(&self.settings) {
+            return inconsistent("changes of the motion");
+        }
+        if !self.counts_are_below(MOST_COUNTED) {
+            return inconsistent("counts");
+        }
+        if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
+            return inconsistent("landmarks");
+        }
+        if !self.window.is_sound() {
+            return inconsistent("first frames");
+        }
+        Ok(())
+    }
+}
+
+/// Puts version, kind and checksum before a state. For the states that hold those of filters.
+#[doc(hidden)]
+#[must_use]
+pub fn with_header(kind: [u8; 4], state: &[u8]) -> Vec<u8> {
+    let header = VERSION.to_le_bytes().into_iter().chain(kind).chain(checksum(state).to_le_bytes());
+    header.chain(state.iter().copied()).collect()
+}
+
+/// The state behind version, kind and checksum. `expected` names the kind.
+///
+/// # Errors
+/// Bytes of another version or kind, and damaged ones.
+#[doc(hidden)]
+pub fn without_header<'a>(kind: [u8; 4], expected: &'static str, bytes: &'a [u8]) -> Result<&'a [u8], StateError> {
+    let Some((header, state)) = bytes.split_first_chunk::<HEADER>() else {
+        return Err(StateError::TooShort { found: bytes.len(), needed: HEADER });
+    };
+    let [a, b, c, d, rest @ ..] = *header;
+    let [e, f, g, h, sum @ ..] = rest;
+    let found = u32::from_le_bytes([a, b, c, d]);
+    if found != VERSION {
+        return Err(StateError::Version { found, supported: VERSION });
+    }
+    if [e, f, g, h] != kind {
+        return Err(StateError::Kind { expected });
+    }
+    if u64::from_le_bytes(sum) != checksum(state) { Err(StateError::Damaged) } else { Ok(state) }
+}
+
+/// FNV-1a of 64 bits (G. Fowler, L. C. Noll, K.-P. Vo): enough against accidents, and none against malice, which the checks of the
+/// state itself are for.
+fn checksum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+}

@@ -1,0 +1,120 @@
+use std::collections::BTreeMap;
+
+use image::{GrayImage, Luma};
+
+use crate::field::{Field, blur_reach};
+use crate::object_mask::Objects;
+use crate::picture_error::TraceError;
+use crate::trace::{TracedOutline, Window};
+use crate::trace_settings::{MASK_SIGMA, Smoothing, TraceSettings};
+
+/// Grey value of the pixels of an object in its window.
+const SET: u8 = 255;
+
+/// A labelled mask, as segmentation programs give it: every pixel holds the label of the object that it belongs to, 0 or less for the
+/// ground.
+#[derive(Debug, Clone, Copy)]
+pub struct LabelMask<'a> {
+    labels: &'a [i64],
+    width: usize,
+    height: usize,
+}
+
+/// Half-open bounds of the pixels of a label.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    left: usize,
+    right: usize,
+    top: usize,
+    bottom: usize,
+}
+
+impl<'a> LabelMask<'a> {
+    /// Of labels row by row from the top, `width * height` of them.
+    ///
+    /// # Errors
+    /// No pixel, more than `u32::MAX` in a row or column, or a number of labels other than `width * height`.
+    pub fn new(labels: &'a [i64], width: usize, height: usize) -> Result<Self, TraceError> {
+        let fits = [width, height].iter().all(|side| u32::try_from(*side).is_ok());
+        if labels.is_empty() || !fits || width.checked_mul(height) != Some(labels.len()) {
+            return Err(TraceError::NoPixels);
+        }
+        Ok(Self { labels, width, height })
+    }
+
+    /// Traces the outer outline of every label, in increasing order of the labels, to a fraction of a pixel; of a label in several parts,
+    /// that of the largest. Outlines and settings are those of [`trace_mask`](crate::trace_mask) for a mask of two values; contrast,
+    /// threshold and ring are not looked at. The smallest area is that of the largest part.
+    ///
+    /// ```
+    /// use freeform_outline_io::{LabelMask, TraceSettings};
+    ///
+    /// // A square of 10 by 10 pixels with the label 7, the upper left one at column 5 and row 8.
+    /// let labels: Vec<i64> = (0..30 * 40).map(|i| if (5..15).contains(&(i % 40)) && (8..18).contains(&(i / 40)) { 7 } else { 0 }).collect();
+    /// let outlines = LabelMask::new(&labels, 40, 30)?.trace(&TraceSettings::default())?;
+    /// let (label, square) = &outlines[0];
+    /// let centre = square.as_ref().expect("a square").centre;
+    /// assert_eq!(*label, 7);
+    /// assert!((centre - nalgebra::Point2::new(10.0, 30.0 - 13.0)).norm() < 1e-3);
+    /// # Ok::<(), freeform_outline_io::TraceError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A setting out of range. What is wrong with the outline of one label stands in its place.
+    #[expect(clippy::type_complexity, reason = "a list of results with their labels")]
+    pub fn trace(&self, settings: &TraceSettings) -> Result<Vec<(i64, Result<TracedOutline, TraceError>)>, TraceError> {
+        settings.check()?;
+        let bounds = self.bounds();
+        let count = bounds.len();
+        Ok(bounds.into_iter().map(|(label, bounds)| (label, self.trace_one(label, bounds, settings, count))).collect())
+    }
+
+    fn bounds(&self) -> BTreeMap<i64, Bounds> {
+        let mut all = BTreeMap::new();
+        for (row, labels) in self.labels.chunks_exact(self.width).enumerate() {
+            let mut column = 0;
+            for run in labels.chunk_by(|a, b| a == b) {
+                let (left, right) = (column, column + run.len());
+                column = right;
+                if run[0] > 0 {
+                    let found = all.entry(run[0]).or_insert(Bounds { left, right, top: row, bottom: row + 1 });
+                    found.left = found.left.min(left);
+                    found.right = found.right.max(right);
+                    found.bottom = row + 1;
+                }
+            }
+        }
+        all
+    }
+
+    fn trace_one(
+        &self,
+        label: i64,
+        bounds: Bounds,
+        settings: &TraceSettings,
+        object_count: usize,
+    ) -> Result<TracedOutline, TraceError> {
+        let sigma = match settings.smoothing {
+            Smoothing::Automatic => MASK_SIGMA,
+            Smoothing::Gaussian(sigma) => sigma,
+        };
+        // As far around the object as smoothing reaches.
+        let margin = blur_reach(sigma) + 2;
+        let (left, top) = (bounds.left.saturating_sub(margin), bounds.top.saturating_sub(margin));
+        let (right, bottom) = ((bounds.right + margin).min(self.width), (bounds.bottom + margin).min(self.height));
+        let is_set = |x: u32, y: u32| self.labels[(top + y as usize) * self.width + left + x as usize] == label;
+        let part = GrayImage::from_fn((right - left) as u32, (bottom - top) as u32, |x, y| {
+            Luma([if is_set(x, y) { SET } else { 0 }])
+        });
+        let objects = Objects::of(&part, |value| value == SET, settings.minimum_area, 1)?;
+        let mask = objects.into_masks(margin).next().ok_or(TraceError::NoPixels)?;
+        let values = mask.filled.iter().map(|filled| f32::from(u8::from(*filled))).collect();
+        let mut field = Field { width: mask.width, height: mask.height, values };
+        if sigma > 0.0 {
+            field.blur(sigma);
+        }
+        let window = Window { left: left + mask.left, top: top + mask.top, field: &field, level: 0.5 };
+        let seen = window.outline(self.height as u32, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
+        Ok(seen.traced(mask.pixel_count, object_count, 0.5))
+    }
+}

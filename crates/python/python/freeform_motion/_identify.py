@@ -1,0 +1,228 @@
+"""The motion of every object of a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._masks import check_masks, split_tracing, times_of, traced
+from ._native import ObjectResult, Observation, Recorder, Tracker, identify_columns, track_columns
+from ._progress import progress_bar
+from ._tables import kind_of, native_columns, table_like, with_names
+
+class Identification(Sequence[ObjectResult]):
+    """The results of all objects: a sequence, also indexed by the names of the objects."""
+
+    def __init__(self, results: Iterable[ObjectResult]) -> None:
+        self._results = list(results)
+
+    @property
+    def objects(self) -> list[str]:
+        """Names of the objects in the order in which they first appeared."""
+        return [result.object for result in self._results]
+
+    @overload
+    def __getitem__(self, key: int | str) -> ObjectResult: ...
+    @overload
+    def __getitem__(self, key: slice) -> Identification: ...
+    def __getitem__(self, key: int | str | slice) -> ObjectResult | Identification:
+        if isinstance(key, slice):
+            return Identification(self._results[key])
+        if isinstance(key, str):
+            for result in self._results:
+                if result.object == key:
+                    return result
+            raise KeyError(f"{key!r} is none of {', '.join(self.objects)}")
+        return self._results[key]
+
+    def __len__(self) -> int:
+        return len(self._results)
+
+    def table(self) -> dict[str, NDArray[Any]]:
+        """One row per object.
+
+        Returns
+        -------
+        dict of ndarray
+            Columns `object`, `frames`, `frames_rejected`, then each parameter and its `_std`, `_std_random` and `_std_systematic`, NaN where
+            it is not observable; `v1` and `v2` with their `_std` for the velocity of the middle of the object.
+        """
+        columns: dict[str, NDArray[Any]] = {
+            "object": np.array(self.objects, dtype=np.str_),
+            "frames": np.array([result.frames for result in self], dtype=np.int64),
+            "frames_rejected": np.array([result.frames_rejected for result in self], dtype=np.int64),
+        }
+        estimates = [result.estimate for result in self]
+        names = next((estimate.names for estimate in estimates if estimate is not None), ())
+        for index, name in enumerate(names):
+            columns[name] = _column([None if e is None else e.values[index] for e in estimates])
+            for part in ("std", "std_random", "std_systematic"):
+                columns[f"{name}_{part}"] = _column([None if e is None else getattr(e, part)[index] for e in estimates])
+        velocities = [result.velocity for result in self]
+        for index, name in enumerate(("v1", "v2")):
+            columns[name] = _column([None if v is None else v.velocity[index] for v in velocities])
+            columns[f"{name}_std"] = _column([None if v is None else v.std[index] for v in velocities])
+        return columns
+
+    def __repr__(self) -> str:
+        lines = [repr(result) for result in self._results]
+        return "Identification(\n  " + ",\n  ".join(lines) + "\n)" if lines else "Identification()"
+
+
+def _column(values: list[float | None]) -> NDArray[np.float64]:
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+
+
+def identify(
+    data: Any,
+    *,
+    fps: float | None = None,
+    times: Any = None,
+    columns: Mapping[str, str] | None = None,
+    motion: str = "rigid",
+    method: str = "filter",
+    scale: float | None = None,
+    progress: bool | None = None,
+    **options: Any,
+) -> Identification:
+    """Identify the motion of every object of a recording.
+
+    Parameters
+    ----------
+    data : masks or table
+        Masks: an array of shape (frames, height, width), bool or integer labels with 0 for the ground, or any iterable of arrays of shape
+        (height, width). Table: a pandas or polars DataFrame, a pyarrow Table, or a mapping of arrays, with one row per point and the
+        columns `frame`, `time`, `x`, `y` and optionally `object` and `arc` (the open piece of a partly hidden outline). The rows of one
+        outline follow each other in the order of the contour.
+    fps : float, optional
+        Frames per second; needed for masks, and for tables without a column `time`.
+    times : array_like, shape (frames,), optional
+        Times of the masks in seconds, instead of `fps`.
+    columns : mapping of str to str, optional
+        Names of the columns of a table where they are others.
+    motion, method, scale
+        As of `Tracker`: the motion model, `filter` or `adaptive`, and the camera scale f/Z0.
+    progress : bool, optional
+        Whether to show a progress bar; by default on a terminal, if tqdm is installed.
+    **options
+        For masks: `link` and the options of `outlines`. `link` is `labels` if a label stays with its object, `places` if objects are to
+        be recognised from mask to mask by place, size and shape, `nearest` or `largest` for one object. For both: further settings of
+        `Tracker`, such as `dynamics`, `edge_uncertainty` and `rectify`.
+
+    Returns
+    -------
+    Identification
+        The results by position or name of the object.
+
+    Raises
+    ------
+    ValueError
+        A column that is missing, rows out of order, numbers that are not finite: with the row (from 0) and the column.
+    TypeError
+        Values of another type than numbers, pictures where masks are needed.
+
+    Examples
+    --------
+    >>> import freeform_motion as ff
+    >>> masks = ff.simulate("glider", omega=1.0, seconds=1.0).masks()
+    >>> motion = ff.identify(masks, fps=30)["1"].estimate
+    >>> abs(motion["omega"].value - 1.0) < 0.02
+    True
+    """
+    tracing, tracker = _split(options, motion, method, scale)
+    if kind_of(data) is not None:
+        only_for_masks(tracing, times)
+        with progress_bar(progress, None) as advance:
+            identify_columns(tracker, native_columns(data, columns, fps), advance)
+    else:
+        for _ in _follow_masks(tracker, data, fps, times, tracing, progress):
+            pass
+    return Identification(tracker.results())
+
+
+def track(
+    data: Any,
+    *,
+    fps: float | None = None,
+    times: Any = None,
+    columns: Mapping[str, str] | None = None,
+    motion: str = "rigid",
+    method: str = "filter",
+    scale: float | None = None,
+    smooth: bool = False,
+    progress: bool | None = None,
+    **options: Any,
+) -> Any:
+    """Pose and motion of every object in every frame of a recording.
+
+    Parameters
+    ----------
+    data, fps, times, columns, motion, method, scale, progress, **options
+        As of `identify`.
+    smooth : bool
+        Whether later frames take part in the poses of earlier ones, for a constant motion; `adaptive=False` says that it is one.
+
+    Returns
+    -------
+    table
+        Of the kind of `data`, a dict of arrays for masks. One row per object and frame, in the order of the data: `object`, `frame`,
+        `time`, `phase`, `accepted`; the pose (motion filter), for a rigid motion `angle`, `x` and `y`, each with its `_std`; the motion, for
+        a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up where an object was given up and begun anew, with
+        another first outline. NaN where something is not known. Angles are in radians since the first frame and continuous; x and y say
+        where the centre of the first outline is.
+
+    Raises
+    ------
+    ValueError, TypeError
+        As `identify`; also a motion that changes, if it is to be smoothed.
+    """
+    tracing, tracker = _split(options, motion, method, scale)
+    kind = kind_of(data)
+    if kind is not None:
+        only_for_masks(tracing, times)
+        with progress_bar(progress, None) as advance:
+            found = track_columns(tracker, native_columns(data, columns, fps), smooth, advance)
+    else:
+        recorder = Recorder()
+        for observation in _follow_masks(tracker, data, fps, times, tracing, progress):
+            recorder.take(observation)
+        found = recorder.columns(tracker, smooth)
+    return table_like(kind or "mapping", with_names(found, tracker.objects))
+
+
+def _split(options: dict[str, Any], motion: str, method: str, scale: float | None) -> tuple[dict[str, Any], Tracker]:
+    tracing, settings = split_tracing(options)
+    return tracing, Tracker(motion, method=method, scale=scale, **settings)
+
+
+def only_for_masks(tracing: dict[str, Any], times: Any = None) -> None:
+    """Refuses options of masks where the data are a table."""
+    given = [*tracing, *(["times"] if times is not None else [])]
+    if given:
+        raise TypeError(f"{', '.join(given)}: only for masks, but the data are a table")
+
+
+def _follow_masks(
+    tracker: Tracker,
+    masks: Any,
+    fps: float | None,
+    times: Any,
+    tracing: dict[str, Any],
+    progress: bool | None,
+) -> Iterator[Observation]:
+    check_masks(masks)
+    seconds = times_of(masks, fps, times)
+    known: set[int] = set()
+    for frame, (found, refused) in enumerate(traced(masks, tracing, progress)):
+        time = next(seconds, None)
+        if time is None:
+            raise ValueError(f"times: there is none for mask {frame}")
+        for name, outline in found:
+            known.add(name)
+            yield tracker.push(str(name), frame, time, outline)
+        for name, reason in refused:
+            if name in known:
+                yield tracker.reject(str(name), frame, reason)

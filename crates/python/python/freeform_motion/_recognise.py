@@ -1,0 +1,81 @@
+"""Which known outline every object of a recording has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from ._identify import only_for_masks
+from ._masks import check_masks, split_tracing, traced
+from ._native import Evidence, Outline, Recogniser, Recognition, outlines_of_columns
+from ._tables import kind_of, native_columns
+
+
+def recognise(
+    data: Any,
+    known: Recogniser | Mapping[str, Outline | ArrayLike],
+    *,
+    columns: Mapping[str, str] | None = None,
+    progress: bool | None = None,
+    **options: Any,
+) -> dict[str, Recognition | None]:
+    """Tell which known outline every object of a recording has, under any affine map.
+
+    Parameters
+    ----------
+    data, columns, progress
+        Masks or a table, as of `identify`; times are not needed.
+    known : Recogniser or mapping of str to Outline
+        The known outlines by their names.
+    **options
+        For masks: `link` and the options of `outlines`.
+
+    Returns
+    -------
+    dict of str to Recognition
+        By the names of the objects, in the order in which they first appeared. None where no frame of an object could be compared, as where
+        a part of its outline is hidden in all.
+
+    Raises
+    ------
+    ValueError
+        A known outline that is not whole; tables and masks as of `identify`.
+
+    Examples
+    --------
+    >>> import freeform_motion as ff
+    >>> known = {name: ff.simulate(name).true_outline() for name in ("plane", "phone", "hat")}
+    >>> ff.recognise(ff.simulate("hat", omega=1.0, seconds=0.2).masks(), known)["1"].name
+    'hat'
+    """
+    recogniser = known if isinstance(known, Recogniser) else Recogniser()
+    if isinstance(known, Mapping):
+        for name, outline in known.items():
+            recogniser.learn(name, outline)
+    evidence: dict[str, Evidence] = {}
+    for name, outline in _outlines(data, columns, progress, options):
+        try:
+            evidence.setdefault(name, Evidence(recogniser)).add(outline)
+        except ValueError:
+            # Counted, with the reason.
+            continue
+    return {name: of.recognition for name, of in evidence.items()}
+
+
+def _outlines(
+    data: Any, columns: Mapping[str, str] | None, progress: bool | None, options: Mapping[str, Any]
+) -> Iterator[tuple[str, Outline]]:
+    """The outlines of all objects, each with its name."""
+    tracing, others = split_tracing(options)
+    if others:
+        raise TypeError(f"recognise() got unexpected arguments: {', '.join(others)}")
+    if kind_of(data) is not None:
+        only_for_masks(tracing)
+        # Times do not matter.
+        yield from outlines_of_columns(native_columns(data, columns, 1.0))
+        return
+    check_masks(data)
+    for found, _ in traced(data, tracing, progress):
+        yield from ((str(name), outline) for name, outline in found)

@@ -1,0 +1,246 @@
+"""Tables of outlines: pandas, polars, pyarrow, or a mapping of arrays. Nothing here goes through the rows in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._native import Outline, Simulation
+
+REQUIRED = ("frame", "x", "y")
+
+#: What the native part takes: names, then object, frame, time, x, y and arc.
+NativeColumns = tuple[
+    list[str],
+    NDArray[np.uint32] | None,
+    NDArray[np.uint64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.int64] | None,
+]
+
+
+def kind_of(data: object) -> str | None:
+    """The library that a table is of, `mapping`, or None for what is no table."""
+    library = type(data).__module__.partition(".")[0]
+    if library in ("pandas", "polars", "pyarrow") and hasattr(data, "columns"):
+        return library
+    if isinstance(data, Mapping):
+        return "mapping"
+    return "arrow" if hasattr(data, "__arrow_c_stream__") else None
+
+
+def native_columns(table: Any, columns: Mapping[str, str] | None, fps: float | None) -> NativeColumns:
+    """The columns of a table of outlines, checked and as arrays.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame, polars.DataFrame, pyarrow.Table or mapping of arrays
+    columns : mapping of str to str, optional
+        Names of the columns where they are not `object`, `frame`, `time`, `x`, `y` and `arc`.
+    fps : float, optional
+        Frames per second, where there is no column `time`.
+    """
+    if kind_of(table) == "arrow":
+        import pyarrow
+
+        table = pyarrow.table(table)
+    renamed = dict(columns or {})
+    unknown = set(renamed) - {"object", "frame", "time", "x", "y", "arc"}
+    if unknown:
+        raise ValueError(f"columns: {', '.join(sorted(unknown))} is none of object, frame, time, x, y, arc")
+    present = _names(table)
+
+    def find(name: str) -> Any | None:
+        column = renamed.get(name, name)
+        return table[column] if column in present else None
+
+    required = REQUIRED if fps is not None else (*REQUIRED, "time")
+    missing = [renamed.get(name, name) for name in required if find(name) is None]
+    missing += [column for name, column in renamed.items() if column not in present and column not in missing]
+    if missing:
+        raise ValueError(f"missing column(s) {', '.join(missing)}, the table has {', '.join(map(str, present))}")
+    frame = _frame_numbers(_numbers(find("frame"), "frame"))
+    time = find("time")
+    if time is None:
+        if fps is None or not (np.isfinite(fps) and fps > 0):
+            raise ValueError(f"fps: a positive number is needed, this is {fps}")
+        times = frame / float(fps)
+    else:
+        times = _reals(time, "time")
+    names: list[str] = []
+    codes = None
+    objects = find("object")
+    if objects is not None:
+        found, values = factorise(objects)
+        absent = np.flatnonzero(found < 0)
+        if absent.size:
+            raise ValueError(f"row {absent[0]}, column object: the name is missing")
+        names, codes = [str(value) for value in values], found.astype(np.uint32)
+    arcs = find("arc")
+    arc = None
+    if arcs is not None:
+        arc, values = factorise(arcs)
+        # A column of whole numbers has no other way to say that an outline is closed.
+        empty = [number for number, value in enumerate(values) if value == "" or _is_negative(value)]
+        arc = np.where(np.isin(arc, empty), -1, arc).astype(np.int64)
+    return names, codes, frame, times, _reals(find("x"), "x"), _reals(find("y"), "y"), arc
+
+
+def _is_negative(value: Any) -> bool:
+    return isinstance(value, (int, float, np.number)) and bool(value < 0)
+
+
+def _names(table: Any) -> list[Any]:
+    if isinstance(table, Mapping):
+        return list(table)
+    return list(getattr(table, "column_names", table.columns))
+
+
+def _array(column: Any) -> NDArray[Any]:
+    """A column as a numpy array; missing numbers are NaN."""
+    if type(column).__module__.partition(".")[0] == "pyarrow":
+        return np.asarray(column.to_numpy())
+    return np.asarray(column.to_numpy() if hasattr(column, "to_numpy") else column)
+
+
+def _numbers(column: Any, name: str) -> NDArray[Any]:
+    array = _array(column)
+    if array.ndim != 1:
+        raise ValueError(f"column {name}: shape (n,) is needed, this is {array.shape}")
+    if array.dtype.kind == "O" and len(array) == 0:
+        return array.astype(np.float64)
+    if array.dtype.kind == "O" and hasattr(column, "isna"):
+        # A pandas column of numbers with its own mark for missing ones.
+        if getattr(column.dtype, "kind", "O") in "iuf":
+            return np.asarray(column.to_numpy(dtype=np.float64, na_value=np.nan))
+    if array.dtype.kind not in "iuf":
+        raise TypeError(f"column {name}: real numbers are needed, these are of type {array.dtype}")
+    return array
+
+
+def _reals(column: Any, name: str) -> NDArray[np.float64]:
+    return np.ascontiguousarray(_numbers(column, name), dtype=np.float64)
+
+
+def _frame_numbers(array: NDArray[Any]) -> NDArray[np.uint64]:
+    with np.errstate(invalid="ignore"):
+        wrong = ~((array >= 0) & (array == np.floor(array)) & (array < 2.0**63))
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ValueError(f"row {row}, column frame: {array[row]} is not a frame number (a whole number, 0 or more)")
+    return np.ascontiguousarray(array, dtype=np.uint64)
+
+
+def factorise(column: Any) -> tuple[NDArray[np.int64], list[Any]]:
+    """Numbers of the values in the order of their first appearance, -1 for missing ones, and the values."""
+    library = type(column).__module__.partition(".")[0]
+    if library == "pandas":
+        import pandas
+
+        codes, values = pandas.factorize(column)
+        return codes.astype(np.int64), list(values)
+    if library == "pyarrow":
+        import pyarrow
+
+        encoded = column.combine_chunks() if isinstance(column, pyarrow.ChunkedArray) else column
+        if isinstance(encoded, pyarrow.ChunkedArray):
+            encoded = pyarrow.concat_arrays(encoded.chunks)
+        if not isinstance(encoded, pyarrow.DictionaryArray):
+            encoded = encoded.dictionary_encode()
+        codes = encoded.indices.fill_null(-1).to_numpy(zero_copy_only=False).astype(np.int64)
+        return _by_appearance(codes, encoded.dictionary.to_pylist())
+    if library == "polars":
+        runs = column.rle().struct.unnest()
+        return _of_runs(runs["len"].to_numpy(), runs["value"].to_list())
+    array = np.asarray(column)
+    if array.ndim != 1:
+        raise ValueError(f"a column of shape (n,) is needed, this is {array.shape}")
+    if len(array) == 0:
+        return np.empty(0, np.int64), []
+    starts = np.concatenate(([0], np.flatnonzero(array[1:] != array[:-1]) + 1))
+    return _of_runs(np.diff(np.append(starts, len(array))), array[starts].tolist())
+
+
+def _by_appearance(codes: NDArray[np.int64], values: list[Any]) -> tuple[NDArray[np.int64], list[Any]]:
+    """The same with values in the order of their first appearance; the ones that do not appear are left out."""
+    change = np.flatnonzero(np.diff(codes)) + 1
+    starts = np.concatenate(([0], change)) if len(codes) else change
+    lengths = np.diff(np.append(starts, len(codes)))
+    return _of_runs(lengths, [values[code] if code >= 0 else None for code in codes[starts].tolist()])
+
+
+def _of_runs(lengths: NDArray[Any], values: list[Any]) -> tuple[NDArray[np.int64], list[Any]]:
+    """From runs of equal values, one per outline or arc at least, to numbers for every row."""
+    positions: dict[Any, int] = {}
+    codes = [-1 if value is None or value != value else positions.setdefault(value, len(positions)) for value in values]
+    return np.repeat(np.asarray(codes, dtype=np.int64), lengths), list(positions)
+
+
+def table_like(kind: str, columns: dict[str, Any]) -> Any:
+    """Columns as a table of a library."""
+    if kind == "pandas":
+        import pandas
+
+        return pandas.DataFrame(columns)
+    if kind == "polars":
+        import polars
+
+        return polars.DataFrame(columns)
+    if kind in ("pyarrow", "arrow"):
+        import pyarrow
+
+        return pyarrow.table(columns)
+    return columns
+
+
+def with_names(columns: dict[str, Any], names: list[str]) -> dict[str, Any]:
+    """Columns with the names of the objects in place of their numbers."""
+    named = np.array(names, dtype=np.str_) if names else np.empty(0, dtype="U1")
+    return {**columns, "object": named[columns["object"]], "phase": np.array(columns["phase"], dtype="U9")}
+
+
+def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outline]]) -> dict[str, Any]:
+    """Outlines as a table with one row per point.
+
+    Parameters
+    ----------
+    outlines : Simulation or iterable of tuple
+        For each outline the name of its object, the number of its frame, its time in seconds, and the outline.
+
+    Returns
+    -------
+    dict of ndarray
+        Columns `object`, `frame`, `time`, `x`, `y`; also `arc` if there are open outlines, -1 for closed ones. What
+        `pandas.DataFrame`, `polars.DataFrame` and `pyarrow.table` take.
+    """
+    if isinstance(outlines, Simulation):
+        outlines = (("0", frame.index, frame.time, frame.outline) for frame in outlines)
+    names: list[str] = []
+    frames: list[int] = []
+    times: list[float] = []
+    arcs: list[int] = []
+    pieces: list[NDArray[np.float64]] = []
+    for name, frame, time, outline in outlines:
+        for number, piece in enumerate(outline.pieces):
+            names.append(str(name))
+            frames.append(frame)
+            times.append(time)
+            arcs.append(-1 if outline.is_closed else number)
+            pieces.append(piece)
+    lengths = [len(piece) for piece in pieces]
+    points = np.concatenate(pieces) if pieces else np.empty((0, 2))
+    table: dict[str, Any] = {
+        "object": np.repeat(np.array(names, dtype=np.str_), lengths),
+        "frame": np.repeat(np.array(frames, dtype=np.int64), lengths),
+        "time": np.repeat(np.array(times, dtype=np.float64), lengths),
+        "x": np.ascontiguousarray(points[:, 0]),
+        "y": np.ascontiguousarray(points[:, 1]),
+    }
+    if any(arc >= 0 for arc in arcs):
+        table["arc"] = np.repeat(np.array(arcs, dtype=np.int64), lengths)
+    return table

@@ -1,0 +1,251 @@
+//! Whole recordings from the columns of a table, and what becomes of every frame as columns again.
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+use freeform_motion::estimate::MotionEstimate;
+use freeform_motion::outline_io::{OutlineColumns, OutlineFrame, ReadError, ReadErrorKind};
+use freeform_motion::riccati::MotionModel;
+use freeform_motion::tracker::{Followed, Method, Observation, ReadAhead, Recorded, Trajectory};
+use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::value_error;
+use crate::estimate::or_nan;
+use crate::outline::PyOutline;
+use crate::tracker::{PyObservation, PyTracker};
+
+/// Frames after which Python is asked whether to go on.
+const FRAMES_BETWEEN_SIGNALS: usize = 64;
+
+/// An item of a recording that is no frame: why its reading ended.
+type Gap = Result<std::convert::Infallible, ReadError>;
+
+/// The columns of a table of outlines, as arrays: names of the objects, and per row the position of the object among them (None for one
+/// object), the frame, time, x, y, and the arc (None for closed outlines).
+#[derive(FromPyObject)]
+pub(crate) struct Columns<'py>(
+    Vec<String>,
+    Option<PyReadonlyArray1<'py, u32>>,
+    PyReadonlyArray1<'py, u64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    Option<PyReadonlyArray1<'py, i64>>,
+);
+
+impl Columns<'_> {
+    fn view(&self) -> PyResult<OutlineColumns<'_>> {
+        let Self(names, object, frame, time, x, y, arc) = self;
+        Ok(OutlineColumns {
+            names,
+            object: object.as_ref().map(PyReadonlyArray1::as_slice).transpose()?,
+            frame: frame.as_slice()?,
+            time: time.as_slice()?,
+            x: x.as_slice()?,
+            y: y.as_slice()?,
+            arc: arc.as_ref().map(PyReadonlyArray1::as_slice).transpose()?,
+        })
+    }
+}
+
+/// Lets a tracker follow a recording from columns. `progress` is called with the number of frames done since it was called last.
+#[pyfunction]
+#[pyo3(signature = (tracker, columns, progress = None))]
+pub(crate) fn identify_columns(
+    py: Python<'_>,
+    tracker: &PyTracker,
+    columns: Columns<'_>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<()> {
+    follow(py, tracker, &columns.view()?, progress.as_ref(), |_| {})
+}
+
+/// The outlines of columns, each with the name of its object; frames whose points are no outline are left out.
+#[pyfunction]
+pub(crate) fn outlines_of_columns(py: Python<'_>, columns: Columns<'_>) -> PyResult<Vec<(String, PyOutline)>> {
+    let columns = columns.view()?;
+    let outlines = columns.outlines().map_err(value_error)?;
+    py.detach(|| {
+        let mut found = Vec::new();
+        for outline in outlines {
+            match recorded(outline) {
+                Recorded::Outline(frame, ()) => found.push((frame.object, PyOutline { inner: frame.outline })),
+                Recorded::Gap(Err(error)) => return Err(PyValueError::new_err(table_error(&error))),
+                _ => {}
+            }
+        }
+        Ok(found)
+    })
+}
+
+/// Lets a tracker follow a recording from columns. Returns columns with one row per object and frame.
+#[pyfunction]
+#[pyo3(signature = (tracker, columns, smooth = false, progress = None))]
+pub(crate) fn track_columns<'py>(
+    py: Python<'py>,
+    tracker: &PyTracker,
+    columns: Columns<'py>,
+    smooth: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mut recording = Recording::default();
+    follow(py, tracker, &columns.view()?, progress.as_ref(), |observation| recording.take(observation))?;
+    recording.columns(py, tracker, smooth)
+}
+
+/// What became of the frames that a tracker was given one by one, as columns.
+#[pyclass(frozen, name = "Recorder", module = "freeform_motion")]
+#[derive(Debug, Default)]
+pub(crate) struct PyRecorder {
+    recording: Mutex<Recording>,
+}
+
+#[pymethods]
+impl PyRecorder {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds the observation of a frame.
+    fn take(&self, observation: &PyObservation) {
+        self.recording.lock().unwrap_or_else(PoisonError::into_inner).take(&observation.inner);
+    }
+
+    /// Columns with one row per observation; afterwards it is empty.
+    fn columns<'py>(&self, py: Python<'py>, tracker: &PyTracker, smooth: bool) -> PyResult<Bound<'py, PyDict>> {
+        let recording = std::mem::take(&mut *self.recording.lock().unwrap_or_else(PoisonError::into_inner));
+        recording.columns(py, tracker, smooth)
+    }
+}
+
+/// Follows all outlines of the columns, several objects on several threads, without the interpreter.
+fn follow(
+    py: Python<'_>,
+    tracker: &PyTracker,
+    columns: &OutlineColumns<'_>,
+    progress: Option<&Py<PyAny>>,
+    mut observe: impl FnMut(&Observation) + Send,
+) -> PyResult<()> {
+    let outlines = columns.outlines().map_err(value_error)?;
+    py.detach(|| {
+        let mut frames = 0_usize;
+        let recording = outlines.map(recorded);
+        // Not behind its lock: the interpreter is waited for below.
+        let mut following = tracker.lock().clone();
+        following.follow_recording(recording, ReadAhead::default(), |followed| {
+            let observation = match followed {
+                Followed::Object(observation, _) => observation,
+                Followed::Gap(Err(error)) => return Err(PyValueError::new_err(table_error(&error))),
+                Followed::Gap(Ok(never)) => match never {},
+            };
+            observe(&observation);
+            frames += 1;
+            if frames.is_multiple_of(FRAMES_BETWEEN_SIGNALS) {
+                Python::attach(|py| {
+                    py.check_signals()?;
+                    progress.map_or(Ok(()), |progress| progress.call1(py, (FRAMES_BETWEEN_SIGNALS,)).map(drop))
+                })?;
+            }
+            Ok(())
+        })?;
+        *tracker.lock() = following;
+        let rest = frames % FRAMES_BETWEEN_SIGNALS;
+        progress.map_or(Ok(()), |progress| Python::attach(|py| progress.call1(py, (rest,)).map(drop)))
+    })
+}
+
+/// Points that are not an outline are a frame without one; any other error ends the reading.
+fn recorded(outline: Result<OutlineFrame, ReadError>) -> Recorded<(), Gap> {
+    match outline {
+        Ok(frame) => Recorded::Outline(frame, ()),
+        Err(error) => match &error.kind {
+            ReadErrorKind::Degenerate { object, frame, .. } => {
+                let (object, frame) = (object.clone(), *frame);
+                Recorded::NoOutline { object, frame, reason: table_error(&error) }
+            }
+            _ => Recorded::Gap(Err(error)),
+        },
+    }
+}
+
+/// An error with its place in the table, rows counted from 0.
+fn table_error(error: &ReadError) -> String {
+    let column = error.place.column.map_or(String::new(), |column| format!(", column {column}"));
+    match error.place.lines {
+        Some((first, last)) if first == last => format!("row {first}{column}: {}", error.kind),
+        Some((first, last)) => format!("rows {first} to {last}{column}: {}", error.kind),
+        None => error.kind.to_string(),
+    }
+}
+
+/// What is kept of every frame.
+#[derive(Debug, Default)]
+pub(crate) struct Recording {
+    trajectory: Trajectory,
+    phases: Vec<&'static str>,
+    estimates: Vec<Option<MotionEstimate>>,
+}
+
+impl Recording {
+    pub(crate) fn take(&mut self, observation: &Observation) {
+        self.trajectory.take(observation);
+        self.phases.push(observation.phase.map_or("", |phase| phase.name()));
+        self.estimates.push(observation.estimate);
+    }
+
+    /// One row per observation, in their order.
+    pub(crate) fn columns<'py>(
+        mut self,
+        py: Python<'py>,
+        tracker: &PyTracker,
+        smooth: bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let tracker = tracker.lock();
+        let (model, scale) = (tracker.settings().motion(), tracker.settings().scale);
+        if smooth {
+            self.trajectory.smooth(&tracker).map_err(value_error)?;
+        }
+        let rows = self.trajectory.rows();
+        let table = PyDict::new(py);
+        let names: HashMap<&str, usize> = tracker.objects().zip(0..).collect();
+        let objects: Vec<i64> =
+            rows.iter().map(|row| names.get(row.object.as_str()).map_or(-1, |i| *i as i64)).collect();
+        table.set_item("object", objects.into_pyarray(py))?;
+        table.set_item("frame", PyArray1::from_iter(py, rows.iter().map(|row| row.frame)))?;
+        table.set_item("time", PyArray1::from_vec(py, or_nan(rows.iter().map(|row| row.time))))?;
+        table.set_item("phase", self.phases)?;
+        table.set_item("accepted", PyArray1::from_iter(py, rows.iter().map(|row| row.accepted)))?;
+        let segments: Vec<i64> = rows.iter().map(|row| row.segment as i64).collect();
+        let mut motions = self.estimates;
+        if tracker.settings().method() == Method::Filter {
+            let poses = self.trajectory.poses(scale);
+            for (index, name) in Trajectory::pose_names(model).iter().enumerate() {
+                let of = |pick: fn(&freeform_motion::estimate::PoseParameter) -> f64| {
+                    or_nan(poses.iter().map(|known| known.as_ref().map(|known| pick(&known.pose[index]))))
+                };
+                table.set_item(*name, of(|parameter| parameter.value).into_pyarray(py))?;
+                table.set_item(format!("{name}_std"), of(|parameter| parameter.standard_deviation).into_pyarray(py))?;
+            }
+            motions = poses.into_iter().map(|known| known.map(|known| known.motion)).collect();
+        }
+        set_motions(&table, model, &motions)?;
+        table.set_item("segment", PyArray1::from_iter(py, segments))?;
+        Ok(table)
+    }
+}
+
+/// A column for every parameter and one for its standard deviation, NaN where there is none.
+fn set_motions(table: &Bound<'_, PyDict>, model: MotionModel, motions: &[Option<MotionEstimate>]) -> PyResult<()> {
+    for (index, name) in model.parameter_names().iter().enumerate() {
+        let parameter =
+            |motion: &Option<MotionEstimate>| motion.as_ref().and_then(|motion| motion.parameters().nth(index));
+        let values = motions.iter().map(|motion| parameter(motion)?.value);
+        let deviations = motions.iter().map(|motion| parameter(motion)?.standard_deviation);
+        table.set_item(*name, or_nan(values).into_pyarray(table.py()))?;
+        table.set_item(format!("{name}_std"), or_nan(deviations).into_pyarray(table.py()))?;
+    }
+    Ok(())
+}

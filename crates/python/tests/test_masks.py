@@ -1,0 +1,106 @@
+"""From labelled masks to motion."""
+
+import numpy as np
+import pytest
+
+import freeform_motion as ff
+
+
+def disc(height, width, row, column, radius, label=1):
+    rows, columns = np.mgrid[:height, :width]
+    return np.where(np.hypot(rows - row, columns - column) < radius, label, 0)
+
+
+@pytest.mark.parametrize("dtype", [bool, np.uint8, np.uint16, np.int32, np.int64])
+def test_the_motion_is_found_from_masks_of_any_type(masks, dtype):
+    estimate = ff.identify(masks.astype(dtype), fps=30)["1"].estimate
+    assert abs(estimate["omega"].value - 1.0) < 0.02
+    assert estimate["omega"].std < 0.01
+
+
+def test_omega_over_time_from_masks(masks):
+    tracked = ff.track(masks, fps=30)
+    assert len(tracked["time"]) == 30 and tracked["time"][-1] == 29 / 30
+    assert np.isnan(tracked["omega"][0]) and np.abs(tracked["omega"][5:] - 1.0).max() < 0.05
+    np.testing.assert_allclose(tracked["angle"][1:], tracked["time"][1:], atol=0.02)
+
+
+def test_times_may_be_given_and_masks_may_come_one_by_one(masks):
+    times = np.arange(30) / 30
+    expected = ff.identify(masks, fps=30)[0].estimate.values
+    np.testing.assert_array_equal(ff.identify((mask for mask in masks), times=times)[0].estimate.values, expected)
+    np.testing.assert_array_equal(ff.identify(list(masks), fps=30, progress=False)[0].estimate.values, expected)
+
+
+def test_outlines_have_the_place_and_area_of_their_labels():
+    labels = disc(80, 120, 30, 40, 15, label=4) + disc(80, 120, 55, 90, 10, label=9)
+    found = ff.outlines(labels)
+    assert list(found) == [4, 9]
+    np.testing.assert_allclose(found[4].centroid, [40.5, 80 - 30.5], atol=0.05)
+    np.testing.assert_allclose(found[4].signed_area, (labels == 4).sum(), rtol=0.02)
+    downwards = ff.outlines(labels, y_up=False, pixel_size=0.5)
+    np.testing.assert_allclose(downwards[9].centroid, [0.5 * 90.5, 0.5 * 55.5], atol=0.05)
+
+
+def test_specks_are_no_objects_and_holes_are_filled():
+    labels = disc(60, 60, 30, 30, 15) - disc(60, 60, 30, 30, 4)
+    labels[2:4, 2:4] = 7
+    found = ff.outlines(labels)
+    assert list(found) == [1] and found[1].signed_area > 650
+
+
+def test_an_object_at_the_edge_is_closed_or_open():
+    labels = disc(60, 60, 30, 0, 15)
+    assert ff.outlines(labels)[1].is_closed
+    assert not ff.outlines(labels, clipping="open")[1].is_closed
+
+
+def test_labels_that_change_are_linked_by_place():
+    frames = []
+    for frame in range(12):
+        a, b = (5, 8) if frame % 2 else (8, 5)
+        frames.append(disc(80, 120, 20, 20 + 2 * frame, 9, a) + disc(80, 120, 60, 100 - 2 * frame, 12, b))
+    linked = ff.identify(frames, fps=10, link="places")
+    assert len(linked) == 2 and all(result.frames == 12 for result in linked)
+    velocities = sorted(result.velocity.velocity[0] for result in linked)
+    np.testing.assert_allclose(velocities, [-20, 20], atol=0.5)
+    assert len(ff.identify(frames, fps=10, link="largest")) == 1
+
+
+def test_frames_without_the_object_are_no_frames_of_it(masks):
+    gaps = masks.copy()
+    gaps[10:12] = 0
+    result = ff.identify(gaps, fps=30)[0]
+    assert result.frames == 28 and result.frames_rejected == 0
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda m: ff.identify(m), ValueError, "fps: a positive number"),
+        (lambda m: ff.identify(m, fps=-1), ValueError, "fps: a positive number"),
+        (lambda m: ff.identify(m, fps=30, times=[0]), ValueError, "not both"),
+        (lambda m: ff.identify(m, times=[0, 1]), ValueError, "one number for each mask"),
+        (lambda m: ff.identify(iter(m), times=[0, 1]), ValueError, "there is none for mask 2"),
+        (lambda m: ff.identify(m, times=np.zeros(30)), ValueError, None),
+        (lambda m: ff.identify(m[0], fps=30), ValueError, r"shape \(frames, height, width\) is needed"),
+        (lambda m: ff.identify(m * 0.5, fps=30), TypeError, "mask 0: labels are whole numbers"),
+        (lambda m: ff.identify([m], fps=30), ValueError, r"mask 0: shape \(height, width\) is needed"),
+        (lambda m: ff.identify("masks", fps=30), TypeError, "masks or a table are needed, this is str"),
+        (lambda m: ff.identify(None, fps=30), TypeError, "this is NoneType"),
+        (lambda m: ff.identify(m, fps=30, link="names"), ValueError, "is none of labels, places, nearest, largest"),
+        (lambda m: ff.identify(m, fps=30, smoothing=-1.0), ValueError, "smoothing is -1"),
+        (lambda m: ff.identify(m, fps=30, pixel_size=0.0), ValueError, "pixel_size is 0"),
+        (lambda m: ff.outlines(m), ValueError, r"shape \(height, width\)"),
+        (lambda m: ff.outlines(m[0], clipping="cut"), ValueError, "is none of close, open"),
+        (lambda m: ff.outlines(np.empty((0, 5), int)), ValueError, "no pixels"),
+        (lambda m: ff.outlines(m[0], minimum_area=-1), ValueError, "a whole number"),
+    ],
+)
+def test_wrong_masks_and_options_are_refused(masks, call, error, message):
+    if message is None:
+        # Times that do not increase make rejected frames, as in any recording.
+        assert call(masks)[0].frames_rejected == 29
+        return
+    with pytest.raises(error, match=message):
+        call(masks)

@@ -1,0 +1,236 @@
+"""Tables in and out: the same numbers to the last bit from every library."""
+
+import numpy as np
+import pandas
+import polars
+import pyarrow
+import pytest
+
+import freeform_motion as ff
+from freeform_motion._tables import factorise
+
+
+def pushed(table):
+    """The results of the table pushed outline by outline."""
+    tracker = ff.Tracker()
+    keys = dict.fromkeys(zip(table["frame"].tolist(), table["object"].tolist(), strict=True))
+    for frame, name in keys:
+        rows = (table["frame"] == frame) & (table["object"] == name)
+        points = np.column_stack([table["x"][rows], table["y"][rows]])
+        arcs = table["arc"][rows]
+        if arcs[0] < 0:
+            outline = ff.Outline(points)
+        else:
+            outline = ff.Outline.from_arcs([points[arcs == arc] for arc in dict.fromkeys(arcs.tolist())])
+        tracker.push(name, frame, table["time"][rows][0], outline)
+    return ff.Identification(tracker.results())
+
+
+LIBRARIES = {
+    "dict": dict,
+    "pandas": pandas.DataFrame,
+    "pandas, names as categories": lambda table: pandas.DataFrame(table).astype({"object": "category"}),
+    "pandas, own types": lambda table: pandas.DataFrame(table).convert_dtypes(),
+    "polars": polars.DataFrame,
+    "polars, names as categories": lambda table: polars.DataFrame(table).with_columns(
+        polars.col("object").cast(polars.Categorical)
+    ),
+    "pyarrow": pyarrow.table,
+    "pyarrow, names as a dictionary": lambda table: pyarrow.table(
+        {**table, "object": pyarrow.array(table["object"]).dictionary_encode()}
+    ),
+    "pyarrow, in chunks": lambda table: pyarrow.concat_tables(
+        [pyarrow.table(table).slice(0, 1000), pyarrow.table(table).slice(1000)]
+    ),
+    "names as objects": lambda table: {**table, "object": table["object"].astype(object)},
+    "whole numbers as floats": lambda table: {**table, "frame": table["frame"].astype(float)},
+}
+
+
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_every_library_gives_the_results_of_outlines_pushed_one_by_one(table, library):
+    expected = pushed(table)
+    found = ff.identify(LIBRARIES[library](table))
+    assert found.objects == expected.objects == ["left", "right"]
+    for name in found.objects:
+        np.testing.assert_array_equal(found[name].estimate.values, expected[name].estimate.values)
+        np.testing.assert_array_equal(found[name].estimate.std, expected[name].estimate.std)
+    assert abs(found["left"].estimate["omega"].value - 1.5) < 0.05
+    assert abs(found["right"].estimate["omega"].value + 0.7) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("of", "kind"), [(dict, dict), (pandas.DataFrame, pandas.DataFrame), (polars.DataFrame, polars.DataFrame), (pyarrow.table, pyarrow.Table)]
+)
+def test_track_returns_a_table_of_the_same_kind_with_a_row_per_object_and_frame(table, of, kind):
+    tracked = ff.track(of(table))
+    assert isinstance(tracked, kind)
+    names = np.asarray(tracked["object"])
+    assert len(names) == 30 and names[:2].tolist() == ["left", "right"]
+    omega = np.asarray(tracked["omega"])
+    assert np.isnan(omega[:2]).all() and np.isfinite(omega[4:]).all()
+    last = ff.identify(table)["right"].estimate
+    assert omega[-1] == last.values[0] and np.asarray(tracked["omega_std"])[-1] == last.std[0]
+    assert np.asarray(tracked["phase"])[-1] == "tracking" and np.asarray(tracked["accepted"]).all()
+    np.testing.assert_array_equal(np.asarray(tracked["time"])[::2], np.unique(table["time"]))
+    assert (np.asarray(tracked["segment"]) == 0).all()
+
+
+def test_an_object_given_up_and_begun_anew_has_another_segment(bird):
+    outlines = [("a", frame.index, frame.time, frame.outline) for frame in bird]
+    other = ff.simulate("square", omega=-1.0, seconds=2.0)
+    outlines += [("a", 30 + frame.index, 1.0 + frame.time, frame.outline) for frame in other]
+    segment = ff.track(ff.outline_table(outlines))["segment"]
+    assert (segment[:31] == 0).all() and segment[-1] == 1 and (np.diff(segment) >= 0).all()
+
+
+def test_smoothed_poses_are_known_better_than_filtered_ones(table):
+    filtered, smoothed = (ff.track(table, smooth=smooth, adaptive=False) for smooth in (False, True))
+    early = slice(4, 10)
+    assert (smoothed["angle_std"][early] < filtered["angle_std"][early]).all()
+    np.testing.assert_array_equal(smoothed["angle_std"][-2:], filtered["angle_std"][-2:])
+    assert np.isfinite(smoothed["angle"][:2]).all()
+
+
+def test_the_adaptive_method_has_a_motion_and_no_pose(table):
+    tracked = ff.track(table, method="adaptive")
+    assert "angle" not in tracked and np.isfinite(tracked["omega"][-1]) and np.isnan(tracked["omega_std"]).all()
+
+
+def test_the_camera_scale_divides_velocities(table):
+    plain, scaled = ff.identify(table)["left"], ff.identify(table, scale=0.5)["left"]
+    np.testing.assert_allclose(scaled.estimate.values, plain.estimate.values * [1, 2, 2])
+    np.testing.assert_allclose(scaled.velocity.velocity, 2 * plain.velocity.velocity)
+
+
+def test_a_table_without_objects_has_one_and_frames_make_times(bird):
+    table = ff.outline_table(bird)
+    expected = ff.identify(table)[0].estimate.values
+    alone = {name: table[name] for name in ("frame", "x", "y")}
+    found = ff.identify(alone, fps=30.0)
+    assert found.objects == ["0"] and "arc" not in table
+    np.testing.assert_array_equal(found[0].estimate.values, expected)
+
+
+def test_columns_may_have_other_names(bird):
+    table = pandas.DataFrame(ff.outline_table(bird))
+    renamed = table.rename(columns={"x": "px", "time": "t"})
+    found = ff.identify(renamed, columns={"x": "px", "time": "t"})
+    np.testing.assert_array_equal(found[0].estimate.values, ff.identify(table)[0].estimate.values)
+
+
+def test_results_come_as_a_table_too(table):
+    results = ff.identify(table)
+    rows = pandas.DataFrame(results.table())
+    assert rows["object"].tolist() == ["left", "right"]
+    assert rows["omega"].tolist() == [result.estimate.values[0] for result in results]
+    assert rows["omega_std_random"].tolist() == [result.estimate.std_random[0] for result in results]
+    assert (rows["omega_std_systematic"] == 0.0).all()
+    assert rows["v1_std"].tolist() == [result.velocity.std[0] for result in results]
+    assert len(results) == 2 and results[1].object == "right" and results[:1].objects == ["left"]
+    assert "omega" in repr(results)
+    with pytest.raises(KeyError, match="none of left, right"):
+        results["middle"]
+
+
+def changed(table, **columns):
+    return {name: columns.get(name, column).copy() for name, column in table.items()}
+
+
+def with_value(table, name, row, value):
+    column = table[name].copy()
+    column[row] = value
+    return {**table, name: column}
+
+
+@pytest.mark.parametrize(
+    ("spoil", "error", "message"),
+    [
+        (lambda t: {"frame": t["frame"]}, ValueError, r"missing column\(s\) x, y, time, the table has frame"),
+        (lambda t: with_value(t, "x", 7, np.nan), ValueError, "row 7, column x: .* is not a finite number"),
+        (lambda t: with_value(t, "y", 7, np.inf), ValueError, "row 7, column y"),
+        (lambda t: with_value(t, "y", 7, 1e200), ValueError, "row 7, column y: 1e200 is beyond 1e100"),
+        (lambda t: with_value(t, "time", 3, np.nan), ValueError, "row 3, column time"),
+        (lambda t: with_value(t, "time", 3, 9.0), ValueError, "row 3, column time: the time changes from 0 to 9"),
+        (lambda t: with_value(t, "frame", 5, -1), ValueError, "row 5, column frame: -1 is not a frame number"),
+        (lambda t: {**t, "frame": t["frame"] + 0.5}, ValueError, "row 0, column frame: 0.5 is not a frame number"),
+        (lambda t: {**t, "frame": t["frame"][::-1]}, ValueError, "column frame: frame 13 .* comes after its frame 14"),
+        (lambda t: {**t, "time": -t["time"]}, ValueError, "is not after"),
+        (lambda t: {n: c[np.argsort(c.size * [0] + t["x"])] for n, c in t.items()}, ValueError, "row .*, column frame"),
+        (lambda t: with_value(t, "arc", 3, -1), ValueError, "row 3, column arc: some rows"),
+        (lambda t: {**t, "y": t["y"][:-1]}, ValueError, "column y has .* rows"),
+        (lambda t: {**t, "x": t["x"].astype(str)}, TypeError, "column x: real numbers are needed"),
+        (lambda t: {**t, "x": t["x"].reshape(-1, 1)}, ValueError, r"column x: shape \(n,\) is needed"),
+        (lambda t: {**t, "object": np.array([None] * len(t["x"]))}, ValueError, "row 0, column object: the name is missing"),
+    ],
+)
+def test_tables_that_break_the_rules_are_refused_with_row_and_column(table, spoil, error, message):
+    for take in ff.identify, ff.track:
+        with pytest.raises(error, match=message):
+            take(spoil(table))
+
+
+def test_missing_values_of_a_dataframe_are_refused(table):
+    frame = polars.DataFrame(table).with_columns(polars.when(polars.int_range(polars.len()) == 4).then(None).otherwise(polars.col("x")).alias("x"))
+    with pytest.raises(ValueError, match="row 4, column x"):
+        ff.identify(frame)
+    nullable = pandas.DataFrame(table).convert_dtypes()
+    nullable.loc[4, "x"] = pandas.NA
+    with pytest.raises(ValueError, match="row 4, column x"):
+        ff.identify(nullable)
+
+
+def test_points_that_are_no_outline_are_a_rejected_frame(bird):
+    table = ff.outline_table(bird)
+    rows = table["frame"] == 10
+    flat = {**table, "y": np.where(rows, 0.0, table["y"])}
+    result = ff.identify(flat)[0]
+    assert result.frames == 30 and result.frames_rejected == 1
+    assert "lie on one line" in result.first_rejection and "rows 4000 to 4399" in result.first_rejection
+    tracked = ff.track(flat)
+    assert not tracked["accepted"][10] and np.isnan(tracked["time"][10])
+
+
+def test_an_empty_table_has_no_results():
+    empty = {name: np.empty(0) for name in ("frame", "time", "x", "y")}
+    assert len(ff.identify(empty)) == 0 and len(ff.track(empty)["time"]) == 0
+
+
+def test_options_of_masks_and_unknown_columns_are_refused_for_tables(table):
+    with pytest.raises(TypeError, match="link: only for masks"):
+        ff.identify(table, link="places")
+    with pytest.raises(ValueError, match="z is none of object"):
+        ff.identify(table, columns={"z": "x"})
+    with pytest.raises(ValueError, match=r"missing column\(s\) px"):
+        ff.identify(table, columns={"x": "px"})
+    with pytest.raises(ValueError, match="fps: a positive number"):
+        ff.identify({n: table[n] for n in ("frame", "x", "y")}, fps=0.0)
+
+
+@pytest.mark.parametrize("of", [np.array, pandas.Series, polars.Series, lambda values: pyarrow.chunked_array([values])])
+def test_values_are_numbered_as_they_appear(of):
+    codes, values = factorise(of(["b", "b", "a", "b", "c"]))
+    assert codes.tolist() == [0, 0, 1, 0, 2] and values == ["b", "a", "c"]
+
+
+def test_progress_counts_every_frame(table, monkeypatch):
+    counted = []
+
+    class Bar:
+        def __init__(self, **_):
+            pass
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            pass
+
+        def update(self, frames):
+            counted.append(frames)
+
+    monkeypatch.setattr("tqdm.auto.tqdm", Bar)
+    ff.identify(table, progress=True)
+    assert sum(counted) == 30
+    ff.identify(table, progress=False)
+    assert sum(counted) == 30

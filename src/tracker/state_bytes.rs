@@ -1,0 +1,216 @@
+//! A tracker as bytes and back.
+use freeform_estimate::MotionEstimate;
+use freeform_outline_filter::{FilterSettings, MotionFilter, StateError, with_header, without_header};
+use freeform_riccati::CameraScale;
+use nalgebra::{Matrix3, Projective2};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Objects, Tracker,
+    contour_order::{ContourOrder, FRAMES},
+    identifier::{FilteredObject, Identifier},
+    object::{REJECTIONS_KEPT, TrackedObject},
+    settings::{Method, MethodSettings, TrackerSettings},
+};
+use crate::frame_ranges::FrameRanges;
+use crate::rejection::{FrameRejection, RejectionCause};
+use crate::{Rectification, Warning};
+
+/// What the bytes hold, behind the version.
+const KIND: [u8; 4] = *b"trak";
+
+/// Counters stay below this.
+const MOST_COUNTED: usize = 1 << 48;
+
+/// Why a tracker cannot be saved or restored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum TrackerStateError {
+    /// The method has no saved state.
+    #[error("objects followed by the method {method} cannot be saved, those of the motion filter can")]
+    Method {
+        /// The method of the tracker.
+        method: Method,
+    },
+    /// The bytes are no saved state.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+/// What is saved.
+#[derive(Serialize, Deserialize)]
+struct SavedTracker {
+    settings: FilterSettings,
+    scale: Option<f64>,
+    /// From the picture to the plane.
+    rectification: Option<Matrix3<f64>>,
+    objects: Vec<SavedObject>,
+}
+
+/// What is saved of an object.
+#[derive(Serialize, Deserialize)]
+struct SavedObject {
+    name: String,
+    /// With a header of its own.
+    filter: Vec<u8>,
+    last_known: Option<(f64, MotionEstimate)>,
+    frames_looked_at: usize,
+    /// Frame and length of the line through its points.
+    out_of_order: Option<(u64, f64)>,
+    frames: usize,
+    rejected: usize,
+    rejections: Vec<SavedRejection>,
+    rejected_later: FrameRanges,
+}
+
+/// A rejected frame and what is told of it.
+#[derive(Serialize, Deserialize)]
+struct SavedRejection {
+    frame: u64,
+    reason: Reason,
+}
+
+#[derive(Serialize, Deserialize)]
+enum Reason {
+    /// Names the frame.
+    NoOutline(String),
+    Other(String),
+}
+
+impl Tracker {
+    /// Everything that the tracker knows, as bytes: 50 to 100 kB for each object. A tracker [made from them](Self::from_bytes) goes on as this
+    /// one would, to the last bit. The first four bytes are the version of the format, little-endian.
+    ///
+    /// ```
+    /// use freeform_motion::{Tracker, TrackerSettings};
+    /// use freeform_motion::outline_io::OutlineFrame;
+    /// use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+    ///
+    /// let settings = Settings { length: SequenceLength::Frames(20), ..Settings::default() };
+    /// let simulator = Simulator::new(PaperExperiment::FLIGHT_BIRD.scene(0.1)?, settings)?;
+    /// let frames = (0..).zip(simulator.frames());
+    /// let frames: Vec<_> =
+    ///     frames.map(|(frame, seen)| OutlineFrame { frame, time: seen.time, object: "bird".into(), outline: seen.outline }).collect();
+    ///
+    /// let mut tracker = Tracker::new(TrackerSettings::default())?;
+    /// frames[..10].iter().for_each(|frame| drop(tracker.push(frame)));
+    /// let mut restored = Tracker::from_bytes(&tracker.to_bytes()?)?;
+    /// for frame in &frames[10..] {
+    ///     assert_eq!(restored.push(frame), tracker.push(frame));
+    /// }
+    /// assert_eq!(restored.results(), tracker.results());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Another method than the motion filter.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, TrackerStateError> {
+        let TrackerSettings { method, scale, rectification } = &self.settings;
+        let MethodSettings::Filter(settings) = method else {
+            return Err(TrackerStateError::Method { method: self.settings.method() });
+        };
+        let objects = self.objects.list.iter().map(saved).collect::<Result<_, _>>()?;
+        let state = SavedTracker {
+            settings: *settings,
+            scale: scale.map(CameraScale::value),
+            rectification: rectification.map(|plane| *plane.plane_from_picture()),
+            objects,
+        };
+        let state = postcard::to_allocvec(&state).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
+        Ok(with_header(KIND, &state))
+    }
+
+    /// A tracker from the bytes of [`to_bytes`](Self::to_bytes). Bytes from anywhere may be given: everything is checked.
+    ///
+    /// # Errors
+    /// Bytes of another version or kind, damaged ones, and ones that describe no tracker.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, TrackerStateError> {
+        let inconsistent = |part| StateError::Inconsistent { part };
+        let (state, rest) = postcard::take_from_bytes::<SavedTracker>(without_header(KIND, "tracker", bytes)?)
+            .map_err(|_| inconsistent("encoding"))?;
+        if !rest.is_empty() {
+            return Err(inconsistent("bytes left over").into());
+        }
+        let scale = state.scale.map(CameraScale::new).transpose().map_err(|_| inconsistent("settings"))?;
+        let plane = |map: Matrix3<f64>| Rectification::new(&Projective2::from_matrix_unchecked(map));
+        let rectification = state.rectification.map(plane).transpose().map_err(|_| inconsistent("settings"))?;
+        let settings = TrackerSettings { method: MethodSettings::Filter(state.settings), scale, rectification };
+        let mut tracker = Self::new(settings.clone()).map_err(|_| inconsistent("settings"))?;
+        let mut objects = Objects::default();
+        for saved in state.objects {
+            let object = restored(saved, state.settings, &settings)?;
+            if objects.positions.insert(object.name().to_owned(), objects.list.len()).is_some() {
+                return Err(inconsistent("two objects of one name").into());
+            }
+            objects.list.push(object);
+        }
+        tracker.objects = objects;
+        Ok(tracker)
+    }
+}
+
+fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
+    let Identifier::Filter(filtered) = &object.identifier else {
+        return Err(TrackerStateError::Method { method: Method::Adaptive });
+    };
+    let rejections = object.rejections.iter().map(|rejection| {
+        let text = rejection.cause.to_string();
+        let reason = match rejection.cause {
+            RejectionCause::NoOutline(_) => Reason::NoOutline(text),
+            _ => Reason::Other(text),
+        };
+        SavedRejection { frame: rejection.frame, reason }
+    });
+    Ok(SavedObject {
+        name: object.name.clone(),
+        filter: filtered.filter.to_bytes()?,
+        last_known: filtered.last_known,
+        frames_looked_at: object.contour_order.seen,
+        out_of_order: match object.contour_order.warning {
+            Some(Warning::PointsOutOfOrder { frame, perimeters }) => Some((frame, perimeters)),
+            _ => None,
+        },
+        frames: object.frames,
+        rejected: object.rejected,
+        rejections: rejections.collect(),
+        rejected_later: object.rejected_later.clone(),
+    })
+}
+
+fn restored(
+    saved: SavedObject,
+    of_filter: FilterSettings,
+    settings: &TrackerSettings,
+) -> Result<TrackedObject, StateError> {
+    let inconsistent = |part| Err(StateError::Inconsistent { part });
+    let SavedObject { name, last_known, frames_looked_at, frames, rejected, rejections, rejected_later, .. } = saved;
+    let filter = MotionFilter::from_bytes(&saved.filter)?;
+    if *filter.settings() != of_filter || last_known.is_some_and(|(_, motion)| motion.model() != of_filter.model) {
+        return inconsistent("settings of an object");
+    }
+    if last_known.is_some_and(|(time, motion)| !(time.is_finite() && motion.is_finite())) {
+        return inconsistent("last known motion");
+    }
+    let counts = [frames, MOST_COUNTED].is_sorted() && [rejections.len(), rejected, frames].is_sorted();
+    if !counts || rejections.len() > REJECTIONS_KEPT || frames_looked_at > FRAMES || !rejected_later.is_sound() {
+        return inconsistent("counts of frames");
+    }
+    let warning = saved.out_of_order.map(|(frame, perimeters)| Warning::PointsOutOfOrder { frame, perimeters });
+    let rejections = rejections.into_iter().map(|SavedRejection { frame, reason }| {
+        let cause = match reason {
+            Reason::NoOutline(text) => RejectionCause::NoOutline(text),
+            Reason::Other(text) => RejectionCause::Saved(text),
+        };
+        FrameRejection { object: name.clone(), frame, cause }
+    });
+    Ok(TrackedObject {
+        identifier: Identifier::Filter(Box::new(FilteredObject { filter, last_known })),
+        scale: settings.scale,
+        rectification: settings.rectification,
+        contour_order: ContourOrder { seen: frames_looked_at, warning },
+        frames,
+        rejected,
+        rejections: rejections.collect(),
+        rejected_later,
+        name,
+    })
+}
