@@ -55,6 +55,7 @@ pub use number::significant;
 pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
 pub use pipeline_error::PipelineError;
 pub use rectification::{Rectification, RectifyError};
+pub use rejection::with_causes;
 pub use tracker::{Tracker, TrackerSettings};
 pub use warning::Warning;
 

@@ -54,8 +54,9 @@ impl fmt::Display for RejectionCause {
     }
 }
 
-/// An error and what caused it, without what its own text already says.
-fn with_causes(error: &dyn Error) -> String {
+/// An error and what caused it, in one line, without what its own text already says.
+#[must_use]
+pub fn with_causes(error: &dyn Error) -> String {
     let mut text = error.to_string();
     let mut source = error.source();
     while let Some(cause) = source {

@@ -1,6 +1,7 @@
 //! Errors of the library as Python exceptions.
 use std::error::Error;
 
+use freeform_motion::with_causes;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -28,18 +29,4 @@ pub(crate) fn whole<T: for<'a, 'py> FromPyObject<'a, 'py, Error = PyErr>>(value:
             error
         }
     })
-}
-
-/// An error and what caused it, without what its own text already says.
-fn with_causes(error: &dyn Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text = format!("{text}: {cause_text}");
-        }
-        source = cause.source();
-    }
-    text
 }

@@ -120,16 +120,10 @@ impl InnovationSeries {
         if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
             return 0.0;
         }
-        let n = self.frames as f64;
-        let sum: f64 = (0..=tuning::SLOW)
-            .map(|c| {
-                let angle = std::f64::consts::PI * c as f64 / count as f64;
-                let terms =
-                    self.blocks.iter().enumerate().map(|(t, block)| block[j] * (angle * (t as f64 + 0.5)).cos());
-                let projected: f64 = terms.sum();
-                projected * projected * if c == 0 { 1.0 } else { 2.0 } / n
-            })
-            .sum();
+        let terms = || self.blocks.iter().map(|block| block[j]);
+        let mean: f64 = terms().sum();
+        let slow = &cosine_projections(terms(), count, 1)[..tuning::SLOW];
+        let sum = (mean * mean + slow.iter().map(|p| 2.0 * p * p).sum::<f64>()) / self.frames as f64;
         (2.0 * sum).sqrt() - (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt()
     }
 
@@ -156,25 +150,31 @@ impl InnovationSeries {
         let whitened =
             (0..count).map(|t| self.blocks[t][j] - if t > 0 { of_block * self.blocks[t - 1][j] } else { 0.0 });
         let cosines = tuning::COSINES.min(count.saturating_sub(first)).max(1);
-        let mut projected = [0.0; tuning::COSINES];
-        for (t, x) in whitened.enumerate() {
-            // cos((c + 1) u) = 2 cos(u) cos(c u) - cos((c - 1) u)
-            let step = (std::f64::consts::PI * (t as f64 + 0.5) / count as f64).cos();
-            let (mut before, mut cosine) = (1.0, step);
-            for _ in 1..first {
-                (before, cosine) = (cosine, 2.0 * step * cosine - before);
-            }
-            for sum in &mut projected[..cosines] {
-                *sum += x * cosine;
-                (before, cosine) = (cosine, 2.0 * step * cosine - before);
-            }
-        }
+        let projected = cosine_projections(whitened, count, first);
         let sum: f64 = projected[..cosines].iter().map(|p| 2.0 * p * p / count as f64).sum();
         // Sums over blocks have the variance of so many frames.
         let per_frame = sum / (cosines as f64 * self.length as f64);
         let recoloured = 1.0 - corrected.powi(self.length as i32);
         per_frame / (recoloured * recoloured)
     }
+}
+
+/// Projections of so many terms onto cosines of whole half waves, from a `first` number of them on, at least 1.
+fn cosine_projections(terms: impl Iterator<Item = f64>, count: usize, first: usize) -> [f64; tuning::COSINES] {
+    let mut projected = [0.0; tuning::COSINES];
+    for (t, x) in terms.enumerate() {
+        // cos((c + 1) u) = 2 cos(u) cos(c u) - cos((c - 1) u)
+        let step = (std::f64::consts::PI * (t as f64 + 0.5) / count as f64).cos();
+        let (mut before, mut cosine) = (1.0, step);
+        for _ in 1..first {
+            (before, cosine) = (cosine, 2.0 * step * cosine - before);
+        }
+        for sum in &mut projected {
+            *sum += x * cosine;
+            (before, cosine) = (cosine, 2.0 * step * cosine - before);
+        }
+    }
+    projected
 }
 
 #[cfg(feature = "serde")]

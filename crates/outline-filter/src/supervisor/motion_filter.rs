@@ -340,7 +340,8 @@ impl MotionFilter {
 
     /// The other hypotheses of the turn, in radians, anticlockwise if y points up: turns of the object, up to the frame in which it was last
     /// searched for and found, that explain all frames since then about as well as the turn taken. Of equally good turns the smallest is
-    /// taken. Empty for outlines without symmetry. [`ambiguity`](Self::ambiguity) tells whether the motion is in doubt.
+    /// taken. Empty for outlines without symmetry, unless they turn by more than a third of a circle: a whole turn more or less looks the
+    /// same. [`ambiguity`](Self::ambiguity) tells whether the motion is in doubt.
     #[must_use]
     pub fn rival_turns(&self) -> &[f64] {
         self.hypotheses.turns()

@@ -101,7 +101,7 @@ impl MotionFilter {
     }
 
     /// Other angular velocities, in rad/s, that explain the outlines as well as the one stated: those of the turns of
-    /// [`rival_turns`](Self::rival_turns). Empty for outlines without symmetry, and where omega is not one of the parameters.
+    /// [`rival_turns`](Self::rival_turns). Empty where those are, and where omega is not one of the parameters.
     #[must_use]
     pub fn aliases(&self) -> Vec<f64> {
         let names = self.settings.model.parameter_names();
@@ -122,7 +122,8 @@ impl MotionFilter {
         self.track.as_ref()?.state_of(&self.statement()?.all, self.track_time, observable)
     }
 
-    /// Velocity of the middle of the object, which is the centre of its known outline, at the time of [`state`](Self::state). It may be
+    /// Velocity of the middle of the object, which is the centroid of the area within its known outline (the centre of its cells
+    /// where that is not one closed contour), at the time of [`state`](Self::state). It may be
     /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
     /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
