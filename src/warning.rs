@@ -142,6 +142,7 @@ impl Warning {
             Self::WrongFamily { family: WrongFamily::Shear, .. } => "wrong_family_shear",
             Self::WrongFamily { family: WrongFamily::Perspective, .. } => "wrong_family_perspective",
             Self::WrongFamily { family: WrongFamily::RollingShutter, .. } => "wrong_family_rolling_shutter",
+            Self::WrongFamily { family: WrongFamily::Lens, .. } => "wrong_family_lens",
             Self::WrongFamily { family: WrongFamily::Shape, .. } => "wrong_family_shape",
             Self::Aliases { .. } => "aliases",
             Self::Diverged => "diverged",
@@ -236,6 +237,10 @@ fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: M
         WrongFamily::RollingShutter => f.write_str(
             "the outlines are slanted by their own motion, as by a camera that reads its rows one after the other (a rolling \
              shutter): velocities may be off by some percent",
+        ),
+        WrongFamily::Lens => f.write_str(
+            "the outlines are bent from the middle of the picture outwards, as by a lens: velocities may be off by some percent; \
+             undistort the pictures with a calibration of the camera",
         ),
         WrongFamily::Shape => write!(
             f,

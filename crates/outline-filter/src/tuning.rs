@@ -395,20 +395,22 @@ pub(crate) mod innovations {
 
 /// Tests of what a family of motions leaves out.
 pub(crate) mod family {
-    /// Frames, since the map was last cut, that say something.
+    /// Frames that say something.
     pub(crate) const FEWEST_FRAMES: usize = 6;
     /// Deviations beyond which a motion that is left out is there. A warning that is always there is none.
     pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Deviations beyond which it may be there: what it makes of the estimates is reckoned with.
+    pub(crate) const DOUBTFUL: f64 = 2.5;
+    /// Squared deviations that a motion more must explain to be preferred: those that chance explains once in a thousand times.
+    pub(crate) const PER_MOTION: f64 = 10.8;
     /// Share of the noise of a point that a displacement must have to matter.
     pub(crate) const MATTERS: f64 = 0.03;
     /// Displacement, in squares of the noise, that noise itself makes where the outline bends, by frames that are told by straight cells.
     pub(crate) const OF_NOISE: f64 = 3.0;
-    /// Frames after which a map is known well enough to be compared with.
-    pub(crate) const MAP_KNOWN: usize = 4;
     /// Mean square, in variances, of a change of shape that has no direction.
     pub(crate) const SHAPE_CHANGES: f64 = 4.0;
-    /// Share of a motion that is left out that must not be one of the model's on the outline for anything to be told of it.
-    pub(crate) const TOLD_APART: f64 = 1e-3;
+    /// Eigenvalue of the correlations of motions that are left out below which a combination of them is not told.
+    pub(crate) const TOLD_APART: f64 = 1e-4;
     /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.
     pub(crate) const SINGULAR: f64 = 1e-9;
     /// Frames looked at: all of the first so many, and then every so many.

@@ -221,7 +221,7 @@ impl PyMotionFilter {
         weights.map(|weights| dynamics_weights(py, &weights)).transpose()
     }
 
-    /// What the outlines do beyond doubt that the motion model does not: `growth`, `shear`, `perspective`, `rolling_shutter` or `shape`.
+    /// What the outlines do beyond doubt that the motion model does not: `growth`, `shear`, `perspective`, `rolling_shutter`, `lens` or `shape`.
     /// None if nothing. Standard deviations are widened by what it may do.
     #[getter]
     fn wrong_family(&self) -> Option<&'static str> {

@@ -142,7 +142,7 @@ def test_what_the_model_leaves_out_is_told():
     for frame in frames:
         rigid.step(frame.time, frame.outline)
         similar.step(frame.time, frame.outline)
-    assert rigid.wrong_family in ("growth", "shear", "perspective", "rolling_shutter", "shape")
+    assert rigid.wrong_family in ("growth", "shear", "perspective", "rolling_shutter", "lens", "shape")
     assert similar.wrong_family is None and (rigid.estimate.std_systematic > 0).all()
     assert followed(ff.simulate("bird", seconds=2.0)).wrong_family is None
 

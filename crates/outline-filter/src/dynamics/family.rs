@@ -1,8 +1,12 @@
-//! Whether the outlines move in ways that the family of motions does not have.
-use super::{centred::CentredVector, innovations::InnovationSeries};
+//! Whether the outlines move in ways that the family of motions does not have, and how much of them may be in the estimates.
+use std::sync::OnceLock;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::innovations::InnovationSeries;
 use crate::{
     tuning::family as tuning,
-    update::{LEFT_OUT, Misfit},
+    update::{LEFT_OUT, LeftOutMatrix, LeftOutScore, LeftOutVector},
 };
 
 /// What outlines do that their family of motions does not have.
@@ -16,71 +20,185 @@ pub enum WrongFamily {
     Perspective,
     /// They are slanted by their own motion, as rows of a picture are that are read one after the other.
     RollingShutter,
-    /// They change their shape in other ways: bending, a lens, edges that light or shadow moves.
+    /// They are bent from the middle of the picture outwards, as a lens does.
+    Lens,
+    /// They change their shape in other ways: bending, edges that light or shadow moves.
     Shape,
 }
 
-/// Tests of what a family of motions leaves out, over frames.
+/// Motions that go together, by their numbers: a lens whose middle is not known stretches and skews too.
+const GROUPS: [(WrongFamily, &[usize]); 5] = [
+    (WrongFamily::Growth, &[0]),
+    (WrongFamily::Shear, &[1, 2]),
+    (WrongFamily::Perspective, &[3, 4]),
+    (WrongFamily::RollingShutter, &[5]),
+    (WrongFamily::Lens, &[1, 2, 6, 7, 8]),
+];
+
+/// Tests of what a family of motions leaves out, over frames: generalised likelihood ratios.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct FamilyTests {
-    series: InnovationSeries,
-    /// Sum of squared displacements.
-    squares: CentredVector,
-    /// Means in their deviations, signs left out, as the last frame has left them.
-    evidence: [f64; LEFT_OUT],
-    /// Of what changes slowly, in deviations of what is white.
-    slow: [f64; LEFT_OUT],
+    /// Of what every frame says, in its deviations.
+    series: InnovationSeries<LEFT_OUT>,
+    /// Over variances of the noise.
+    information: LeftOutMatrix,
+    score: LeftOutVector,
+    /// Sum of weights of the points over variances of the noise.
+    weight: f64,
+    /// Of what one frame says, squared displacements.
+    squares: LeftOutVector,
+    /// Deviation of the noise of the last frame.
+    sigma: f64,
+    /// What is told, once it has been asked for.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    told: OnceLock<LeftOutEstimate>,
+}
+
+/// What the outlines do beside their motion, as far as it is told.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LeftOutEstimate {
+    /// What is beyond doubt.
+    pub(crate) family: Option<WrongFamily>,
+    /// Displacement of the outlines that is seen of that, root mean square, normalised.
+    pub(crate) displacement: f64,
+    /// Second moments of the sizes of the motions that may be there.
+    pub(crate) moments: LeftOutMatrix,
+}
+
+/// Some of the motions, estimated together.
+struct Fit {
+    numbers: Vec<usize>,
+    /// Squared distance from none, in deviations.
+    squared: f64,
+    sizes: DVector<f64>,
+    covariance: DMatrix<f64>,
 }
 
 impl FamilyTests {
-    /// Takes what a frame says.
-    pub(crate) fn take(&mut self, misfit: &Misfit) {
-        let long =
-            |v: &nalgebra::SVector<f64, LEFT_OUT>| CentredVector::from_fn(|i, _| if i < LEFT_OUT { v[i] } else { 0.0 });
-        let displacement = long(&misfit.displacement);
-        self.series.take(&long(&misfit.standardised), LEFT_OUT);
-        self.evidence = std::array::from_fn(|i| self.series.drift(i, LEFT_OUT).abs());
-        self.slow = std::array::from_fn(|i| self.series.slow_part(i));
-        self.squares += displacement.component_mul(&displacement);
+    /// Takes what a frame says; `variance` is that of the noise.
+    pub(crate) fn take(&mut self, frame: &LeftOutScore, variance: f64) {
+        self.told.take();
+        self.sigma = variance.sqrt();
+        self.information += frame.information / variance;
+        self.score += frame.score / variance;
+        self.weight += frame.weight / variance;
+        let own = frame.information.diagonal();
+        let told = |i: usize| own[i] > 0.0;
+        let standardised =
+            LeftOutVector::from_fn(|i, _| if told(i) { frame.score[i] / (own[i] * variance).sqrt() } else { 0.0 });
+        let square = |i: usize| if told(i) { frame.score[i].powi(2) / (own[i] * frame.weight) } else { 0.0 };
+        self.series.take(&standardised, LEFT_OUT);
+        self.squares += LeftOutVector::from_fn(|i, _| square(i));
     }
 
-    /// What the outlines do beside their motion, beyond doubt, and the displacement that it makes of them, root mean square, normalised;
-    /// `sigma` is the deviation of the noise.
-    pub(crate) fn found(&self, sigma: f64) -> Option<(WrongFamily, f64)> {
-        if self.series.frames() < tuning::FEWEST_FRAMES {
-            return None;
+    /// What is told of them.
+    pub(crate) fn estimate(&self) -> &LeftOutEstimate {
+        self.told.get_or_init(|| self.estimated())
+    }
+
+    fn estimated(&self) -> LeftOutEstimate {
+        let mut estimate = LeftOutEstimate { family: None, displacement: 0.0, moments: LeftOutMatrix::zeros() };
+        if self.series.frames() < tuning::FEWEST_FRAMES || self.weight <= 0.0 {
+            return estimate;
         }
+        let least = tuning::MATTERS * self.sigma + tuning::OF_NOISE * self.sigma * self.sigma;
+        let dependence = self.series.dependence();
+        let mut known = self.fit(&[]);
+        loop {
+            let mut clearest: Option<(WrongFamily, Fit, f64, f64)> = None;
+            for (family, members) in GROUPS {
+                let Some((fit, squared, count)) = self.with(&known, members, &dependence) else { continue };
+                let gained = squared - tuning::PER_MOTION * count;
+                if clearest.as_ref().is_none_or(|(.., most)| gained > *most) {
+                    clearest = Some((family, fit, deviations(squared, count), gained));
+                }
+            }
+            let Some((family, fit, evidence, _)) = clearest.filter(|(_, _, evidence, _)| *evidence > tuning::DOUBTFUL)
+            else {
+                break;
+            };
+            let displacement = (fit.squared / self.weight).sqrt();
+            let is_found = evidence > tuning::SIGNIFICANT && displacement > least;
+            known = fit;
+            if !is_found {
+                break;
+            }
+            estimate.family.get_or_insert(family);
+            estimate.displacement = displacement;
+        }
+        for (a, i) in known.numbers.iter().enumerate() {
+            for (b, j) in known.numbers.iter().enumerate() {
+                estimate.moments[(*i, *j)] = known.sizes[a] * known.sizes[b] + known.covariance[(a, b)];
+            }
+        }
+        if estimate.family.is_none()
+            && let Some(displacement) = self.change_of_shape(least, &dependence)
+        {
+            (estimate.family, estimate.displacement) = (Some(WrongFamily::Shape), displacement);
+        }
+        estimate
+    }
+
+    /// Changes to and fro: of a mean square that noise does not have, or slow; or all of the motions together.
+    fn change_of_shape(&self, least: f64, dependence: &LeftOutVector) -> Option<f64> {
         let n = self.series.frames() as f64;
-        let least = tuning::MATTERS * sigma + tuning::OF_NOISE * sigma * sigma;
-        let mut clearest: Option<(usize, f64)> = None;
-        let mut displacement = 0.0;
-        for i in 0..LEFT_OUT {
-            let evidence = self.evidence[i];
-            let size = (self.squares[i] / n).sqrt();
-            if evidence > tuning::SIGNIFICANT && size > least {
-                displacement += size * size;
-                if clearest.is_none_or(|(_, most)| evidence > most) {
-                    clearest = Some((i, evidence));
+        let all: Vec<usize> = (0..LEFT_OUT).collect();
+        if let Some((fit, squared, count)) = self.with(&self.fit(&[]), &all, dependence) {
+            let displacement = (fit.squared / self.weight).sqrt();
+            if deviations(squared, count) > tuning::SIGNIFICANT && displacement > least {
+                return Some(displacement);
+            }
+        }
+        let most = (1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt()).max(tuning::SHAPE_CHANGES);
+        let slow = self.series.slow_part();
+        let changes = (0..LEFT_OUT).filter(|i| self.series.mean_square(*i) > most || slow[*i] > tuning::SIGNIFICANT);
+        changes.map(|i| (self.squares[i] / n).sqrt()).max_by(f64::total_cmp).filter(|size| *size > least)
+    }
+
+    /// The motions known with others, what these add to the squared distance from none, dependence from frame to frame allowed for, and how
+    /// many they are.
+    fn with(&self, known: &Fit, others: &[usize], dependence: &LeftOutVector) -> Option<(Fit, f64, f64)> {
+        let new: Vec<usize> = others.iter().copied().filter(|i| !known.numbers.contains(i)).collect();
+        let numbers: Vec<usize> = known.numbers.iter().copied().chain(new.iter().copied()).collect();
+        let dependence = new.iter().map(|i| dependence[*i]).fold(1.0, f64::max);
+        let mut fit = self.fit(&numbers);
+        fit.covariance *= dependence;
+        let count = fit.numbers.len().saturating_sub(known.numbers.len());
+        let squared = (fit.squared - known.squared).max(0.0) / dependence;
+        (count > 0).then_some((fit, squared, count as f64))
+    }
+
+    /// Some of the motions estimated together; combinations that the outline hardly tells apart are left out.
+    fn fit(&self, numbers: &[usize]) -> Fit {
+        let own = |i: usize| self.information[(i, i)];
+        let numbers: Vec<usize> = numbers.iter().copied().filter(|i| own(*i) > 0.0).collect();
+        let count = numbers.len();
+        let roots = DVector::from_fn(count, |a, _| own(numbers[a]).sqrt());
+        let scaled =
+            DMatrix::from_fn(count, count, |a, b| self.information[(numbers[a], numbers[b])] / (roots[a] * roots[b]));
+        let score = DVector::from_fn(count, |a, _| self.score[numbers[a]] / roots[a]);
+        let mut covariance = DMatrix::zeros(count, count);
+        if count > 0 {
+            let eigen = scaled.symmetric_eigen();
+            for (value, v) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+                if *value > tuning::TOLD_APART {
+                    covariance += v * v.transpose() / *value;
                 }
             }
         }
-        if let Some((i, _)) = clearest {
-            let family = match i {
-                0 => WrongFamily::Growth,
-                1 | 2 => WrongFamily::Shear,
-                3 | 4 => WrongFamily::Perspective,
-                _ => WrongFamily::RollingShutter,
-            };
-            return Some((family, displacement.sqrt()));
-        }
-        // Changes to and fro: of a mean square that noise does not have, or slow.
-        let most = (1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt()).max(tuning::SHAPE_CHANGES);
-        let changes =
-            (0..LEFT_OUT).filter(|i| self.series.mean_square(*i) > most || self.slow[*i] > tuning::SIGNIFICANT);
-        let size = changes.map(|i| (self.squares[i] / n).sqrt()).max_by(f64::total_cmp)?;
-        (size > least).then_some((WrongFamily::Shape, size))
+        let sizes = &covariance * &score;
+        let squared = score.dot(&sizes);
+        let unscaled = DMatrix::from_fn(count, count, |a, b| covariance[(a, b)] / (roots[a] * roots[b]));
+        Fit { numbers, squared, sizes: sizes.component_div(&roots), covariance: unscaled }
     }
+}
+
+/// Deviations of a normal distribution that are as improbable as so large a chi-square of so many degrees of freedom (E. B. Wilson and M. M.
+/// Hilferty, The distribution of chi-square, 1931).
+fn deviations(squared: f64, count: f64) -> f64 {
+    let share = 2.0 / (9.0 * count);
+    ((squared / count).cbrt() - 1.0 + share) / share.sqrt()
 }
 
 #[cfg(feature = "serde")]
@@ -88,5 +206,75 @@ impl FamilyTests {
     /// Whether more can be taken; numbers that are not finite say nothing.
     pub(crate) fn is_sound(&self) -> bool {
         self.series.is_sound()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    const SIGMA: f64 = 0.01;
+
+    /// Tests after so many frames that show motions of these sizes, noise included.
+    fn after(frames: usize, sizes: &LeftOutVector, seed: u64) -> FamilyTests {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+        let mut tests = FamilyTests::default();
+        for _ in 0..frames {
+            let factor = LeftOutMatrix::from_fn(|_, _| normal());
+            let information = factor * factor.transpose();
+            let noise = factor * LeftOutVector::from_fn(|_, _| SIGMA * normal());
+            let score = LeftOutScore { information, score: information * sizes + noise, weight: 50.0 };
+            tests.take(&score, SIGMA * SIGMA);
+        }
+        tests
+    }
+
+    #[test]
+    fn noise_alone_is_no_wrong_family() {
+        let found =
+            (0..200).filter(|seed| after(40, &LeftOutVector::zeros(), *seed).estimate().family.is_some()).count();
+        assert_eq!(found, 0);
+    }
+
+    #[test]
+    fn each_motion_that_is_left_out_is_told_by_its_name_and_size() {
+        for (family, members) in GROUPS {
+            // Of a group that has others in it, the part that is its own.
+            let member = members[members.len() - 1];
+            let mut sizes = LeftOutVector::zeros();
+            sizes[member] = 0.02;
+            let tests = after(40, &sizes, 7);
+            let LeftOutEstimate { family: found, displacement, moments } = tests.estimate();
+            assert_eq!(*found, Some(family));
+            let size = moments[(member, member)].sqrt();
+            assert!((size / 0.02 - 1.0).abs() < 0.1, "{family:?}: {size}");
+            // A square of 0.02 times an information of about 9 over a weight of 50.
+            assert!((0.006..0.012).contains(displacement), "{family:?}: {displacement}");
+        }
+    }
+
+    #[test]
+    fn what_may_be_there_is_reckoned_with_before_it_is_beyond_doubt() {
+        let mut sizes = LeftOutVector::zeros();
+        // Information of about 9 in each of 40 frames: 3.5 deviations.
+        sizes[0] = 3.5 * SIGMA / 360.0_f64.sqrt();
+        let doubts = (0..40).map(|seed| after(40, &sizes, seed)).filter(|tests| {
+            let estimate = tests.estimate();
+            estimate.family.is_none() && estimate.moments[(0, 0)] > 0.0
+        });
+        assert!(doubts.count() > 20);
+    }
+
+    #[test]
+    fn deviations_are_those_of_the_tails_of_chi_square() {
+        // Quantiles of chi-square beyond which lies what lies beyond three deviations of a normal distribution on one side, 0.00135.
+        for (squared, count) in [(10.27, 1.0), (13.22, 2.0), (19.82, 5.0), (26.97, 9.0)] {
+            assert!((deviations(squared, count) - 3.0).abs() < 0.06, "{count}: {}", deviations(squared, count));
+        }
     }
 }

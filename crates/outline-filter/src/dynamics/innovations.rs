@@ -4,7 +4,8 @@
 //! make them larger, or dependent. The variance of a weighted mean of a stationary series is its long-run variance, over the number of
 //! its members; it is estimated by prewhitening and equal-weighted cosines (E. Lazarus, D. Lewis, J. Stock and M. Watson, HAR inference:
 //! Recommendations for practice, 2018).
-use super::centred::{CentredVector, LARGEST};
+use nalgebra::SVector;
+
 use crate::tuning::innovations as tuning;
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::MOST_COUNTED;
@@ -12,26 +13,26 @@ use crate::tuning::saved_state::MOST_COUNTED;
 /// Sums over frames of standardised innovations, in constant memory: means over blocks of frames that double.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct InnovationSeries {
+pub(crate) struct InnovationSeries<const N: usize> {
     frames: usize,
-    last: CentredVector,
-    squares: CentredVector,
+    last: SVector<f64, N>,
+    squares: SVector<f64, N>,
     /// Products of neighbours in time.
-    products: CentredVector,
+    products: SVector<f64, N>,
     /// Sums over blocks.
-    blocks: Vec<CentredVector>,
+    blocks: Vec<SVector<f64, N>>,
     /// Frames of each block, and in the last one.
     length: usize,
     filled: usize,
 }
 
-impl Default for InnovationSeries {
+impl<const N: usize> Default for InnovationSeries<N> {
     fn default() -> Self {
         Self {
             frames: 0,
-            last: CentredVector::zeros(),
-            squares: CentredVector::zeros(),
-            products: CentredVector::zeros(),
+            last: SVector::zeros(),
+            squares: SVector::zeros(),
+            products: SVector::zeros(),
             blocks: Vec::with_capacity(tuning::BLOCKS),
             length: 1,
             filled: 0,
@@ -39,11 +40,11 @@ impl Default for InnovationSeries {
     }
 }
 
-impl InnovationSeries {
+impl<const N: usize> InnovationSeries<N> {
     /// Takes the innovation of a frame, in its standard deviations.
-    pub(crate) fn take(&mut self, innovation: &CentredVector, k: usize) {
+    pub(crate) fn take(&mut self, innovation: &SVector<f64, N>, k: usize) {
         let e = innovation.map(|e| e.clamp(-tuning::CLIPPED, tuning::CLIPPED));
-        for j in 0..k.min(LARGEST) {
+        for j in 0..k.min(N) {
             self.squares[j] += e[j] * e[j];
             self.products[j] += e[j] * self.last[j];
         }
@@ -57,7 +58,7 @@ impl InnovationSeries {
                 self.blocks.truncate(tuning::BLOCKS / 2);
                 self.length *= 2;
             }
-            self.blocks.push(CentredVector::zeros());
+            self.blocks.push(SVector::zeros());
             self.filled = 0;
         }
         if let Some(block) = self.blocks.last_mut() {
@@ -72,18 +73,18 @@ impl InnovationSeries {
     }
 
     /// Factors, at least 1, by which the deviations of k parameters about the middle are to be widened.
-    pub(crate) fn spread(&self, k: usize) -> CentredVector {
-        let mut factors = CentredVector::from_element(1.0);
+    pub(crate) fn spread(&self, k: usize) -> SVector<f64, N> {
+        let mut factors = SVector::from_element(1.0);
         let n = self.frames as f64;
         if self.frames >= tuning::FEWEST_FRAMES {
             let correlation = self.correlation(k);
             let is_dependent = self.is_dependent(correlation, k);
+            let long_run = is_dependent.then(|| self.long_run_variances(correlation, 1));
             for j in 0..k {
                 let variance = (tuning::PRIOR_FRAMES + self.squares[j]) / (tuning::PRIOR_FRAMES + n);
                 let mut factor = variance.sqrt();
-                if is_dependent {
-                    let long_run = self.long_run_variance(j, correlation, 1);
-                    factor = factor.max(tuning::STUDENT * long_run.sqrt());
+                if let Some(long_run) = &long_run {
+                    factor = factor.max(tuning::STUDENT * long_run[j].sqrt());
                 }
                 factors[j] = factor.max(1.0);
             }
@@ -96,35 +97,40 @@ impl InnovationSeries {
         if self.frames > 0 { self.squares[j] / self.frames as f64 } else { 0.0 }
     }
 
-    /// Mean of one component of k, in its deviations, dependence from frame to frame allowed for.
-    pub(crate) fn drift(&self, j: usize, k: usize) -> f64 {
-        let n = self.frames as f64;
-        if self.frames == 0 {
-            return 0.0;
+    /// How much larger the variance of the mean of each component is than that of independent frames, at least 1. What drifts is in the
+    /// mean and in the first cosines, which are left out.
+    pub(crate) fn dependence(&self) -> SVector<f64, N> {
+        let count = self.blocks.len();
+        let none = SVector::from_element(1.0);
+        if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
+            return none;
         }
-        let sum: f64 = self.blocks.iter().map(|block| block[j]).sum();
-        let correlation = self.correlation(k);
-        let variance = if self.is_dependent(correlation, k) {
-            // The first cosine is left to the mean: what drifts is in both.
-            tuning::STUDENT.powi(2) * self.long_run_variance(j, correlation, 2)
-        } else {
-            1.0
-        };
-        sum / (n * variance.max(1.0)).sqrt()
+        let drift = self.slow_squares() / self.frames as f64;
+        let squares: f64 = (0..N).map(|i| (self.squares[i] - drift[i]).max(0.0)).sum();
+        let correlation = if squares > 0.0 { (self.products - drift).sum() / squares } else { 0.0 };
+        if !self.is_dependent(correlation, N) {
+            return none;
+        }
+        let long_run = self.long_run_variances(correlation, tuning::SLOW + 1);
+        long_run.map(|variance| (tuning::STUDENT.powi(2) * variance).max(1.0))
     }
 
-    /// How much larger the slow part of one component is than that of a white series of unit variance, in deviations: of the sum of the
+    /// Squares of the sums of the components, and of their first cosines.
+    fn slow_squares(&self) -> SVector<f64, N> {
+        let mean: SVector<f64, N> = self.blocks.iter().sum();
+        let slow = cosine_projections(self.blocks.iter().copied(), self.blocks.len(), 1);
+        let squares = slow[..tuning::SLOW].iter().map(|p| 2.0 * p.component_mul(p));
+        squares.fold(mean.component_mul(&mean), |sum, square| sum + square)
+    }
+
+    /// How much larger the slow part of each component is than that of a white series of unit variance, in deviations: of the sum of the
     /// squares of its mean and first cosines, by Fisher's approximation of the chi-square distribution.
-    pub(crate) fn slow_part(&self, j: usize) -> f64 {
-        let count = self.blocks.len();
-        if self.frames < tuning::FEWEST_CORRELATED || count <= tuning::SLOW {
-            return 0.0;
+    pub(crate) fn slow_part(&self) -> SVector<f64, N> {
+        if self.frames < tuning::FEWEST_CORRELATED || self.blocks.len() <= tuning::SLOW {
+            return SVector::zeros();
         }
-        let terms = || self.blocks.iter().map(|block| block[j]);
-        let mean: f64 = terms().sum();
-        let slow = &cosine_projections(terms(), count, 1)[..tuning::SLOW];
-        let sum = (mean * mean + slow.iter().map(|p| 2.0 * p * p).sum::<f64>()) / self.frames as f64;
-        (2.0 * sum).sqrt() - (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt()
+        let of_chance = (2.0 * (tuning::SLOW + 1) as f64 - 1.0).sqrt();
+        (self.slow_squares() / self.frames as f64).map(|sum| (2.0 * sum).sqrt() - of_chance)
     }
 
     /// Correlation of neighbours in time, over k components.
@@ -139,8 +145,8 @@ impl InnovationSeries {
         self.frames >= tuning::FEWEST_CORRELATED && correlation > tuning::CORRELATED * deviation
     }
 
-    /// Long-run variance of one component, by prewhitening with a correlation of neighbours and cosines from a `first` one on.
-    fn long_run_variance(&self, j: usize, correlation: f64, first: usize) -> f64 {
+    /// Long-run variance of each component, by prewhitening with a correlation of neighbours and cosines from a `first` one on.
+    fn long_run_variances(&self, correlation: f64, first: usize) -> SVector<f64, N> {
         let n = self.frames as f64;
         let rho = correlation.clamp(0.0, tuning::LARGEST_CORRELATION);
         let corrected = (rho + (1.0 + 3.0 * rho) / n).min(tuning::LARGEST_CORRELATION);
@@ -148,10 +154,11 @@ impl InnovationSeries {
         let count = self.blocks.len();
         let of_block = rho.powi(self.length as i32);
         let whitened =
-            (0..count).map(|t| self.blocks[t][j] - if t > 0 { of_block * self.blocks[t - 1][j] } else { 0.0 });
+            (0..count).map(|t| if t > 0 { self.blocks[t] - of_block * self.blocks[t - 1] } else { self.blocks[t] });
         let cosines = tuning::COSINES.min(count.saturating_sub(first)).max(1);
         let projected = cosine_projections(whitened, count, first);
-        let sum: f64 = projected[..cosines].iter().map(|p| 2.0 * p * p / count as f64).sum();
+        let squares = projected[..cosines].iter().map(|p| 2.0 * p.component_mul(p) / count as f64);
+        let sum = squares.fold(SVector::zeros(), |sum: SVector<f64, N>, square| sum + square);
         // Sums over blocks have the variance of so many frames.
         let per_frame = sum / (cosines as f64 * self.length as f64);
         let recoloured = 1.0 - corrected.powi(self.length as i32);
@@ -160,8 +167,12 @@ impl InnovationSeries {
 }
 
 /// Projections of so many terms onto cosines of whole half waves, from a `first` number of them on, at least 1.
-fn cosine_projections(terms: impl Iterator<Item = f64>, count: usize, first: usize) -> [f64; tuning::COSINES] {
-    let mut projected = [0.0; tuning::COSINES];
+fn cosine_projections<const N: usize>(
+    terms: impl Iterator<Item = SVector<f64, N>>,
+    count: usize,
+    first: usize,
+) -> [SVector<f64, N>; tuning::COSINES] {
+    let mut projected = [SVector::zeros(); tuning::COSINES];
     for (t, x) in terms.enumerate() {
         // cos((c + 1) u) = 2 cos(u) cos(c u) - cos((c - 1) u)
         let step = (std::f64::consts::PI * (t as f64 + 0.5) / count as f64).cos();
@@ -178,7 +189,7 @@ fn cosine_projections(terms: impl Iterator<Item = f64>, count: usize, first: usi
 }
 
 #[cfg(feature = "serde")]
-impl InnovationSeries {
+impl<const N: usize> InnovationSeries<N> {
     /// Whether the blocks are those of so many frames; numbers that are not finite say nothing.
     pub(super) fn is_sound(&self) -> bool {
         let Self { frames, blocks, length, filled, .. } = self;
@@ -200,6 +211,7 @@ mod tests {
     use rand_distr::{Distribution as _, StandardNormal};
 
     use super::*;
+    use crate::dynamics::centred::CentredVector;
 
     /// Factors for autoregressive series of unit variance, over many runs: their root mean square.
     fn factor(correlation: f64, frames: usize) -> f64 {
@@ -208,7 +220,7 @@ mod tests {
         let runs = 200;
         let mut sum = 0.0;
         for _ in 0..runs {
-            let mut series = InnovationSeries::default();
+            let mut series = InnovationSeries::<6>::default();
             let mut x = CentredVector::from_fn(|_, _| normal());
             for _ in 0..frames {
                 x = correlation * x

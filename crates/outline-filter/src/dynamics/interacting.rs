@@ -31,7 +31,7 @@ pub(crate) struct DynamicsFilter {
     reference: CentredPose,
     /// Variance of a pose as one frame tells it.
     pose_variance: CentredVector,
-    pub(crate) series: InnovationSeries,
+    pub(crate) series: InnovationSeries<LARGEST>,
     /// Factor of the variance of a pose by the most probable hypothesis.
     shaking: f64,
     leads: bool,

@@ -12,7 +12,7 @@ mod mixing;
 mod setting;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
-pub(crate) use family::FamilyTests;
 pub use family::WrongFamily;
+pub(crate) use family::{FamilyTests, LeftOutEstimate};
 pub(crate) use interacting::{DynamicsFilter, Purpose};
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};

@@ -6,3 +6,4 @@ mod step;
 
 pub(crate) use pose_change::{ByKind, centred_change, kind_index};
 pub(crate) use shape_noise::ShapeNoise;
+pub(crate) use step::ErrorTransition;

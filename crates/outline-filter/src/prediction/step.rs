@@ -6,13 +6,23 @@ use crate::{
     tuning::update::MOTION_PRIOR,
 };
 
+/// Transition `[[Ad, V], [0, I]]` of the errors of pose and motion over a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ErrorTransition {
+    /// Ad: an error of the pose before the step as one after it.
+    pub(crate) of_pose: ParameterMatrix,
+    /// V: what an error of the motion makes of the pose.
+    pub(crate) by_motion: ParameterMatrix,
+}
+
 impl Belief {
     /// Moves on by `seconds` of the estimated motion: `g <- exp(A(theta) dt) g`, information `<- F^-T . F^-1` with the error transition
-    /// `F = [[Ad, V], [0, I]]`. Whether the numbers allow it; nothing changes otherwise.
-    pub(crate) fn predict(&mut self, seconds: f64) -> bool {
+    /// `F = [[Ad, V], [0, I]]`. `None`, and nothing changes, where the numbers
+    /// do not allow it.
+    pub(crate) fn predict(&mut self, seconds: f64) -> Option<ErrorTransition> {
         let (model, k) = (self.model, self.information.k);
         let flow = model.flow(&self.motion[..k], seconds).into_inner();
-        let Some(inverse) = flow.try_inverse().filter(|m| m.iter().all(|e| e.is_finite())) else { return false };
+        let inverse = flow.try_inverse().filter(|m| m.iter().all(|e| e.is_finite()))?;
         let sensitivities = model.flow_sensitivities(&self.motion[..k], seconds);
         let by_motion = model.parameter_columns(sensitivities.into_iter());
         let ad_inverse = model.adjoint(&inverse, &flow);
@@ -26,7 +36,7 @@ impl Belief {
         self.information.predict(&ad_inverse, &product);
         self.marginal = moved_marginal(&self.marginal, k, &ad_inverse, &product);
         self.memory.advance(seconds);
-        true
+        Some(ErrorTransition { of_pose: model.adjoint(&flow, &inverse), by_motion })
     }
 
     /// Puts the object into a new pose and forgets motion and pose, keeping the outline.

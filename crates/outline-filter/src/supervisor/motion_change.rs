@@ -1,12 +1,7 @@
 //! How fast the motion changes, estimated from the innovations.
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
-use crate::{
-    dynamics::{DynamicsFilter, FamilyTests},
-    prediction::ByKind,
-    tuning::motion_change as tuning,
-    update::PoseInnovation,
-};
+use crate::{dynamics::DynamicsFilter, prediction::ByKind, tuning::motion_change as tuning, update::PoseInnovation};
 
 const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 
@@ -29,7 +24,6 @@ pub(super) struct MotionHistory {
     pub(super) change: MotionChange,
     /// None before the third frame, and where dynamics are not told.
     pub(super) dynamics: Option<DynamicsFilter>,
-    pub(super) family: FamilyTests,
 }
 
 impl MotionHistory {
@@ -143,7 +137,7 @@ impl MotionHistory {
     /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
     pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
         let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
-        self.change.is_finite() && self.family.is_sound() && self.dynamics.as_ref().is_none_or(of_settings)
+        self.change.is_finite() && self.dynamics.as_ref().is_none_or(of_settings)
     }
 }
 

@@ -30,6 +30,8 @@ pub(super) struct Statement {
     random: Summary,
     /// With it.
     all: Summary,
+    /// What the model leaves out, beyond doubt.
+    family: Option<WrongFamily>,
 }
 
 impl MotionFilter {
@@ -47,26 +49,22 @@ impl MotionFilter {
             let summary = dynamics.combined((!dynamics.leads()).then_some(&own), Purpose::Statement).unwrap_or(own);
             random = summary.widened(model, &middle, &dynamics.factors(), [&none, &none])?;
         }
-        let size = self.settings.edge_uncertainty.hypot(self.misfit().map_or(0.0, |(_, size)| size));
-        if size <= 0.0 {
-            return Some(Statement { random, all: random });
+        let (left_out, moments) = track.left_out();
+        let mut all = random;
+        all.covariance += moments;
+        let displacement = left_out.displacement * track.reference().radius;
+        let size = self.settings.edge_uncertainty.hypot(displacement);
+        if size > 0.0 {
+            let [pose, motion] = track.systematic(size);
+            all = all.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
-        let [pose, motion] = track.systematic(size);
-        let all = random.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
-        Some(Statement { random, all })
-    }
-
-    /// What the outlines do that their family of motions does not have, and the displacement that it makes, image lengths.
-    fn misfit(&self) -> Option<(WrongFamily, f64)> {
-        let track = self.track.as_ref()?;
-        let (family, size) = self.history.family.found(track.sigma())?;
-        Some((family, size * track.reference().radius))
+        Some(Statement { random, all, family: left_out.family })
     }
 
     /// What the outlines do that the motion model does not have, if that is beyond doubt: the model to try is another.
     #[must_use]
     pub fn wrong_family(&self) -> Option<WrongFamily> {
-        self.misfit().map(|(family, _)| family)
+        self.statement()?.family
     }
 
     /// The estimated motion, at the time of [`state`](Self::state). `None` before the second accepted frame, also after a restart of the
@@ -77,7 +75,7 @@ impl MotionFilter {
             return None;
         }
         let track = self.track.as_ref()?;
-        let Statement { random, all } = self.statement()?;
+        let Statement { random, all, .. } = self.statement()?;
         let estimate = track.estimate_of(all)?.with_random_part(&track.deviations_of(random)?);
         let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
         let is_stated = self.unstated().is_none();

@@ -117,15 +117,12 @@ fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHis
     }
 }
 
-/// Takes what an accepted frame tells of the pose, and of what the model leaves out.
+/// Takes what an accepted frame tells of the pose.
 fn take(history: &mut MotionHistory, outcome: &Outcome) {
     if !outcome.is_accepted() {
         return;
     }
     if let Some((dynamics, measured)) = history.dynamics.as_mut().zip(outcome.pose.as_ref()) {
         dynamics.update(measured);
-    }
-    if let Some(misfit) = &outcome.misfit {
-        history.family.take(misfit);
     }
 }

@@ -66,6 +66,7 @@ impl Track {
         }
         self.belief.information = work;
         self.belief.marginal = self.belief.information.marginal();
+        self.sensitivity.begin_cells(&self.belief, &self.map);
     }
 }
 

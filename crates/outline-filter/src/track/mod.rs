@@ -5,6 +5,7 @@ mod first_pose;
 mod growth;
 #[cfg(test)]
 mod jacobians;
+mod left_out;
 mod remapping;
 #[cfg(test)]
 mod sides;

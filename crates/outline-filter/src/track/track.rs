@@ -10,13 +10,13 @@ use super::first_pose::FirstPose;
 use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
     belief::Belief,
-    dynamics::{CentredPose, Summary},
+    dynamics::{CentredPose, FamilyTests, Summary},
     map::{Contour, NullDirection, OutlineMap, Resolution, TurnEvidence},
     measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
-    tuning::{family, map::FEWEST_POINTS, update as tuning},
+    tuning::{map::FEWEST_POINTS, update as tuning},
     update::{
-        FrameMeasurement, Gate, Misfit, PoseInnovation, PoseMeasurement, Rejection, commit, hold, misfit, with_hold,
+        FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold, with_hold,
     },
 };
 
@@ -33,10 +33,13 @@ pub(crate) struct Track {
     pub(super) belief: Belief,
     pub(super) noise: NoiseModel,
     pub(super) shape: ShapeNoise,
+    /// What the model leaves out.
+    pub(super) sensitivity: Sensitivity,
+    pub(super) family: FamilyTests,
     /// The pose that it was begun in.
     pub(super) first_pose: FirstPose,
     /// Frames taken.
-    frames: usize,
+    pub(super) frames: usize,
 }
 
 /// Whether a frame is to be compared with what other tracks make of it.
@@ -54,8 +57,6 @@ pub(crate) struct Outcome {
     pub(crate) innovation: PoseInnovation,
     /// What the frame tells of the pose by itself, if it was taken.
     pub(crate) pose: Option<PoseMeasurement>,
-    /// What it says of motions that the model leaves out; not looked for in every frame.
-    pub(crate) misfit: Option<Misfit>,
     /// Of the frame given what was known before it; none unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
 }
@@ -107,6 +108,8 @@ impl Track {
             belief,
             noise: NoiseModel::new(sigma),
             shape: ShapeNoise::default(),
+            sensitivity: Sensitivity::new(),
+            family: FamilyTests::default(),
             first_pose: FirstPose::default(),
             frames: 0,
         };
@@ -121,7 +124,8 @@ impl Track {
 
     /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise.
     pub(crate) fn predict(&mut self, seconds: f64) {
-        if self.belief.predict(seconds) {
+        if let Some(transition) = self.belief.predict(seconds) {
+            self.sensitivity.predict(&transition, self.belief.parameter_count(), seconds);
             self.shape.forget_shape(&mut self.belief);
         }
     }
@@ -177,7 +181,6 @@ impl Track {
                     verdict,
                     innovation: PoseInnovation::default(),
                     pose: None,
-                    misfit: None,
                     likelihood: NegativeLogLikelihood::default(),
                 };
             }
@@ -194,14 +197,12 @@ impl Track {
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
         let correlation = correlation_of(&frame.measurements, measurement.noise.map(|noise| noise / radius));
         let verdict = gate.verdict(&measurement);
-        let (mut pose, mut found) = (None, None);
+        let mut pose = None;
         if verdict.is_ok() {
-            pose = Some(PoseMeasurement::of(&self.belief, &proposal, frame).over(variance));
+            let measured = PoseMeasurement::of(&self.belief, &proposal, frame);
+            pose = Some(measured.over(variance));
             self.frames += 1;
-            let is_looked_at = self.frames <= family::ALL_OF_THE_FIRST || self.frames.is_multiple_of(family::EVERY);
-            if self.frames > family::MAP_KNOWN && is_looked_at {
-                found = misfit(&self.belief, frame, (&proposal.pose, &self.map.middle()), variance.sqrt());
-            }
+            self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             if let Some(noise) = measurement.noise {
                 self.noise.take(noise / radius);
@@ -214,7 +215,7 @@ impl Track {
                 self.grow_along(contours, frame);
             }
         }
-        Outcome { measurement, verdict, innovation, pose, misfit: found, likelihood }
+        Outcome { measurement, verdict, innovation, pose, likelihood }
     }
 
     /// Takes the spread of a frame, image lengths, used or not.
@@ -378,6 +379,8 @@ impl Track {
             && self.belief.is_sound(cells)
             && self.noise.is_sound(cells)
             && self.shape.is_sound(cells)
+            && self.sensitivity.is_sound(cells)
+            && self.family.is_sound()
             && self.first_pose.is_finite()
             && Arc::make_mut(&mut self.map).restore()
     }

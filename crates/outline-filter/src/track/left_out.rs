@@ -1,0 +1,138 @@
+//! What the motion model of a track leaves out.
+use super::Track;
+use crate::{
+    belief::StateMatrix,
+    dynamics::LeftOutEstimate,
+    measurement::Frame,
+    tuning::family as tuning,
+    update::{PoseMeasurement, Proposal, with_hold},
+};
+
+impl Track {
+    /// Looks at what a solved frame, which has not been committed, says of motions that the model leaves out: all of the first frames, and
+    /// then one that stands for several. `variance` is that of the noise.
+    pub(super) fn look_for_what_is_left_out(
+        &mut self,
+        frame: &mut Frame,
+        (proposal, hold): (&Proposal, Option<&StateMatrix>),
+        measured: &PoseMeasurement,
+        variance: f64,
+    ) {
+        let is_early = self.frames <= tuning::ALL_OF_THE_FIRST;
+        if !is_early && !self.frames.is_multiple_of(tuning::EVERY) {
+            return;
+        }
+        let repeats = if is_early { 1.0 } else { tuning::EVERY as f64 };
+        let marginal = with_hold(&proposal.marginal, hold);
+        let at = (&self.belief, &*self.map);
+        if let Some(score) = self.sensitivity.take(at, frame, (&proposal.pose, &marginal), measured, repeats) {
+            self.family.take(&score, variance);
+        }
+    }
+
+    /// What the outlines do beside their motion, as far as it is told, and the second moments of what it makes of the errors of pose and
+    /// motion.
+    pub(crate) fn left_out(&self) -> (&LeftOutEstimate, StateMatrix) {
+        let estimate = self.family.estimate();
+        let by_size = &self.sensitivity.state;
+        (estimate, by_size * estimate.moments * by_size.transpose())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::Outline;
+    use freeform_riccati::{MotionModel, map_point};
+    use nalgebra::{Point2, Vector2};
+
+    use super::*;
+    use crate::track::Comparison;
+    use crate::update::{Gate, LEFT_OUT};
+
+    const STEP: f64 = 0.05;
+    const MOTION: [f64; 3] = [1.3, 0.4, -0.7];
+
+    /// Points of a body at rest, about its middle.
+    fn body(i: usize) -> Point2<f64> {
+        let t = std::f64::consts::TAU * i as f64 / 600.0;
+        let r = 1.0 + 0.25 * (3.0 * t).cos() + 0.15 * (2.0 * t).sin() + 0.1 * (5.0 * t).cos();
+        Point2::new(0.3 + r * t.cos(), -0.2 + 0.8 * r * t.sin())
+    }
+
+    /// Where a point of a frame is moved to by a unit of each motion that is left out, in the normalised coordinates of a track.
+    fn displaced(
+        l: usize,
+        p: &Point2<f64>,
+        (centre, elapsed, velocity): (&Point2<f64>, f64, &Vector2<f64>),
+    ) -> Vector2<f64> {
+        let square = p.coords.norm_squared();
+        match l {
+            0 => elapsed * (p - centre),
+            1 => Vector2::new(p.x, -p.y),
+            2 => Vector2::new(p.y, p.x),
+            3 => p.x * p.coords,
+            4 => p.y * p.coords,
+            5 => p.y * velocity,
+            6 => square * p.coords,
+            7 => 2.0 * p.x * p.coords + Vector2::new(square, 0.0),
+            _ => 2.0 * p.y * p.coords + Vector2::new(0.0, square),
+        }
+    }
+
+    /// A track of a body in rigid motion, displaced by some of a motion that is left out.
+    fn tracked(size: f64, l: usize) -> Track {
+        let model = MotionModel::Rigid;
+        let at_rest = Outline::closed((0..600).map(body).collect()).expect("an outline");
+        let mut buffers = Frame::default();
+        let plain = Track::begin(model, &at_rest, &mut buffers).expect("a track");
+        let reference = plain.reference();
+        let (to, middle) = (reference.to_image(), plain.map.middle());
+        let from = to.try_inverse().expect("a radius");
+        let mut track: Option<Track> = None;
+        for frame in 0..14 {
+            let elapsed = STEP * f64::from(frame);
+            let flow = model.flow(&MOTION, elapsed).into_inner();
+            let centre = map_point(&(from * flow * to), &middle);
+            let generator = from * model.generator(&MOTION) * to;
+            let point = |i: usize| {
+                let p = map_point(&(from * flow), &body(i));
+                let velocity = (generator * p.to_homogeneous()).xy();
+                let moved = p + size * displaced(l, &p, (&centre, elapsed, &velocity));
+                map_point(&to, &moved)
+            };
+            let outline = Outline::closed((0..600).map(point).collect()).expect("an outline");
+            match &mut track {
+                None => track = Track::begin(model, &outline, &mut buffers),
+                Some(track) => {
+                    track.predict(STEP);
+                    buffers.load(&outline, track.reference());
+                    let gate = Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: None };
+                    assert!(track.update(&mut buffers, &gate, Comparison::NotAsked).is_accepted(), "{l} {frame}");
+                }
+            }
+        }
+        track.expect("frames")
+    }
+
+    #[test]
+    fn a_motion_that_is_left_out_moves_the_estimates_by_its_size_times_their_sensitivity() {
+        let size = 1e-5;
+        for l in 0..LEFT_OUT {
+            let (moved, as_it_is) = (tracked(size, l), tracked(0.0, l));
+            let to_image = as_it_is.reference().to_image();
+            let by_size = as_it_is.belief.model.adjoint(&to_image, &to_image.try_inverse().expect("a radius"));
+            let normalised = |i: usize| as_it_is.sensitivity.state[(3 + i, l)];
+            let expected: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| by_size[i][j] * normalised(j)).sum());
+            let scale = expected.iter().fold(1e-3_f64, |most, e| most.max(e.abs()));
+            let [moved, as_it_is] = [moved, as_it_is].map(|track| {
+                let estimate = track.estimate().expect("an estimate");
+                estimate.parameters().map(|p| p.value.expect("a value")).collect::<Vec<_>>()
+            });
+            let found: [f64; 3] = std::array::from_fn(|i| (moved[i] - as_it_is[i]) / size);
+            // What a first frame owes to its motion is not known yet.
+            let tolerance = if l == 5 { 0.1 } else { 0.02 };
+            let is_near = (0..3).all(|i| (found[i] - expected[i]).abs() < tolerance * scale);
+            assert!(is_near, "{l}: {found:?} {expected:?}");
+        }
+    }
+}
