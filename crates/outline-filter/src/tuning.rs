@@ -407,10 +407,14 @@ pub(crate) mod family {
     pub(crate) const MATTERS: f64 = 0.03;
     /// Displacement, in squares of the noise, that noise itself makes where the outline bends, by frames that are told by straight cells.
     pub(crate) const OF_NOISE: f64 = 3.0;
+    /// Frames after which a map is known well enough to be compared with: its cells were cut along the first ones, noise and all.
+    pub(crate) const MAP_KNOWN: usize = 4;
     /// Mean square, in variances, of a change of shape that has no direction.
     pub(crate) const SHAPE_CHANGES: f64 = 4.0;
     /// Eigenvalue of the correlations of motions that are left out below which a combination of them is not told.
     pub(crate) const TOLD_APART: f64 = 1e-4;
+    /// Share of the square of a displacement that must be left of it in a frame to say something: a tenth of the displacement.
+    pub(crate) const LEFT: f64 = 0.01;
     /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.
     pub(crate) const SINGULAR: f64 = 1e-9;
     /// Frames looked at: all of the first so many, and then every so many.

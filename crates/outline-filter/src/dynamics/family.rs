@@ -48,7 +48,7 @@ pub(crate) struct FamilyTests {
     weight: f64,
     /// Of what one frame says, squared displacements.
     squares: LeftOutVector,
-    /// Deviation of the noise of the last frame.
+    /// Deviation of the noise of a point.
     sigma: f64,
     /// What is told, once it has been asked for.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -76,10 +76,11 @@ struct Fit {
 }
 
 impl FamilyTests {
-    /// Takes what a frame says; `variance` is that of the noise.
-    pub(crate) fn take(&mut self, frame: &LeftOutScore, variance: f64) {
+    /// Takes what a frame says; `sigma` is the deviation of the noise of a point, and `variance` that which dependence along the contour makes
+    /// of it.
+    pub(crate) fn take(&mut self, frame: &LeftOutScore, sigma: f64, variance: f64) {
         self.told.take();
-        self.sigma = variance.sqrt();
+        self.sigma = sigma;
         self.information += frame.information / variance;
         self.score += frame.score / variance;
         self.weight += frame.weight / variance;
@@ -229,7 +230,7 @@ mod tests {
             let information = factor * factor.transpose();
             let noise = factor * LeftOutVector::from_fn(|_, _| SIGMA * normal());
             let score = LeftOutScore { information, score: information * sizes + noise, weight: 50.0 };
-            tests.take(&score, SIGMA * SIGMA);
+            tests.take(&score, SIGMA, SIGMA * SIGMA);
         }
         tests
     }

@@ -25,8 +25,9 @@ impl Track {
         let repeats = if is_early { 1.0 } else { tuning::EVERY as f64 };
         let marginal = with_hold(&proposal.marginal, hold);
         let at = (&self.belief, &*self.map);
-        if let Some(score) = self.sensitivity.take(at, frame, (&proposal.pose, &marginal), measured, repeats) {
-            self.family.take(&score, variance);
+        let score = self.sensitivity.take(at, frame, (&proposal.pose, &marginal), measured, repeats);
+        if let Some(score) = score.filter(|_| self.frames > tuning::MAP_KNOWN) {
+            self.family.take(&score, self.noise.sigma, variance);
         }
     }
 

@@ -152,11 +152,13 @@ impl Sensitivity {
             }
             let mut added = [0.0; MAX_PARAMETERS];
             (0..k).for_each(|i| added[i] = with.coupling[i] - before.coupling[i]);
-            let (mut of_cell, ..) = at.displacement(cell, belief.offsets[number]);
-            of_cell -= self.offsets[number];
+            let (whole, ..) = at.displacement(cell, belief.offsets[number]);
+            let mut of_cell = whole - self.offsets[number];
             (0..k).for_each(|i| of_cell -= self.state.row(i).transpose() * (added[i] / own));
             if before.own > 0.0 {
-                sums.add(&of_cell, (&added, own, frame.right[number]), (before.own / with.own, k));
+                let share = before.own / with.own;
+                sums.add(&of_cell, (&added, own, frame.right[number]), (share, k));
+                sums.whole += share * own * whole.component_mul(&whole);
             }
             for i in 0..2 * k {
                 let direct = if i < k { added[i] } else { 0.0 };
@@ -202,6 +204,8 @@ impl Sensitivity {
 struct Sums {
     information: LeftOutMatrix,
     score: LeftOutVector,
+    /// Squares of the displacements with what pose and outline have taken in.
+    whole: LeftOutVector,
     /// With the pose.
     with_pose: SMatrix<f64, MAX_PARAMETERS, LEFT_OUT>,
     weight: f64,
@@ -211,6 +215,7 @@ impl Sums {
     const NOTHING: Self = Self {
         information: LeftOutMatrix::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; LEFT_OUT])),
         score: LeftOutVector::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; 1])),
+        whole: LeftOutVector::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; 1])),
         with_pose: SMatrix::from_array_storage(nalgebra::ArrayStorage([[0.0; MAX_PARAMETERS]; LEFT_OUT])),
         weight: 0.0,
     };
@@ -240,10 +245,19 @@ impl Sums {
         });
         let jitter = (0..k).map(|i| known[(i, i)]).fold(0.0, f64::max) * tuning::SINGULAR;
         let explained = (known + SMatrix::identity() * jitter).cholesky()?.solve(&self.with_pose);
-        let information = LeftOutMatrix::from_fn(|a, b| {
+        let mut information = LeftOutMatrix::from_fn(|a, b| {
             self.information[(a.max(b), a.min(b))] - self.with_pose.column(a).dot(&explained.column(b))
         });
-        let score = self.score - explained.transpose() * pose.pulled;
+        let mut score = self.score - explained.transpose() * pose.pulled;
+        // What has been taken in is known to some percent.
+        for l in 0..LEFT_OUT {
+            if information[(l, l)] > tuning::LEFT * self.whole[l] {
+                continue;
+            }
+            information.row_mut(l).fill(0.0);
+            information.column_mut(l).fill(0.0);
+            score[l] = 0.0;
+        }
         let found = LeftOutScore { information, score, weight: self.weight };
         (self.weight > 0.0 && information.iter().chain(&score).all(|e| e.is_finite())).then_some(found)
     }
