@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use freeform_motion::outline_io::{
-    Background, Clipping, Contrast, Difference, OutlineFrame, PictureError, PictureErrorKind, PictureFrame,
+    Background, Clipping, Contrast, Difference, Edges, OutlineFrame, PictureError, PictureErrorKind, PictureFrame,
     PictureOutlines, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold, TraceError,
     TraceSettings, TracedOutline, read_picture_channel,
 };
@@ -231,6 +231,7 @@ fn picture_settings(options: &PictureOptions, aspect: Option<f64>) -> Result<Pic
         contrast: if options.dark { Contrast::DarkOnLight } else { Contrast::LightOnDark },
         threshold: options.threshold.map_or(Threshold::Automatic, Threshold::Level),
         smoothing: options.smoothing.map_or(Smoothing::Automatic, Smoothing::Gaussian),
+        edges: Edges::Refined,
         minimum_area: options.min_area,
         clipping: Clipping::Open,
         y_up: !options.y_down,

@@ -35,6 +35,7 @@ mod csv_lines;
 mod csv_reader;
 mod csv_rows;
 mod csv_writer;
+mod edges;
 mod error;
 mod field;
 mod file_name;
@@ -72,6 +73,7 @@ pub use column::Column;
 pub use contrast::Contrast;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
+pub use edges::EdgeFit;
 pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, WriteError};
 pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
@@ -87,7 +89,7 @@ pub use ring::Ring;
 pub use shape::read_shape;
 pub use threshold::Threshold;
 pub use trace::{TracedOutline, trace_mask, trace_objects};
-pub use trace_settings::{Clipping, Smoothing, TraceSettings};
+pub use trace_settings::{Clipping, Edges, Smoothing, TraceSettings};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use freeform_curve_fit::isoline::{Crossing, LineTooLong};
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use image::GrayImage;
@@ -5,12 +7,13 @@ use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
 use crate::contrast::{Contrast, signal};
+use crate::edges::{EdgeFit, EdgeSource};
 use crate::field::{Field, blur_reach};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
 use crate::threshold::{Levels, level_in_picture};
-use crate::trace_settings::{Clipping, TraceSettings};
+use crate::trace_settings::{Clipping, Edges, Smoothing, TraceSettings};
 
 /// Most points of all outlines of one picture: many times those of objects that have any, and few enough to be worked on. The
 /// picture of a comb of 84 kB would have 34 million.
@@ -35,18 +38,21 @@ pub struct TracedOutline {
     pub area: f64,
     /// What an affine map leaves of the area seen; `None` where it is too thin to tell.
     pub invariants: Option<AffineMomentInvariants>,
+    /// What its edges are like, where the outline has been moved onto them.
+    pub edges: Option<EdgeFit>,
 }
 
 /// Traces the outer outline of the largest object in a picture, to a fraction of a pixel.
 ///
 /// Objects are 8-connected sets of pixels at or beyond the threshold; holes are filled. The outline is where the grey
-/// value, smoothed if asked for and interpolated linearly between pixel centres, passes the threshold. Column c and row
+/// value, smoothed if asked for and interpolated linearly between pixel centres, passes the threshold; in pictures of more than two
+/// grey values it is then moved onto the edge itself ([`Edges::Refined`]). Column c and row
 /// r, counted from 0 at the upper left, have their centre at `x = pixel_size * pixel_aspect * (c + 0.5)` and
 /// `y = pixel_size * (height - r - 0.5)`, or `pixel_size * (r + 0.5)` with y downwards. There are about 1.3 points to a
 /// pixel of outline, unevenly spaced.
 ///
 /// Measured on discs of 10 to 60 pixels in radius with the automatic smoothing: drawn with grey edges, the mean radius
-/// is right to 0.015 pixels and the points scatter by 0.04 pixels (root mean square); drawn as a two-valued mask, to
+/// is right to 0.02 pixels and the points scatter by 0.04 pixels (root mean square); drawn as a two-valued mask, to
 /// 0.06 and 0.15 pixels (0.24 without smoothing: the stairs themselves). Smoothing by s pixels moves an outline with
 /// radius of curvature R by about `s^2 / (2 R)` towards its centre of curvature.
 ///
@@ -107,7 +113,7 @@ fn ring_outlines<'a>(
     let objects = ring.objects(picture, settings.minimum_area, limit)?;
     let object_count = objects.len();
     let traced = objects.into_iter().map(move |object| {
-        let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5 };
+        let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5, edges: None };
         let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::NoRing)?;
         Ok(seen.traced(object.pixel_count, object_count, 0.5))
     });
@@ -119,25 +125,58 @@ fn mask_outlines<'a>(
     settings: &'a TraceSettings,
     limit: usize,
 ) -> Result<Traced<'a>, TraceError> {
-    let levels = Levels::of(picture, settings.contrast, settings.threshold)?;
-    let sigma = settings.sigma(&levels);
+    // Two-valued pictures are smoothed where the outline is traced, others before objects are looked for in them.
+    let smooth = match settings.smoothing {
+        Smoothing::Gaussian(sigma) if sigma > 0.0 && !is_two_valued(picture) => Some((sigma, blurred(picture, sigma))),
+        _ => None,
+    };
+    let (raw, picture) = (picture, smooth.map_or(Cow::Borrowed(picture), |(_, smooth)| Cow::Owned(smooth)));
+    let levels = Levels::of(&picture, settings.contrast, settings.threshold)?;
+    let sigma = match (settings.smoothing, levels.two_valued) {
+        (Smoothing::Gaussian(_), false) => 0.0,
+        _ => settings.sigma(&levels),
+    };
+    let edges = (settings.edges == Edges::Refined && !levels.two_valued).then_some(EdgeSource {
+        picture: raw,
+        contrast: settings.contrast,
+        along: match settings.smoothing {
+            Smoothing::Gaussian(sigma) if sigma > 1.0 => sigma,
+            _ => 0.0,
+        },
+    });
     let set = move |value: u8| f64::from(signal(value, settings.contrast)) >= levels.threshold;
     let threshold = level_in_picture(levels.threshold, settings.contrast);
-    let objects = Objects::of(picture, set, settings.minimum_area, limit)?;
+    let objects = Objects::of(&picture, set, settings.minimum_area, limit)?;
     let object_count = objects.count;
     if object_count == 0 {
         return Err(TraceError::NoObject { threshold });
     }
     let traced = objects.into_masks(blur_reach(sigma) + 2).map(move |mask| {
-        let mut field = object_field(picture, &mask, &levels, settings.contrast, set);
+        let mut field = object_field(&picture, &mask, &levels, settings.contrast, set);
         if sigma > 0.0 {
             field.blur(sigma);
         }
-        let window = Window { left: mask.left, top: mask.top, field: &field, level: levels.threshold };
+        let window = Window { left: mask.left, top: mask.top, field: &field, level: levels.threshold, edges };
         let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
         Ok(seen.traced(mask.pixel_count, object_count, threshold))
     });
     Ok(Box::new(traced))
+}
+
+fn is_two_valued(picture: &GrayImage) -> bool {
+    let mut seen = [false; 256];
+    picture.as_raw().iter().for_each(|value| seen[usize::from(*value)] = true);
+    seen.iter().filter(|seen| **seen).count() <= 2
+}
+
+/// A picture blurred by a Gaussian, rounded to grey values.
+fn blurred(picture: &GrayImage, sigma: f64) -> GrayImage {
+    let (width, height) = picture.dimensions();
+    let values = picture.as_raw().iter().map(|value| f32::from(*value)).collect();
+    let mut field = Field { width: width as usize, height: height as usize, values };
+    field.blur(sigma);
+    let values = field.values.iter().map(|value| value.round() as u8).collect();
+    GrayImage::from_raw(width, height, values).unwrap_or_default()
 }
 
 /// A part of a picture with an object in it.
@@ -147,6 +186,8 @@ pub(crate) struct Window<'a> {
     pub(crate) field: &'a Field,
     /// Value on the outline.
     pub(crate) level: f64,
+    /// Where the edges themselves are looked for, if they are.
+    pub(crate) edges: Option<EdgeSource<'a>>,
 }
 
 /// What is seen of an object.
@@ -156,12 +197,13 @@ pub(crate) struct Seen {
     centre: Point2<f64>,
     area: f64,
     invariants: Option<AffineMomentInvariants>,
+    edges: Option<EdgeFit>,
 }
 
 impl Seen {
     pub(crate) fn traced(self, pixel_count: u64, object_count: usize, threshold: f64) -> TracedOutline {
-        let Self { outline, touches_border, centre, area, invariants } = self;
-        TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area, invariants }
+        let Self { outline, touches_border, centre, area, invariants, edges } = self;
+        TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area, invariants, edges }
     }
 }
 
@@ -170,7 +212,8 @@ impl Window<'_> {
     pub(crate) fn outline(&self, picture_height: u32, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
         let outer = self.field.outer_isoline(self.level, POINT_LIMIT);
         let outer = outer.map_err(|LineTooLong { most }| TraceError::TooManyPoints { limit: most })?;
-        let Some(line) = outer else { return Ok(None) };
+        let Some(mut line) = outer else { return Ok(None) };
+        let mut edges = self.edges.and_then(|source| source.refine(&mut line, [self.left, self.top]));
         let grid = settings.pixel_grid(picture_height);
         let touches_border = line.iter().any(|crossing| crossing.at_edge);
         let to_point = |crossing: &Crossing| {
@@ -181,14 +224,26 @@ impl Window<'_> {
         if !settings.y_up {
             points.reverse();
         }
+        if let Some(edges) = &mut edges {
+            edges.systematic *= settings.pixel_size;
+            edges.deviations.iter_mut().for_each(|deviation| *deviation *= settings.pixel_size);
+            if !settings.y_up {
+                edges.deviations.reverse();
+            }
+        }
         let polygon = points.iter().map(|(point, _)| *point);
         let AreaAndCentre { signed_area: area, centre } = AreaAndCentre::of(&polygon);
         let invariants = AffineMomentInvariants::of(&polygon);
         let outline = match settings.clipping {
-            Clipping::Open if touches_border => visible_arcs(points)?,
+            Clipping::Open if touches_border => {
+                if let Some(edges) = &mut edges {
+                    edges.deviations = of_visible_arcs(&points, &edges.deviations);
+                }
+                visible_arcs(points)?
+            }
             _ => Outline::closed(points.into_iter().map(|(point, _)| point).collect())?,
         };
-        Ok(Some(Seen { outline, touches_border, centre, area, invariants }))
+        Ok(Some(Seen { outline, touches_border, centre, area, invariants, edges }))
     }
 }
 
@@ -213,6 +268,16 @@ fn object_field(
         }));
     }
     Field { width: mask.width, height: mask.height, values }
+}
+
+/// The values of the points of the arcs that [`visible_arcs`] makes of these, in their order.
+fn of_visible_arcs(points: &[(Point2<f64>, bool)], values: &[f64]) -> Vec<f64> {
+    let on_edge = points.iter().position(|(_, at_edge)| *at_edge).unwrap_or(0);
+    let mut seen: Vec<(f64, bool)> =
+        values.iter().zip(points).map(|(value, (_, at_edge))| (*value, *at_edge)).collect();
+    seen.rotate_left(on_edge);
+    let arcs = seen.split(|(_, at_edge)| *at_edge).filter(|arc| arc.len() > 1);
+    arcs.flatten().map(|(value, _)| *value).collect()
 }
 
 /// The arcs between the stretches along the edge of the picture.

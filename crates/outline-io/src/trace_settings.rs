@@ -22,8 +22,20 @@ pub enum Smoothing {
     /// whose grey values place the edge within a pixel but are seldom linear across it.
     #[default]
     Automatic,
-    /// By a Gaussian of this standard deviation in pixels, 0 to 100; 0 for none.
+    /// By a Gaussian of this standard deviation in pixels, 0 to 100; 0 for none. Pictures of more than two grey values are smoothed
+    /// before objects are looked for in them.
     Gaussian(f64),
+}
+
+/// Where the outline is placed, in pictures of more than two grey values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Edges {
+    /// On the edge itself: the place of a blurred step between the grey values on both sides, fitted along the normal at every point.
+    /// Neither the threshold nor the smoothing moves it.
+    #[default]
+    Refined,
+    /// Where the smoothed grey value passes the threshold.
+    Isoline,
 }
 
 /// What to make of an object that the edge of the picture clips.
@@ -45,6 +57,8 @@ pub struct TraceSettings {
     pub threshold: Threshold,
     /// Smoothing before tracing.
     pub smoothing: Smoothing,
+    /// Whether the outline is moved onto the edge itself.
+    pub edges: Edges,
     /// Smallest object accepted, in pixels.
     pub minimum_area: u64,
     /// What to make of an object that the edge of the picture clips.
@@ -66,6 +80,7 @@ impl Default for TraceSettings {
             contrast: Contrast::default(),
             threshold: Threshold::default(),
             smoothing: Smoothing::default(),
+            edges: Edges::default(),
             minimum_area: 9,
             clipping: Clipping::default(),
             y_up: true,
