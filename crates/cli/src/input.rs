@@ -7,7 +7,7 @@ use freeform_motion::outline_io::{OutlineReader, PictureSequence, ReadError, Rea
 
 use crate::args::PictureOptions;
 use crate::awaited::Awaited;
-use crate::failure::{Failure, plain};
+use crate::failure::{Failure, note, plain, warn};
 use crate::picture_input::PictureInput;
 use crate::seen::Item;
 use crate::truth::SimulatedMotion;
@@ -101,13 +101,23 @@ impl Input {
         self.pictures().is_some()
     }
 
-    /// What should be known of the input before it is read, if anything.
-    pub(crate) fn warning(&self) -> Option<String> {
-        let is_interlaced = self.pictures().is_some_and(PictureInput::is_interlaced);
-        is_interlaced.then(|| {
+    /// What may be wrong with the input, before it is read.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let Some(pictures) = self.pictures() else { return Vec::new() };
+        let mut warnings = Vec::new();
+        if pictures.is_interlaced() {
             let reason = "every second line of a picture is of another moment, which frays the edges of what moves";
-            format!("{}: the video is interlaced: {reason}; deinterlace it, such as with ffmpeg -vf yadif", self.name)
-        })
+            let advice = "deinterlace it, such as with ffmpeg -vf yadif";
+            warnings.push(format!("{}: the video is interlaced: {reason}; {advice}", self.name));
+        }
+        warnings.extend(pictures.warnings());
+        warnings
+    }
+
+    /// Says how pictures are traced, if that was chosen, and what may be wrong with the input.
+    pub(crate) fn tell(&self) {
+        self.pictures().map(PictureInput::notes).unwrap_or_default().iter().for_each(|told| note(told));
+        self.warnings().iter().for_each(|warning| warn(warning));
     }
 
     /// The pictures that the outlines come from.

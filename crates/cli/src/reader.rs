@@ -126,8 +126,8 @@ impl Iterator for Reader<'_> {
 
 impl<'a> Reader<'a> {
     fn new(input: &'a mut Input, quiet: bool, progress: &'a Progress) -> Self {
-        if let Some(warning) = input.warning().filter(|_| !quiet) {
-            progress.pause(|| warn(&warning));
+        if !quiet {
+            progress.pause(|| input.tell());
         }
         Self { input, quiet, progress, warnings: MissingWarnings::default(), failure: None }
     }

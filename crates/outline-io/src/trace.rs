@@ -11,7 +11,7 @@ use crate::edges::{EdgeFit, EdgeSource};
 use crate::field::{Field, blur_reach};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
-use crate::ring::Ring;
+use crate::ring::{self, Ring};
 use crate::threshold::{Levels, level_in_picture};
 use crate::trace_settings::{Clipping, Edges, Smoothing, TraceSettings};
 
@@ -110,7 +110,13 @@ fn ring_outlines<'a>(
     ring: Ring,
     limit: usize,
 ) -> Result<Traced<'a>, TraceError> {
-    let objects = ring.objects(picture, settings.minimum_area, limit)?;
+    let objects = {
+        let sigma = match settings.smoothing {
+            Smoothing::Automatic => ring::SIGMA,
+            Smoothing::Gaussian(sigma) => sigma,
+        };
+        ring.objects(picture, settings.minimum_area, limit, sigma)?
+    };
     let object_count = objects.len();
     let traced = objects.into_iter().map(move |object| {
         let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5, edges: None };

@@ -65,7 +65,7 @@ pub struct TraceSettings {
     pub clipping: Clipping,
     /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
     pub y_up: bool,
-    /// A line around the object, whose outer edge is traced. Replaces contrast, threshold and smoothing.
+    /// A line around the object, whose outer edge is traced. Replaces contrast and threshold; smoothing is by 1 pixel where automatic.
     pub ring: Option<Ring>,
     /// Height of a pixel in the length unit of the outline.
     pub pixel_size: f64,

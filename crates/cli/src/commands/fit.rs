@@ -22,6 +22,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         refuse_standard_output(&[svg])?;
     }
     let input = Input::open(&args.inputs, &args.pictures)?;
+    input.tell();
     let name = input.name.clone();
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
     let mut sink = Sink::stdout();

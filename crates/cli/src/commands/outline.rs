@@ -18,8 +18,8 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     if !input.has_pictures() {
         return Err(Failure::unusable(format_args!("{}: not a picture", input.name)));
     }
-    if let Some(warning) = input.warning().filter(|_| !args.quiet) {
-        warn(&warning);
+    if !args.quiet {
+        input.tell();
     }
     interrupt::listen();
     let name = input.name.clone();
@@ -50,7 +50,7 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
     let progress = Progress::of_frames(input.frame_count(), args.quiet || sink.is_disturbed_by_progress());
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
-    let object_column = args.pictures.follows_all();
+    let object_column = input.pictures().is_some_and(|pictures| pictures.options().follows_all());
     let mut warnings = MissingWarnings::default();
     for item in input {
         // What came after Ctrl-C may be cut short.

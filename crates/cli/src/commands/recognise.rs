@@ -24,6 +24,7 @@ pub(crate) struct RecognisedObject {
 pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     let mut recogniser = learnt(args)?;
     let input = Input::open(&args.inputs, &args.pictures)?;
+    input.tell();
     let name = input.name.clone();
     let mut sink = Sink::stdout();
     let mut objects = SeenObjects::default();

@@ -8,6 +8,7 @@ use crate::input::Input;
 use crate::interrupt;
 use crate::output::{Sink, closing_line, refuse_overwriting, refuse_standard_output, track_line};
 use crate::overlay::ObservedOverlay;
+use crate::picture_input::PictureInput;
 use crate::reader::{Event, follow_stream};
 
 /// Identifies as a stream.
@@ -17,8 +18,11 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     refuse_standard_output(&outputs)?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures)?;
-    let mut overlay =
-        ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
+    if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
+        let settings = args.options.tracker_settings_for_edges(length);
+        tracker = Tracker::new(settings).map_err(Failure::unusable)?;
+    }
+    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::stdout();
