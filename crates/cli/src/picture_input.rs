@@ -6,15 +6,17 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use freeform_motion::outline_io::{
-    Background, Channel, Clipping, Contrast, Difference, Edges, OutlineFrame, PictureError, PictureErrorKind,
-    PictureFrame, PictureOutlines, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold,
-    TraceError, TraceSettings, TracedOutline, read_picture_channel,
+    Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineFrame, PictureError, PictureErrorKind,
+    PictureFrame, PictureOutlines, PictureSequence, PictureSettings, PixelAspectCheck, Ring, SequenceSettings,
+    Smoothing, Threshold, TraceError, TraceSettings, TracedOutline, read_picture_channel,
 };
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
+use crate::input::Waiting;
+use crate::interrupt;
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::short;
 use crate::seen::{Item, Missing, MissingKind, SeenIn};
@@ -25,6 +27,12 @@ const MEDIAN_SIZE: u8 = 25;
 
 /// Most bytes of a stream that are read ahead to choose how it is traced.
 const READ_AHEAD: u64 = 1 << 26;
+
+/// Pictures of a video that are read ahead.
+const PICTURES_AHEAD: u64 = 60;
+
+/// Most bytes of the header of a video.
+const LONGEST_HEADER: u64 = 1 << 12;
 
 /// Frames per second of pictures that do not tell.
 const ASSUMED_RATE: u32 = 30;
@@ -37,8 +45,12 @@ pub(crate) struct PictureInput {
     options: PictureOptions,
     trace: TraceSettings,
     chosen: Option<Chosen>,
+    /// Whether nothing was given or chosen, as a stream is not to be waited for.
+    is_traced_unseen: bool,
     /// Systematic uncertainty of the outlines by their edges, in their unit.
     edge_uncertainty: Option<f64>,
+    /// Of the first object.
+    aspect: PixelAspectCheck,
     /// Objects of the present picture that have not been handed on.
     waiting: VecDeque<Item>,
     /// Pictures read.
@@ -82,17 +94,27 @@ impl PictureInput {
         mut source: impl BufRead + 'static,
         name: &str,
         options: &PictureOptions,
+        waiting: Waiting,
     ) -> Result<Self, Failure> {
         let inputs = vec![PathBuf::from(name)];
         let is_whole = options.background.as_ref().is_some_and(|path| path.as_os_str() == "whole");
-        if options.has_way() && !is_whole {
+        if (options.has_way() || waiting == Waiting::None) && !is_whole {
             let sequence = PictureSequence::from_stream(source, name, sequence_settings(options));
             let again = |_: &PictureOptions| PictureSequence::open(&[], SequenceSettings::default());
-            return Self::of(sequence, None, again, inputs, options);
+            let mut input = Self::of(sequence, None, again, inputs, options)?;
+            input.is_traced_unseen = !options.has_way();
+            return Ok(input);
         }
+        // What is read here is dealt with also where Ctrl-C ends the waiting for more.
+        interrupt::listen();
+        let failed = |error: &std::io::Error| Failure::unusable(format_args!("{name}: {}", plain(error)));
         let mut beginning = Vec::new();
-        let read = source.by_ref().take(READ_AHEAD).read_to_end(&mut beginning);
-        read.map_err(|error| Failure::unusable(format_args!("{name}: {}", plain(&error))))?;
+        source.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut beginning).map_err(|error| failed(&error))?;
+        let length = video_length(&beginning, PICTURES_AHEAD).unwrap_or(READ_AHEAD).min(READ_AHEAD);
+        source.by_ref().take(length).read_to_end(&mut beginning).map_err(|error| failed(&error))?;
+        if interrupt::was_asked_for() {
+            interrupt::put_off();
+        }
         let beginning: Arc<[u8]> = beginning.into();
         let preview = Preview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
@@ -129,7 +151,19 @@ impl PictureInput {
             preview.and_then(|preview| preview.edge_uncertainty(&settings, options.channel().channel()));
         let outlines = PictureOutlines::new(sequence, settings).map_err(Failure::unusable)?;
         let (waiting, found) = (VecDeque::new(), Found::default());
-        Ok(Self { inputs, outlines, options, trace, chosen, edge_uncertainty, waiting, frames: 0, found })
+        Ok(Self {
+            inputs,
+            outlines,
+            options,
+            trace,
+            chosen,
+            is_traced_unseen: false,
+            edge_uncertainty,
+            aspect: PixelAspectCheck::default(),
+            waiting,
+            frames: 0,
+            found,
+        })
     }
 
     /// The options, with what was chosen.
@@ -144,12 +178,27 @@ impl PictureInput {
 
     /// What should be known of how the pictures are traced.
     pub(crate) fn notes(&self) -> Vec<String> {
-        self.chosen.iter().map(Chosen::note).collect()
+        let unseen = "a stream is traced as it comes: --light is taken, as nothing else is given; 'freeform identify' on a piece of it \
+                      prints the options that suit it";
+        let unseen = self.is_traced_unseen.then(|| unseen.to_owned());
+        self.chosen.iter().map(Chosen::note).chain(unseen).collect()
+    }
+
+    /// What the outlines say of the pixels, after all have been read.
+    pub(crate) fn closing_remark(&self) -> Option<String> {
+        let aspect = self.aspect.stretch()? * self.trace.pixel_aspect;
+        let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
+        Some(format!("{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong"))
+    }
+
+    /// Why the way of tracing is not to be trusted.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        self.chosen.iter().filter_map(Chosen::warning).collect()
     }
 
     /// What may be wrong with how they are read and traced.
     pub(crate) fn warnings(&self) -> Vec<String> {
-        let mut warnings: Vec<String> = self.chosen.iter().filter_map(Chosen::warning).collect();
+        let mut warnings = self.doubts();
         if self.options.fps.is_none() && self.frame_count().is_some_and(|count| count > 1) {
             warnings
                 .push(format!("{ASSUMED_RATE} frames/s assumed, the pictures do not say; give the rate with --fps"));
@@ -221,6 +270,9 @@ impl PictureInput {
                 self.waiting.push_back(Item::Gap(Missing { frame, reason, hint: None, kind, seen_in: None }));
             }
             Ok(traced) => {
+                if let Some((0, first)) = traced.objects.as_ref().ok().and_then(|objects| objects.first()) {
+                    self.aspect.take(&first.outline);
+                }
                 self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
                 let PictureFrame { frame, time, file, picture } = traced.frame;
                 let seen_in = Rc::new(SeenIn { frame, grid: self.trace.pixel_grid(picture.height()), picture });
@@ -252,6 +304,17 @@ impl Iterator for PictureInput {
         }
         self.waiting.pop_front()
     }
+}
+
+/// Bytes that so many pictures of an uncompressed video have at most, by its header; `None` where it is no such video.
+fn video_length(header: &[u8], pictures: u64) -> Option<u64> {
+    let header = std::str::from_utf8(header).ok()?.strip_prefix("YUV4MPEG2 ")?;
+    let number =
+        |name: char| header.split_ascii_whitespace().find_map(|word| word.strip_prefix(name)?.parse::<u64>().ok());
+    let is_grey = header.contains(" Cmono");
+    let pixels = number('W')?.checked_mul(number('H')?)?;
+    let of_picture = if is_grey { pixels } else { pixels + pixels / 2 };
+    of_picture.checked_mul(pictures)
 }
 
 /// An error, and what to do about it where that is known.
@@ -316,6 +379,7 @@ fn picture_settings(
         smoothing: options.smoothing.map_or(Smoothing::Automatic, Smoothing::Gaussian),
         edges: Edges::Refined,
         minimum_area: options.min_area,
+        contours: if options.traces_contours() { Contours::All } else { Contours::Boundary },
         clipping: Clipping::Open,
         y_up: !options.y_down,
         ring: options.ring.map(|ring| Ring { contrast: ring.contrast(), width: options.ring_width }),

@@ -144,7 +144,10 @@ impl<'a> Reader<'a> {
 
     /// Says what has been left for the end of the reading, and why that came before its time, if it did.
     fn finish(self) -> Option<Failure> {
-        let Self { progress, warnings, failure, .. } = self;
+        let Self { input, quiet, progress, warnings, failure } = self;
+        if !quiet {
+            progress.pause(|| input.tell_in_the_end());
+        }
         warnings.finish().for_each(|warning| progress.pause(|| warn(&warning)));
         failure
     }

@@ -9,7 +9,7 @@ use freeform_motion::outline_io::{
     TracingEvidence, TracingWay, choose_tracing, median_picture, picture_files,
 };
 
-use crate::args::{ChannelChoice, ObjectsChoice, PictureOptions, RingChoice};
+use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
 use crate::output::short;
 
 /// Fewest pictures that tell how objects are best found.
@@ -173,6 +173,10 @@ pub(crate) fn choose(
     if best.objects > 1 && given.objects.is_none() {
         options.objects = Some(ObjectsChoice::All);
         parts.push("--objects all".to_owned());
+    }
+    if best.has_steady_contours && given.contours.is_none() {
+        options.contours = Some(ContoursChoice::All);
+        parts.push("--contours all".to_owned());
     }
     if given.channel.is_some() {
         parts.retain(|part| !part.starts_with("--channel"));

@@ -59,6 +59,7 @@ mod picture;
 mod picture_error;
 mod picture_outlines;
 mod picture_sequence;
+mod pixel_aspect;
 mod ring;
 mod segment;
 mod shape;
@@ -88,11 +89,12 @@ pub use picture::{decode_picture, read_picture, read_picture_channel};
 pub use picture_error::{PictureError, PictureErrorKind, TraceError};
 pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
 pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings, has_picture_extension, picture_files};
+pub use pixel_aspect::PixelAspectCheck;
 pub use ring::Ring;
 pub use shape::read_shape;
 pub use threshold::Threshold;
 pub use trace::{TracedOutline, trace_mask, trace_objects};
-pub use trace_settings::{Clipping, Edges, Smoothing, TraceSettings};
+pub use trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

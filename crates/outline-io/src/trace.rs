@@ -1,23 +1,29 @@
 use std::borrow::Cow;
 
-use freeform_curve_fit::isoline::{Crossing, LineTooLong};
-use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_curve_fit::isoline::{self, Crossing, LineTooLong};
+use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline};
 use image::GrayImage;
 use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
-use crate::contrast::{Contrast, signal};
+use crate::contrast::signal;
 use crate::edges::{EdgeFit, EdgeSource};
 use crate::field::{Field, blur_reach};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
 use crate::ring::{self, Ring};
 use crate::threshold::{Levels, level_in_picture};
-use crate::trace_settings::{Clipping, Edges, Smoothing, TraceSettings};
+use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
 /// Most points of all outlines of one picture: many times those of objects that have any, and few enough to be worked on. The
 /// picture of a comb of 84 kB would have 34 million.
 const POINT_LIMIT: usize = 1 << 19;
+
+/// Smallest hole or mark that is traced, in pixels.
+const SMALLEST_HOLE: f64 = 25.0;
+
+/// Most holes and marks of an object.
+const MOST_HOLES: usize = 32;
 
 /// The outline of an object in a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,7 +164,7 @@ fn mask_outlines<'a>(
         return Err(TraceError::NoObject { threshold });
     }
     let traced = objects.into_masks(blur_reach(sigma) + 2).map(move |mask| {
-        let mut field = object_field(&picture, &mask, &levels, settings.contrast, set);
+        let mut field = object_field(&picture, &mask, &levels, settings, set);
         if sigma > 0.0 {
             field.blur(sigma);
         }
@@ -219,7 +225,14 @@ impl Window<'_> {
         let outer = self.field.outer_isoline(self.level, POINT_LIMIT);
         let outer = outer.map_err(|LineTooLong { most }| TraceError::TooManyPoints { limit: most })?;
         let Some(mut line) = outer else { return Ok(None) };
-        let mut edges = self.edges.and_then(|source| source.refine(&mut line, [self.left, self.top]));
+        let mut inner = match settings.contours {
+            Contours::Boundary => Vec::new(),
+            Contours::All => self.inner_lines(&line),
+        };
+        let place = [self.left, self.top];
+        let mut edges = self.edges.and_then(|source| source.refine(&mut line, place));
+        let of_inner: Vec<Option<EdgeFit>> =
+            inner.iter_mut().map(|line| self.edges.and_then(|source| source.refine(line, place))).collect();
         let grid = settings.pixel_grid(picture_height);
         let touches_border = line.iter().any(|crossing| crossing.at_edge);
         let to_point = |crossing: &Crossing| {
@@ -227,12 +240,13 @@ impl Window<'_> {
         };
         let mut points: Vec<(Point2<f64>, bool)> =
             line.iter().map(|crossing| (to_point(crossing), crossing.at_edge)).collect();
+        let mut inner: Vec<Vec<Point2<f64>>> = inner.iter().map(|line| line.iter().map(to_point).collect()).collect();
         if !settings.y_up {
             points.reverse();
+            inner.iter_mut().for_each(|contour| contour.reverse());
         }
         if let Some(edges) = &mut edges {
             edges.systematic *= settings.pixel_size;
-            edges.deviations.iter_mut().for_each(|deviation| *deviation *= settings.pixel_size);
             if !settings.y_up {
                 edges.deviations.reverse();
             }
@@ -240,27 +254,59 @@ impl Window<'_> {
         let polygon = points.iter().map(|(point, _)| *point);
         let AreaAndCentre { signed_area: area, centre } = AreaAndCentre::of(&polygon);
         let invariants = AffineMomentInvariants::of(&polygon);
-        let outline = match settings.clipping {
-            Clipping::Open if touches_border => {
-                if let Some(edges) = &mut edges {
-                    edges.deviations = of_visible_arcs(&points, &edges.deviations);
-                }
-                visible_arcs(points)?
+        let is_open = settings.clipping == Clipping::Open && touches_border;
+        if let Some(edges) = &mut edges {
+            if is_open {
+                edges.deviations = of_visible_arcs(&points, &edges.deviations);
             }
-            _ => Outline::closed(points.into_iter().map(|(point, _)| point).collect())?,
+            for (contour, fit) in inner.iter().zip(of_inner) {
+                let unknown = edges.deviations.iter().copied().fold(0.0, f64::max);
+                let mut deviations = fit.map_or_else(|| vec![unknown; contour.len()], |fit| fit.deviations);
+                if !settings.y_up {
+                    deviations.reverse();
+                }
+                // An arc that is a whole contour repeats its first point.
+                deviations.extend(deviations.first().copied().filter(|_| is_open));
+                edges.deviations.append(&mut deviations);
+            }
+            edges.deviations.iter_mut().for_each(|deviation| *deviation *= settings.pixel_size);
+        }
+        let outline = if is_open {
+            visible_arcs(points, inner)?
+        } else {
+            ClosedOutline::new(points.into_iter().map(|(point, _)| point).collect())?.with_inner(inner)?.into()
         };
         Ok(Some(Seen { outline, touches_border, centre, area, invariants, edges }))
     }
 }
 
-/// The grey values around the object, with other objects and its own holes painted over.
+impl Window<'_> {
+    /// The lines around what is on the other side of the level within an outer line, of at least the smallest area.
+    fn inner_lines(&self, outer: &[Crossing]) -> Vec<Vec<Crossing>> {
+        let Field { width, height, values } = self.field;
+        let lines = isoline::of_samples([*width, *height], |x, y| f64::from(values[y * width + x]), self.level);
+        let outer_area = isoline::signed_area(outer);
+        let is_hole = |line: &Vec<Crossing>| {
+            let area = isoline::signed_area(line);
+            area * outer_area < 0.0 && area.abs() >= SMALLEST_HOLE && line.iter().all(|crossing| !crossing.at_edge)
+        };
+        let mut lines: Vec<Vec<Crossing>> = lines.into_iter().filter(is_hole).collect();
+        let area = |line: &Vec<Crossing>| isoline::signed_area(line).abs();
+        lines.sort_by(|a, b| area(b).total_cmp(&area(a)));
+        lines.truncate(MOST_HOLES);
+        lines
+    }
+}
+
+/// The grey values around the object, with other objects painted over, and its own holes where they are not traced.
 fn object_field(
     picture: &GrayImage,
     mask: &ObjectMask,
     levels: &Levels,
-    contrast: Contrast,
+    settings: &TraceSettings,
     set: impl Fn(u8) -> bool,
 ) -> Field {
+    let fills = settings.contours == Contours::Boundary;
     let stride = picture.width() as usize;
     let mut values = Vec::with_capacity(mask.width * mask.height);
     for row in 0..mask.height {
@@ -268,9 +314,9 @@ fn object_field(
         let pixels = &picture.as_raw()[from..from + mask.width];
         let filled = &mask.filled[row * mask.width..(row + 1) * mask.width];
         values.extend(pixels.iter().zip(filled).map(|(&value, &filled)| match (filled, set(value)) {
-            (true, false) => levels.object as f32,
+            (true, false) if fills => levels.object as f32,
             (false, true) => levels.ground as f32,
-            _ => f32::from(signal(value, contrast)),
+            _ => f32::from(signal(value, settings.contrast)),
         }));
     }
     Field { width: mask.width, height: mask.height, values }
@@ -286,15 +332,19 @@ fn of_visible_arcs(points: &[(Point2<f64>, bool)], values: &[f64]) -> Vec<f64> {
     arcs.flatten().map(|(value, _)| *value).collect()
 }
 
-/// The arcs between the stretches along the edge of the picture.
-fn visible_arcs(mut points: Vec<(Point2<f64>, bool)>) -> Result<Outline, TraceError> {
+/// The arcs between the stretches along the edge of the picture, and whole contours within as arcs that end where they begin.
+fn visible_arcs(mut points: Vec<(Point2<f64>, bool)>, inner: Vec<Vec<Point2<f64>>>) -> Result<Outline, TraceError> {
     let on_edge = points.iter().position(|(_, at_edge)| *at_edge).unwrap_or(0);
     points.rotate_left(on_edge);
     let arcs = points.split(|(_, at_edge)| *at_edge).filter(|arc| arc.len() > 1);
-    let arcs: Vec<OpenArc> =
+    let mut arcs: Vec<OpenArc> =
         arcs.map(|arc| OpenArc::new(arc.iter().map(|(point, _)| *point).collect())).collect::<Result<_, _>>()?;
     if arcs.is_empty() {
         return Err(TraceError::FillsPicture);
+    }
+    for mut contour in inner {
+        contour.extend(contour.first().copied());
+        arcs.push(OpenArc::new(contour)?);
     }
     Ok(OpenOutline::in_sequence(arcs)?.into())
 }

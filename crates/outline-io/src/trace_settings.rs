@@ -38,6 +38,16 @@ pub enum Edges {
     Isoline,
 }
 
+/// Which contours of an object are traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Contours {
+    /// The boundary alone; holes are filled.
+    #[default]
+    Boundary,
+    /// The boundary, and holes and marks within it of at least 25 pixels.
+    All,
+}
+
 /// What to make of an object that the edge of the picture clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Clipping {
@@ -61,6 +71,8 @@ pub struct TraceSettings {
     pub edges: Edges,
     /// Smallest object accepted, in pixels.
     pub minimum_area: u64,
+    /// Which contours of an object are traced; of one in a ring always the boundary alone.
+    pub contours: Contours,
     /// What to make of an object that the edge of the picture clips.
     pub clipping: Clipping,
     /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
@@ -82,6 +94,7 @@ impl Default for TraceSettings {
             smoothing: Smoothing::default(),
             edges: Edges::default(),
             minimum_area: 9,
+            contours: Contours::default(),
             clipping: Clipping::default(),
             y_up: true,
             ring: None,

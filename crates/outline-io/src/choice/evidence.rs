@@ -14,7 +14,7 @@ use crate::ground_surface::ground_surface;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
 use crate::trace::{TracedOutline, trace_objects};
-use crate::trace_settings::{Clipping, Edges, Smoothing, TraceSettings};
+use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
 /// Most pixels of a picture where ways are tried for the first time.
 const COARSE_PIXELS: u64 = 90_000;
@@ -56,6 +56,8 @@ pub struct TracingEvidence {
     pub area_share: f64,
     /// Objects of at least half its area, in the median picture.
     pub objects: usize,
+    /// Whether holes or marks within it are the same all the time.
+    pub has_steady_contours: bool,
     /// All of it together, 0 to 1.
     pub score: f64,
 }
@@ -86,6 +88,8 @@ struct Sight {
     contrast: f64,
     /// Objects of at least half the area, and all.
     objects: [usize; 2],
+    /// Areas of its holes and marks together, over its own, and their number.
+    inner: (f64, usize),
     /// Area of the largest other one, over its own.
     second: f64,
 }
@@ -155,6 +159,7 @@ impl Trial {
         };
         *trace = TraceSettings {
             edges: Edges::Isoline,
+            contours: Contours::All,
             clipping: Clipping::Close,
             y_up: false,
             pixel_size: 1.0,
@@ -206,7 +211,10 @@ impl Sight {
             alike.min_by(|a, b| far(a).total_cmp(&far(b)))
         });
         let chosen = nearest.or_else(|| traced.iter().find(|t| !t.touches_border)).or(traced.first())?;
-        let points: Vec<Point2<f64>> = chosen.outline.points().copied().collect();
+        let boundary = chosen.outline.pieces().next().map_or(&[][..], |piece| piece.points);
+        let points: Vec<Point2<f64>> = boundary.to_vec();
+        let inner = chosen.outline.pieces().skip(1).map(|piece| area_of(piece.points) / chosen.area);
+        let inner = (inner.clone().sum(), inner.count());
         Some(Self {
             frame,
             centre: chosen.centre,
@@ -214,6 +222,7 @@ impl Sight {
             invariants: chosen.invariants,
             is_clipped: chosen.touches_border,
             contrast: contrast_along(&points, picture, contrast, reach),
+            inner,
             second: traced
                 .iter()
                 .filter(|t| t.centre != chosen.centre)
@@ -327,8 +336,23 @@ pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence>
         clipped,
         area_share,
         objects,
+        has_steady_contours: has_steady_contours(&whole),
         score,
     })
+}
+
+/// Whether nearly all show the same number of holes and marks, of the same area together.
+fn has_steady_contours(whole: &[&Sight]) -> bool {
+    let Some(count) = median(whole.iter().map(|sight| sight.inner.1 as f64)) else { return false };
+    let Some(area) = median(whole.iter().map(|sight| sight.inner.0)) else { return false };
+    let is_same = |sight: &&&Sight| sight.inner.1 as f64 == count && (sight.inner.0 / area).ln().abs() < 0.1;
+    whole.len() > 2 && count > 0.0 && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
+}
+
+/// Area within a closed line.
+fn area_of(points: &[Point2<f64>]) -> f64 {
+    let edges = points.iter().zip(points.iter().cycle().skip(1));
+    0.5 * edges.map(|(p, q)| p.coords.perp(&q.coords)).sum::<f64>().abs()
 }
 
 /// How many of the sights are like the one that most are like.
