@@ -4,7 +4,7 @@ use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
 use super::scaled::{factor_for, scaled};
-use super::{PictureSample, Tracing, TracingWay, ground_of};
+use super::{LINE, PictureSample, Tracing, TracingWay, ground_of};
 use crate::affine_moment_invariants::AffineMomentInvariants;
 use crate::background::Background;
 use crate::channel::Channel;
@@ -56,7 +56,9 @@ pub struct TracingEvidence {
     pub area_share: f64,
     /// Objects of at least half its area, in the median picture.
     pub objects: usize,
-    /// Whether holes or marks within it are the same all the time.
+    /// Share of its area that holes and marks have.
+    pub inner_share: f64,
+    /// Whether holes or marks within it, of less than half of its area, are the same all the time.
     pub has_steady_contours: bool,
     /// All of it together, 0 to 1.
     pub score: f64,
@@ -336,6 +338,7 @@ pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence>
         clipped,
         area_share,
         objects,
+        inner_share: of(&|sight| sight.inner.0)?,
         has_steady_contours: has_steady_contours(&whole),
         score,
     })
@@ -346,7 +349,7 @@ fn has_steady_contours(whole: &[&Sight]) -> bool {
     let Some(count) = median(whole.iter().map(|sight| sight.inner.1 as f64)) else { return false };
     let Some(area) = median(whole.iter().map(|sight| sight.inner.0)) else { return false };
     let is_same = |sight: &&&Sight| sight.inner.1 as f64 == count && (sight.inner.0 / area).ln().abs() < 0.1;
-    whole.len() > 2 && count > 0.0 && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
+    whole.len() > 2 && count > 0.0 && area < LINE && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
 }
 
 /// Area within a closed line.

@@ -65,6 +65,9 @@ const GOOD: f64 = 0.5;
 /// Below this, speckles may spoil it.
 const WEAK: f64 = 0.2;
 
+/// Holes of more than this share of an object leave no more than a line of it.
+pub(crate) const LINE: f64 = 0.5;
+
 /// Smoothing tried against speckles, in pixels.
 const AGAINST_SPECKLES: f64 = 2.5;
 
@@ -81,6 +84,10 @@ impl TracingWay {
         Self::Surface(Difference::Either),
     ];
 
+    fn is_ring(self) -> bool {
+        matches!(self, Self::DarkRing | Self::LightRing)
+    }
+
     /// How much a way is preferred to others that do as well: what is simple, and takes nothing for granted, first.
     fn preference(self) -> f64 {
         match self {
@@ -95,7 +102,7 @@ impl TracingWay {
 
 impl Tracing {
     fn preference(&self) -> f64 {
-        let channel = if self.channel == Channel::Luminance { 1.0 } else { 0.95 };
+        let channel = if self.channel == Channel::Luminance { 1.0 } else { 0.85 };
         let smoothing = if self.smoothing == Smoothing::Automatic { 1.0 } else { 0.85 };
         self.way.preference() * channel * smoothing
     }
@@ -203,7 +210,11 @@ fn tried(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Ve
 }
 
 fn sort(candidates: &mut [TracingEvidence]) {
-    let worth = |candidate: &TracingEvidence| candidate.score * candidate.tracing.preference();
+    let worth = |candidate: &TracingEvidence| {
+        // Where a line is all that is seen, the rings are made for it: they do without a threshold, and take no gap for an opening.
+        let line = if candidate.inner_share > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
+        candidate.score * candidate.tracing.preference() * line
+    };
     candidates.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
 }
 
