@@ -199,6 +199,7 @@ fn take(options: &mut PictureOptions, tracing: &Tracing) {
         TracingWay::Surface(difference) => background("surface", difference),
     }
     options.channel = Some(ChannelChoice::of(tracing.channel));
+    options.threshold = tracing.level;
     if let Smoothing::Gaussian(sigma) = tracing.smoothing {
         options.smoothing = Some(sigma);
     }
@@ -223,6 +224,7 @@ fn options_of(tracing: &Tracing) -> Vec<String> {
         TracingWay::Surface(difference) => background("surface", difference),
     };
     let mut options = vec![way];
+    options.extend(tracing.level.map(|level| format!("--threshold {level}")));
     if tracing.channel != Channel::Luminance {
         options.push(format!("--channel {}", ChannelChoice::of(tracing.channel).name()));
     }

@@ -182,7 +182,7 @@ fn is_two_valued(picture: &GrayImage) -> bool {
 }
 
 /// A picture blurred by a Gaussian, rounded to grey values.
-fn blurred(picture: &GrayImage, sigma: f64) -> GrayImage {
+pub(crate) fn blurred(picture: &GrayImage, sigma: f64) -> GrayImage {
     let (width, height) = picture.dimensions();
     let values = picture.as_raw().iter().map(|value| f32::from(*value)).collect();
     let mut field = Field { width: width as usize, height: height as usize, values };

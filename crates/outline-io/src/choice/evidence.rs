@@ -13,7 +13,7 @@ use crate::edges::median;
 use crate::ground_surface::ground_surface;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
-use crate::trace::{TracedOutline, trace_objects};
+use crate::trace::{TracedOutline, blurred, trace_objects};
 use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
 /// Most pixels of a picture where ways are tried for the first time.
@@ -27,6 +27,10 @@ const FINE_PICTURES: usize = 15;
 
 /// Objects looked at in a picture.
 const OBJECTS: usize = 6;
+
+/// A level lies so many standard deviations of the ground beyond it, and at least so many grey values.
+const BEYOND_NOISE: f64 = 6.0;
+const LEAST_LEVEL: f64 = 8.0;
 
 /// Points of an outline where the contrast is looked at.
 const PLACES: usize = 64;
@@ -171,20 +175,46 @@ impl Trial {
         settings
     }
 
+    /// A difference from the ground that its noise does not reach, for the ways by a difference.
+    pub(super) fn noise_level(&self, tracing: &Tracing) -> Option<f64> {
+        if !matches!(tracing.way, TracingWay::Median(_) | TracingWay::Surface(_)) {
+            return None;
+        }
+        let settings = self.settings(tracing);
+        let sigma = match settings.trace.smoothing {
+            Smoothing::Gaussian(sigma) => sigma,
+            Smoothing::Automatic => 0.0,
+        };
+        let step = (self.count() / 5).max(1);
+        let levels = (0..self.count()).step_by(step).filter_map(|k| {
+            let difference = settings.difference.of(&self.pictures[k], self.ground(tracing, &settings, k)?);
+            let smooth = if sigma > 0.0 { blurred(&difference, sigma) } else { difference };
+            let values = || smooth.as_raw().iter().step_by(7).map(|value| f64::from(*value));
+            let middle = median(values())?;
+            let spread = 1.4826 * (median(values().map(|value| (value - middle).abs()))? + 0.5);
+            Some((middle + BEYOND_NOISE * spread).max(LEAST_LEVEL).round())
+        });
+        median(levels)
+    }
+
+    /// What a picture is compared with, if with anything.
+    fn ground<'a>(&'a self, tracing: &Tracing, settings: &'a PictureSettings, k: usize) -> Option<&'a Arc<GrayImage>> {
+        match (&settings.background, tracing.way) {
+            (Some(Background::Picture(ground)), _) => Some(ground),
+            (_, TracingWay::Surface(_)) => {
+                let surfaces = || self.pictures.iter().map(|picture| Arc::new(ground_surface(picture))).collect();
+                self.surfaces.get_or_init(surfaces).get(k)
+            }
+            _ => None,
+        }
+    }
+
     /// What a way finds in each picture.
     fn sights(&self, tracing: &Tracing) -> Vec<Sight> {
         let settings = self.settings(tracing);
         let mut sights = Vec::new();
         for (k, (&frame, picture)) in self.frames.iter().zip(&self.pictures).enumerate() {
-            let ground = match (&settings.background, tracing.way) {
-                (Some(Background::Picture(ground)), _) => Some(ground),
-                (_, TracingWay::Surface(_)) => {
-                    let surfaces = || self.pictures.iter().map(|picture| Arc::new(ground_surface(picture))).collect();
-                    self.surfaces.get_or_init(surfaces).get(k)
-                }
-                _ => None,
-            };
-            let difference = ground.map(|ground| settings.difference.of(picture, ground));
+            let difference = self.ground(tracing, &settings, k).map(|ground| settings.difference.of(picture, ground));
             let looked_at = difference.as_ref().unwrap_or(picture);
             let Ok(traced) = trace_objects(looked_at, &settings.trace, OBJECTS) else { continue };
             let line = settings.trace.ring.map(|ring| ring.contrast);

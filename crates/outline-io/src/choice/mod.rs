@@ -44,6 +44,8 @@ pub struct Tracing {
     pub channel: Channel,
     /// Smoothing before objects are looked for.
     pub smoothing: Smoothing,
+    /// A difference from the ground beyond its noise, in grey values, instead of Otsu's threshold; of the ways by a difference only.
+    pub level: Option<f64>,
 }
 
 /// The ways that were tried, with what speaks for them, the best first.
@@ -68,8 +70,14 @@ const WEAK: f64 = 0.2;
 /// Holes of more than this share of an object leave no more than a line of it.
 pub(crate) const LINE: f64 = 0.5;
 
+/// Score that another channel than the luminance must be better by.
+const WORTH_OF_LUMINANCE: f64 = 0.03;
+
 /// Smoothing tried against speckles, in pixels.
 const AGAINST_SPECKLES: f64 = 2.5;
+
+/// Smoothing tried against noise that hides what can be seen where a picture is scaled down, in pixels.
+const AGAINST_NOISE: f64 = 1.5;
 
 /// Fewest pictures of a sample whose median may be the ground.
 const FEWEST_FOR_MEDIAN: usize = 8;
@@ -102,9 +110,20 @@ impl TracingWay {
 
 impl Tracing {
     fn preference(&self) -> f64 {
-        let channel = if self.channel == Channel::Luminance { 1.0 } else { 0.85 };
-        let smoothing = if self.smoothing == Smoothing::Automatic { 1.0 } else { 0.85 };
-        self.way.preference() * channel * smoothing
+        let channel = if self.channel == Channel::Luminance { 1.0 } else { 0.95 };
+        let smoothing = match self.smoothing {
+            Smoothing::Automatic => 1.0,
+            Smoothing::Gaussian(sigma) if sigma < AGAINST_SPECKLES => 0.85,
+            Smoothing::Gaussian(_) => 0.7,
+        };
+        let level = if self.level.is_none() { 1.0 } else { 0.95 };
+        self.way.preference() * channel * smoothing * level
+    }
+
+    /// Whether both are one way, with whatever levels.
+    fn is_like(&self, other: &Self) -> bool {
+        let rest = |tracing: &Self| (tracing.way, tracing.channel, tracing.level.is_some());
+        rest(self) == rest(other) && self.smoothing == other.smoothing
     }
 
     /// The settings of this way; of the median, `ground` is that of the sequence.
@@ -120,7 +139,8 @@ impl Tracing {
             TracingWay::Surface(d) => (Contrast::LightOnDark, None, Some(Background::Surface), d),
         };
         let smoothing = self.smoothing;
-        let trace = TraceSettings { contrast, ring, smoothing, threshold: Threshold::Automatic, ..base.trace };
+        let threshold = self.level.map_or(Threshold::Automatic, Threshold::Level);
+        let trace = TraceSettings { contrast, ring, smoothing, threshold, ..base.trace };
         PictureSettings { trace, background, difference, ..base.clone() }
     }
 }
@@ -149,26 +169,64 @@ impl TracingChoice {
 pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: &[Channel]) -> TracingChoice {
     let channels: Vec<Channel> =
         sample.channels().filter(|channel| channels.is_empty() || channels.contains(channel)).collect();
-    let mut candidates = Vec::new();
-    if let Some((first, others)) = channels.split_first() {
-        candidates = tried(sample, base, *first);
-        if candidates.iter().all(|candidate| candidate.score < GOOD) {
-            let in_others = |channel: &Channel| {
-                let channel = *channel;
-                move || tried(sample, base, channel)
-            };
-            candidates.extend(std::thread::scope(|scope| {
-                let threads: Vec<_> = others.iter().map(|channel| scope.spawn(in_others(channel))).collect();
-                threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default()).collect::<Vec<_>>()
-            }));
-        }
+    let Some((first, others)) = channels.split_first() else { return TracingChoice { candidates: Vec::new() } };
+    let mut coarse = tried(sample, base, *first);
+    let (mut fine, mut looked_at) = (Vec::new(), Vec::new());
+    let is_good = |candidates: &[TracingEvidence]| candidates.iter().any(|candidate| candidate.score >= GOOD);
+    if is_good(&coarse) {
+        fine = looked_closer(sample, base, &mut coarse, &mut looked_at);
     }
-    sort(&mut candidates);
-    let short: Vec<Tracing> = candidates.iter().take(SHORT_LIST).map(|candidate| candidate.tracing).collect();
+    // Scaled down, a picture has less noise than as it is.
+    if !is_good(&fine) && !others.is_empty() {
+        let in_others = |channel: &Channel| {
+            let channel = *channel;
+            move || tried(sample, base, channel)
+        };
+        coarse.extend(std::thread::scope(|scope| {
+            let threads: Vec<_> = others.iter().map(|channel| scope.spawn(in_others(channel))).collect();
+            threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default()).collect::<Vec<_>>()
+        }));
+    }
+    if !is_good(&fine) {
+        fine.extend(looked_closer(sample, base, &mut coarse, &mut looked_at));
+    }
+    sort(&mut fine);
+    coarse.retain(|candidate| !looked_at.iter().any(|tracing| tracing.is_like(&candidate.tracing)));
+    fine.extend(coarse);
+    TracingChoice { candidates: fine }
+}
+
+/// The best ways once more, in more pictures as they are, with their variants. `looked_at` are those that have been looked at so.
+fn looked_closer(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    coarse: &mut [TracingEvidence],
+    looked_at: &mut Vec<Tracing>,
+) -> Vec<TracingEvidence> {
+    sort(coarse);
     let mut fine = Vec::new();
-    for (rank, tracing) in short.iter().enumerate() {
+    for (rank, candidate) in coarse.iter().take(SHORT_LIST).enumerate() {
+        let tracing = candidate.tracing;
+        if looked_at.iter().any(|known| known.is_like(&tracing)) {
+            continue;
+        }
         let trial = Trial::fine(sample, base, tracing.channel);
-        fine.extend(judged(&trial, *tracing));
+        let with_level = |tracing: Tracing| Tracing {
+            level: tracing
+                .level
+                .and_then(|_| trial.noise_level(&tracing))
+                .map(|level| level * f64::from(sample.factor())),
+            ..tracing
+        };
+        let found = judged(&trial, with_level(tracing));
+        // What stands out where noise is averaged away may do so where it is smoothed.
+        let is_lost = found.as_ref().is_none_or(|found| found.score < 0.6 * candidate.score);
+        fine.extend(found);
+        looked_at.push(tracing);
+        if is_lost && tracing.smoothing == Smoothing::Automatic && !sample.is_two_valued() {
+            let smooth = Tracing { smoothing: Smoothing::Gaussian(AGAINST_NOISE), ..tracing };
+            fine.extend(judged(&trial, with_level(smooth)));
+        }
         if rank == 0 {
             let variants: &[TracingWay] = match tracing.way {
                 TracingWay::Median(_) => {
@@ -179,13 +237,11 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
                 }
                 _ => &[],
             };
-            fine.extend(variants.iter().filter_map(|way| judged(&trial, Tracing { way: *way, ..*tracing })));
+            let variants = variants.iter().map(|way| with_level(Tracing { way: *way, ..tracing }));
+            fine.extend(variants.filter_map(|tracing| judged(&trial, tracing)));
         }
     }
-    sort(&mut fine);
-    candidates.retain(|candidate| !fine.iter().any(|fine| fine.tracing == candidate.tracing));
-    fine.extend(candidates);
-    TracingChoice { candidates: fine }
+    fine
 }
 
 /// The plain ways in a channel, on a few pictures, scaled down.
@@ -199,7 +255,12 @@ fn tried(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Ve
     };
     let all = |smoothing: Smoothing| {
         let ways = TracingWay::PLAIN.into_iter().filter(is_possible);
-        ways.filter_map(|way| judged(&trial, Tracing { way, channel, smoothing })).collect::<Vec<_>>()
+        let otsu = ways.map(|way| Tracing { way, channel, smoothing, level: None });
+        let with_levels = otsu.flat_map(|tracing| {
+            let level = trial.noise_level(&tracing);
+            [Some(tracing), level.map(|level| Tracing { level: Some(level), ..tracing })].into_iter().flatten()
+        });
+        with_levels.filter_map(|tracing| judged(&trial, tracing)).collect::<Vec<_>>()
     };
     let smoothing = base.trace.smoothing;
     let mut candidates = all(smoothing);
@@ -213,7 +274,9 @@ fn sort(candidates: &mut [TracingEvidence]) {
     let worth = |candidate: &TracingEvidence| {
         // Where a line is all that is seen, the rings are made for it: they do without a threshold, and take no gap for an opening.
         let line = if candidate.inner_share > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
-        candidate.score * candidate.tracing.preference() * line
+        // Another channel is to be worth it: compression spoils what is not luminance.
+        let channel = if candidate.tracing.channel == Channel::Luminance { 0.0 } else { WORTH_OF_LUMINANCE };
+        (candidate.score * candidate.tracing.preference() - channel) * line
     };
     candidates.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
 }

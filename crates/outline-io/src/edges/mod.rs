@@ -165,7 +165,10 @@ impl EdgeSource<'_> {
         let deviations = (0..line.len()).map(deviation).collect();
         let systematic = systematic(&edges, &is_clear);
         let shift = |i: usize| (places[i] + bends[i]) * normals[i].unwrap_or_default();
-        let mut moved: Vec<Point2<f64>> = (0..line.len()).map(|i| points[i] + shift(i)).collect();
+        // Nothing is seen beyond the picture.
+        let [right, lower] = [self.picture.width(), self.picture.height()].map(|size| f64::from(size) - 0.5);
+        let within = |p: Point2<f64>| Point2::new(p.x.clamp(-0.5, right), p.y.clamp(-0.5, lower));
+        let mut moved: Vec<Point2<f64>> = (0..line.len()).map(|i| within(points[i] + shift(i))).collect();
         undo_crossings(&points, &mut moved);
         for (crossing, (moved, before)) in line.iter_mut().zip(moved.iter().zip(&points)) {
             crossing.x += moved.x - before.x;
