@@ -92,16 +92,17 @@ pub(super) fn gear(radius: f64, teeth: u32, depth: f64, notch: u32) -> Vec<Point
             points.push(corner(angle + at * pitch, radius));
         }
     }
-    centred(points)
+    centred(&points)
 }
 
 /// A polygon about the middle of its area.
 pub(super) fn polygon(corners: &[[f64; 2]], scale: f64) -> Vec<Point2<f64>> {
-    centred(corners.iter().map(|[x, y]| Point2::new(scale * x, scale * y)).collect())
+    let points: Vec<Point2<f64>> = corners.iter().map(|[x, y]| Point2::new(scale * x, scale * y)).collect();
+    centred(&points)
 }
 
 /// Moved so that the middle of its area is at the origin.
-fn centred(points: Vec<Point2<f64>>) -> Vec<Point2<f64>> {
+fn centred(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     let edges = points.iter().zip(points.iter().cycle().skip(1));
     let (mut doubled, mut moment) = (0.0, Vector2::zeros());
     for (p, q) in edges {
