@@ -15,6 +15,9 @@ const ASPECTS: [f64; 3] = [0.5, 2.0, 0.01];
 /// The outlines must keep their shape so many times better than as they are, in squares.
 const BETTER: f64 = 4.0;
 
+/// A body that changes its shape by more than this at the best aspect, in the same squares, is not rigid in the plane.
+const NOT_RIGID: f64 = 0.01;
+
 /// Nearer to 1 than this an aspect is as it should be.
 const SMALL: f64 = 0.015;
 
@@ -79,7 +82,7 @@ impl PixelAspectCheck {
         let bend = a - 2.0 * b + c;
         let stretch = tried[best].0 + if bend > 0.0 { 0.5 * step * (a - c) / bend } else { 0.0 };
         let as_it_is = self.change_of_shape(1.0)?;
-        ((stretch - 1.0).abs() > SMALL && as_it_is > BETTER * b).then_some(stretch)
+        ((stretch - 1.0).abs() > SMALL && as_it_is > BETTER * b && b < NOT_RIGID).then_some(stretch)
     }
 
     /// How much the shape changes where x is stretched: the sum of the squared spreads of what a turn leaves of the moments.
