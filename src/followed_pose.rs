@@ -165,7 +165,7 @@ pub(crate) fn in_working(outline: &Outline, pose: &Projective2<f64>) -> Result<O
     let working_from_image = pose.inverse();
     let moved = |points: &[Point2<f64>]| points.iter().map(|p| working_from_image * p).collect();
     Ok(match outline {
-        Outline::Closed(closed) => Outline::closed(moved(closed.points()))?,
+        Outline::Closed(closed) => Outline::Closed(closed.mapped(|p| working_from_image * p)?),
         Outline::Open(arcs) => {
             let arcs = arcs.arcs().iter().map(|arc| OpenArc::new(moved(arc.points())));
             Outline::Open(OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?)?)

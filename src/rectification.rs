@@ -94,7 +94,7 @@ impl Rectification {
         };
         let moved = |points: &[Point2<f64>]| points.iter().map(point).collect();
         Ok(match picture {
-            Outline::Closed(closed) => Outline::closed(moved(closed.points()))?,
+            Outline::Closed(closed) => Outline::Closed(closed.mapped(point)?),
             Outline::Open(arcs) => {
                 let arcs = arcs.arcs().iter().map(|arc| OpenArc::new(moved(arc.points())));
                 Outline::Open(OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?)?)

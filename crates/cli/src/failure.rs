@@ -76,6 +76,11 @@ pub(crate) fn say(message: &str) {
     let _ = writeln!(io::stderr(), "freeform: {}", readable(&lines.join(" ")));
 }
 
+/// Prints what a user may want to know on standard error.
+pub(crate) fn note(message: &str) {
+    say(&format!("note: {message}"));
+}
+
 /// Prints a warning on standard error.
 pub(crate) fn warn(message: &str) {
     say(&format!("warning: {message}"));

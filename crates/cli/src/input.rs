@@ -7,13 +7,22 @@ use freeform_motion::outline_io::{OutlineReader, PictureSequence, ReadError, Rea
 
 use crate::args::PictureOptions;
 use crate::awaited::Awaited;
-use crate::failure::{Failure, plain};
+use crate::failure::{Failure, note, plain, warn};
 use crate::picture_input::PictureInput;
 use crate::seen::Item;
 use crate::truth::SimulatedMotion;
 
 /// Longest head of comment lines that is looked through for the truth, in bytes.
 const HEAD_LIMIT: u64 = 1 << 16;
+
+/// Whether the beginning of a stream may be read before its first picture is dealt with, to choose how it is traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Waiting {
+    /// Every picture is dealt with as soon as it is there.
+    None,
+    /// Some pictures are waited for.
+    Allowed,
+}
 
 /// A sequence of outlines, open for reading.
 pub(crate) struct Input {
@@ -31,7 +40,7 @@ enum Source {
 
 impl Input {
     /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with.
-    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions) -> Result<Self, Failure> {
+    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions, waiting: Waiting) -> Result<Self, Failure> {
         let name = match paths {
             [path] if path.as_os_str() == "-" => "<stdin>".to_owned(),
             [path] => path.display().to_string(),
@@ -44,17 +53,17 @@ impl Input {
         }
         let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
         if path.as_os_str() == "-" {
-            return Self::from_source(Awaited::stdin(), name, options);
+            return Self::from_source(Awaited::stdin(), name, options, waiting);
         }
         // A pipe can be read once, whatever its name says.
         if fs::metadata(path).is_ok_and(|place| !place.is_file() && !place.is_dir()) {
-            return Self::from_source(Awaited::open(path.clone()), name, options);
+            return Self::from_source(Awaited::open(path.clone()), name, options, waiting);
         }
         if PictureSequence::is_named_by(path) {
             return Self::of_pictures(PictureInput::open(paths, options)?, name);
         }
         match File::open(path) {
-            Ok(file) => Self::from_source(BufReader::new(file), name, options),
+            Ok(file) => Self::from_source(BufReader::new(file), name, options, waiting),
             Err(error) => Err(Failure::unusable(format_args!("{name}: {}", plain(&error)))),
         }
     }
@@ -67,6 +76,7 @@ impl Input {
         mut source: impl BufRead + 'static,
         name: String,
         options: &PictureOptions,
+        waiting: Waiting,
     ) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::unusable(format_args!("{name}: {}", plain(&error)));
         let start = source.fill_buf().map_err(failed)?;
@@ -74,7 +84,7 @@ impl Input {
             return Err(Failure::unusable(format_args!("{name}: empty, neither outlines (CSV) nor pictures")));
         }
         if PictureSequence::begins_with(start) {
-            let pictures = PictureInput::from_stream(source, &name, options)?;
+            let pictures = PictureInput::from_stream(source, &name, options, waiting)?;
             return Self::of_pictures(pictures, name);
         }
         if let given @ [_, ..] = &options.given()[..] {
@@ -101,13 +111,33 @@ impl Input {
         self.pictures().is_some()
     }
 
-    /// What should be known of the input before it is read, if anything.
-    pub(crate) fn warning(&self) -> Option<String> {
-        let is_interlaced = self.pictures().is_some_and(PictureInput::is_interlaced);
-        is_interlaced.then(|| {
+    /// What may be wrong with the input, before it is read.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let Some(pictures) = self.pictures() else { return Vec::new() };
+        let mut warnings = Vec::new();
+        if pictures.is_interlaced() {
             let reason = "every second line of a picture is of another moment, which frays the edges of what moves";
-            format!("{}: the video is interlaced: {reason}; deinterlace it, such as with ffmpeg -vf yadif", self.name)
-        })
+            let advice = "deinterlace it, such as with ffmpeg -vf yadif";
+            warnings.push(format!("{}: the video is interlaced: {reason}; {advice}", self.name));
+        }
+        warnings.extend(pictures.warnings());
+        warnings
+    }
+
+    /// Says how pictures are traced, if that was chosen, and what may be wrong with the input.
+    pub(crate) fn tell(&self) {
+        self.pictures().map(PictureInput::notes).unwrap_or_default().iter().for_each(|told| note(told));
+        self.warnings().iter().for_each(|warning| warn(warning));
+    }
+
+    /// Says what was seen to be wrong while the input was read.
+    pub(crate) fn tell_in_the_end(&self) {
+        self.pictures().and_then(PictureInput::closing_remark).iter().for_each(|warning| warn(warning));
+    }
+
+    /// Says where the way of tracing that was chosen is not to be trusted.
+    pub(crate) fn tell_doubts(&self) {
+        self.pictures().map(PictureInput::doubts).unwrap_or_default().iter().for_each(|warning| warn(warning));
     }
 
     /// The pictures that the outlines come from.

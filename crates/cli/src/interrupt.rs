@@ -63,6 +63,11 @@ pub(crate) fn listen() {
     ENDS_WITH_WHAT_IS_KNOWN.store(true, Ordering::SeqCst);
 }
 
+/// Goes on in spite of having been asked to end: what has been read so far is dealt with as a whole. The next signal asks again.
+pub(crate) fn put_off() {
+    ASKED_FOR.store(false, Ordering::SeqCst);
+}
+
 /// Whether the work is asked to end.
 pub(crate) fn was_asked_for() -> bool {
     ASKED_FOR.load(Ordering::SeqCst)

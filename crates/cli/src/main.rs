@@ -17,6 +17,7 @@ mod plot;
 mod progress;
 mod reader;
 mod seen;
+mod tracing_choice;
 mod truth;
 
 use std::process::ExitCode;

@@ -1,25 +1,41 @@
 //! Outlines of the objects in pictures.
 use std::collections::VecDeque;
-use std::io::BufRead;
+use std::io::{BufRead, Cursor, Read as _};
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use freeform_motion::outline_io::{
-    Background, Clipping, Contrast, Difference, OutlineFrame, PictureError, PictureErrorKind, PictureFrame,
-    PictureOutlines, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold, TraceError,
-    TraceSettings, TracedOutline, read_picture_channel,
+    Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineFrame, PictureError, PictureErrorKind,
+    PictureFrame, PictureOutlines, PictureSequence, PictureSettings, PixelAspectCheck, Ring, SequenceSettings,
+    Smoothing, Threshold, TraceError, TraceSettings, TracedOutline, read_picture_channel,
 };
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
+use crate::input::Waiting;
+use crate::interrupt;
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::short;
 use crate::seen::{Item, Missing, MissingKind, SeenIn};
+use crate::tracing_choice::{Chosen, Preview, choose};
 
-/// Pictures that the running median is taken of.
-const MEDIAN_SIZE: usize = 25;
+/// Pictures that the running median is taken of where no other number is given.
+const MEDIAN_SIZE: u8 = 25;
+
+/// Most bytes of a stream that are read ahead to choose how it is traced.
+const READ_AHEAD: u64 = 1 << 26;
+
+/// Pictures of a video that are read ahead.
+const PICTURES_AHEAD: u64 = 60;
+
+/// Most bytes of the header of a video.
+const LONGEST_HEADER: u64 = 1 << 12;
+
+/// Frames per second of pictures that do not tell.
+const ASSUMED_RATE: u32 = 30;
 
 /// The outlines in pictures, one object after the other.
 pub(crate) struct PictureInput {
@@ -28,6 +44,13 @@ pub(crate) struct PictureInput {
     outlines: PictureOutlines<PictureSequence>,
     options: PictureOptions,
     trace: TraceSettings,
+    chosen: Option<Chosen>,
+    /// Whether nothing was given or chosen, as a stream is not to be waited for.
+    is_traced_unseen: bool,
+    /// Systematic uncertainty of the outlines by their edges, in their unit.
+    edge_uncertainty: Option<f64>,
+    /// Of the first object.
+    aspect: PixelAspectCheck,
     /// Objects of the present picture that have not been handed on.
     waiting: VecDeque<Item>,
     /// Pictures read.
@@ -61,31 +84,126 @@ impl PictureInput {
     /// Pictures in files, folders and patterns.
     pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions) -> Result<Self, Failure> {
         let sequence = PictureSequence::open(paths, sequence_settings(options));
-        Self::of(sequence, paths.to_owned(), options)
+        let preview = sequence.as_ref().ok().map(|sequence| Preview::of_paths(paths, sequence));
+        let again = |options: &PictureOptions| PictureSequence::open(paths, sequence_settings(options));
+        Self::of(sequence, preview, again, paths.to_owned(), options)
     }
 
     /// Pictures in a stream.
     pub(crate) fn from_stream(
-        source: impl BufRead + 'static,
+        mut source: impl BufRead + 'static,
         name: &str,
         options: &PictureOptions,
+        waiting: Waiting,
     ) -> Result<Self, Failure> {
-        let sequence = PictureSequence::from_stream(source, name, sequence_settings(options));
-        Self::of(sequence, vec![PathBuf::from(name)], options)
+        let inputs = vec![PathBuf::from(name)];
+        let is_whole = options.background.as_ref().is_some_and(|path| path.as_os_str() == "whole");
+        if (options.has_way() || waiting == Waiting::None) && !is_whole {
+            let sequence = PictureSequence::from_stream(source, name, sequence_settings(options));
+            let again = |_: &PictureOptions| PictureSequence::open(&[], SequenceSettings::default());
+            let mut input = Self::of(sequence, None, again, inputs, options)?;
+            input.is_traced_unseen = !options.has_way();
+            return Ok(input);
+        }
+        // What is read here is dealt with also where Ctrl-C ends the waiting for more.
+        interrupt::listen();
+        let failed = |error: &std::io::Error| Failure::unusable(format_args!("{name}: {}", plain(error)));
+        let mut beginning = Vec::new();
+        source.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut beginning).map_err(|error| failed(&error))?;
+        let length = video_length(&beginning, PICTURES_AHEAD).unwrap_or(READ_AHEAD).min(READ_AHEAD);
+        source.by_ref().take(length).read_to_end(&mut beginning).map_err(|error| failed(&error))?;
+        if interrupt::was_asked_for() {
+            interrupt::put_off();
+        }
+        let beginning: Arc<[u8]> = beginning.into();
+        let preview = Preview::Beginning(Arc::clone(&beginning));
+        let settings = picture_settings(options, None, None)?;
+        let (options, chosen) = choose(&preview, &settings, options);
+        let stream = Cursor::new(beginning).chain(source);
+        let sequence = PictureSequence::from_stream(stream, name, sequence_settings(&options));
+        let again = |_: &PictureOptions| PictureSequence::open(&[], SequenceSettings::default());
+        let mut input = Self::of(sequence, Some(preview), again, inputs, &options)?;
+        input.chosen = chosen;
+        Ok(input)
     }
 
     fn of(
         sequence: Result<PictureSequence, PictureError>,
+        preview: Option<Preview>,
+        again: impl Fn(&PictureOptions) -> Result<PictureSequence, PictureError>,
         inputs: Vec<PathBuf>,
         options: &PictureOptions,
     ) -> Result<Self, Failure> {
-        let sequence = sequence.map_err(|error| Failure::unusable(described(&error, &inputs)))?;
-        let settings = picture_settings(options, sequence.pixel_aspect())?;
+        let failed = |error: PictureError| Failure::unusable(described(&error, &inputs));
+        let mut sequence = sequence.map_err(failed)?;
+        let base = picture_settings(options, sequence.pixel_aspect(), None)?;
+        base.check().map_err(Failure::unusable)?;
+        let (options, chosen) = match &preview {
+            Some(preview) => choose(preview, &base, options),
+            None => (options.clone(), None),
+        };
+        if chosen.as_ref().is_some() && options.channel().channel() != Channel::Luminance {
+            sequence = again(&options).map_err(failed)?;
+        }
+        let settings = picture_settings(&options, sequence.pixel_aspect(), preview.as_ref())?;
         let trace = settings.trace;
+        let edge_uncertainty =
+            preview.and_then(|preview| preview.edge_uncertainty(&settings, options.channel().channel()));
         let outlines = PictureOutlines::new(sequence, settings).map_err(Failure::unusable)?;
-        let options = options.clone();
         let (waiting, found) = (VecDeque::new(), Found::default());
-        Ok(Self { inputs, outlines, options, trace, waiting, frames: 0, found })
+        Ok(Self {
+            inputs,
+            outlines,
+            options,
+            trace,
+            chosen,
+            is_traced_unseen: false,
+            edge_uncertainty,
+            aspect: PixelAspectCheck::default(),
+            waiting,
+            frames: 0,
+            found,
+        })
+    }
+
+    /// The options, with what was chosen.
+    pub(crate) fn options(&self) -> &PictureOptions {
+        &self.options
+    }
+
+    /// Systematic uncertainty of the outlines by their edges, in their unit; `None` where nothing tells.
+    pub(crate) fn edge_uncertainty(&self) -> Option<f64> {
+        self.edge_uncertainty
+    }
+
+    /// What should be known of how the pictures are traced.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let unseen = "a stream is traced as it comes: --light is taken, as nothing else is given; 'freeform identify' on a piece of it \
+                      prints the options that suit it";
+        let unseen = self.is_traced_unseen.then(|| unseen.to_owned());
+        self.chosen.iter().map(Chosen::note).chain(unseen).collect()
+    }
+
+    /// What the outlines say of the pixels, after all have been read.
+    pub(crate) fn closing_remark(&self) -> Option<String> {
+        let aspect = self.aspect.stretch()? * self.trace.pixel_aspect;
+        let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
+        Some(format!("{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong"))
+    }
+
+    /// Why the way of tracing is not to be trusted.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        self.chosen.iter().filter_map(Chosen::warning).collect()
+    }
+
+    /// What may be wrong with how they are read and traced.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.doubts();
+        if self.options.fps.is_none() && self.frame_count().is_some_and(|count| count > 1) {
+            warnings
+                .push(format!("{ASSUMED_RATE} frames/s assumed, the pictures do not say; give the rate with --fps"));
+        }
+        warnings
     }
 
     /// Whether the pictures are of a video that says that it is interlaced.
@@ -107,10 +225,11 @@ impl PictureInput {
     pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
         let Self { options, trace, found, .. } = self;
         let mut listed = options.listed();
+        listed.extend(self.chosen.as_ref().map(|chosen| ("Tracing chosen", chosen.options.clone())));
         let rate = found.last.filter(|(_, time)| *time > 0.0).map(|(frame, time)| short(frame as f64 / time));
         let rate = match (options.fps, rate) {
             (Some(fps), _) => fps.to_string(),
-            (None, Some(rate)) if self.frame_count().is_some() => format!("{rate}, as none is given"),
+            (None, Some(rate)) if self.frame_count().is_some() => format!("{rate}, assumed, as none is given"),
             (None, Some(rate)) => format!("{rate}, of the video or animation"),
             (None, None) => "unknown from one picture".to_owned(),
         };
@@ -151,6 +270,9 @@ impl PictureInput {
                 self.waiting.push_back(Item::Gap(Missing { frame, reason, hint: None, kind, seen_in: None }));
             }
             Ok(traced) => {
+                if let Some((0, first)) = traced.objects.as_ref().ok().and_then(|objects| objects.first()) {
+                    self.aspect.take(&first.outline);
+                }
                 self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
                 let PictureFrame { frame, time, file, picture } = traced.frame;
                 let seen_in = Rc::new(SeenIn { frame, grid: self.trace.pixel_grid(picture.height()), picture });
@@ -184,6 +306,17 @@ impl Iterator for PictureInput {
     }
 }
 
+/// Bytes that so many pictures of an uncompressed video have at most, by its header; `None` where it is no such video.
+fn video_length(header: &[u8], pictures: u64) -> Option<u64> {
+    let header = std::str::from_utf8(header).ok()?.strip_prefix("YUV4MPEG2 ")?;
+    let number =
+        |name: char| header.split_ascii_whitespace().find_map(|word| word.strip_prefix(name)?.parse::<u64>().ok());
+    let is_grey = header.contains(" Cmono");
+    let pixels = number('W')?.checked_mul(number('H')?)?;
+    let of_picture = if is_grey { pixels } else { pixels + pixels / 2 };
+    of_picture.checked_mul(pictures)
+}
+
 /// An error, and what to do about it where that is known.
 fn described(error: &PictureError, inputs: &[PathBuf]) -> String {
     match error.kind {
@@ -199,24 +332,37 @@ fn described(error: &PictureError, inputs: &[PathBuf]) -> String {
 fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
     match error {
         TraceError::NoRing => Some("try another --ring, --ring-width or --channel"),
-        TraceError::TooSmall { .. } => Some("try a smaller --min-area, or --dark"),
+        TraceError::TooSmall { .. } => Some("try a smaller --min-area, another --threshold, or --dark"),
         TraceError::FillsPicture | TraceError::NoObject { .. } => Some("try --dark or --light, or another --threshold"),
-        TraceError::NoContrast { .. } if options.background.is_some() => Some("try another --background or --channel"),
-        TraceError::NoContrast { .. } if options.dark => Some("try --light, --background median, --ring or --channel"),
-        TraceError::NoContrast { .. } => Some("try --dark, --background median, --ring or --channel"),
+        TraceError::NoContrast { .. } if options.background.is_some() => {
+            Some("try another --background, --threshold or --channel")
+        }
+        TraceError::NoContrast { .. } if options.dark => {
+            Some("try --threshold, --light, --background median, --ring or --channel")
+        }
+        TraceError::NoContrast { .. } => Some("try --threshold, --dark, --background median, --ring or --channel"),
         _ => None,
     }
 }
 
 fn sequence_settings(options: &PictureOptions) -> SequenceSettings {
-    SequenceSettings { frames_per_second: options.fps, channel: options.channel.channel() }
+    SequenceSettings { frames_per_second: options.fps, channel: options.channel().channel() }
 }
 
-fn picture_settings(options: &PictureOptions, aspect: Option<f64>) -> Result<PictureSettings, Failure> {
+fn picture_settings(
+    options: &PictureOptions,
+    aspect: Option<f64>,
+    preview: Option<&Preview>,
+) -> Result<PictureSettings, Failure> {
+    let channel = options.channel().channel();
     let background = match &options.background {
-        Some(path) if path.as_os_str() == "median" => Some(Background::RunningMedian(MEDIAN_SIZE)),
+        Some(path) if path.as_os_str() == "median" => {
+            Some(Background::RunningMedian(options.background_window.unwrap_or(MEDIAN_SIZE).into()))
+        }
+        Some(path) if path.as_os_str() == "surface" => Some(Background::Surface),
+        Some(path) if path.as_os_str() == "whole" => preview.and_then(|p| p.ground(channel)).map(Background::Picture),
         Some(path) => {
-            let picture = read_picture_channel(path, options.channel.channel());
+            let picture = read_picture_channel(path, channel);
             let failed = |error| Failure::unusable(format_args!("--background {}", plain(&error)));
             Some(Background::Picture(picture.map_err(failed)?.into()))
         }
@@ -231,12 +377,14 @@ fn picture_settings(options: &PictureOptions, aspect: Option<f64>) -> Result<Pic
         contrast: if options.dark { Contrast::DarkOnLight } else { Contrast::LightOnDark },
         threshold: options.threshold.map_or(Threshold::Automatic, Threshold::Level),
         smoothing: options.smoothing.map_or(Smoothing::Automatic, Smoothing::Gaussian),
+        edges: Edges::Refined,
         minimum_area: options.min_area,
+        contours: if options.traces_contours() { Contours::All } else { Contours::Boundary },
         clipping: Clipping::Open,
         y_up: !options.y_down,
         ring: options.ring.map(|ring| Ring { contrast: ring.contrast(), width: options.ring_width }),
         pixel_size: options.pixel_size,
         pixel_aspect: options.pixel_aspect.or(aspect).unwrap_or(1.0),
     };
-    Ok(PictureSettings { trace, selection: options.objects.selection(), background, difference })
+    Ok(PictureSettings { trace, selection: options.objects().selection(), background, difference })
 }

@@ -126,8 +126,8 @@ impl Iterator for Reader<'_> {
 
 impl<'a> Reader<'a> {
     fn new(input: &'a mut Input, quiet: bool, progress: &'a Progress) -> Self {
-        if let Some(warning) = input.warning().filter(|_| !quiet) {
-            progress.pause(|| warn(&warning));
+        if !quiet {
+            progress.pause(|| input.tell());
         }
         Self { input, quiet, progress, warnings: MissingWarnings::default(), failure: None }
     }
@@ -144,7 +144,10 @@ impl<'a> Reader<'a> {
 
     /// Says what has been left for the end of the reading, and why that came before its time, if it did.
     fn finish(self) -> Option<Failure> {
-        let Self { progress, warnings, failure, .. } = self;
+        let Self { input, quiet, progress, warnings, failure } = self;
+        if !quiet {
+            progress.pause(|| input.tell_in_the_end());
+        }
         warnings.finish().for_each(|warning| progress.pause(|| warn(&warning)));
         failure
     }

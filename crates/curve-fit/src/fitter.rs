@@ -67,6 +67,7 @@ impl Fitter {
     /// Too few points, points that do not determine the coefficients, an outline that does not tell its inside from its
     /// outside, a bounded fit that does not converge; open arcs where the settings ask for an affine normalisation.
     pub fn fit(&mut self, outline: &Outline) -> Result<Fit, FitError> {
+        let outline = &*outline.boundary();
         let normalisation = self.load(outline)?;
         self.fit_loaded(outline, normalisation)
     }
@@ -79,6 +80,7 @@ impl Fitter {
     /// # Errors
     /// As [`fit`](Self::fit); a map that is singular or not finite.
     pub fn fit_in(&mut self, outline: &Outline, image_from_working: &Affine2<f64>) -> Result<Fit, FitError> {
+        let outline = &*outline.boundary();
         self.check_count(outline)?;
         let normalisation = Normalisation::affine(image_from_working).ok_or(FitError::SingularNormalisation)?;
         self.load_evenly(outline, &normalisation);
@@ -94,6 +96,7 @@ impl Fitter {
     /// # Errors
     /// As [`fit`](Self::fit).
     pub fn fit_with_covariance(&mut self, outline: &Outline) -> Result<(Fit, FitCovariance), FitError> {
+        let outline = &*outline.boundary();
         let fit = self.fit(outline)?;
         let condition = fit.diagnostics.condition;
         let size = self.settings.degree.coefficient_count();
@@ -133,6 +136,7 @@ impl Fitter {
     /// # Errors
     /// As [`fit`](Self::fit).
     pub fn fit_by_orthogonal_factorisation(&mut self, outline: &Outline) -> Result<Fit, FitError> {
+        let outline = &*outline.boundary();
         let normalisation = self.load(outline)?;
         self.factor_rows()?;
         self.finish(outline, normalisation, Factorisation::Orthogonal)

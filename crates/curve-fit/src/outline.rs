@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use nalgebra::{Affine2, Matrix2, Point2, Vector2};
 
 use crate::error::{COORDINATE_LIMIT, OutlineError};
@@ -6,13 +8,15 @@ use crate::rectangle::Rectangle;
 /// Two principal radii whose ratio is at most this are taken for points on one line.
 const COLLINEAR_RATIO: f64 = 1e-9;
 
-/// Points of one contour in the order in which they follow each other, either way round; the last is joined to the
-/// first, which is not repeated. At least three finite points that do not lie on one line.
+/// Points of the boundary of a body in the order in which they follow each other, either way round; the last is joined to the
+/// first, which is not repeated. At least three finite points that do not lie on one line. There may be further closed contours of
+/// the same body within it, such as of holes and marks.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Vec<Point2<f64>>", into = "Vec<Point2<f64>>"))]
+#[cfg_attr(feature = "serde", serde(try_from = "Vec<Vec<Point2<f64>>>", into = "Vec<Vec<Point2<f64>>>"))]
 pub struct ClosedOutline {
     points: Vec<Point2<f64>>,
+    inner: Vec<Vec<Point2<f64>>>,
 }
 
 impl ClosedOutline {
@@ -23,16 +27,44 @@ impl ClosedOutline {
     pub fn new(points: Vec<Point2<f64>>) -> Result<Self, OutlineError> {
         check_points(&points, 3)?;
         check_not_collinear(points.iter())?;
-        Ok(Self { points })
+        Ok(Self { points, inner: Vec::new() })
     }
 
-    /// The points in order.
+    /// This boundary with further closed contours of the body, in the place of those that it had: of holes and marks within it. Those of
+    /// holes run the other way round than the boundary.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), of any of them.
+    pub fn with_inner(self, inner: Vec<Vec<Point2<f64>>>) -> Result<Self, OutlineError> {
+        for contour in &inner {
+            check_points(contour, 3)?;
+            check_not_collinear(contour.iter())?;
+        }
+        Ok(Self { inner, ..self })
+    }
+
+    /// The further contours, each closed.
+    #[must_use]
+    pub fn inner(&self) -> &[Vec<Point2<f64>>] {
+        &self.inner
+    }
+
+    /// This outline with every point mapped.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), of what the points become.
+    pub fn mapped(&self, map: impl Fn(&Point2<f64>) -> Point2<f64>) -> Result<Self, OutlineError> {
+        let all = |points: &Vec<Point2<f64>>| points.iter().map(&map).collect();
+        Self::new(all(&self.points))?.with_inner(self.inner.iter().map(all).collect())
+    }
+
+    /// The points of the boundary in order.
     #[must_use]
     pub fn points(&self) -> &[Point2<f64>] {
         &self.points
     }
 
-    /// Area by the shoelace formula: positive where the points run counter-clockwise in a y-up frame.
+    /// Area within the boundary by the shoelace formula: positive where the points run counter-clockwise in a y-up frame.
     #[must_use]
     pub fn signed_area(&self) -> f64 {
         signed_area(self.points.iter())
@@ -118,17 +150,19 @@ pub enum Outline {
     Open(OpenOutline),
 }
 
-impl TryFrom<Vec<Point2<f64>>> for ClosedOutline {
+impl TryFrom<Vec<Vec<Point2<f64>>>> for ClosedOutline {
     type Error = OutlineError;
 
-    fn try_from(points: Vec<Point2<f64>>) -> Result<Self, OutlineError> {
-        Self::new(points)
+    /// The boundary first, then the further contours.
+    fn try_from(contours: Vec<Vec<Point2<f64>>>) -> Result<Self, OutlineError> {
+        let mut contours = contours.into_iter();
+        Self::new(contours.next().unwrap_or_default())?.with_inner(contours.collect())
     }
 }
 
-impl From<ClosedOutline> for Vec<Point2<f64>> {
+impl From<ClosedOutline> for Vec<Vec<Point2<f64>>> {
     fn from(outline: ClosedOutline) -> Self {
-        outline.points
+        std::iter::once(outline.points).chain(outline.inner).collect()
     }
 }
 
@@ -178,18 +212,31 @@ impl Outline {
         ClosedOutline::new(points).map(Self::Closed)
     }
 
-    /// The connected pieces: one for a closed outline, one per arc otherwise.
+    /// The connected pieces: the boundary of a closed outline and its further contours, one per arc otherwise.
     pub fn pieces(&self) -> impl Iterator<Item = Piece<'_>> + Clone {
         let (whole, arcs) = match self {
             Self::Closed(outline) => (Some(outline), &[][..]),
             Self::Open(outline) => (None, outline.arcs()),
         };
-        let closed = whole.map(|outline| Piece { points: outline.points(), closed: true });
+        let contours = whole.into_iter().flat_map(|outline| outline.inner().iter().map(Vec::as_slice));
+        let contours = whole.map(ClosedOutline::points).into_iter().chain(contours);
+        let closed = contours.map(|points| Piece { points, closed: true });
         let open = arcs.iter().map(|arc| Piece { points: arc.points(), closed: false });
-        closed.into_iter().chain(open)
+        closed.chain(open)
     }
 
-    /// All points in order, the arcs one after the other.
+    /// This outline without further contours within the boundary.
+    #[must_use]
+    pub fn boundary(&self) -> Cow<'_, Self> {
+        match self {
+            Self::Closed(ClosedOutline { points, inner }) if !inner.is_empty() => {
+                Cow::Owned(Self::Closed(ClosedOutline { points: points.clone(), inner: Vec::new() }))
+            }
+            _ => Cow::Borrowed(self),
+        }
+    }
+
+    /// All points in order, the arcs or contours one after the other.
     pub fn points(&self) -> impl Iterator<Item = &Point2<f64>> + Clone {
         self.pieces().flat_map(|piece| piece.points)
     }
@@ -200,11 +247,14 @@ impl Outline {
         self.pieces().map(|piece| piece.points.len()).sum()
     }
 
-    /// Area of the polygon through all points in order, gaps closed by straight lines: positive where they run
-    /// counter-clockwise in a y-up frame. Its sign gives the side of an arc on which the inside lies.
+    /// Area of the polygon through all points in order, gaps closed by straight lines; of a closed outline, within its boundary: positive
+    /// where they run counter-clockwise in a y-up frame. Its sign gives the side of an arc on which the inside lies.
     #[must_use]
     pub fn signed_area(&self) -> f64 {
-        signed_area(self.points())
+        match self {
+            Self::Closed(outline) => outline.signed_area(),
+            Self::Open(_) => signed_area(self.points()),
+        }
     }
 
     /// The smallest rectangle that holds all points.
@@ -233,7 +283,7 @@ impl Outline {
     pub fn moved(&self, map: &Affine2<f64>) -> Result<Self, OutlineError> {
         let move_all = |points: &[Point2<f64>]| points.iter().map(|p| map * p).collect();
         match self {
-            Self::Closed(outline) => Self::closed(move_all(outline.points())),
+            Self::Closed(outline) => outline.mapped(|p| map * p).map(Self::Closed),
             Self::Open(outline) => {
                 let arcs = outline.arcs().iter().map(|arc| OpenArc::new(move_all(arc.points())));
                 OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?).map(Self::Open)

@@ -20,6 +20,8 @@ pub enum Background {
     /// The median of so many pictures, 3 to 255: first of those at the beginning, which are read ahead, then of the latest. Of
     /// fewer where they have more than 2^28 pixels together, but of 3 at least.
     RunningMedian(usize),
+    /// A surface of the second degree through the grey values of the ground of each picture itself: light that is uneven.
+    Surface,
 }
 
 /// Which differences from the background belong to an object.
@@ -32,6 +34,14 @@ pub enum Difference {
     Lighter,
     /// Darker.
     Darker,
+}
+
+/// The median of pictures of one size, pixel by pixel; `None` of none.
+#[must_use]
+pub fn median_picture(pictures: &[Arc<GrayImage>]) -> Option<Arc<GrayImage>> {
+    let mut median = RunningMedian::new(pictures.len());
+    pictures.iter().for_each(|picture| median.add(picture));
+    median.taken()
 }
 
 impl Difference {
@@ -92,7 +102,7 @@ impl RunningMedian {
         self.median.as_ref()
     }
 
-    fn taken(&self) -> Option<Arc<GrayImage>> {
+    pub(crate) fn taken(&self) -> Option<Arc<GrayImage>> {
         let first = self.latest.front()?;
         if self.latest.iter().all(|picture| Arc::ptr_eq(picture, first)) {
             return Some(Arc::clone(first));

@@ -15,6 +15,8 @@ pub enum Column {
     Object,
     /// Arc of an open outline; optional, empty for a closed one.
     Arc,
+    /// Contour of a closed outline that has several; optional.
+    Contour,
 }
 
 impl Column {
@@ -28,6 +30,7 @@ impl Column {
             Self::Y => "y",
             Self::Object => "object",
             Self::Arc => "arc",
+            Self::Contour => "contour",
         }
     }
 }

@@ -13,6 +13,7 @@ pub(crate) struct Columns {
     pub(crate) y: usize,
     pub(crate) object: Option<usize>,
     pub(crate) arc: Option<usize>,
+    pub(crate) contour: Option<usize>,
 }
 
 /// What a column is to the rows of one outline.
@@ -34,7 +35,8 @@ impl Columns {
         let [frame, time, x, y] = require(header, [Column::Frame, Column::Time, Column::X, Column::Y])?;
         let object = position(header, Column::Object)?;
         let arc = position(header, Column::Arc)?;
-        Ok(Self { frame, time, x, y, object, arc })
+        let contour = position(header, Column::Contour)?;
+        Ok(Self { frame, time, x, y, object, arc, contour })
     }
 
     /// The role of the column at an index.
@@ -42,7 +44,9 @@ impl Columns {
         match index {
             _ if index == self.x => Role::Coordinate(0),
             _ if index == self.y => Role::Coordinate(1),
-            _ if [Some(self.frame), Some(self.time), self.object, self.arc].contains(&Some(index)) => Role::Outline,
+            _ if [Some(self.frame), Some(self.time), self.object, self.arc, self.contour].contains(&Some(index)) => {
+                Role::Outline
+            }
             _ => Role::Ignored,
         }
     }

@@ -80,7 +80,7 @@ impl<R: Read> OutlineReader<R> {
     /// Reads one row; returns the outline that it completes, if any.
     fn step(&mut self) -> Result<Option<OutlineRows>, ReadError> {
         if let Some(point) = self.rows.next_point(&self.roles) {
-            self.add(point, true)?;
+            self.add(point, true, true)?;
             return Ok(None);
         }
         if !self.rows.advance()? {
@@ -94,7 +94,7 @@ impl<R: Read> OutlineReader<R> {
         };
         let finished = if continued { None } else { self.begin()? };
         let arc_continues = self.columns.arc.is_none_or(|index| self.rows.same_as_before(index));
-        self.add(point, arc_continues)?;
+        self.add(point, arc_continues, false)?;
         Ok(finished)
     }
 
@@ -144,10 +144,18 @@ impl<R: Read> OutlineReader<R> {
     }
 
     /// Adds the point of the present row to the present outline. `arc_continues` tells that the row has the arc value of
-    /// the row before.
-    fn add(&mut self, point: Point2<f64>, arc_continues: bool) -> Result<(), ReadError> {
+    /// the row before, `same_row` that it agrees with it in all but the point.
+    fn add(&mut self, point: Point2<f64>, arc_continues: bool, same_row: bool) -> Result<(), ReadError> {
         let Some(present) = &mut self.present else { return Ok(()) };
         let arc = self.columns.arc.map_or(&b""[..], |index| self.rows.field(index)).trim_ascii();
+        if let Some(index) = self.columns.contour.filter(|_| arc.is_empty()) {
+            let contour = self.rows.field(index).trim_ascii();
+            // A row that was read as the one before has its contour.
+            let continues = same_row || self.rows.same_as_before(index);
+            if let Err(kind) = present.enter_contour(contour, continues) {
+                return Err(self.rows.error(Some(Column::Contour), kind));
+            }
+        }
         match present.add(point, arc, arc_continues, self.rows.end_line()) {
             Ok(()) => Ok(()),
             Err(kind) => Err(self.rows.error(kind.1, kind.0)),

@@ -18,6 +18,8 @@ pub struct WriterOptions {
     pub object_column: bool,
     /// Write the `arc` column: needed for open outlines, empty for closed ones.
     pub arc_column: bool,
+    /// Write the `contour` column: needed for outlines with several contours.
+    pub contour_column: bool,
     /// Round coordinates to this share of the RMS radius of the first outline or better, and times to a nanosecond;
     /// `None` for all digits.
     pub resolution: Option<f64>,
@@ -30,6 +32,7 @@ impl WriterOptions {
         frames.into_iter().fold(Self::default(), |options, frame| Self {
             object_column: options.object_column || frame.object != DEFAULT_OBJECT,
             arc_column: options.arc_column || matches!(frame.outline, Outline::Open(_)),
+            contour_column: options.contour_column || has_several(&frame.outline),
             ..options
         })
     }
@@ -57,7 +60,10 @@ impl<W: Write> OutlineWriter<W> {
         let required = [Column::Frame, Column::Time, Column::X, Column::Y].into_iter();
         let object = options.object_column.then_some(Column::Object);
         let arc = options.arc_column.then_some(Column::Arc);
-        writer.write_record(required.chain(object).chain(arc).map(|column| column.name())).map_err(io_error)?;
+        let contour = options.contour_column.then_some(Column::Contour);
+        writer
+            .write_record(required.chain(object).chain(arc).chain(contour).map(|column| column.name()))
+            .map_err(io_error)?;
         Ok(Self { writer, options, decimals: None, text: Vec::new() })
     }
 
@@ -85,6 +91,11 @@ impl<W: Write> OutlineWriter<W> {
                 }
                 match self.options.arc_column {
                     true if open => self.field(format_args!("{arc}"))?,
+                    true => self.writer.write_field("").map_err(io_error)?,
+                    false => {}
+                }
+                match self.options.contour_column {
+                    true if !open => self.field(format_args!("{arc}"))?,
                     true => self.writer.write_field("").map_err(io_error)?,
                     false => {}
                 }
@@ -141,6 +152,9 @@ impl<W: Write> OutlineWriter<W> {
         if !self.options.arc_column && matches!(frame.outline, Outline::Open(_)) {
             return Err(WriteError::NoArcColumn { object: object.clone(), frame: frame.frame });
         }
+        if !self.options.contour_column && has_several(&frame.outline) {
+            return Err(WriteError::NoContourColumn { object: object.clone(), frame: frame.frame });
+        }
         if object.chars().any(char::is_control) || object.trim_ascii() != object {
             return Err(WriteError::ObjectName { object: object.clone() });
         }
@@ -149,6 +163,10 @@ impl<W: Write> OutlineWriter<W> {
         }
         Ok(())
     }
+}
+
+fn has_several(outline: &Outline) -> bool {
+    matches!(outline, Outline::Closed(closed) if !closed.inner().is_empty())
 }
 
 /// Decimals that tell steps of this size apart; `None` where no number of them serves.

@@ -206,6 +206,18 @@ pub enum ReadErrorKind {
         /// The arc value, shortened.
         arc: String,
     },
+    /// Rows of one contour that do not follow each other.
+    #[error(
+        "contour {contour:?} comes a second time in frame {frame} of object {object:?}: its rows must follow each other"
+    )]
+    SecondContour {
+        /// Object of the outline.
+        object: String,
+        /// Frame of the outline.
+        frame: u64,
+        /// The contour value, shortened.
+        contour: String,
+    },
     /// An outline larger than any real one; the limit keeps memory bounded.
     #[error("more than {limit} points in frame {frame} of object {object:?}")]
     TooManyPoints {
@@ -259,6 +271,14 @@ pub enum WriteError {
         "the open outline of object {object:?} in frame {frame} needs an arc column, which the header does not have"
     )]
     NoArcColumn {
+        /// The object's name.
+        object: String,
+        /// The frame's number.
+        frame: u64,
+    },
+    /// An outline with several contours, in a file without a column for them.
+    #[error("the contours of object {object:?} in frame {frame} need a contour column, which the header does not have")]
+    NoContourColumn {
         /// The object's name.
         object: String,
         /// The frame's number.

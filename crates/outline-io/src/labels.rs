@@ -113,7 +113,7 @@ impl<'a> LabelMask<'a> {
         if sigma > 0.0 {
             field.blur(sigma);
         }
-        let window = Window { left: left + mask.left, top: top + mask.top, field: &field, level: 0.5 };
+        let window = Window { left: left + mask.left, top: top + mask.top, field: &field, level: 0.5, edges: None };
         let seen = window.outline(self.height as u32, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
         Ok(seen.traced(mask.pixel_count, object_count, 0.5))
     }

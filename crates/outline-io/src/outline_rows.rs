@@ -1,6 +1,6 @@
 use std::collections::HashSet;
 
-use freeform_curve_fit::{OpenArc, OpenOutline, Outline, OutlineError};
+use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline, OutlineError};
 use nalgebra::Point2;
 
 use crate::column::Column;
@@ -21,7 +21,9 @@ pub(crate) struct OutlineRows {
     point_count: usize,
     /// Arc values met so far: empty for a closed outline.
     arc_values: HashSet<Vec<u8>>,
-    /// The arcs, or the one closed contour.
+    /// Contour values met so far.
+    contour_values: HashSet<Vec<u8>>,
+    /// The arcs, or the closed contours.
     pieces: Vec<Vec<Point2<f64>>>,
 }
 
@@ -36,6 +38,7 @@ impl OutlineRows {
             last_line: first_line,
             point_count: 0,
             arc_values: HashSet::new(),
+            contour_values: HashSet::new(),
             pieces,
         }
     }
@@ -43,6 +46,22 @@ impl OutlineRows {
     /// Room to reserve for the next outline, which is likely to have as many points.
     pub(crate) fn capacity_hint(&self) -> usize {
         self.pieces[0].len()
+    }
+
+    /// Enters the contour of the next point, if it is another than that of the point before. Arcs may be of any contour.
+    pub(crate) fn enter_contour(&mut self, contour: &[u8], continues: bool) -> Result<(), ReadErrorKind> {
+        let first = self.point_count == 0;
+        if !first && (continues || !self.arc_values.is_empty()) {
+            return Ok(());
+        }
+        if !self.contour_values.insert(contour.to_vec()) {
+            let (object, frame) = (self.object.clone(), self.frame);
+            return Err(ReadErrorKind::SecondContour { object, frame, contour: quoted_start(contour) });
+        }
+        if !first {
+            self.pieces.push(Vec::new());
+        }
+        Ok(())
     }
 
     /// Adds a point. `arc` is the row's arc value, empty for none; `arc_continues` tells that it is that of the row
@@ -96,11 +115,14 @@ impl OutlineRows {
 }
 
 pub(crate) fn closed_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {
-    let mut points = pieces.into_iter().next().unwrap_or_default();
-    if points.len() > 1 && points.first() == points.last() {
-        points.pop();
-    }
-    Outline::closed(points)
+    let mut contours = pieces.into_iter().map(|mut points| {
+        if points.len() > 1 && points.first() == points.last() {
+            points.pop();
+        }
+        points
+    });
+    let boundary = ClosedOutline::new(contours.next().unwrap_or_default())?;
+    boundary.with_inner(contours.collect()).map(Outline::Closed)
 }
 
 pub(crate) fn open_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {

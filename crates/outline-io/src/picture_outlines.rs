@@ -5,6 +5,7 @@ use image::GrayImage;
 
 use crate::background::{Background, Difference, RunningMedian};
 use crate::contrast::Contrast;
+use crate::ground_surface::ground_surface;
 use crate::identity::{Identities, Selection};
 use crate::picture_error::{PictureError, TraceError};
 use crate::picture_sequence::PictureFrame;
@@ -22,6 +23,16 @@ pub struct PictureSettings {
     pub background: Option<Background>,
     /// Which differences from the background belong to an object.
     pub difference: Difference,
+}
+
+impl PictureSettings {
+    /// Whether they are in their ranges.
+    ///
+    /// # Errors
+    /// A setting out of range.
+    pub fn check(&self) -> Result<(), TraceError> {
+        self.trace.check()
+    }
 }
 
 /// One picture and the objects in it.
@@ -152,13 +163,17 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
             _ => None,
         };
         let picture = &frame.picture;
+        let surface = match self.settings.background {
+            Some(Background::Surface) => Some(Arc::new(ground_surface(picture))),
+            _ => None,
+        };
         if let Some(latest) = self.latest.as_ref().filter(|latest| latest.is_of(picture, ground)) {
             return self.identities.assign(frame.frame, latest.traced.clone()?);
         }
         // Makes room before more is needed.
         self.latest = None;
         let limit = self.identities.limit();
-        let traced = match ground {
+        let traced = match surface.as_ref().or(ground) {
             None => trace_objects(picture, &self.settings.trace, limit),
             Some(ground) => {
                 let settings = TraceSettings { contrast: Contrast::LightOnDark, ..self.settings.trace };

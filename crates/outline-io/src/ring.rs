@@ -13,8 +13,8 @@ const WIDTH_SHARE: f64 = 1.0 / 60.0;
 /// Smallest value of that width, in pixels.
 const LEAST_WIDTH: f64 = 4.0;
 
-/// Standard deviation of the smoothing before rings are looked for, in pixels.
-const SIGMA: f64 = 1.0;
+/// Standard deviation of the smoothing before rings are looked for where none is given, in pixels.
+pub(crate) const SIGMA: f64 = 1.0;
 
 /// A ring stands out where its weakest point is so many times as strong as the median of the picture.
 const STANDS_OUT: f32 = 2.0;
@@ -62,19 +62,21 @@ impl Ring {
     ///
     /// The strength of a ring is how far it stands out from the ground within its width (a top-hat transform), so that
     /// neither the lightness of the picture nor that of a part of it matters, and no threshold is needed. A ring that the
-    /// edge of the picture cuts is closed by the edge, if there is more ground than object.
+    /// edge of the picture cuts is closed by the edge, if there is more ground than object. `sigma` is the standard deviation of the smoothing
+    /// before, in pixels.
     pub(crate) fn objects(
         &self,
         picture: &GrayImage,
         smallest_area: u64,
         limit: usize,
+        sigma: f64,
     ) -> Result<Vec<RingObject>, TraceError> {
         let (width, height) = picture.dimensions();
         if u64::from(width) * u64::from(height) > PIXEL_LIMIT {
             return Err(TraceError::TooLargeForRings { width, height, limit: PIXEL_LIMIT });
         }
         let reach = self.widest(width, height).ceil() as usize;
-        let strength = self.strength(picture, reach);
+        let strength = self.strength(picture, reach, sigma);
         let median = median(&strength.values);
         let area = u32::try_from(smallest_area).unwrap_or(u32::MAX).max(1);
         let mut candidates = basins(&strength, area);
@@ -103,11 +105,13 @@ impl Ring {
         if objects.is_empty() { Err(TraceError::NoRing) } else { Ok(objects) }
     }
 
-    fn strength(&self, picture: &GrayImage, reach: usize) -> Field {
+    fn strength(&self, picture: &GrayImage, reach: usize, sigma: f64) -> Field {
         let (width, height) = (picture.width() as usize, picture.height() as usize);
         let values = picture.as_raw().iter().map(|value| f32::from(signal(*value, self.contrast))).collect();
         let mut lines = Field { width, height, values };
-        lines.blur(SIGMA);
+        if sigma > 0.0 {
+            lines.blur(sigma);
+        }
         let ground = dilated(&eroded(&lines, reach), reach);
         lines.values.iter_mut().zip(&ground.values).for_each(|(line, ground)| *line -= ground);
         lines

@@ -7,6 +7,14 @@ use crate::picture_error::TraceError;
 /// pure noise into halves 2.3 of them apart and an even gradient into halves 2.7 apart.
 const STANDS_OUT: f64 = 3.0;
 
+/// Objects of few pixels are this many robust standard deviations of the ground beyond it, and so many grey values.
+const RARE_STANDS_OUT: f64 = 8.0;
+const LEAST_RARE: f64 = 16.0;
+
+/// They have at least so many pixels, and at most one in so many.
+const RAREST: u64 = 16;
+const RARE_SHARE: u64 = 20;
+
 /// The grey value that parts objects from the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Threshold {
@@ -58,13 +66,34 @@ impl Levels {
             (_, None) => Err(TraceError::NoObject { threshold: level_in_picture(fixed.unwrap_or(0.0), contrast) }),
             (ground, Some(object)) => {
                 if fixed.is_none() && values > 2 {
-                    stands_out(&counts[..split], ground.unwrap_or(0.0), object)?;
+                    let clear = stands_out(&counts[..split], ground.unwrap_or(0.0), object);
+                    if let Err(error) = clear {
+                        // The classes of Otsu's method are those of the ground where objects have too few pixels to make one.
+                        return Self::of_rare(&counts).ok_or(error);
+                    }
                 }
                 let ground = ground.unwrap_or(0.0);
                 let threshold = fixed.unwrap_or(0.5 * (ground + object));
                 Ok(Self { threshold, ground, object, two_valued: values <= 2 })
             }
         }
+    }
+}
+
+impl Levels {
+    /// Levels of objects that have few pixels, far beyond the noise of the ground; `None` where nothing is there.
+    fn of_rare(counts: &[u64; 256]) -> Option<Self> {
+        let ground = median(counts, 0)?;
+        let mut deviations = [0_u64; 256];
+        for (value, count) in counts.iter().enumerate() {
+            deviations[(value as f64 - ground).abs() as usize] += count;
+        }
+        let spread = 1.4826 * (median(&deviations, 0)? + 0.5);
+        let least = (ground + (RARE_STANDS_OUT * spread).max(LEAST_RARE)).ceil() as usize;
+        let rare = counts.get(least..)?;
+        let (few, all): (u64, u64) = (rare.iter().sum(), counts.iter().sum());
+        let object = median(rare, least).filter(|_| RAREST <= few && RARE_SHARE * few <= all)?;
+        Some(Self { threshold: 0.5 * (ground + object), ground, object, two_valued: false })
     }
 }
 

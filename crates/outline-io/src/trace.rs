@@ -1,20 +1,29 @@
-use freeform_curve_fit::isoline::{Crossing, LineTooLong};
-use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use std::borrow::Cow;
+
+use freeform_curve_fit::isoline::{self, Crossing, LineTooLong};
+use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline};
 use image::GrayImage;
 use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
-use crate::contrast::{Contrast, signal};
+use crate::contrast::signal;
+use crate::edges::{EdgeFit, EdgeSource};
 use crate::field::{Field, blur_reach};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
-use crate::ring::Ring;
+use crate::ring::{self, Ring};
 use crate::threshold::{Levels, level_in_picture};
-use crate::trace_settings::{Clipping, TraceSettings};
+use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
 /// Most points of all outlines of one picture: many times those of objects that have any, and few enough to be worked on. The
 /// picture of a comb of 84 kB would have 34 million.
 const POINT_LIMIT: usize = 1 << 19;
+
+/// Smallest hole or mark that is traced, in pixels.
+const SMALLEST_HOLE: f64 = 25.0;
+
+/// Most holes and marks of an object.
+const MOST_HOLES: usize = 32;
 
 /// The outline of an object in a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,18 +44,21 @@ pub struct TracedOutline {
     pub area: f64,
     /// What an affine map leaves of the area seen; `None` where it is too thin to tell.
     pub invariants: Option<AffineMomentInvariants>,
+    /// What its edges are like, where the outline has been moved onto them.
+    pub edges: Option<EdgeFit>,
 }
 
 /// Traces the outer outline of the largest object in a picture, to a fraction of a pixel.
 ///
 /// Objects are 8-connected sets of pixels at or beyond the threshold; holes are filled. The outline is where the grey
-/// value, smoothed if asked for and interpolated linearly between pixel centres, passes the threshold. Column c and row
+/// value, smoothed if asked for and interpolated linearly between pixel centres, passes the threshold; in pictures of more than two
+/// grey values it is then moved onto the edge itself ([`Edges::Refined`]). Column c and row
 /// r, counted from 0 at the upper left, have their centre at `x = pixel_size * pixel_aspect * (c + 0.5)` and
 /// `y = pixel_size * (height - r - 0.5)`, or `pixel_size * (r + 0.5)` with y downwards. There are about 1.3 points to a
 /// pixel of outline, unevenly spaced.
 ///
 /// Measured on discs of 10 to 60 pixels in radius with the automatic smoothing: drawn with grey edges, the mean radius
-/// is right to 0.015 pixels and the points scatter by 0.04 pixels (root mean square); drawn as a two-valued mask, to
+/// is right to 0.02 pixels and the points scatter by 0.04 pixels (root mean square); drawn as a two-valued mask, to
 /// 0.06 and 0.15 pixels (0.24 without smoothing: the stairs themselves). Smoothing by s pixels moves an outline with
 /// radius of curvature R by about `s^2 / (2 R)` towards its centre of curvature.
 ///
@@ -104,10 +116,16 @@ fn ring_outlines<'a>(
     ring: Ring,
     limit: usize,
 ) -> Result<Traced<'a>, TraceError> {
-    let objects = ring.objects(picture, settings.minimum_area, limit)?;
+    let objects = {
+        let sigma = match settings.smoothing {
+            Smoothing::Automatic => ring::SIGMA,
+            Smoothing::Gaussian(sigma) => sigma,
+        };
+        ring.objects(picture, settings.minimum_area, limit, sigma)?
+    };
     let object_count = objects.len();
     let traced = objects.into_iter().map(move |object| {
-        let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5 };
+        let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5, edges: None };
         let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::NoRing)?;
         Ok(seen.traced(object.pixel_count, object_count, 0.5))
     });
@@ -119,25 +137,58 @@ fn mask_outlines<'a>(
     settings: &'a TraceSettings,
     limit: usize,
 ) -> Result<Traced<'a>, TraceError> {
-    let levels = Levels::of(picture, settings.contrast, settings.threshold)?;
-    let sigma = settings.sigma(&levels);
+    // Two-valued pictures are smoothed where the outline is traced, others before objects are looked for in them.
+    let smooth = match settings.smoothing {
+        Smoothing::Gaussian(sigma) if sigma > 0.0 && !is_two_valued(picture) => Some((sigma, blurred(picture, sigma))),
+        _ => None,
+    };
+    let (raw, picture) = (picture, smooth.map_or(Cow::Borrowed(picture), |(_, smooth)| Cow::Owned(smooth)));
+    let levels = Levels::of(&picture, settings.contrast, settings.threshold)?;
+    let sigma = match (settings.smoothing, levels.two_valued) {
+        (Smoothing::Gaussian(_), false) => 0.0,
+        _ => settings.sigma(&levels),
+    };
+    let edges = (settings.edges == Edges::Refined && !levels.two_valued).then_some(EdgeSource {
+        picture: raw,
+        contrast: settings.contrast,
+        along: match settings.smoothing {
+            Smoothing::Gaussian(sigma) if sigma > 1.0 => sigma,
+            _ => 0.0,
+        },
+    });
     let set = move |value: u8| f64::from(signal(value, settings.contrast)) >= levels.threshold;
     let threshold = level_in_picture(levels.threshold, settings.contrast);
-    let objects = Objects::of(picture, set, settings.minimum_area, limit)?;
+    let objects = Objects::of(&picture, set, settings.minimum_area, limit)?;
     let object_count = objects.count;
     if object_count == 0 {
         return Err(TraceError::NoObject { threshold });
     }
     let traced = objects.into_masks(blur_reach(sigma) + 2).map(move |mask| {
-        let mut field = object_field(picture, &mask, &levels, settings.contrast, set);
+        let mut field = object_field(&picture, &mask, &levels, settings, set);
         if sigma > 0.0 {
             field.blur(sigma);
         }
-        let window = Window { left: mask.left, top: mask.top, field: &field, level: levels.threshold };
+        let window = Window { left: mask.left, top: mask.top, field: &field, level: levels.threshold, edges };
         let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
         Ok(seen.traced(mask.pixel_count, object_count, threshold))
     });
     Ok(Box::new(traced))
+}
+
+fn is_two_valued(picture: &GrayImage) -> bool {
+    let mut seen = [false; 256];
+    picture.as_raw().iter().for_each(|value| seen[usize::from(*value)] = true);
+    seen.iter().filter(|seen| **seen).count() <= 2
+}
+
+/// A picture blurred by a Gaussian, rounded to grey values.
+pub(crate) fn blurred(picture: &GrayImage, sigma: f64) -> GrayImage {
+    let (width, height) = picture.dimensions();
+    let values = picture.as_raw().iter().map(|value| f32::from(*value)).collect();
+    let mut field = Field { width: width as usize, height: height as usize, values };
+    field.blur(sigma);
+    let values = field.values.iter().map(|value| value.round() as u8).collect();
+    GrayImage::from_raw(width, height, values).unwrap_or_default()
 }
 
 /// A part of a picture with an object in it.
@@ -147,6 +198,8 @@ pub(crate) struct Window<'a> {
     pub(crate) field: &'a Field,
     /// Value on the outline.
     pub(crate) level: f64,
+    /// Where the edges themselves are looked for, if they are.
+    pub(crate) edges: Option<EdgeSource<'a>>,
 }
 
 /// What is seen of an object.
@@ -156,12 +209,13 @@ pub(crate) struct Seen {
     centre: Point2<f64>,
     area: f64,
     invariants: Option<AffineMomentInvariants>,
+    edges: Option<EdgeFit>,
 }
 
 impl Seen {
     pub(crate) fn traced(self, pixel_count: u64, object_count: usize, threshold: f64) -> TracedOutline {
-        let Self { outline, touches_border, centre, area, invariants } = self;
-        TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area, invariants }
+        let Self { outline, touches_border, centre, area, invariants, edges } = self;
+        TracedOutline { outline, touches_border, pixel_count, object_count, threshold, centre, area, invariants, edges }
     }
 }
 
@@ -170,7 +224,15 @@ impl Window<'_> {
     pub(crate) fn outline(&self, picture_height: u32, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
         let outer = self.field.outer_isoline(self.level, POINT_LIMIT);
         let outer = outer.map_err(|LineTooLong { most }| TraceError::TooManyPoints { limit: most })?;
-        let Some(line) = outer else { return Ok(None) };
+        let Some(mut line) = outer else { return Ok(None) };
+        let mut inner = match settings.contours {
+            Contours::Boundary => Vec::new(),
+            Contours::All => self.inner_lines(&line),
+        };
+        let place = [self.left, self.top];
+        let mut edges = self.edges.and_then(|source| source.refine(&mut line, place));
+        let of_inner: Vec<Option<EdgeFit>> =
+            inner.iter_mut().map(|line| self.edges.and_then(|source| source.refine(line, place))).collect();
         let grid = settings.pixel_grid(picture_height);
         let touches_border = line.iter().any(|crossing| crossing.at_edge);
         let to_point = |crossing: &Crossing| {
@@ -178,28 +240,73 @@ impl Window<'_> {
         };
         let mut points: Vec<(Point2<f64>, bool)> =
             line.iter().map(|crossing| (to_point(crossing), crossing.at_edge)).collect();
+        let mut inner: Vec<Vec<Point2<f64>>> = inner.iter().map(|line| line.iter().map(to_point).collect()).collect();
         if !settings.y_up {
             points.reverse();
+            inner.iter_mut().for_each(|contour| contour.reverse());
+        }
+        if let Some(edges) = &mut edges {
+            edges.systematic *= settings.pixel_size;
+            if !settings.y_up {
+                edges.deviations.reverse();
+            }
         }
         let polygon = points.iter().map(|(point, _)| *point);
         let AreaAndCentre { signed_area: area, centre } = AreaAndCentre::of(&polygon);
         let invariants = AffineMomentInvariants::of(&polygon);
-        let outline = match settings.clipping {
-            Clipping::Open if touches_border => visible_arcs(points)?,
-            _ => Outline::closed(points.into_iter().map(|(point, _)| point).collect())?,
+        let is_open = settings.clipping == Clipping::Open && touches_border;
+        if let Some(edges) = &mut edges {
+            if is_open {
+                edges.deviations = of_visible_arcs(&points, &edges.deviations);
+            }
+            for (contour, fit) in inner.iter().zip(of_inner) {
+                let unknown = edges.deviations.iter().copied().fold(0.0, f64::max);
+                let mut deviations = fit.map_or_else(|| vec![unknown; contour.len()], |fit| fit.deviations);
+                if !settings.y_up {
+                    deviations.reverse();
+                }
+                // An arc that is a whole contour repeats its first point.
+                deviations.extend(deviations.first().copied().filter(|_| is_open));
+                edges.deviations.append(&mut deviations);
+            }
+            edges.deviations.iter_mut().for_each(|deviation| *deviation *= settings.pixel_size);
+        }
+        let outline = if is_open {
+            visible_arcs(points, inner)?
+        } else {
+            ClosedOutline::new(points.into_iter().map(|(point, _)| point).collect())?.with_inner(inner)?.into()
         };
-        Ok(Some(Seen { outline, touches_border, centre, area, invariants }))
+        Ok(Some(Seen { outline, touches_border, centre, area, invariants, edges }))
     }
 }
 
-/// The grey values around the object, with other objects and its own holes painted over.
+impl Window<'_> {
+    /// The lines around what is on the other side of the level within an outer line, of at least the smallest area.
+    fn inner_lines(&self, outer: &[Crossing]) -> Vec<Vec<Crossing>> {
+        let Field { width, height, values } = self.field;
+        let lines = isoline::of_samples([*width, *height], |x, y| f64::from(values[y * width + x]), self.level);
+        let outer_area = isoline::signed_area(outer);
+        let is_hole = |line: &Vec<Crossing>| {
+            let area = isoline::signed_area(line);
+            area * outer_area < 0.0 && area.abs() >= SMALLEST_HOLE && line.iter().all(|crossing| !crossing.at_edge)
+        };
+        let mut lines: Vec<Vec<Crossing>> = lines.into_iter().filter(is_hole).collect();
+        let area = |line: &Vec<Crossing>| isoline::signed_area(line).abs();
+        lines.sort_by(|a, b| area(b).total_cmp(&area(a)));
+        lines.truncate(MOST_HOLES);
+        lines
+    }
+}
+
+/// The grey values around the object, with other objects painted over, and its own holes where they are not traced.
 fn object_field(
     picture: &GrayImage,
     mask: &ObjectMask,
     levels: &Levels,
-    contrast: Contrast,
+    settings: &TraceSettings,
     set: impl Fn(u8) -> bool,
 ) -> Field {
+    let fills = settings.contours == Contours::Boundary;
     let stride = picture.width() as usize;
     let mut values = Vec::with_capacity(mask.width * mask.height);
     for row in 0..mask.height {
@@ -207,23 +314,37 @@ fn object_field(
         let pixels = &picture.as_raw()[from..from + mask.width];
         let filled = &mask.filled[row * mask.width..(row + 1) * mask.width];
         values.extend(pixels.iter().zip(filled).map(|(&value, &filled)| match (filled, set(value)) {
-            (true, false) => levels.object as f32,
+            (true, false) if fills => levels.object as f32,
             (false, true) => levels.ground as f32,
-            _ => f32::from(signal(value, contrast)),
+            _ => f32::from(signal(value, settings.contrast)),
         }));
     }
     Field { width: mask.width, height: mask.height, values }
 }
 
-/// The arcs between the stretches along the edge of the picture.
-fn visible_arcs(mut points: Vec<(Point2<f64>, bool)>) -> Result<Outline, TraceError> {
+/// The values of the points of the arcs that [`visible_arcs`] makes of these, in their order.
+fn of_visible_arcs(points: &[(Point2<f64>, bool)], values: &[f64]) -> Vec<f64> {
+    let on_edge = points.iter().position(|(_, at_edge)| *at_edge).unwrap_or(0);
+    let mut seen: Vec<(f64, bool)> =
+        values.iter().zip(points).map(|(value, (_, at_edge))| (*value, *at_edge)).collect();
+    seen.rotate_left(on_edge);
+    let arcs = seen.split(|(_, at_edge)| *at_edge).filter(|arc| arc.len() > 1);
+    arcs.flatten().map(|(value, _)| *value).collect()
+}
+
+/// The arcs between the stretches along the edge of the picture, and whole contours within as arcs that end where they begin.
+fn visible_arcs(mut points: Vec<(Point2<f64>, bool)>, inner: Vec<Vec<Point2<f64>>>) -> Result<Outline, TraceError> {
     let on_edge = points.iter().position(|(_, at_edge)| *at_edge).unwrap_or(0);
     points.rotate_left(on_edge);
     let arcs = points.split(|(_, at_edge)| *at_edge).filter(|arc| arc.len() > 1);
-    let arcs: Vec<OpenArc> =
+    let mut arcs: Vec<OpenArc> =
         arcs.map(|arc| OpenArc::new(arc.iter().map(|(point, _)| *point).collect())).collect::<Result<_, _>>()?;
     if arcs.is_empty() {
         return Err(TraceError::FillsPicture);
+    }
+    for mut contour in inner {
+        contour.extend(contour.first().copied());
+        arcs.push(OpenArc::new(contour)?);
     }
     Ok(OpenOutline::in_sequence(arcs)?.into())
 }

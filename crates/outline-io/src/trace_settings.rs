@@ -22,8 +22,30 @@ pub enum Smoothing {
     /// whose grey values place the edge within a pixel but are seldom linear across it.
     #[default]
     Automatic,
-    /// By a Gaussian of this standard deviation in pixels, 0 to 100; 0 for none.
+    /// By a Gaussian of this standard deviation in pixels, 0 to 100; 0 for none. Pictures of more than two grey values are smoothed
+    /// before objects are looked for in them.
     Gaussian(f64),
+}
+
+/// Where the outline is placed, in pictures of more than two grey values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Edges {
+    /// On the edge itself: the place of a blurred step between the grey values on both sides, fitted along the normal at every point.
+    /// Neither the threshold nor the smoothing moves it.
+    #[default]
+    Refined,
+    /// Where the smoothed grey value passes the threshold.
+    Isoline,
+}
+
+/// Which contours of an object are traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Contours {
+    /// The boundary alone; holes are filled.
+    #[default]
+    Boundary,
+    /// The boundary, and holes and marks within it of at least 25 pixels.
+    All,
 }
 
 /// What to make of an object that the edge of the picture clips.
@@ -45,13 +67,17 @@ pub struct TraceSettings {
     pub threshold: Threshold,
     /// Smoothing before tracing.
     pub smoothing: Smoothing,
+    /// Whether the outline is moved onto the edge itself.
+    pub edges: Edges,
     /// Smallest object accepted, in pixels.
     pub minimum_area: u64,
+    /// Which contours of an object are traced; of one in a ring always the boundary alone.
+    pub contours: Contours,
     /// What to make of an object that the edge of the picture clips.
     pub clipping: Clipping,
     /// Whether y runs upwards from the lower edge of the picture, or downwards from its upper edge.
     pub y_up: bool,
-    /// A line around the object, whose outer edge is traced. Replaces contrast, threshold and smoothing.
+    /// A line around the object, whose outer edge is traced. Replaces contrast and threshold; smoothing is by 1 pixel where automatic.
     pub ring: Option<Ring>,
     /// Height of a pixel in the length unit of the outline.
     pub pixel_size: f64,
@@ -66,7 +92,9 @@ impl Default for TraceSettings {
             contrast: Contrast::default(),
             threshold: Threshold::default(),
             smoothing: Smoothing::default(),
+            edges: Edges::default(),
             minimum_area: 9,
+            contours: Contours::default(),
             clipping: Clipping::default(),
             y_up: true,
             ring: None,

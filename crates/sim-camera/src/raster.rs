@@ -108,13 +108,31 @@ impl Accumulator {
     }
 
     fn grey(&self) -> Vec<u8> {
+        self.coverage().map(|coverage| (255.0 * coverage).round() as u8).collect()
+    }
+
+    /// The covered share of every pixel, row by row.
+    fn coverage(&self) -> impl Iterator<Item = f64> {
         let rows = self.changes.chunks_exact(self.width + 1);
         rows.flat_map(|row| {
             row[..self.width].iter().scan(0.0, |coverage: &mut f64, change| {
                 *coverage += change;
-                Some((255.0 * coverage.abs().min(1.0)).round() as u8)
+                Some(coverage.abs().min(1.0))
             })
         })
-        .collect()
     }
+}
+
+/// The share of every pixel that lies within closed polygons in `[column, row]` of the picture; holes run the other way round.
+pub(crate) fn covered_shares<'a>(
+    polygons: impl Iterator<Item = &'a [Point2<f64>]>,
+    [width, height]: [usize; 2],
+) -> Vec<f64> {
+    let mut accumulator = Accumulator::new(width, height);
+    for polygon in polygons {
+        for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+            accumulator.add_edge(*from, *to);
+        }
+    }
+    accumulator.coverage().collect()
 }

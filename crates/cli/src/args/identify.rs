@@ -174,7 +174,7 @@ pub(crate) struct TrackOptions {
     pub(crate) dynamics: DynamicsChoice,
 
     /// How far a side of the outline may lie off in all frames, such as by a shadow, in the unit of the outlines, or of the
-    /// plane with --rectify
+    /// plane with --rectify [default: 0 for CSV, of pictures what their edges tell]
     ///
     /// It widens the standard deviations. The part that comes from it is also given by itself, as std_systematic.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
@@ -198,6 +198,14 @@ impl TrackOptions {
             (method, _) => method,
         };
         TrackerSettings { method, scale: self.scale, rectification: self.rectify }
+    }
+
+    /// The same for outlines whose edges are known to this length, in the unit of the pictures: it is the edge uncertainty where none is given,
+    /// but for a plane, whose unit is another.
+    pub(crate) fn tracker_settings_for_edges(&self, length: f64) -> TrackerSettings {
+        let is_open = self.edge_uncertainty.is_none() && self.rectify.is_none();
+        let edge_uncertainty = if is_open { Some(length) } else { self.edge_uncertainty };
+        Self { edge_uncertainty, ..self.clone() }.tracker_settings()
     }
 
     /// Degree of the curve that is drawn if the method fits none.

@@ -22,7 +22,7 @@ pub(crate) use identify::{
     DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions,
 };
 pub(crate) use outline::OutlineArgs;
-pub(crate) use pictures::{PictureOptions, through_ffmpeg};
+pub(crate) use pictures::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice, through_ffmpeg};
 pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
 pub(crate) use rectify::RectifyArgs;
 pub(crate) use reproduce::ReproduceArgs;

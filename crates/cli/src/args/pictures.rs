@@ -13,7 +13,9 @@ pub(crate) fn picture_inputs(command: &str) -> String {
     format!(
         "Pictures: PNG, JPEG, TIFF, BMP, WebP, animated GIF, uncompressed video (y4m), a folder of pictures or a quoted \
          pattern, in natural order (frame-9 before frame-10). Convert any other video through a pipe:\n  {}\nA picture that cannot be \
-         read, differs in size from the first, or shows no object is left out with a warning.",
+         read, differs in size from the first, or shows no object is left out with a warning.\n\nWithout --light, --dark, --threshold, \
+         --background or --ring, the ways are tried on pictures of the sequence, and the one that tells an object from the ground best \
+         is taken and printed as the options that give it again. Of a stream 60 pictures are read ahead for that; 'track' does not.",
         through_ffmpeg("video.mp4", &format!("freeform {command} -"))
     )
 }
@@ -35,7 +37,7 @@ pub(crate) struct PictureOptions {
     #[arg(long, conflicts_with = "light")]
     pub(crate) dark: bool,
 
-    /// The object is lighter than the background; the default without --background
+    /// The object is lighter than the background
     #[arg(long)]
     pub(crate) light: bool,
 
@@ -43,33 +45,43 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_name = "LEVEL", value_parser = positive)]
     pub(crate) threshold: Option<f64>,
 
-    /// Channel of a colour picture that is used
-    #[arg(long, value_enum, default_value_t = ChannelChoice::Luminance)]
-    pub(crate) channel: ChannelChoice,
+    /// Channel of a colour picture that is used [default: chosen with the way of tracing, else luminance]
+    #[arg(long, value_enum)]
+    pub(crate) channel: Option<ChannelChoice>,
 
-    /// Find objects by their difference from a picture without objects, or from 'median', the median of the latest 25 pictures
-    #[arg(long, value_name = "FILE|median", conflicts_with = "ring")]
+    /// Find objects by their difference from a picture without objects; from 'median', the median of the latest pictures; from 'whole',
+    /// the median of pictures of the whole input; or from 'surface', a smooth surface through the ground of each picture
+    #[arg(long, value_name = "FILE|median|whole|surface", conflicts_with = "ring")]
     pub(crate) background: Option<PathBuf>,
 
+    /// Pictures that '--background median' is taken of, 3 to 255: more where objects are slow [default: 25]
+    #[arg(long, value_name = "PICTURES", value_parser = clap::value_parser!(u8).range(3..), requires = "background")]
+    pub(crate) background_window: Option<u8>,
+
     /// Find the object by a line around it, if it has the colour of the background; the outline is the outer edge of the line
-    #[arg(long, value_enum, conflicts_with_all = ["threshold", "dark", "light", "smoothing"])]
+    #[arg(long, value_enum, conflicts_with_all = ["threshold", "dark", "light"])]
     pub(crate) ring: Option<RingChoice>,
 
     /// Largest expected width of that line, in pixels [default: a sixtieth of the shorter side of the picture]
     #[arg(long, value_name = "PIXELS", value_parser = positive, requires = "ring")]
     pub(crate) ring_width: Option<f64>,
 
-    /// Standard deviation of the smoothing in pixels [default: 1 for masks, 0.5 for others]
+    /// Standard deviation of the smoothing in pixels, against noise and speckles [default: 1 for masks and rings, 0.5 for others]
     #[arg(long, value_name = "PIXELS", value_parser = not_negative)]
     pub(crate) smoothing: Option<f64>,
+
+    /// Which contours of an object are traced [default: all where holes and marks are seen to be steady while the way of tracing is
+    /// chosen, else boundary]
+    #[arg(long, value_enum)]
+    pub(crate) contours: Option<ContoursChoice>,
 
     /// Area of the smallest object, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = SMALLEST_OBJECT)]
     pub(crate) min_area: u64,
 
-    /// Which objects are taken
-    #[arg(long, value_enum, default_value_t = ObjectsChoice::Largest)]
-    pub(crate) objects: ObjectsChoice,
+    /// Which objects are taken [default: all where several are seen while the way of tracing is chosen, else largest]
+    #[arg(long, value_enum)]
+    pub(crate) objects: Option<ObjectsChoice>,
 
     /// Height of a pixel in the unit of length of the result
     #[arg(long, value_name = "LENGTH", value_parser = positive, default_value_t = 1.0)]
@@ -96,13 +108,15 @@ impl PictureOptions {
             ("--dark", self.dark),
             ("--light", self.light),
             ("--threshold", self.threshold.is_some()),
-            ("--channel", self.channel != ChannelChoice::Luminance),
+            ("--channel", self.channel.is_some()),
             ("--background", self.background.is_some()),
+            ("--background-window", self.background_window.is_some()),
             ("--ring", self.ring.is_some()),
             ("--ring-width", self.ring_width.is_some()),
             ("--smoothing", self.smoothing.is_some()),
+            ("--contours", self.contours.is_some()),
             ("--min-area", self.min_area != SMALLEST_OBJECT),
-            ("--objects", self.objects != ObjectsChoice::Largest),
+            ("--objects", self.objects.is_some()),
             ("--pixel-size", self.pixel_size != 1.0),
             ("--pixel-aspect", self.pixel_aspect.is_some()),
             ("--y-up", self.y_up),
@@ -113,7 +127,27 @@ impl PictureOptions {
 
     /// Whether all objects are taken.
     pub(crate) fn follows_all(&self) -> bool {
-        self.objects == ObjectsChoice::All
+        self.objects() == ObjectsChoice::All
+    }
+
+    /// Which objects are taken.
+    pub(crate) fn objects(&self) -> ObjectsChoice {
+        self.objects.unwrap_or(ObjectsChoice::Largest)
+    }
+
+    /// The channel.
+    pub(crate) fn channel(&self) -> ChannelChoice {
+        self.channel.unwrap_or(ChannelChoice::Luminance)
+    }
+
+    /// Whether holes and marks are traced.
+    pub(crate) fn traces_contours(&self) -> bool {
+        self.contours == Some(ContoursChoice::All)
+    }
+
+    /// Whether the options say how objects are told from the ground.
+    pub(crate) fn has_way(&self) -> bool {
+        self.dark || self.light || self.threshold.is_some() || self.background.is_some() || self.ring.is_some()
     }
 
     /// Names and values of the options, for a report.
@@ -121,6 +155,9 @@ impl PictureOptions {
         let found = match (self.ring, &self.background, self.threshold) {
             (Some(RingChoice::Dark), ..) => "by a dark ring, its outer edge".to_owned(),
             (Some(RingChoice::Light), ..) => "by a light ring, its outer edge".to_owned(),
+            (_, Some(background), _) if background.as_os_str() == "surface" => {
+                "by the difference from a smooth surface through the ground".to_owned()
+            }
             (_, Some(background), _) => format!("against the background {}", background.display()),
             (_, _, Some(threshold)) => format!("by the grey value {threshold}"),
             _ => "by Otsu's threshold in each picture".to_owned(),
@@ -132,9 +169,9 @@ impl PictureOptions {
             ("Objects found", found),
             (
                 "Objects taken",
-                format!("{}, of at least {} pixels", name(self.objects.to_possible_value()), self.min_area),
+                format!("{}, of at least {} pixels", name(self.objects().to_possible_value()), self.min_area),
             ),
-            ("Channel", name(self.channel.to_possible_value())),
+            ("Channel", name(self.channel().to_possible_value())),
             ("Pixel height", self.pixel_size.to_string()),
             ("y", if self.y_down { "downwards" } else { "upwards" }.to_owned()),
         ]
@@ -161,6 +198,30 @@ impl ChannelChoice {
             Self::Saturation => Channel::Saturation,
         }
     }
+
+    /// The choice of a channel.
+    pub(crate) const fn of(channel: Channel) -> Self {
+        match channel {
+            Channel::Luminance => Self::Luminance,
+            Channel::Red => Self::Red,
+            Channel::Green => Self::Green,
+            Channel::Blue => Self::Blue,
+            Channel::Saturation => Self::Saturation,
+        }
+    }
+
+    /// Its name on the command line.
+    pub(crate) fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ContoursChoice {
+    /// The boundary; holes are filled
+    Boundary,
+    /// The boundary, and holes and marks within it
+    All,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

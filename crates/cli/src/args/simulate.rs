@@ -1,6 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use freeform_motion::sim_camera::PictureScene;
 
 use super::dynamics::DynamicsArgs;
 use super::identify::MotionChoice;
@@ -17,14 +18,19 @@ Examples:
   freeform simulate --dynamics accelerating --velocity 3,8 --acceleration 0,0,-9.81
   freeform simulate --dynamics oscillating --omega 1 --velocity 2,0 --period 3 --amplitude 0.5
   freeform simulate --occlusion 0.2 --outliers 0.05 --seed 7 | freeform identify -
+  freeform simulate --pictures frames --scene belt-shadow --seed 3
 
 Shapes: plane, van, glass_vase, cd_box, shoe, car, vase, glider, phone, hat, bird, boomerang, circle, ellipse, square.
 
 The first lines of the output are comments with the command and the true motion: omega and b, and the velocity v of the \
 middle of the object in the last frame. Where the motion changes with time, all of it is that in the last frame, whose \
-time is told. 'freeform identify' prints this truth next to its result.";
+time is told. 'freeform identify' prints this truth next to its result.
 
-/// Make outlines of a moving object as CSV.
+Scenes of --pictures: gear, coin, belt, belt-shadow, discs, marked-discs, accelerating-l, outlined. The folder gets \
+000000.png, 000001.png, ... and truth.csv, a row for each body in each picture: its middle in pixels (y upwards from the lower \
+left corner), its angle and omega (rad, positive clockwise), its velocity, and whether it is whole and seen.";
+
+/// Make outlines of a moving object as CSV, or test pictures of moving objects.
 ///
 /// The object has unit size in the image (the largest distance between two of its points is 1) and starts at the origin.
 /// Each frame has new random points of the outline. The motion is given in space: the image moves with b times f/Z0. It is
@@ -52,9 +58,9 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_parser = positive, default_value_t = 30.0)]
     pub(crate) fps: f64,
 
-    /// Length of the sequence in seconds
-    #[arg(long, value_parser = positive, default_value_t = 10.0)]
-    pub(crate) seconds: f64,
+    /// Length of the sequence in seconds [default: 10, of pictures 2]
+    #[arg(long, value_parser = positive)]
+    pub(crate) seconds: Option<f64>,
 
     /// Points on the whole outline
     #[arg(long, value_name = "COUNT", default_value_t = 400)]
@@ -66,6 +72,19 @@ pub(crate) struct SimulateArgs {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
+
+    /// Make pictures of 640 x 480 pixels instead, in a new or an empty folder, with the truth beside them
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["shape", "omega", "b", "affine", "projective", "scale", "motion", "dynamics",
+          "points", "noise", "occlusion", "outliers", "output"])]
+    pub(crate) pictures: Option<PathBuf>,
+
+    /// What the pictures show; sizes, motions, contrast, blur, shading and noise follow from the seed
+    #[arg(long, value_name = "NAME", requires = "pictures", default_value = "gear")]
+    pub(crate) scene: PictureScene,
+
+    /// Write JPEG of this quality, 1 to 100, instead of PNG
+    #[arg(long, value_name = "QUALITY", requires = "pictures", value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub(crate) jpeg: Option<u8>,
 
     /// Where to write the outlines; '-' is standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]

@@ -6,7 +6,7 @@ use freeform_motion::tracker::FrameRanges;
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
 use crate::fitted_outline::FittedOutline;
-use crate::input::Input;
+use crate::input::{Input, Waiting};
 use crate::left_out::MissingWarnings;
 use crate::output::{
     Sink, WholeFile, fit_figure, refuse_overwriting, refuse_standard_output, write_fit_table, write_fits_json,
@@ -21,9 +21,10 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
         refuse_overwriting(&args.inputs, &[svg])?;
         refuse_standard_output(&[svg])?;
     }
-    let input = Input::open(&args.inputs, &args.pictures)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
+    input.tell_doubts();
     let mut sink = Sink::stdout();
     let mut collected = Collected::default();
     let (mut reasons, mut first_missing, mut warnings) = (Vec::new(), None::<Missing>, MissingWarnings::default());

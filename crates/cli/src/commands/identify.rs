@@ -11,7 +11,7 @@ use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, 
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::history::Histories;
-use crate::input::Input;
+use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
@@ -28,7 +28,11 @@ use crate::truth::Truth;
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
-    let mut input = Input::open(&args.inputs, &args.pictures)?;
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
+    if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
+        let settings = args.options.tracker_settings_for_edges(length);
+        tracker = Tracker::new(settings).map_err(Failure::unusable)?;
+    }
     let name = input.name.clone();
     let of_file = input.truth.filter(|_| args.truth.is_none());
     if !args.quiet && of_file.is_some() && args.options.rectify.is_some() {
@@ -43,8 +47,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     }
     let mut files = Files::create(args)?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
-    let mut overlay =
-        ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
+    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let mut left_out = LeftOut::default();
     let failure = follow(&mut tracker, &mut input, args.quiet, |event| {

@@ -10,6 +10,7 @@ mod recognise;
 mod rectify;
 mod reproduce;
 mod simulate;
+mod simulate_pictures;
 mod stress;
 mod track;
 

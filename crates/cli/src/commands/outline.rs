@@ -2,7 +2,7 @@ use freeform_motion::outline_io::{OutlineWriter, WriteError, WriterOptions};
 
 use crate::args::OutlineArgs;
 use crate::failure::{Failure, warn};
-use crate::input::Input;
+use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
 use crate::output::{Sink, refuse_overwriting};
@@ -14,16 +14,16 @@ use crate::seen::{Item, Missing};
 pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = std::iter::once(&args.output).chain(&args.overlay).map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
-    let input = Input::open(&args.inputs, &args.pictures)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     if !input.has_pictures() {
         return Err(Failure::unusable(format_args!("{}: not a picture", input.name)));
-    }
-    if let Some(warning) = input.warning().filter(|_| !args.quiet) {
-        warn(&warning);
     }
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::open(&args.output)?;
+    if !args.quiet {
+        input.tell();
+    }
     let outcome = match trace_all(args, input, &mut sink)? {
         Ok(outcome) => outcome,
         Err(WriteError::Io(error)) => return Err(sink.failure(&error)),
@@ -44,15 +44,16 @@ struct Outcome {
 
 type Written = Result<Outcome, WriteError>;
 
-fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Written, Failure> {
+fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Written, Failure> {
     let mut overlay = args.overlay.as_deref().map(|path| Overlay::open(path, &args.inputs)).transpose()?;
     let mut outcome = Outcome { outlines: 0, first_missing: None };
     let progress = Progress::of_frames(input.frame_count(), args.quiet || sink.is_disturbed_by_progress());
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
-    let object_column = args.pictures.follows_all();
+    let object_column = input.pictures().is_some_and(|pictures| pictures.options().follows_all());
+    let contour_column = input.pictures().is_some_and(|pictures| pictures.options().traces_contours());
     let mut warnings = MissingWarnings::default();
-    for item in input {
+    for item in input.by_ref() {
         // What came after Ctrl-C may be cut short.
         if interrupt::was_asked_for() {
             break;
@@ -62,7 +63,7 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
             Item::Outline(frame, seen_in) => {
                 // The header waits for the first outline, so that nothing is printed where there is none.
                 if let Some(sink) = sink.take() {
-                    let options = WriterOptions { arc_column: true, object_column, resolution: None };
+                    let options = WriterOptions { arc_column: true, object_column, contour_column, resolution: None };
                     match OutlineWriter::new(sink, options) {
                         Ok(new) => writer = Some(new),
                         Err(error) => return Ok(Err(error)),
@@ -91,6 +92,9 @@ fn trace_all(args: &OutlineArgs, input: Input, sink: &mut Sink) -> Result<Writte
                 outcome.first_missing.get_or_insert(missing);
             }
         }
+    }
+    if !args.quiet {
+        progress.pause(|| input.tell_in_the_end());
     }
     warnings.finish().filter(|_| !args.quiet).for_each(|warning| progress.pause(|| warn(&warning)));
     if let Some(overlay) = overlay {

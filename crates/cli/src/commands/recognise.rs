@@ -5,7 +5,7 @@ use freeform_motion::recognise::{Evidence, RecogniseError, RecogniseSettings, Re
 
 use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::failure::{Failure, warn};
-use crate::input::Input;
+use crate::input::{Input, Waiting};
 use crate::left_out::MissingWarnings;
 use crate::output::{Sink, write_recognised_json, write_recognised_table};
 use crate::progress::Progress;
@@ -23,8 +23,9 @@ pub(crate) struct RecognisedObject {
 /// Names every object of the input.
 pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     let mut recogniser = learnt(args)?;
-    let input = Input::open(&args.inputs, &args.pictures)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();
+    input.tell_doubts();
     let mut sink = Sink::stdout();
     let mut objects = SeenObjects::default();
     let (mut reasons, mut warnings, mut failure) = (Vec::new(), MissingWarnings::default(), None);

@@ -11,8 +11,13 @@ use crate::output::Sink;
 use crate::progress::Progress;
 use crate::truth::SimulatedMotion;
 
+use super::simulate_pictures::write_pictures;
+
 /// Simulates a sequence and writes its outlines.
 pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
+    if let Some(folder) = &args.pictures {
+        return write_pictures(args, folder);
+    }
     let simulator = simulator(args)?;
     let mut sink = Sink::open(&args.output)?;
     let written = write_sequence(&mut sink, &simulator, |_| Ok(()));
@@ -23,6 +28,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
         Err(SequenceError::Other(failure)) => Err(failure),
     }
 }
+
+/// Length of a sequence of outlines where none is given.
+const SECONDS: f64 = 10.0;
 
 /// Coordinates of outlines with noise are written to this share of the RMS radius.
 const RESOLUTION: f64 = 1e-7;
@@ -71,7 +79,7 @@ fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
     let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
     let settings = Settings {
         fps: args.fps,
-        length: SequenceLength::Seconds(args.seconds),
+        length: SequenceLength::Seconds(args.seconds.unwrap_or(SECONDS)),
         points: args.points,
         noise,
         occlusion: Occlusion { fraction: occlusion, ..Occlusion::default() },

@@ -4,10 +4,11 @@ use freeform_motion::Tracker;
 
 use crate::args::TrackArgs;
 use crate::failure::{Failure, warn};
-use crate::input::Input;
+use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::output::{Sink, closing_line, refuse_overwriting, refuse_standard_output, track_line};
 use crate::overlay::ObservedOverlay;
+use crate::picture_input::PictureInput;
 use crate::reader::{Event, follow_stream};
 
 /// Identifies as a stream.
@@ -16,9 +17,12 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     refuse_overwriting(&args.inputs, &outputs)?;
     refuse_standard_output(&outputs)?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
-    let mut input = Input::open(&args.inputs, &args.pictures)?;
-    let mut overlay =
-        ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options, &args.pictures)?;
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None)?;
+    if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
+        let settings = args.options.tracker_settings_for_edges(length);
+        tracker = Tracker::new(settings).map_err(Failure::unusable)?;
+    }
+    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::stdout();

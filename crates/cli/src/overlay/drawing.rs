@@ -98,9 +98,7 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
     let colour = if drawn.accepted { OUTLINE } else { REJECTED };
     for piece in drawn.outline.pieces() {
         canvas.polyline(piece.points.iter().map(pixel), colour);
-        if let (Outline::Closed(_), Some(first), Some(last)) =
-            (drawn.outline, piece.points.first(), piece.points.last())
-        {
+        if let (true, Some(first), Some(last)) = (piece.closed, piece.points.first(), piece.points.last()) {
             canvas.line(pixel(last), pixel(first), colour);
         }
     }

@@ -7,7 +7,7 @@ use freeform_motion::riccati::CameraScale;
 use freeform_motion::tracker::Observation;
 
 use super::drawing::{Drawn, Overlay};
-use crate::args::{PictureOptions, TrackOptions};
+use crate::args::TrackOptions;
 use crate::failure::Failure;
 use crate::fitted_outline::FittedOutline;
 use crate::input::Input;
@@ -31,14 +31,14 @@ impl ObservedOverlay {
         inputs: &[PathBuf],
         input: &Input,
         options: &TrackOptions,
-        pictures: &PictureOptions,
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = path else { return Ok(None) };
         if !input.has_pictures() {
             return Err(Failure::unusable(format_args!("{}: --overlay draws on pictures, this is CSV", input.name)));
         }
+        let names = input.pictures().is_some_and(|pictures| pictures.options().follows_all());
         let (overlay, curves) = (Overlay::open(path, inputs)?, CurveFitter::new(options)?);
-        Ok(Some(Self { overlay, curves, scale: options.scale, plane: options.rectify, names: pictures.follows_all() }))
+        Ok(Some(Self { overlay, curves, scale: options.scale, plane: options.rectify, names }))
     }
 
     /// Draws one object, or a picture without any.

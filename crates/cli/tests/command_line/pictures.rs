@@ -49,7 +49,7 @@ fn a_jpeg_that_ends_early_is_left_out_and_named_and_the_others_count() {
         file(folder.path(), &format!("{frame}.jpg"), jpeg);
     }
     let frames = folder.path().to_str().expect("UTF-8");
-    let output = run(&format!("outline {frames}"), "");
+    let output = run(&format!("outline {frames} --light --fps 30"), "");
     let named = format!("freeform: warning: {frames}/2.jpg: the picture is damaged: the file ends within it\n");
     assert_eq!((output.status.code(), stderr(&output)), (Some(0), named));
     let csv = stdout(&output);
@@ -256,10 +256,10 @@ fn a_report_has_the_settings_that_were_used_and_marks_rejected_frames() {
     assert!(html.contains("<p>Rejected frames: 8</p>"), "{rejected:?}");
     // One line in each of the two panels and one in each of their legends, and no cross on the lower edge.
     assert_eq!((html.matches("class=\"s s1\"").count(), html.matches("rejected frames</text>").count()), (4, 2));
-    let html = report("--method adaptive --degree 4 --pixel-aspect 1.1");
+    let html = report("--light --method adaptive --degree 4 --pixel-aspect 1.1");
     for (name, value) in [
         ("Degree of the curve", "4"),
-        ("Frames per second", "30, as none is given"),
+        ("Frames per second", "30, assumed, as none is given"),
         ("Pixel width over height", "1.1"),
     ] {
         assert!(html.contains(&row(name, value)), "{name}: {html}");
@@ -340,17 +340,20 @@ fn the_same_of_many_pictures_is_said_once_with_what_may_help() {
             .expect("a picture");
     }
     for command in ["outline", "track", "identify", "fit"] {
-        let output = run(&format!("{command} {frames}"), "");
+        let output = run(&format!("{command} {frames} --light --fps 30"), "");
         let errors = stderr(&output);
         let told: Vec<&str> =
             errors.lines().filter(|line| line.contains(".png") || line.contains("pictures")).collect();
         assert_eq!(told.len(), 2, "{command}: {errors}");
-        assert!(told[0].contains("1.png") && told[0].contains("; try --dark, --background median"), "{errors}");
+        assert!(
+            told[0].contains("1.png") && told[0].contains("; try --threshold, --dark, --background median"),
+            "{errors}"
+        );
         assert!(told[1].ends_with("3 more pictures left out for the same reason: 4-6"), "{errors}");
     }
     let output = run(&format!("outline {frames}/4.png --dark"), "");
     assert_eq!(output.status.code(), Some(1));
-    assert!(stderr(&output).contains("; try --light, --background median"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("; try --threshold, --light, --background median"), "{}", stderr(&output));
 }
 
 #[test]
@@ -383,5 +386,66 @@ fn on_a_terminal_no_progress_bar_stands_in_the_lines_of_a_result() {
         let printed = stdout(&output);
         let results: Vec<&str> = printed.lines().filter(|line| line.contains(start)).collect();
         assert!(!results.is_empty() && results.iter().all(|line| line.starts_with(start)), "{command}: {printed}");
+    }
+}
+
+#[test]
+fn without_options_the_way_of_tracing_is_found_printed_and_gives_the_same_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let base = folder.path().to_str().expect("UTF-8");
+    for (scene, seed, expected) in
+        [("accelerating-l", 0, "--dark"), ("gear", 1, "--light"), ("belt", 1, "--objects all")]
+    {
+        let frames = format!("{base}/{scene}");
+        succeed(&format!("simulate --pictures {frames} --scene {scene} --seed {seed} --seconds 0.5"), "");
+        let chosen = run(&format!("outline {frames} --fps 30"), "");
+        let errors = stderr(&chosen);
+        let note = errors.lines().find_map(|line| line.strip_prefix("freeform: note: traced with ")).expect("a note");
+        let options = note.split(" (").next().expect("options");
+        assert!(options.contains(expected), "{scene}: {note}");
+        let again = run(&format!("outline {frames} --fps 30 {options}"), "");
+        assert_eq!((stdout(&again), stderr(&again)), (stdout(&chosen), String::new()), "{scene}: {note}");
+    }
+}
+
+#[test]
+fn an_assumed_rate_and_a_choice_without_conviction_are_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, _) = pears(folder.path(), "frames", 4);
+    let told = stderr(&run(&format!("outline {frames} --light"), ""));
+    assert!(told.contains("30 frames/s assumed") && told.contains("--fps"), "{told}");
+    let noise = folder.path().join("noise");
+    std::fs::create_dir(&noise).expect("a folder");
+    for frame in 0..6_u32 {
+        let value = |x: u32, y: u32| ((x * 7919 + y * 104_729 + (x * y + frame * 77) * (frame + 3)) % 61) as u8;
+        GrayImage::from_fn(160, 120, |x, y| Luma([60 + value(x, y)]))
+            .save(noise.join(format!("{frame}.png")))
+            .expect("a picture");
+    }
+    let output = run(&format!("identify {} --fps 30", noise.display()), "");
+    let told = stderr(&output);
+    assert!(output.status.code() == Some(1) || told.contains("beyond doubt"), "{told}");
+}
+
+#[test]
+fn discs_that_roll_tell_their_turn_by_their_holes_and_not_without_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let base = folder.path().to_str().expect("UTF-8");
+    for (scene, has_holes) in [("marked-discs", true), ("discs", false)] {
+        let frames = format!("{base}/{scene}");
+        succeed(&format!("simulate --pictures {frames} --scene {scene} --seed 1 --seconds 1"), "");
+        let document = json(&succeed(&format!("identify {frames} --fps 30 --quiet --json"), ""));
+        let truth = std::fs::read_to_string(format!("{frames}/truth.csv")).expect("the truth");
+        let last: Vec<Vec<String>> =
+            truth.lines().rev().take(2).map(|line| line.split(',').map(str::to_owned).collect()).collect();
+        for (object, row) in document["objects"].as_array().expect("objects").iter().zip(last.iter().rev()) {
+            let omega = &object["parameters"]["omega"]["value"];
+            let truth: f64 = row[6].parse().expect("a number");
+            match omega.as_f64() {
+                Some(omega) => assert!(has_holes && (omega / truth - 1.0).abs() < 0.01, "{scene}: {omega} {truth}"),
+                None => assert!(!has_holes, "{scene}: {object}"),
+            }
+        }
+        assert_eq!(document["objects"].as_array().map(Vec::len), Some(2), "{scene}");
     }
 }

@@ -152,3 +152,26 @@ fn the_bolt_moves_evenly_while_in_view_and_is_followed_out_of_it() {
     let (last, leaving) = (poses.last().expect("poses").0, *shifts(22).last().expect("shifts"));
     assert!(last == 22 && (leaving / mean - 1.0).abs() < 0.05, "frame {last}: {leaving}");
 }
+
+#[test]
+fn the_robot_is_found_and_followed_without_an_option_but_the_rate_and_its_aspect_is_told() {
+    let (Some(frames), Some(tracker)) =
+        (data("sequences/microrobot_h/frames"), data("sequences/microrobot_h/authors_tracker.csv"))
+    else {
+        return;
+    };
+    let tracker = tracked(&std::fs::read_to_string(tracker).expect("the tracker"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let poses = folder.path().join("poses.csv");
+    let output = run(&format!("identify {frames} --fps 15.07 --trajectory {}", poses.display()), "");
+    let told = stderr(&output);
+    assert!(told.contains("note: traced with ") && !told.contains("beyond doubt"), "{told}");
+    assert!(told.contains("--pixel-aspect 1.1"), "{told}");
+    let trajectory = std::fs::read_to_string(&poses).expect("poses");
+    let angles: Vec<(usize, f64)> = std::iter::once((0, 0.0))
+        .chain(used(&trajectory).iter().map(|(frame, value)| (*frame, -value("angle").to_degrees())))
+        .collect();
+    let (median, total) = errors_of_turn(&angles, &tracker);
+    println!("{} frames used, turn within {median:.2} degrees, the whole within {total:.2}", angles.len());
+    assert!(angles.len() >= 130 && median < 2.0 && total < 3.0, "{} {median} {total}", angles.len());
+}

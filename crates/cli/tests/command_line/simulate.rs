@@ -192,3 +192,28 @@ fn settings_out_of_range_are_refused_on_one_line() {
         assert_eq!(stdout(&output), "", "{arguments}");
     }
 }
+
+#[test]
+fn pictures_of_a_scene_stand_beside_their_truth_and_are_read_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let base = folder.path().to_str().expect("UTF-8");
+    for (name, options, extension) in [("a", "", "png"), ("b", "--jpeg 90", "jpg")] {
+        succeed(
+            &format!("simulate --pictures {base}/{name} --scene accelerating-l --seconds 0.2 --seed 4 {options}"),
+            "",
+        );
+        let truth = std::fs::read_to_string(folder.path().join(name).join("truth.csv")).expect("the truth");
+        let rows: Vec<Vec<f64>> = truth
+            .lines()
+            .skip(2)
+            .map(|line| line.split(',').take(9).map(|field| field.parse().expect("a number")).collect())
+            .collect();
+        assert_eq!(rows.len(), 6, "{truth}");
+        assert!(folder.path().join(name).join(format!("000005.{extension}")).exists());
+        let before = rows[5][6] - rows[0][6];
+        assert!(before.abs() > 0.04, "the spin accelerates by {before}");
+    }
+    let again = run(&format!("simulate --pictures {base}/a"), "");
+    assert_eq!(again.status.code(), Some(2));
+    assert!(stderr(&again).contains("an empty folder"), "{}", stderr(&again));
+}

@@ -67,32 +67,66 @@ impl Default for NullSpace {
     }
 }
 
+/// The area within a closed contour of cells.
+#[derive(Debug, Clone, Copy)]
+struct ContourArea {
+    origin: Point2<f64>,
+    /// Twice the area, signed.
+    area: f64,
+    moment: Vector2<f64>,
+    cells: usize,
+    /// The cell of the contour that comes first.
+    least: usize,
+}
+
 impl OutlineMap {
     /// The object's middle in the body frame: the centroid of the area that the outline encloses, which a body of even thickness turns
-    /// about where nothing holds it; the centre of the cells where the outline is not one closed contour.
+    /// about where nothing holds it; the centre of the cells where the outline is not closed.
     pub(crate) fn middle(&self) -> Point2<f64> {
         self.null_space.middle
     }
 
-    /// Centroid of the area within the polygon of the cells, if they are one closed contour.
+    /// Centroid of the area within the polygon of the cells, if they are one closed contour; of several, within the largest, which is the
+    /// boundary of the body.
     fn area_centroid(&self) -> Option<Point2<f64>> {
-        let origin = self.cells.first()?.centre;
-        let (mut last, mut here) = (0, self.cells[0].neighbours[1]);
+        let first = self.contour_from(0)?;
+        let (mut largest, mut cells) = (first, first.cells);
+        let mut start = 1;
+        while cells < self.cells.len() && start < self.cells.len() {
+            let contour = self.contour_from(start)?;
+            // Each contour counts once, from the first of its cells.
+            if contour.least == start {
+                cells += contour.cells;
+                if contour.area.abs() > largest.area.abs() {
+                    largest = contour;
+                }
+            }
+            start += 1;
+        }
+        (largest.area != 0.0).then(|| largest.origin + largest.moment / (3.0 * largest.area))
+    }
+
+    /// The closed contour that a cell is of; `None` where it is of an open one.
+    fn contour_from(&self, start: usize) -> Option<ContourArea> {
+        let origin = self.cells.get(start)?.centre;
+        let (mut last, mut here) = (start, self.cells[start].neighbours[1]);
         let (mut area, mut moment) = (0.0, Vector2::zeros());
-        for _ in 1..self.cells.len() {
+        let (mut cells, mut least) = (1, start);
+        while here != start {
             // Links may point either way.
             let [a, b] = self.cells[here].neighbours;
             let next = if a == last { b } else { a };
-            if here == 0 || a == here || b == here {
+            if cells == self.cells.len() || a == here || b == here {
                 return None;
             }
             let (p, q) = (self.cells[last].centre - origin, self.cells[here].centre - origin);
             let twice = p.perp(&q);
             area += twice;
             moment += twice * (p + q);
+            (cells, least) = (cells + 1, least.min(here));
             (last, here) = (here, next);
         }
-        (here == 0 && area != 0.0).then(|| origin + moment / (3.0 * area))
+        (cells > 1).then_some(ContourArea { origin, area, moment, cells, least })
     }
 
     /// What frames have said of the turn.

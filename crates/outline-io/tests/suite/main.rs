@@ -4,6 +4,7 @@ mod columns;
 mod csv_bad_input;
 mod csv_cut_anywhere;
 mod csv_round_trip;
+mod edges;
 mod identities;
 mod labels;
 mod pictures_as_people_have_them;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use freeform_curve_fit::Outline;
 use freeform_outline_io::{
-    Clipping, Contrast, GrayImage, Smoothing, Threshold, TraceError, TraceSettings, TracedOutline, read_picture,
+    Clipping, Contrast, Edges, GrayImage, Smoothing, Threshold, TraceError, TraceSettings, TracedOutline, read_picture,
     trace_mask,
 };
 use image::Luma;
@@ -103,7 +103,8 @@ fn a_disc_mask_has_a_smooth_outline() {
 
 #[test]
 fn smoothing_shrinks_a_disc_as_documented() {
-    let settings = TraceSettings { smoothing: Smoothing::Gaussian(2.0), ..TraceSettings::default() };
+    let smoothing = Smoothing::Gaussian(2.0);
+    let settings = TraceSettings { smoothing, edges: Edges::Isoline, ..TraceSettings::default() };
     let traced = trace_mask(&grey_disc(80, (40.0, 40.0), 25.0), &settings).expect("a disc");
     let (mean, _) = radii(&traced.outline, Point2::new(40.0, 40.0));
     assert!((25.0 - mean - 4.0 / 50.0).abs() < 0.02, "{mean}");

@@ -1,0 +1,435 @@
+use std::sync::Arc;
+
+use image::GrayImage;
+use nalgebra::{Point2, Vector2};
+
+use super::scaled::{factor_for, scaled};
+use super::{LINE, PictureSample, Tracing, TracingWay, ground_of};
+use crate::affine_moment_invariants::AffineMomentInvariants;
+use crate::background::Background;
+use crate::channel::Channel;
+use crate::contrast::{Contrast, signal};
+use crate::edges::median;
+use crate::ground_surface::ground_surface;
+use crate::picture_outlines::PictureSettings;
+use crate::ring::Ring;
+use crate::trace::{TracedOutline, blurred, trace_objects};
+use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
+
+/// Most pixels of a picture where ways are tried for the first time.
+const COARSE_PIXELS: u64 = 90_000;
+
+/// Pictures looked at then.
+const COARSE_PICTURES: usize = 9;
+
+/// Pictures looked at of the best ways.
+const FINE_PICTURES: usize = 15;
+
+/// Objects looked at in a picture.
+const OBJECTS: usize = 6;
+
+/// A level lies so many standard deviations of the ground beyond it, and at least so many grey values.
+const BEYOND_NOISE: f64 = 6.0;
+const LEAST_LEVEL: f64 = 8.0;
+
+/// Points of an outline where the contrast is looked at.
+const PLACES: usize = 64;
+
+/// What speaks for a way of tracing, and against it. Shares are from 0 to 1, 1 the best.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TracingEvidence {
+    /// The way.
+    pub tracing: Tracing,
+    /// Pictures looked at.
+    pub pictures: usize,
+    /// Pictures in which something was found.
+    pub found: usize,
+    /// How alike area and shape of what was found are over the sequence.
+    pub steadiness: f64,
+    /// How alike they are from one picture to the next.
+    pub evenness: f64,
+    /// How clear the contrast is along the edge.
+    pub contrast: f64,
+    /// How smooth the path is.
+    pub smoothness: f64,
+    /// Farthest movement seen, of the middle or of the outline, in pixels.
+    pub movement: f64,
+    /// Share of the pictures in which the edge of the picture clips it.
+    pub clipped: f64,
+    /// Median share of the picture that it has.
+    pub area_share: f64,
+    /// Objects of at least half its area, in the median picture.
+    pub objects: usize,
+    /// Share of its area that holes and marks have.
+    pub inner_share: f64,
+    /// Whether holes or marks within it, of less than half of its area, are the same all the time.
+    pub has_steady_contours: bool,
+    /// All of it together, 0 to 1.
+    pub score: f64,
+}
+
+/// Pictures in one channel on which ways are tried.
+pub(super) struct Trial {
+    frames: Vec<u64>,
+    pictures: Vec<Arc<GrayImage>>,
+    /// What the ground is the median of.
+    all: Vec<Arc<GrayImage>>,
+    ground: std::cell::OnceCell<Option<Arc<GrayImage>>>,
+    surfaces: std::cell::OnceCell<Vec<Arc<GrayImage>>>,
+    base: PictureSettings,
+    /// Pixels of the sequence for one of these.
+    factor: u32,
+    /// Widest line expected, in pixels of the sequence.
+    ring_width: f64,
+}
+
+/// What was found in a picture.
+struct Sight {
+    frame: u64,
+    centre: Point2<f64>,
+    area: f64,
+    invariants: Option<AffineMomentInvariants>,
+    is_clipped: bool,
+    points: Vec<Point2<f64>>,
+    contrast: f64,
+    /// Objects of at least half the area, and all.
+    objects: [usize; 2],
+    /// Areas of its holes and marks together, over its own, and their number.
+    inner: (f64, usize),
+    /// Area of the largest other one, over its own.
+    second: f64,
+}
+
+impl Trial {
+    /// A few pictures, scaled down.
+    pub(super) fn coarse(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Self {
+        Self::of(sample, base, channel, COARSE_PIXELS, COARSE_PICTURES)
+    }
+
+    /// More pictures as they are in the sample.
+    pub(super) fn fine(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Self {
+        Self::of(sample, base, channel, u64::MAX, FINE_PICTURES)
+    }
+
+    fn of(sample: &PictureSample, base: &PictureSettings, channel: Channel, most: u64, count: usize) -> Self {
+        let (frames, pictures) = sample.of(channel);
+        let (columns, rows) = sample.size();
+        let of_sample = pictures.first().map_or((1, 1), |picture| picture.dimensions());
+        let further = factor_for(of_sample.0, of_sample.1, most);
+        let all: Vec<Arc<GrayImage>> = pictures
+            .iter()
+            .map(|picture| if further == 1 { Arc::clone(picture) } else { Arc::new(scaled(picture, further)) })
+            .collect();
+        // Whole bursts, from first to last.
+        let bursts: Vec<usize> = (0..all.len()).step_by(3).collect();
+        let wanted = (count / 3).min(bursts.len()).max(1);
+        let mut chosen: Vec<usize> = if count >= all.len() {
+            (0..all.len()).collect()
+        } else {
+            (0..wanted)
+                .map(|k| bursts[k * (bursts.len() - 1) / (wanted - 1).max(1)])
+                .flat_map(|b| b..(b + 3).min(all.len()))
+                .collect()
+        };
+        chosen.dedup();
+        let ring_width = Ring { contrast: Contrast::DarkOnLight, width: base.trace.ring.and_then(|ring| ring.width) };
+        Self {
+            frames: chosen.iter().map(|&k| frames[k]).collect(),
+            pictures: chosen.iter().map(|&k| Arc::clone(&all[k])).collect(),
+            all,
+            ground: std::cell::OnceCell::new(),
+            surfaces: std::cell::OnceCell::new(),
+            base: base.clone(),
+            factor: sample.factor() * further,
+            ring_width: ring_width.widest(columns, rows),
+        }
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.pictures.len()
+    }
+
+    fn settings(&self, tracing: &Tracing) -> PictureSettings {
+        let ground = match tracing.way {
+            TracingWay::Median(_) => self.ground.get_or_init(|| ground_of(&self.all)).clone(),
+            _ => None,
+        };
+        let mut settings = tracing.settings(&self.base, ground);
+        let factor = f64::from(self.factor);
+        let trace = &mut settings.trace;
+        trace.minimum_area = (trace.minimum_area / u64::from(self.factor).pow(2)).max(4);
+        trace.ring = trace.ring.map(|ring| Ring { width: Some((self.ring_width / factor).max(2.0)), ..ring });
+        trace.smoothing = match trace.smoothing {
+            Smoothing::Gaussian(sigma) => Smoothing::Gaussian(sigma / factor),
+            Smoothing::Automatic => Smoothing::Automatic,
+        };
+        *trace = TraceSettings {
+            edges: Edges::Isoline,
+            contours: Contours::All,
+            clipping: Clipping::Close,
+            y_up: false,
+            pixel_size: 1.0,
+            pixel_aspect: 1.0,
+            ..*trace
+        };
+        settings
+    }
+
+    /// A difference from the ground that its noise does not reach, for the ways by a difference.
+    pub(super) fn noise_level(&self, tracing: &Tracing) -> Option<f64> {
+        if !matches!(tracing.way, TracingWay::Median(_) | TracingWay::Surface(_)) {
+            return None;
+        }
+        let settings = self.settings(tracing);
+        let sigma = match settings.trace.smoothing {
+            Smoothing::Gaussian(sigma) => sigma,
+            Smoothing::Automatic => 0.0,
+        };
+        let step = (self.count() / 5).max(1);
+        let levels = (0..self.count()).step_by(step).filter_map(|k| {
+            let difference = settings.difference.of(&self.pictures[k], self.ground(tracing, &settings, k)?);
+            let smooth = if sigma > 0.0 { blurred(&difference, sigma) } else { difference };
+            let values = || smooth.as_raw().iter().step_by(7).map(|value| f64::from(*value));
+            let middle = median(values())?;
+            let spread = 1.4826 * (median(values().map(|value| (value - middle).abs()))? + 0.5);
+            Some((middle + BEYOND_NOISE * spread).max(LEAST_LEVEL).round())
+        });
+        median(levels)
+    }
+
+    /// What a picture is compared with, if with anything.
+    fn ground<'a>(&'a self, tracing: &Tracing, settings: &'a PictureSettings, k: usize) -> Option<&'a Arc<GrayImage>> {
+        match (&settings.background, tracing.way) {
+            (Some(Background::Picture(ground)), _) => Some(ground),
+            (_, TracingWay::Surface(_)) => {
+                let surfaces = || self.pictures.iter().map(|picture| Arc::new(ground_surface(picture))).collect();
+                self.surfaces.get_or_init(surfaces).get(k)
+            }
+            _ => None,
+        }
+    }
+
+    /// What a way finds in each picture.
+    fn sights(&self, tracing: &Tracing) -> Vec<Sight> {
+        let settings = self.settings(tracing);
+        let mut sights = Vec::new();
+        for (k, (&frame, picture)) in self.frames.iter().zip(&self.pictures).enumerate() {
+            let difference = self.ground(tracing, &settings, k).map(|ground| settings.difference.of(picture, ground));
+            let looked_at = difference.as_ref().unwrap_or(picture);
+            let Ok(traced) = trace_objects(looked_at, &settings.trace, OBJECTS) else { continue };
+            let line = settings.trace.ring.map(|ring| ring.contrast);
+            let contrast = line.unwrap_or(settings.trace.contrast);
+            let reach = if line.is_some() { 1.5 } else { 2.0 };
+            sights.extend(Sight::of(frame, &traced, looked_at, contrast, reach, sights.last()));
+        }
+        sights
+    }
+}
+
+impl Sight {
+    /// Of the largest object, or of that which is most like the one in the picture before.
+    fn of(
+        frame: u64,
+        traced: &[TracedOutline],
+        picture: &GrayImage,
+        contrast: Contrast,
+        reach: f64,
+        before: Option<&Self>,
+    ) -> Option<Self> {
+        let before = before.filter(|before| before.frame + 1 == frame);
+        let nearest = before.and_then(|before| {
+            let far = |t: &&TracedOutline| (t.centre - before.centre).norm() / before.area.sqrt();
+            let alike = traced.iter().filter(|t| (t.area / before.area).ln().abs() < 0.4 && far(t) < 1.5);
+            alike.min_by(|a, b| far(a).total_cmp(&far(b)))
+        });
+        let chosen = nearest.or_else(|| traced.iter().find(|t| !t.touches_border)).or(traced.first())?;
+        let boundary = chosen.outline.pieces().next().map_or(&[][..], |piece| piece.points);
+        let points: Vec<Point2<f64>> = boundary.to_vec();
+        let inner = chosen.outline.pieces().skip(1).map(|piece| area_of(piece.points) / chosen.area);
+        let inner = (inner.clone().sum(), inner.count());
+        Some(Self {
+            frame,
+            centre: chosen.centre,
+            area: chosen.area,
+            invariants: chosen.invariants,
+            is_clipped: chosen.touches_border,
+            contrast: contrast_along(&points, picture, contrast, reach),
+            inner,
+            second: traced
+                .iter()
+                .filter(|t| t.centre != chosen.centre)
+                .map(|t| t.area / chosen.area)
+                .fold(0.0, f64::max),
+            objects: [traced.iter().filter(|t| 2.0 * t.area > chosen.area).count(), chosen.object_count],
+            points,
+        })
+    }
+
+    /// Mean distance of some points of this outline from another, the middles laid on each other.
+    fn unlike(&self, other: &Self) -> f64 {
+        let shift = other.centre - self.centre;
+        let step = (self.points.len() / 32).max(1);
+        let distances: Vec<f64> = self
+            .points
+            .iter()
+            .step_by(step)
+            .map(|p| other.points.iter().map(|q| (q - (p + shift)).norm_squared()).fold(f64::INFINITY, f64::min).sqrt())
+            .collect();
+        distances.iter().sum::<f64>() / distances.len().max(1) as f64
+    }
+}
+
+/// How clearly grey values change along an outline, from 0 to 1: by the share of the places where they do in the way expected, and by
+/// the change over the spread of the grey values on either side.
+fn contrast_along(points: &[Point2<f64>], picture: &GrayImage, contrast: Contrast, reach: f64) -> f64 {
+    let (width, height) = (f64::from(picture.width()), f64::from(picture.height()));
+    let count = points.len();
+    // Polygons run counter-clockwise in their own coordinates, here with rows downwards: outwards is to the right of the way.
+    let doubled: f64 = (0..count).map(|i| points[i].coords.perp(&points[(i + 1) % count].coords)).sum();
+    let side = doubled.signum();
+    let grey = |p: Point2<f64>| {
+        let is_within = (0.0..width).contains(&p.x) && (0.0..height).contains(&p.y);
+        is_within.then(|| f64::from(signal(picture.get_pixel(p.x as u32, p.y as u32).0[0], contrast)))
+    };
+    let mean = |p: Point2<f64>, n: Vector2<f64>, from: f64| -> Option<f64> {
+        let values: Option<Vec<f64>> = (0..3).map(|k| grey(p + n * (from + f64::from(k) - 1.0))).collect();
+        values.map(|values| values.iter().sum::<f64>() / 3.0)
+    };
+    let step = (count / PLACES).max(1);
+    let sides: Vec<(f64, f64)> = (0..count)
+        .step_by(step)
+        .filter_map(|i| {
+            let way = points[(i + 3) % count] - points[(i + count - 3 % count) % count];
+            let out = Vector2::new(way.y, -way.x).try_normalize(1e-9)? * side;
+            Some((mean(points[i], -out, reach)?, mean(points[i], out, reach + 1.5)?))
+        })
+        .collect();
+    let Some(typical) = median(sides.iter().map(|(inner, outer)| inner - outer)) else { return 0.0 };
+    if typical <= 0.0 {
+        return 0.0;
+    }
+    let clear = sides.iter().filter(|(inner, outer)| inner - outer > 0.3 * typical).count() as f64 / sides.len() as f64;
+    let spread = |of: &dyn Fn(&(f64, f64)) -> f64| {
+        let middle = median(sides.iter().map(of)).unwrap_or(0.0);
+        1.4826 * median(sides.iter().map(|side| (of(side) - middle).abs())).unwrap_or(0.0)
+    };
+    let ratio = typical / (spread(&|side| side.0).min(spread(&|side| side.1)) + spread(&|side| side.0 - side.1) + 1.0);
+    clear * clear * ratio / (ratio + 1.5)
+}
+
+/// Tries a way; `None` where it finds nothing.
+pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence> {
+    let sights = trial.sights(&tracing);
+    let factor = f64::from(trial.factor);
+    let (found, pictures) = (sights.len(), trial.count());
+    let picture_area = trial.pictures.first().map(|p| f64::from(p.width()) * f64::from(p.height()))?;
+    let of = |value: &dyn Fn(&Sight) -> f64| median(sights.iter().map(value));
+    let area = of(&|sight| sight.area)?;
+    let contrast = of(&|sight| sight.contrast)?;
+    let objects = of(&|sight| sight.objects[0] as f64)? as usize;
+    let all_objects = of(&|sight| sight.objects[1] as f64)?;
+    let second = of(&|sight| sight.second)?;
+    let clipped = sights.iter().filter(|sight| sight.is_clipped).count() as f64 / found as f64;
+
+    let whole: Vec<&Sight> = sights.iter().filter(|sight| !sight.is_clipped).collect();
+    let steadiness = steadiness(&whole);
+    let pairs: Vec<(&Sight, &Sight)> =
+        sights.windows(2).filter(|w| w[0].frame + 1 == w[1].frame).map(|w| (&w[0], &w[1])).collect();
+    let evenness = if pairs.is_empty() && pictures < 2 { 1.0 } else { evenness(&pairs, factor) };
+    let smoothness = if pictures < 3 { 1.0 } else { smoothness(&sights) };
+    let movement = factor * movement(&sights);
+    let area_share = area / picture_area;
+
+    let moves = if pictures < 3 || movement > 1.5 { 1.0 } else { 0.35 };
+    let is_ground = if area_share > 0.55 { 0.05 } else { 1.0 };
+    // Many small things do no harm where one is much larger than all.
+    let many = (1.0 + (all_objects - 12.0).max(0.0) / 12.0).powf(-(5.0 * second).min(1.0));
+    let size = area * factor * factor / (area * factor * factor + 120.0);
+    let share = (found as f64 / pictures as f64).powf(0.7);
+    let score = share
+        * steadiness
+        * evenness
+        * contrast
+        * smoothness
+        * moves
+        * is_ground
+        * many
+        * size
+        * (1.0 - 0.7 * clipped * clipped);
+    Some(TracingEvidence {
+        tracing,
+        pictures,
+        found,
+        steadiness,
+        evenness,
+        contrast,
+        smoothness,
+        movement,
+        clipped,
+        area_share,
+        objects,
+        inner_share: of(&|sight| sight.inner.0)?,
+        has_steady_contours: has_steady_contours(&whole),
+        score,
+    })
+}
+
+/// Whether nearly all show the same number of holes and marks, of the same area together.
+fn has_steady_contours(whole: &[&Sight]) -> bool {
+    let Some(count) = median(whole.iter().map(|sight| sight.inner.1 as f64)) else { return false };
+    let Some(area) = median(whole.iter().map(|sight| sight.inner.0)) else { return false };
+    let is_same = |sight: &&&Sight| sight.inner.1 as f64 == count && (sight.inner.0 / area).ln().abs() < 0.1;
+    whole.len() > 2 && count > 0.0 && area < LINE && whole.iter().filter(is_same).count() * 10 >= whole.len() * 8
+}
+
+/// Area within a closed line.
+fn area_of(points: &[Point2<f64>]) -> f64 {
+    let edges = points.iter().zip(points.iter().cycle().skip(1));
+    0.5 * edges.map(|(p, q)| p.coords.perp(&q.coords)).sum::<f64>().abs()
+}
+
+/// How many of the sights are like the one that most are like.
+fn steadiness(whole: &[&Sight]) -> f64 {
+    if whole.is_empty() {
+        return 0.3;
+    }
+    let alike = |a: &Sight, b: &Sight| {
+        let growth = (a.area / b.area).ln() / 0.12;
+        let shape = a.invariants.zip(b.invariants).map_or(1.0, |(a, b)| a.distance(&b) / 0.2);
+        (-0.5 * (growth * growth + shape * shape)).exp()
+    };
+    let mean = |a: &&Sight| whole.iter().map(|b| alike(a, b)).sum::<f64>() / whole.len() as f64;
+    whole.iter().map(mean).fold(0.0, f64::max)
+}
+
+/// How little area and shape change from one picture to the next.
+fn evenness(pairs: &[(&Sight, &Sight)], factor: f64) -> f64 {
+    let whole = || pairs.iter().filter(|(a, b)| !a.is_clipped && !b.is_clipped);
+    // What the rounding of a small outline to pixels may do.
+    let growth = median(
+        whole().map(|(a, b)| (a.area / b.area).ln().abs() / (0.02 + 0.3 * factor.min(2.0) / a.area.max(1.0).sqrt())),
+    );
+    let shape = median(whole().filter_map(|(a, b)| Some(a.invariants?.distance(&b.invariants?))));
+    match (growth, shape) {
+        (Some(growth), Some(shape)) => 1.0 / (1.0 + (growth / 2.0).powi(2)) / (1.0 + (shape / 0.1).powi(2)),
+        _ if pairs.is_empty() => 0.3,
+        _ => 0.5,
+    }
+}
+
+/// How little the path bends within three pictures, in sizes of the object.
+fn smoothness(sights: &[Sight]) -> f64 {
+    let bends = sights.windows(3).filter(|w| w[0].frame + 2 == w[2].frame && w.iter().all(|sight| !sight.is_clipped));
+    let bend = median(
+        bends.map(|w| (w[0].centre.coords - 2.0 * w[1].centre.coords + w[2].centre.coords).norm() / w[1].area.sqrt()),
+    );
+    bend.map_or(0.5, |bend| 1.0 / (1.0 + (bend / 0.05).powi(2)))
+}
+
+/// Farthest movement of the middle or of the outline about it, in pixels of the trial.
+fn movement(sights: &[Sight]) -> f64 {
+    let Some(first) = sights.first() else { return 0.0 };
+    let step = (sights.len() / 6).max(1);
+    let far = |sight: &Sight| (sight.centre - first.centre).norm().max(sight.unlike(first));
+    sights.iter().skip(1).step_by(step).chain(sights.last()).map(far).fold(0.0, f64::max)
+}

@@ -1,0 +1,185 @@
+use std::sync::Arc;
+
+use image::GrayImage;
+
+use super::scaled::{factor_for, scaled};
+use crate::channel::Channel;
+use crate::picture_error::PictureError;
+use crate::picture_sequence::PictureFrame;
+
+/// Pictures that follow each other, so that they show how evenly something moves.
+const BURST: u64 = 3;
+
+/// Bursts in a sample.
+const BURSTS: u64 = 8;
+
+/// Pictures looked through of a sequence whose length is not known.
+const LOOKED_THROUGH: u64 = 150;
+
+/// Of these the first so many are all kept, then a burst of every so many.
+const FIRST_KEPT: u64 = 24;
+const EVERY: u64 = 9;
+
+/// Most pixels of a picture of a sample; larger ones are scaled down.
+const MOST_PIXELS: u64 = 340_000;
+
+/// A channel is not looked at where the pictures have so little colour, in grey values.
+const LITTLE_COLOUR: u8 = 24;
+
+/// Which pictures of a sequence a sample is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SamplePlan {
+    /// Of a sequence of so many pictures: bursts spread over all of it.
+    Spread(u64),
+    /// Of a sequence of unknown length: of its first 150 pictures, as they come.
+    Ahead,
+}
+
+impl SamplePlan {
+    /// The numbers of the pictures wanted, in order.
+    #[must_use]
+    pub fn frames(self) -> Vec<u64> {
+        match self {
+            Self::Spread(count) if count <= BURST * BURSTS => (0..count).collect(),
+            Self::Spread(count) => {
+                let last = count - BURST;
+                let starts = (0..BURSTS).map(|burst| burst * last / (BURSTS - 1));
+                let mut frames: Vec<u64> = starts.flat_map(|start| start..start + BURST).collect();
+                frames.dedup();
+                frames
+            }
+            Self::Ahead => (0..LOOKED_THROUGH).filter(|k| *k < FIRST_KEPT || k % EVERY < BURST).collect(),
+        }
+    }
+}
+
+/// Pictures spread over a sequence, in every channel that shows something of its own, scaled down where they are large.
+#[derive(Debug, Clone, Default)]
+pub struct PictureSample {
+    /// Numbers of the pictures, in order.
+    frames: Vec<u64>,
+    channels: Vec<(Channel, Vec<Arc<GrayImage>>)>,
+    /// Pixels of the sequence for one of the sample, along rows and columns.
+    factor: u32,
+    /// Columns and rows of the sequence.
+    size: (u32, u32),
+}
+
+impl PictureSample {
+    /// Reads a sample. `pictures` gives those of the plan, as far as they are there, in a channel; it is asked for other channels than the
+    /// first only where there is colour. Pictures that cannot be read, or have another size than the first, are left out.
+    pub fn read<I: Iterator<Item = Result<PictureFrame, PictureError>>>(
+        channels: &[Channel],
+        mut pictures: impl FnMut(Channel) -> Option<I>,
+    ) -> Self {
+        let mut sample = Self { factor: 1, ..Self::default() };
+        let Some((first, others)) = channels.split_first() else { return sample };
+        sample.take(*first, pictures(*first).into_iter().flatten());
+        if others.is_empty() || sample.frames.is_empty() {
+            return sample;
+        }
+        let mut coloured = Self { channels: Vec::new(), ..sample.clone() };
+        coloured.take(Channel::Saturation, pictures(Channel::Saturation).into_iter().flatten());
+        let has_colour = coloured.channels.iter().flat_map(|(_, pictures)| pictures).any(|picture| {
+            let strong = picture.as_raw().iter().filter(|value| **value > LITTLE_COLOUR).count();
+            1000 * strong > picture.as_raw().len()
+        });
+        if has_colour {
+            for channel in others {
+                match channel {
+                    Channel::Saturation => sample.channels.append(&mut coloured.channels),
+                    channel => sample.take(*channel, pictures(*channel).into_iter().flatten()),
+                }
+            }
+        }
+        sample
+    }
+
+    fn take(&mut self, channel: Channel, pictures: impl Iterator<Item = Result<PictureFrame, PictureError>>) {
+        let mut kept = Vec::new();
+        let mut frames = Vec::new();
+        for PictureFrame { frame, picture, .. } in pictures.flatten() {
+            let size = picture.dimensions();
+            if self.size == (0, 0) {
+                self.size = size;
+                self.factor = factor_for(size.0, size.1, MOST_PIXELS);
+            }
+            if size == self.size {
+                frames.push(frame);
+                kept.push(if self.factor == 1 { picture } else { Arc::new(scaled(&picture, self.factor)) });
+            }
+        }
+        if self.frames.is_empty() {
+            // Of a sequence whose length was not known more may have been kept than are needed.
+            let bursts = SamplePlan::Spread(frames.len() as u64).frames();
+            let starts_burst = |k: usize| k + 1 < frames.len() && frames[k] + 1 == frames[k + 1];
+            let is_even = frames.len() as u64 <= BURST * BURSTS;
+            let wanted: Vec<usize> = if is_even {
+                (0..frames.len()).collect()
+            } else {
+                let mut wanted: Vec<usize> = bursts
+                    .chunks(BURST as usize)
+                    .flat_map(|burst| {
+                        let mut start = burst[0] as usize;
+                        while start > 0 && !(starts_burst(start) && starts_burst(start + 1)) {
+                            start -= 1;
+                        }
+                        (start..start + BURST as usize).filter(|k| *k < frames.len())
+                    })
+                    .collect();
+                wanted.sort_unstable();
+                wanted.dedup();
+                wanted
+            };
+            self.frames = wanted.iter().map(|&k| frames[k]).collect();
+        }
+        let wanted = |frame: &u64| self.frames.binary_search(frame).is_ok();
+        let kept: Vec<Arc<GrayImage>> =
+            frames.iter().zip(kept).filter(|(frame, _)| wanted(frame)).map(|(_, picture)| picture).collect();
+        if kept.len() == self.frames.len() && !kept.is_empty() {
+            self.channels.push((channel, kept));
+        }
+    }
+
+    /// The channels, the first one first.
+    pub fn channels(&self) -> impl Iterator<Item = Channel> {
+        self.channels.iter().map(|(channel, _)| *channel)
+    }
+
+    /// Number of pictures.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Whether there is no picture.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.frames.is_empty()
+    }
+
+    /// Numbers of the pictures, and what a channel shows.
+    pub(super) fn of(&self, channel: Channel) -> (&[u64], &[Arc<GrayImage>]) {
+        let found = self.channels.iter().find(|(known, _)| *known == channel);
+        (&self.frames, found.map_or(&[], |(_, pictures)| pictures))
+    }
+
+    pub(super) fn factor(&self) -> u32 {
+        self.factor
+    }
+
+    pub(super) fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Whether the pictures are masks.
+    pub(super) fn is_two_valued(&self) -> bool {
+        let Some((_, pictures)) = self.channels.first() else { return false };
+        self.factor == 1
+            && pictures.iter().all(|picture| {
+                let mut seen = [false; 256];
+                picture.as_raw().iter().for_each(|value| seen[usize::from(*value)] = true);
+                seen.iter().filter(|seen| **seen).count() <= 2
+            })
+    }
+}

@@ -1,0 +1,311 @@
+//! Outlines moved onto the edges themselves.
+//!
+//! Along the normal of an outline the grey value is `m + c (Phi((s - e) / w) - 1/2)`: a step between the grey values of the two
+//! sides, blurred by a Gaussian. With the place `e` of the step come its own height `c` and middle `m`, so that neither a threshold
+//! nor a shading moves it. The width `w` is one for a contour.
+mod blur_width;
+mod crossings;
+mod step_fit;
+
+use freeform_curve_fit::isoline::Crossing;
+use image::GrayImage;
+use nalgebra::{Point2, Vector2};
+
+use crate::contrast::{Contrast, signal};
+use crossings::undo_crossings;
+use step_fit::StepFit;
+
+/// Width of the edges before it is known, in pixels.
+const FIRST_WIDTH: f64 = 1.2;
+
+/// Crossings to either side that the direction of an outline is taken from.
+const NEIGHBOURS: usize = 3;
+
+/// How far profiles reach, in widths of the edge: near enough for thin parts, and as far as the grey values of both sides are known well,
+/// where nothing else is in the way.
+const NARROW: f64 = 2.2;
+const WIDE: f64 = 4.0;
+
+/// Farthest that the wide profile may move an edge, in widths of it.
+const SAME_EDGE: f64 = 0.4;
+
+/// An edge farther from the outline than this, and so many widths of the edge, is another edge, in pixels.
+const FARTHEST: [f64; 2] = [1.2, 1.2];
+
+/// A step of less than this share of the median step of the contour is no edge of the object.
+const SMALLEST_STEP: f64 = 0.3;
+
+/// A step of less than so many standard deviations of its own is none.
+const CLEAR_STEP: f64 = 3.0;
+
+/// A fit that leaves so many times the median of the contour is that of something else.
+const WORST_FIT: f64 = 3.5;
+
+/// Farthest that an edge may lie from those of its neighbours, in pixels and in widths of the edge.
+const FARTHEST_FROM_NEIGHBOURS: [f64; 2] = [0.7, 0.5];
+
+/// Share of the standard deviation of noise that bilinear interpolation leaves, in the mean over all places.
+const INTERPOLATED_NOISE: f64 = 2.0 / 3.0;
+
+/// Least systematic uncertainty of an edge, in pixels: what the model and the grid of pixels leave.
+const LEAST_SYSTEMATIC: f64 = 0.01;
+
+/// Points of a stretch over which the noise is averaged away to see the systematic part.
+const STRETCH: usize = 24;
+
+/// What the edges of an outline are like, and how well they tell its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgeFit {
+    /// Standard deviation of each point of the outline along its normal, from contrast, blur and noise, in the unit of the outline: that
+    /// of a place told by one pixel of contour. Of a point without an edge of its own, which lies between its neighbours', larger.
+    pub deviations: Vec<f64>,
+    /// Systematic uncertainty of the outline, in its unit: how much the edge depends on how far from it the grey values are looked at.
+    pub systematic: f64,
+    /// Median height of the step, in grey values; positive.
+    pub contrast: f64,
+    /// Width of the edges: the standard deviation of their Gaussian blur, in pixels.
+    pub blur: f64,
+    /// Standard deviation of the grey values about the fitted steps, in grey values.
+    pub noise: f64,
+    /// Share of the points that have an edge of their own.
+    pub clear_share: f64,
+}
+
+/// What is looked at of a picture.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EdgeSource<'a> {
+    pub(crate) picture: &'a GrayImage,
+    pub(crate) contrast: Contrast,
+    /// Standard deviation of the smoothing along the contour, in points; 0 for none.
+    pub(crate) along: f64,
+}
+
+/// Where an edge lies on the normal of a point.
+#[derive(Debug, Clone, Copy, Default)]
+struct Edge {
+    /// From the point outwards, in pixels.
+    place: f64,
+    /// Height of the step, positive where the object is on its side of the contrast.
+    step: f64,
+    /// Root mean square of what the fit leaves.
+    residual: f64,
+    /// How much farther out the edge lies by what is near it alone.
+    inner: f64,
+}
+
+impl EdgeSource<'_> {
+    /// Grey value between the pixels, on a scale where objects are lighter. Beyond the picture its edge goes on.
+    #[inline]
+    fn value(&self, x: f64, y: f64) -> f64 {
+        let (width, height) = (self.picture.width() as usize, self.picture.height() as usize);
+        let (x, y) = (x.clamp(0.0, (width - 1) as f64), y.clamp(0.0, (height - 1) as f64));
+        let (column, row) = ((x as usize).min(width.saturating_sub(2)), (y as usize).min(height.saturating_sub(2)));
+        let (u, v) = (x - column as f64, y - row as f64);
+        let pixels = self.picture.as_raw();
+        let (right, below) = (usize::from(width > 1), if height > 1 { width } else { 0 });
+        let at = row * width + column;
+        let grey = |index: usize| f64::from(signal(pixels[index], self.contrast));
+        let upper = grey(at) + u * (grey(at + right) - grey(at));
+        let lower = grey(at + below) + u * (grey(at + below + right) - grey(at + below));
+        upper + v * (lower - upper)
+    }
+
+    fn profile(&self, place: Point2<f64>, normal: Vector2<f64>, fit: &StepFit, values: &mut Vec<f64>) {
+        values.clear();
+        values.extend(fit.offsets().map(|s| self.value(place.x + s * normal.x, place.y + s * normal.y)));
+    }
+
+    /// Moves a closed line of crossings, given from the left upper pixel of a window, onto the edges. `None`, and the line as it was, where
+    /// it has no edges.
+    pub(crate) fn refine(&self, line: &mut [Crossing], [left, top]: [usize; 2]) -> Option<EdgeFit> {
+        let at = |c: &Crossing| Point2::new(left as f64 + c.x, top as f64 + c.y);
+        let points: Vec<Point2<f64>> = line.iter().map(at).collect();
+        let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
+        let mut edges = vec![Edge::default(); line.len()];
+        self.fit_all(&points, &normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
+        let width = blur_width::of(self, &points, &normals, &edges)?;
+        self.fit_all(&points, &normals, &mut edges, &StepFit::new(width, (NARROW * width + 1.2).clamp(2.5, 8.0)), 3);
+        let fit = StepFit::new(width, (WIDE * width + 1.5).clamp(3.0, 12.0));
+        let mut wide = edges.clone();
+        self.fit_all(&points, &normals, &mut wide, &fit, 2);
+        let own = |i: &usize| normals[*i].is_some();
+        let all: Vec<usize> = (0..line.len()).filter(own).collect();
+        let typical = median(all.iter().map(|&i| wide[i].residual))?;
+        for (edge, wide) in edges.iter_mut().zip(wide) {
+            let is_same_edge = (wide.place - edge.place).abs() <= SAME_EDGE * width && wide.step >= 0.7 * edge.step;
+            if is_same_edge && wide.residual <= 1.5 * typical.max(0.5) {
+                *edge = wide;
+            }
+        }
+
+        let contrast = median(all.iter().map(|&i| edges[i].step))?;
+        let residual = median(all.iter().map(|&i| edges[i].residual))?;
+        if contrast <= 0.0 {
+            return None;
+        }
+        let noise = residual / INTERPOLATED_NOISE;
+        let farthest = FARTHEST[0] + FARTHEST[1] * width;
+        let smallest = (SMALLEST_STEP * contrast).max(CLEAR_STEP * fit.deviation_of_step(residual));
+        let mut is_clear: Vec<bool> = (0..line.len())
+            .map(|i| {
+                let Edge { place, step, residual: left, .. } = edges[i];
+                own(&i) && place.abs() <= farthest && step >= smallest && left <= WORST_FIT * residual.max(0.5)
+            })
+            .collect();
+        leave_out_strays(&edges, &mut is_clear, FARTHEST_FROM_NEIGHBOURS[0] + FARTHEST_FROM_NEIGHBOURS[1] * width);
+        let clear_share = is_clear.iter().filter(|clear| **clear).count() as f64 / all.len().max(1) as f64;
+        let places = bridged(&edges, &is_clear)?;
+        let places = smoothed(&places, self.along);
+        let bends = bends(&points, &normals, &places, width);
+        let deviation = |i: usize| {
+            let step = if is_clear[i] { edges[i].step } else { contrast };
+            let random = noise.max(0.3) * fit.deviation_of_place(width) / step;
+            if is_clear[i] { random } else { random.max(0.5 * farthest) }
+        };
+        let deviations = (0..line.len()).map(deviation).collect();
+        let systematic = systematic(&edges, &is_clear);
+        let shift = |i: usize| (places[i] + bends[i]) * normals[i].unwrap_or_default();
+        // Nothing is seen beyond the picture.
+        let [right, lower] = [self.picture.width(), self.picture.height()].map(|size| f64::from(size) - 0.5);
+        let within = |p: Point2<f64>| Point2::new(p.x.clamp(-0.5, right), p.y.clamp(-0.5, lower));
+        let mut moved: Vec<Point2<f64>> = (0..line.len()).map(|i| within(points[i] + shift(i))).collect();
+        undo_crossings(&points, &mut moved);
+        for (crossing, (moved, before)) in line.iter_mut().zip(moved.iter().zip(&points)) {
+            crossing.x += moved.x - before.x;
+            crossing.y += moved.y - before.y;
+        }
+        Some(EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share })
+    }
+
+    fn fit_all(
+        &self,
+        points: &[Point2<f64>],
+        normals: &[Option<Vector2<f64>>],
+        edges: &mut [Edge],
+        fit: &StepFit,
+        rounds: usize,
+    ) {
+        let mut values = Vec::new();
+        for ((point, normal), edge) in points.iter().zip(normals).zip(edges) {
+            let Some(normal) = *normal else { continue };
+            for _ in 0..rounds {
+                self.profile(point + edge.place * normal, normal, fit, &mut values);
+                let found = fit.of(&values);
+                // Outwards the signal falls.
+                edge.step = -found.step;
+                edge.residual = found.residual;
+                edge.inner = found.inner;
+                let moved = if edge.step > 0.0 { found.place.clamp(-1.0, 1.0) } else { 0.0 };
+                edge.place = (edge.place + moved).clamp(-8.0, 8.0);
+                if moved.abs() < 0.004 {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// The unit normal outwards at a crossing, in columns and rows; `None` on the edge of the picture.
+fn outward(line: &[Crossing], index: usize) -> Option<Vector2<f64>> {
+    let count = line.len();
+    if line[index].at_edge {
+        return None;
+    }
+    let reach = NEIGHBOURS.min(count / 8).max(1);
+    let last =
+        |step: &dyn Fn(usize) -> usize| (1..=reach).map(step).take_while(|&i| !line[i].at_edge).last().unwrap_or(index);
+    let (before, after) = (&line[last(&|k| (index + count - k) % count)], &line[last(&|k| (index + k) % count)]);
+    // What is at or above the level is on the left, seen with rows downwards.
+    Vector2::new(before.y - after.y, after.x - before.x).try_normalize(1e-9)
+}
+
+/// Takes out edges that lie elsewhere than those around them.
+fn leave_out_strays(edges: &[Edge], is_clear: &mut [bool], farthest: f64) {
+    let count = edges.len();
+    let reach = (2 * NEIGHBOURS).min(count / 4);
+    let strays: Vec<usize> = (0..count)
+        .filter(|&i| is_clear[i])
+        .filter(|&i| {
+            let around = (0..=2 * reach).map(|k| (i + count + k - reach) % count).filter(|&j| is_clear[j]);
+            let middle = median(around.map(|j| edges[j].place)).unwrap_or(0.0);
+            (edges[i].place - middle).abs() > farthest
+        })
+        .collect();
+    strays.into_iter().for_each(|i| is_clear[i] = false);
+}
+
+/// The places of all edges, of those that are not clear between their neighbours; `None` where less than a tenth is clear.
+fn bridged(edges: &[Edge], is_clear: &[bool]) -> Option<Vec<f64>> {
+    let count = edges.len();
+    let known: Vec<usize> = (0..count).filter(|&i| is_clear[i]).collect();
+    if known.len() < 3 || 10 * known.len() < count {
+        return None;
+    }
+    let mut places: Vec<f64> = edges.iter().map(|edge| edge.place).collect();
+    for (k, &from) in known.iter().enumerate() {
+        let to = known[(k + 1) % known.len()];
+        let gap = (to + count - from) % count;
+        for step in 1..gap {
+            let share = step as f64 / gap as f64;
+            places[(from + step) % count] = edges[from].place + share * (edges[to].place - edges[from].place);
+        }
+    }
+    Some(places)
+}
+
+/// Smoothed along the contour by a Gaussian.
+fn smoothed(places: &[f64], sigma: f64) -> Vec<f64> {
+    let count = places.len();
+    let reach = ((3.0 * sigma) as usize).min(count / 4);
+    if reach == 0 {
+        return places.to_vec();
+    }
+    let weights: Vec<f64> =
+        (0..=2 * reach).map(|k| (-0.5 * ((k as f64 - reach as f64) / sigma).powi(2)).exp()).collect();
+    let total: f64 = weights.iter().sum();
+    let at =
+        |i: usize| weights.iter().enumerate().map(|(k, w)| w * places[(i + count + k - reach) % count]).sum::<f64>();
+    (0..count).map(|i| at(i) / total).collect()
+}
+
+/// How far the edges of a bent outline lie outside of where the middle grey value is: `w^2 / 2` times the curvature.
+fn bends(points: &[Point2<f64>], normals: &[Option<Vector2<f64>>], places: &[f64], width: f64) -> Vec<f64> {
+    let count = points.len();
+    let moved = |i: usize| points[i] + places[i] * normals[i].unwrap_or_default();
+    // About 0.77 pixels lie between two crossings.
+    let reach = ((4.0 * width / 0.77).ceil() as usize).clamp(5, 16).min(count / 6).max(1);
+    let bend = |i: usize| {
+        let (before, after) = ((i + count - reach) % count, (i + reach) % count);
+        if normals[before].is_none() || normals[after].is_none() {
+            return 0.0;
+        }
+        let Some(normal) = normals[i] else { return 0.0 };
+        let (a, b, p) = (moved(before), moved(after), moved(i));
+        let half = 0.5 * (b - a).norm();
+        let sagitta = (p - nalgebra::center(&a, &b)).dot(&normal);
+        let curvature = 2.0 * sagitta / (half * half + sagitta * sagitta).max(1e-9);
+        0.5 * width * width * curvature.clamp(-0.3 / width, 0.3 / width)
+    };
+    let bends: Vec<f64> = (0..count).map(bend).collect();
+    smoothed(&bends, 2.0)
+}
+
+/// How far the edge moves, in pixels and beyond its noise, where only what is near it is looked at.
+fn systematic(edges: &[Edge], is_clear: &[bool]) -> f64 {
+    let shifts: Vec<f64> =
+        edges.iter().zip(is_clear).filter(|(_, clear)| **clear).map(|(edge, _)| edge.inner).collect();
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let Some(typical) = median(shifts.iter().map(|shift| shift.abs())) else { return LEAST_SYSTEMATIC };
+    // Of what noise alone would make of the means of stretches, neighbours sharing half of their noise.
+    let noise = (1.4826 * typical).powi(2) * 2.0 / STRETCH as f64;
+    let stretches: Vec<f64> = shifts.chunks_exact(STRETCH).map(|stretch| mean(stretch).powi(2)).collect();
+    let beyond = if stretches.is_empty() { 0.0 } else { (mean(&stretches) - noise).max(0.0) };
+    beyond.sqrt().hypot(LEAST_SYSTEMATIC)
+}
+
+/// Median; `None` of nothing.
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
+    let middle = values.len() / 2;
+    if values.is_empty() { None } else { Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1) }
+}

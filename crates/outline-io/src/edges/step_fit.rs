@@ -1,0 +1,140 @@
+/// Distance of the samples of a profile, in pixels.
+pub(super) const SPACING: f64 = 0.5;
+
+/// How far the samples near the edge reach, as a share of all.
+const NEAR: f64 = 0.6;
+
+/// A least-squares fit of a step of known width to a profile about it. The even part of the profile tells the place, the odd part the
+/// height: on a window that is symmetric about the edge the two do not disturb each other, nor does an even slope the place.
+#[derive(Debug, Clone)]
+pub(super) struct StepFit {
+    reach: usize,
+    /// Weights of the samples that give the height.
+    step: Vec<f64>,
+    /// Weights of the samples that give height times place.
+    place: Vec<f64>,
+    /// The same for the samples near the edge.
+    near_step: Vec<f64>,
+    near_place: Vec<f64>,
+    /// The step of height 1 about its middle.
+    shape: Vec<f64>,
+}
+
+/// What a profile shows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    /// From the middle of the profile, in pixels, to first order.
+    pub(super) place: f64,
+    /// Grey values that the profile rises by.
+    pub(super) step: f64,
+    pub(super) residual: f64,
+    /// How much farther along the edge lies by the samples near it.
+    pub(super) inner: f64,
+}
+
+impl StepFit {
+    /// For steps of this width, from samples as far as `reach` from the middle, in pixels.
+    pub(super) fn new(width: f64, reach: f64) -> Self {
+        let reach = ((reach / SPACING).round() as usize).max(3);
+        let (shape, slope): (Vec<f64>, Vec<f64>) =
+            offsets(reach).map(|s| (normal_distribution(s / width) - 0.5, density(s / width) / width)).unzip();
+        let near = ((NEAR * reach as f64).round() as usize).max(2);
+        let [step, place] = weights(&shape, &slope, reach, reach);
+        let [near_step, near_place] = weights(&shape, &slope, reach, near);
+        Self { reach, step, place, near_step, near_place, shape }
+    }
+
+    /// Places of the samples, in pixels from the middle.
+    pub(super) fn offsets(&self) -> impl Iterator<Item = f64> + use<> {
+        offsets(self.reach)
+    }
+
+    /// Standard deviation of a height, for samples with this residual.
+    pub(super) fn deviation_of_step(&self, residual: f64) -> f64 {
+        // Samples of neighbouring places share pixels: half of them are independent.
+        residual * (2.0 * self.step.iter().map(|weight| weight * weight).sum::<f64>()).sqrt()
+    }
+
+    /// Standard deviation of a place that a profile one pixel wide tells, in pixels, where noise is as large as the step: from the information
+    /// of the step, less what goes into the grey values of the two sides.
+    pub(super) fn deviation_of_place(&self, width: f64) -> f64 {
+        let information = 1.0 / (2.0 * std::f64::consts::PI.sqrt() * width) - 0.5 / (self.reach as f64 * SPACING);
+        information.max(1e-3).powf(-0.5)
+    }
+
+    pub(super) fn of(&self, values: &[f64]) -> Step {
+        let dot = |weights: &[f64]| weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
+        let place_of = |step: f64, shift: f64| if step == 0.0 { 0.0 } else { (-shift / step).clamp(-2.0, 2.0) };
+        let step = dot(&self.step);
+        let shift = dot(&self.place);
+        let place = place_of(step, shift);
+        let inner = place_of(dot(&self.near_step), dot(&self.near_place)) - place;
+        let middle = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let squares = values.iter().zip(&self.shape).map(|(value, shape)| (value - middle - step * shape).powi(2));
+        let residual = (squares.sum::<f64>() / (values.len().max(4) - 3) as f64).sqrt();
+        Step { place, step, residual, inner }
+    }
+}
+
+fn offsets(reach: usize) -> impl Iterator<Item = f64> + use<> {
+    (0..=2 * reach).map(move |k| SPACING * (k as f64 - reach as f64))
+}
+
+/// Weights that give height and height times place from the samples within `near` of the middle.
+fn weights(shape: &[f64], slope: &[f64], reach: usize, near: usize) -> [Vec<f64>; 2] {
+    let is_near = |k: usize| k.abs_diff(reach) <= near;
+    let count = (2 * near + 1) as f64;
+    let mean = (0..shape.len()).filter(|&k| is_near(k)).map(|k| slope[k]).sum::<f64>() / count;
+    let part = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let values: Vec<f64> = (0..shape.len()).map(|k| if is_near(k) { value(k) } else { 0.0 }).collect();
+        let square: f64 = values.iter().map(|value| value * value).sum();
+        values.into_iter().map(|value| value / square).collect()
+    };
+    // A step moved by e is the step less e times its slope.
+    [part(&|k| shape[k]), part(&|k| slope[k] - mean)]
+}
+
+fn density(z: f64) -> f64 {
+    (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt()
+}
+
+/// The normal distribution function, to 2e-7 (M. Abramowitz and I. Stegun, Handbook of Mathematical Functions, 7.1.26).
+pub(super) fn normal_distribution(z: f64) -> f64 {
+    let x = z.abs() / std::f64::consts::SQRT_2;
+    let t = 1.0 / (1.0 + 0.327_591_1 * x);
+    let series = [0.254_829_592, -0.284_496_736, 1.421_413_741, -1.453_152_027, 1.061_405_429];
+    let tail = series.iter().rev().fold(0.0, |sum, c| (sum + c) * t) * (-x * x).exp();
+    if z < 0.0 { 0.5 * tail } else { 1.0 - 0.5 * tail }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_found_with_its_height_wherever_it_lies() {
+        for (width, place, height, ground) in
+            [(0.8, 0.3, -120.0, 200.0), (2.0, -0.7, 40.0, 10.0), (3.0, 1.0, 77.0, 0.0)]
+        {
+            let fit = StepFit::new(width, 2.2 * width + 1.2);
+            let mut found = 0.0;
+            for _ in 0..5 {
+                let value = |s: f64| ground + height * normal_distribution((s + found - place) / width);
+                let values: Vec<f64> = fit.offsets().map(value).collect();
+                found += fit.of(&values).place;
+            }
+            let values: Vec<f64> =
+                fit.offsets().map(|s| ground + height * normal_distribution((s + found - place) / width)).collect();
+            let Step { step, residual, .. } = fit.of(&values);
+            assert!((found - place).abs() < 1e-4, "{found} {place}");
+            assert!((step / height - 1.0).abs() < 1e-3 && residual < 1e-2 * height.abs(), "{step} {residual}");
+        }
+    }
+
+    #[test]
+    fn a_slope_of_the_ground_does_not_move_the_step() {
+        let fit = StepFit::new(1.5, 4.5);
+        let values: Vec<f64> = fit.offsets().map(|s| 100.0 * normal_distribution(s / 1.5) + 2.0 * s).collect();
+        assert!(fit.of(&values).place.abs() < 1e-6);
+    }
+}

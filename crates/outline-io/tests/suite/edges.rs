@@ -1,0 +1,207 @@
+//! Outlines on the edges themselves: bias and scatter of straight edges against the bound, and what may not move them.
+use freeform_outline_io::{Clipping, EdgeFit, GrayImage, Threshold, TraceSettings, TracedOutline, trace_mask};
+use image::Luma;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, StandardNormal};
+
+const SIZE: u32 = 160;
+
+/// An edge through the middle of a picture: lighter where `x cos + y sin` is small, y downwards.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    angle: f64,
+    /// From the middle.
+    place: f64,
+    contrast: f64,
+    blur: f64,
+    /// Share of the contrast that the picture is darker at its right side.
+    shading: f64,
+    noise: f64,
+}
+
+impl Step {
+    fn distance(&self, x: f64, y: f64) -> f64 {
+        let middle = 0.5 * f64::from(SIZE);
+        (x - middle) * self.angle.cos() + (y - middle) * self.angle.sin() - self.place
+    }
+
+    fn picture(&self, seed: u64) -> GrayImage {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        GrayImage::from_fn(SIZE, SIZE, |column, row| {
+            let samples = (0..25).map(|k| {
+                let at = |index: u32, k: u32| f64::from(index) + (f64::from(k) + 0.5) / 5.0;
+                tail(self.distance(at(column, k % 5), at(row, k / 5)) / self.blur)
+            });
+            let share = samples.sum::<f64>() / 25.0;
+            let shade = self.shading * self.contrast * f64::from(column) / 640.0;
+            let error: f64 = StandardNormal.sample(&mut rng);
+            Luma([(40.0 + self.contrast * share - shade + self.noise * error).round().clamp(0.0, 255.0) as u8])
+        })
+    }
+
+    fn traced(&self, seed: u64, settings: &TraceSettings) -> TracedOutline {
+        trace_mask(&self.picture(seed), settings).expect("the light side")
+    }
+
+    /// How far the points lie to the dark side of the edge, those near the edge of the picture left out.
+    fn errors(&self, traced: &TracedOutline) -> Vec<f64> {
+        let inner = 14.0..f64::from(SIZE) - 14.0;
+        let points = traced.outline.points().map(|p| (p.x, f64::from(SIZE) - p.y));
+        points.filter(|(x, y)| inner.contains(x) && inner.contains(y)).map(|(x, y)| self.distance(x, y)).collect()
+    }
+}
+
+/// The share of a normal distribution beyond `z`.
+fn tail(z: f64) -> f64 {
+    let x = z.abs() / std::f64::consts::SQRT_2;
+    let t = 1.0 / (1.0 + 0.5 * x);
+    let series = [
+        -1.26551223,
+        1.00002368,
+        0.37409196,
+        0.09678418,
+        -0.18628806,
+        0.27886807,
+        -1.13520398,
+        1.48851587,
+        -0.82215223,
+        0.17087277,
+    ];
+    let exponent = -x * x + series.iter().rev().fold(0.0, |sum, c| sum * t + c);
+    let tail = 0.5 * t * exponent.exp();
+    if z < 0.0 { 1.0 - tail } else { tail }
+}
+
+fn settings() -> TraceSettings {
+    TraceSettings { clipping: Clipping::Open, ..TraceSettings::default() }
+}
+
+/// Mean, and root mean square of the means of so many stretches, times the root of their number.
+fn bias_and_scatter(errors: &[Vec<f64>]) -> (f64, f64) {
+    let means: Vec<f64> = errors.iter().map(|e| e.iter().sum::<f64>() / e.len() as f64).collect();
+    let mean = means.iter().sum::<f64>() / means.len() as f64;
+    let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (means.len() - 1) as f64;
+    (mean, variance.sqrt())
+}
+
+#[test]
+fn edges_have_no_bias_and_scatter_as_little_as_the_grey_values_allow() {
+    let (mut worst_bias, mut worst_ratio) = (0.0_f64, 0.0_f64);
+    for contrast in [20.0, 70.0, 200.0] {
+        for blur in [0.7, 1.5, 3.0] {
+            for shading in [0.0, 0.5] {
+                let noise = 0.03 * contrast;
+                let steps = (0..40).map(|k| Step {
+                    angle: 0.05 + 0.15 * f64::from(k),
+                    place: 0.37 * f64::from(k % 8),
+                    contrast,
+                    blur,
+                    shading,
+                    noise,
+                });
+                let mut errors = Vec::new();
+                for (seed, step) in (0..).zip(steps) {
+                    errors.push(step.errors(&step.traced(seed, &settings())));
+                }
+                let length = errors.iter().map(Vec::len).sum::<usize>() as f64 / errors.len() as f64 * 0.785;
+                let (bias, scatter) = bias_and_scatter(&errors);
+                // Information on the place of an edge in one pixel of it, of the blur and the square of the pixel together; rounding to grey
+                // values is noise too.
+                let width = blur.hypot(12.0_f64.powf(-0.5));
+                let noise = noise.hypot(12.0_f64.powf(-0.5));
+                let bound = noise / contrast * (2.0 * std::f64::consts::PI.sqrt() * width / length).sqrt();
+                println!(
+                    "contrast {contrast} blur {blur} shading {shading}: bias {bias:.4}, scatter {scatter:.4}, {:.2} of the bound",
+                    scatter / bound
+                );
+                worst_bias = worst_bias.max(bias.abs());
+                worst_ratio = worst_ratio.max(scatter / bound);
+            }
+        }
+    }
+    println!("bias up to {worst_bias:.4} pixels, scatter up to {worst_ratio:.2} of the bound");
+    assert!(worst_bias < 0.03, "{worst_bias}");
+    // 40 runs tell a ratio to 11 %.
+    assert!(worst_ratio < 1.5, "{worst_ratio}");
+}
+
+#[test]
+fn neither_threshold_nor_shading_moves_an_edge() {
+    let step = Step { angle: 0.3, place: 4.0, contrast: 140.0, blur: 1.2, shading: 0.0, noise: 1.0 };
+    let mean = |errors: Vec<f64>| errors.iter().sum::<f64>() / errors.len() as f64;
+    let of = |step: Step, level| {
+        let settings = TraceSettings { threshold: Threshold::Level(level), ..settings() };
+        mean(step.errors(&step.traced(1, &settings)))
+    };
+    let middle = of(step, 110.0);
+    for level in [90.0, 130.0] {
+        assert!((of(step, level) - middle).abs() < 0.01, "level {level}: {} {middle}", of(step, level));
+    }
+    let shaded = of(Step { shading: 2.0, ..step }, 100.0);
+    assert!((shaded - middle).abs() < 0.02, "{shaded} {middle}");
+}
+
+#[test]
+fn blur_contrast_and_noise_are_told_and_points_have_their_deviations() {
+    let step = Step { angle: 1.1, place: -3.0, contrast: 90.0, blur: 1.8, shading: 0.0, noise: 4.0 };
+    let traced = step.traced(5, &settings());
+    let EdgeFit { deviations, systematic, contrast, blur, noise, clear_share } = traced.edges.clone().expect("edges");
+    assert_eq!(deviations.len(), traced.outline.point_count());
+    assert!(
+        (contrast - 90.0).abs() < 4.0 && (blur - 1.85).abs() < 0.25 && (noise - 4.0).abs() < 1.2,
+        "{contrast} {blur} {noise}"
+    );
+    assert!(clear_share > 0.9 && systematic < 0.1, "{clear_share} {systematic}");
+    let errors = step.errors(&traced);
+    let spread = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+    let mut sorted = deviations;
+    sorted.sort_by(f64::total_cmp);
+    let typical = sorted[sorted.len() / 2];
+    // Points 0.8 pixels apart share pixels with their neighbours, so that each scatters less than one pixel of edge does.
+    assert!(spread < 1.3 * typical && spread > 0.3 * typical, "{spread} {typical}");
+}
+
+#[test]
+fn a_blurred_disc_has_its_radius() {
+    for (radius, blur) in [(20.0, 1.0), (30.0, 2.0), (60.0, 3.0)] {
+        let centre = 80.3;
+        // A disc blurred by a Gaussian: means over a fine grid.
+        let fine = 4;
+        let count = (SIZE * fine) as usize;
+        let is_within = |k: usize| (k as f64 + 0.5) / f64::from(fine) - centre;
+        let mut grey: Vec<f64> = (0..count * count)
+            .map(|k| f64::from(u8::from(is_within(k % count).hypot(is_within(k / count)) < radius)))
+            .collect();
+        let reach = (4.0 * blur * f64::from(fine)) as usize;
+        let weights: Vec<f64> = (0..=2 * reach)
+            .map(|k| (-0.5 * ((k as f64 - reach as f64) / blur / f64::from(fine)).powi(2)).exp())
+            .collect();
+        let total: f64 = weights.iter().sum();
+        for stride in [1, count] {
+            let before = grey.clone();
+            for (k, value) in grey.iter_mut().enumerate() {
+                let place = k / stride % count;
+                let tap = |j: usize| (place + j).saturating_sub(reach).min(count - 1);
+                *value = weights
+                    .iter()
+                    .enumerate()
+                    .map(|(j, w)| w * before[k - place * stride + tap(j) * stride])
+                    .sum::<f64>()
+                    / total;
+            }
+        }
+        let picture = GrayImage::from_fn(SIZE, SIZE, |column, row| {
+            let cells =
+                (0..fine * fine).map(|k| ((column * fine + k % fine) as usize, (row * fine + k / fine) as usize));
+            let mean = cells.map(|(x, y)| grey[y * count + x]).sum::<f64>() / f64::from(fine * fine);
+            Luma([(30.0 + 180.0 * mean).round() as u8])
+        });
+        let traced = trace_mask(&picture, &settings()).expect("a disc");
+        let radii: Vec<f64> =
+            traced.outline.points().map(|p| (p.x - centre).hypot(f64::from(SIZE) - p.y - centre)).collect();
+        let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+        println!("radius {radius}, blur {blur}: {mean:.4}");
+        assert!((mean - radius).abs() < 0.03, "radius {radius}, blur {blur}: {mean}");
+    }
+}
