@@ -54,7 +54,7 @@ fn contours_come_back_from_csv_to_the_last_bit_and_need_their_column() {
     let csv = writer.finish().expect("memory");
     let read: Vec<_> =
         OutlineReader::new(&csv[..], "csv").expect("a header").collect::<Result<_, _>>().expect("outlines");
-    assert_eq!(read, [frame.clone()]);
+    assert_eq!(read, std::slice::from_ref(&frame));
     let mut without = OutlineWriter::new(Vec::new(), WriterOptions::default()).expect("memory");
     assert!(without.write(&frame).expect_err("no column").to_string().contains("contour column"));
     let torn = "frame,time,x,y,contour\n0,0,0,0,a\n0,0,9,0,a\n0,0,0,9,a\n0,0,1,1,b\n0,0,2,1,b\n0,0,1,2,b\n0,0,5,1,a\n";
