@@ -1,6 +1,7 @@
 //! One program for all of them, since each costs a link and its share of compiling.
 mod bad_pictures;
 mod columns;
+mod contours;
 mod csv_bad_input;
 mod csv_cut_anywhere;
 mod csv_round_trip;
