@@ -135,11 +135,6 @@ impl Input {
         self.pictures().and_then(PictureInput::closing_remark).iter().for_each(|warning| warn(warning));
     }
 
-    /// Says where the way of tracing that was chosen is not to be trusted.
-    pub(crate) fn tell_doubts(&self) {
-        self.pictures().map(PictureInput::doubts).unwrap_or_default().iter().for_each(|warning| warn(warning));
-    }
-
     /// The pictures that the outlines come from.
     pub(crate) fn pictures(&self) -> Option<&PictureInput> {
         match &self.source {

@@ -34,6 +34,9 @@ const PICTURES_AHEAD: u64 = 60;
 /// Most bytes of the header of a video.
 const LONGEST_HEADER: u64 = 1 << 12;
 
+/// Bytes before each picture of a video.
+const FRAME_HEADER: u64 = 6;
+
 /// Frames per second of pictures that do not tell.
 const ASSUMED_RATE: u32 = 30;
 
@@ -146,6 +149,12 @@ impl PictureInput {
             sequence = again(&options).map_err(failed)?;
         }
         let settings = picture_settings(&options, sequence.pixel_aspect(), preview.as_ref())?;
+        let is_whole = options.background.as_ref().is_some_and(|path| path.as_os_str() == "whole");
+        if is_whole && settings.background.is_none() {
+            return Err(Failure::unusable(
+                "--background whole: the pictures cannot be read ahead; give --background FILE or median",
+            ));
+        }
         let trace = settings.trace;
         let edge_uncertainty =
             preview.and_then(|preview| preview.edge_uncertainty(&settings, options.channel().channel()));
@@ -188,7 +197,9 @@ impl PictureInput {
     pub(crate) fn closing_remark(&self) -> Option<String> {
         let aspect = self.aspect.stretch()? * self.trace.pixel_aspect;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
-        Some(format!("{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong"))
+        Some(format!(
+            "{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong; or the camera looks at it from aside: --rectify"
+        ))
     }
 
     /// Why the way of tracing is not to be trusted.
@@ -313,8 +324,17 @@ fn video_length(header: &[u8], pictures: u64) -> Option<u64> {
         |name: char| header.split_ascii_whitespace().find_map(|word| word.strip_prefix(name)?.parse::<u64>().ok());
     let is_grey = header.contains(" Cmono");
     let pixels = number('W')?.checked_mul(number('H')?)?;
-    let of_picture = if is_grey { pixels } else { pixels + pixels / 2 };
-    of_picture.checked_mul(pictures)
+    // Colours of a quarter of the pixels, unless they say that they have more.
+    let has_all = header.contains(" C444") || header.contains(" C422");
+    let halves = if is_grey {
+        2
+    } else if has_all {
+        6
+    } else {
+        3
+    };
+    let of_picture = pixels.checked_mul(halves)? / 2;
+    of_picture.checked_add(FRAME_HEADER)?.checked_mul(pictures)
 }
 
 /// An error, and what to do about it where that is known.

@@ -21,6 +21,12 @@ const NOT_RIGID: f64 = 0.01;
 /// Nearer to 1 than this an aspect is as it should be.
 const SMALL: f64 = 0.015;
 
+/// Size of a complex moment, in units of the size of the body, from which it has a direction.
+const DIRECTED: f64 = 0.02;
+
+/// A direction whose mean is shorter than this has turned: by about a radian.
+const TURNED: f64 = 0.9;
+
 /// Places and weights of the Gauss rule of three points on 0 to 1.
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
@@ -82,7 +88,19 @@ impl PixelAspectCheck {
         let bend = a - 2.0 * b + c;
         let stretch = tried[best].0 + if bend > 0.0 { 0.5 * step * (a - c) / bend } else { 0.0 };
         let as_it_is = self.change_of_shape(1.0)?;
-        ((stretch - 1.0).abs() > SMALL && as_it_is > BETTER * b && b < NOT_RIGID).then_some(stretch)
+        let is_doubtless = (stretch - 1.0).abs() > SMALL && as_it_is > BETTER * b && b < NOT_RIGID;
+        (is_doubtless && self.turns(stretch)).then_some(stretch)
+    }
+
+    /// Whether a direction of the body is seen to turn where x is stretched: a body that tilts changes its shape too, but in one direction.
+    fn turns(&self, stretch: f64) -> bool {
+        let all: Vec<[Complex<f64>; 5]> = self.kept.iter().map(|moments| directions(moments, stretch)).collect();
+        (0..5).any(|k| {
+            let sum: Complex<f64> = all.iter().map(|each| each[k]).sum();
+            let sizes = || all.iter().map(|each| each[k].norm());
+            let least = sizes().fold(f64::INFINITY, f64::min);
+            least > DIRECTED && sum.norm() < TURNED * sizes().sum::<f64>()
+        })
     }
 
     /// How much the shape changes where x is stretched: the sum of the squared spreads of what a turn leaves of the moments.
@@ -96,30 +114,37 @@ impl PixelAspectCheck {
     }
 }
 
+/// Area, the size, which is the root of the second moment over it, and the second moment of the fourth degree, where x is stretched.
+fn sizes(moments: &[f64; 13], stretch: f64) -> [f64; 3] {
+    let of = |p: i32, q: i32| moment(moments, stretch, (p, q));
+    let area = of(0, 0);
+    [area, ((of(2, 0) + of(0, 2)) / area).sqrt(), of(4, 0) + 2.0 * of(2, 2) + of(0, 4)]
+}
+
+fn moment(moments: &[f64; 13], stretch: f64, powers: (i32, i32)) -> f64 {
+    let index = MOMENTS.iter().position(|others| *others == powers).unwrap_or(0);
+    moments[index] * stretch.powi(powers.0 + 1)
+}
+
+/// Complex moments in units of the size: a turn of the body turns each of them by two, three, one, four and two times as much.
+fn directions(moments: &[f64; 13], stretch: f64) -> [Complex<f64>; 5] {
+    let of = |p: i32, q: i32| moment(moments, stretch, (p, q));
+    let [area, size, _] = sizes(moments, stretch);
+    let [second, third, fourth] = [2, 3, 4].map(|degree| 1.0 / (area * size.powi(degree)));
+    [
+        Complex::new(of(2, 0) - of(0, 2), 2.0 * of(1, 1)) * second,
+        Complex::new(of(3, 0) - 3.0 * of(1, 2), 3.0 * of(2, 1) - of(0, 3)) * third,
+        Complex::new(of(3, 0) + of(1, 2), of(2, 1) + of(0, 3)) * third,
+        Complex::new(of(4, 0) - 6.0 * of(2, 2) + of(0, 4), 4.0 * (of(3, 1) - of(1, 3))) * fourth,
+        Complex::new(of(4, 0) - of(0, 4), 2.0 * (of(3, 1) + of(1, 3))) * fourth,
+    ]
+}
+
 /// What a turn leaves of the moments, in units of the size: the size over the root of the area, and the moduli of complex moments.
 fn left_by_turns(moments: &[f64; 13], stretch: f64) -> [f64; 7] {
-    let of = |p: i32, q: i32| {
-        let index = MOMENTS.iter().position(|powers| *powers == (p, q)).unwrap_or(0);
-        moments[index] * stretch.powi(p + 1)
-    };
-    let area = of(0, 0);
-    let square = (of(2, 0) + of(0, 2)) / area;
-    let size = square.sqrt();
-    let c20 = Complex::new(of(2, 0) - of(0, 2), 2.0 * of(1, 1)).norm();
-    let c30 = Complex::new(of(3, 0) - 3.0 * of(1, 2), 3.0 * of(2, 1) - of(0, 3)).norm();
-    let c21 = Complex::new(of(3, 0) + of(1, 2), of(2, 1) + of(0, 3)).norm();
-    let c40 = Complex::new(of(4, 0) - 6.0 * of(2, 2) + of(0, 4), 4.0 * (of(3, 1) - of(1, 3))).norm();
-    let c31 = Complex::new(of(4, 0) - of(0, 4), 2.0 * (of(3, 1) + of(1, 3))).norm();
-    let c22 = of(4, 0) + 2.0 * of(2, 2) + of(0, 4);
-    [
-        size / area.sqrt(),
-        c20 / area / square,
-        c30 / area / size.powi(3),
-        c21 / area / size.powi(3),
-        c40 / area / size.powi(4),
-        c31 / area / size.powi(4),
-        c22 / area / size.powi(4),
-    ]
+    let [area, size, fourth] = sizes(moments, stretch);
+    let [a, b, c, d, e] = directions(moments, stretch).map(Complex::norm);
+    [size / area.sqrt(), a, b, c, d, e, fourth / area / size.powi(4)]
 }
 
 /// Central moments of the area within a polygon.
@@ -190,6 +215,23 @@ mod tests {
                 let stretch = check(shape, aspect, 5.0).expect("an aspect");
                 assert!((stretch - aspect).abs() < 0.01, "{stretch} {aspect}");
             }
+        }
+    }
+
+    #[test]
+    fn a_disc_that_tumbles_says_nothing_of_the_pixels() {
+        for axis in [0.0, 0.2_f64] {
+            let mut check = PixelAspectCheck::default();
+            let along = Rotation2::new(axis);
+            for frame in 0..60 {
+                let squeezed = (0.8 * f64::from(frame) / 59.0).cos();
+                let at = |k: i32| {
+                    let angle = std::f64::consts::TAU * f64::from(k) / 200.0;
+                    Point2::from(along * Vector2::new(angle.cos(), squeezed * angle.sin()))
+                };
+                check.take(&Outline::closed((0..200).map(at).collect()).expect("an outline"));
+            }
+            assert_eq!(check.stretch(), None, "{axis}");
         }
     }
 

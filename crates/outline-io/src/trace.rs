@@ -94,6 +94,7 @@ pub fn trace_objects(
             Ok(traced) => {
                 points += traced.outline.point_count();
                 if points > POINT_LIMIT {
+                    refused = refused.or(Some(TraceError::TooManyPoints { limit: POINT_LIMIT }));
                     break;
                 }
                 outlines.push(traced);

@@ -1,4 +1,4 @@
-use freeform_motion::curve_fit::{OpenArc, OpenOutline, Outline, outward_normals};
+use freeform_motion::curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline, outward_normals};
 use nalgebra::{Affine2, Point2};
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
@@ -75,7 +75,8 @@ impl PyOutline {
         array_of_points(py, self.inner.points().copied())
     }
 
-    /// The connected pieces, each of shape (n, 2): one if the outline is closed, one per arc otherwise.
+    /// The connected pieces, each of shape (n, 2): the boundary and the contours of holes and marks
+    /// if the outline is closed, one per arc otherwise.
     #[getter]
     fn pieces<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray2<f64>>> {
         self.inner.pieces().map(|piece| array_of_points(py, piece.points.iter().copied())).collect()
@@ -166,7 +167,9 @@ impl PyOutline {
     fn _from_pieces(pieces: Vec<Bound<'_, PyAny>>, is_closed: bool) -> PyResult<Self> {
         let pieces = pieces.iter().map(points).collect::<PyResult<Vec<_>>>()?;
         let inner = if is_closed {
-            Outline::closed(pieces.concat()).map_err(value_error)?
+            let mut contours = pieces.into_iter();
+            let boundary = ClosedOutline::new(contours.next().unwrap_or_default()).map_err(value_error)?;
+            boundary.with_inner(contours.collect()).map_err(value_error)?.into()
         } else {
             let arcs = pieces.into_iter().map(OpenArc::new).collect::<Result<_, _>>().map_err(value_error)?;
             OpenOutline::in_sequence(arcs).map_err(value_error)?.into()

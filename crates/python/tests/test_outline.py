@@ -43,6 +43,10 @@ def test_outlines_can_be_pickled():
     for outline in ff.Outline(SQUARE), ff.Outline.from_arcs([SQUARE[:2], SQUARE[2:]]):
         again = pickle.loads(pickle.dumps(outline))
         assert again == outline and again.is_closed == outline.is_closed
+    hole = [[0.25, 0.25], [0.25, 0.75], [0.75, 0.75]]
+    body = ff.Outline._from_pieces([np.asarray(SQUARE, dtype=float), np.asarray(hole)], True)
+    again = pickle.loads(pickle.dumps(body))
+    assert again == body and [len(piece) for piece in again.pieces()] == [len(SQUARE), 3]
 
 
 def test_outlines_become_a_table_and_come_back():

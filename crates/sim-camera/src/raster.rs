@@ -37,8 +37,18 @@ impl Mask {
             return Err(SimulationError::OutOfRange { setting: "place in the mask", value, range: "finite" });
         }
         let mut accumulator = Accumulator::new(width, height);
-        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            accumulator.add_edge(*from, *to);
+        // Each contour of a closed outline by itself; open arcs one after the other.
+        let lengths: Vec<usize> = match outline {
+            Outline::Closed(_) => outline.pieces().map(|piece| piece.points.len()).collect(),
+            Outline::Open(_) => vec![corners.len()],
+        };
+        let mut rest = corners.as_slice();
+        for length in lengths {
+            let (contour, others) = rest.split_at(length);
+            for (from, to) in contour.iter().zip(contour.iter().cycle().skip(1)) {
+                accumulator.add_edge(*from, *to);
+            }
+            rest = others;
         }
         Ok(Self { width, height, grey: accumulator.grey() })
     }

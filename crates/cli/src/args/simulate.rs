@@ -75,7 +75,7 @@ pub(crate) struct SimulateArgs {
 
     /// Make pictures of 640 x 480 pixels instead, in a new or an empty folder, with the truth beside them
     #[arg(long, value_name = "DIR", conflicts_with_all = ["shape", "omega", "b", "affine", "projective", "scale", "motion", "dynamics",
-          "points", "noise", "occlusion", "outliers", "output"])]
+          "velocity", "acceleration", "period", "amplitude", "points", "noise", "occlusion", "outliers", "output"])]
     pub(crate) pictures: Option<PathBuf>,
 
     /// What the pictures show; sizes, motions, contrast, blur, shading and noise follow from the seed

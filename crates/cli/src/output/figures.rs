@@ -32,7 +32,7 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
     let whole = Rectangle::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
     let view = whole.map(|area| area.widened(SURROUNDINGS).square());
     for (fitted, outline) in drawn {
-        points.push(outline.points().map(xy).collect());
+        points.extend(outline.pieces().map(|piece| piece.points.iter().map(xy).collect::<Vec<_>>()));
         let Some(area) = view else { continue };
         // Beyond what is seen, so that a curve that leaves it goes on to the frame.
         let traced = fitted.fit.curve_within(&area.widened(SURROUNDINGS));

@@ -35,6 +35,10 @@ const GROUPS: [(WrongFamily, &[usize]); 5] = [
     (WrongFamily::Lens, &[1, 2, 6, 7, 8]),
 ];
 
+/// Sums beyond this are none of a series of frames.
+#[cfg(feature = "serde")]
+const LARGEST: f64 = 1e100;
+
 /// Tests of what a family of motions leaves out, over frames: generalised likelihood ratios.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -204,9 +208,11 @@ fn deviations(squared: f64, count: f64) -> f64 {
 
 #[cfg(feature = "serde")]
 impl FamilyTests {
-    /// Whether more can be taken; numbers that are not finite say nothing.
+    /// Whether more can be taken, and all numbers can be worked with.
     pub(crate) fn is_sound(&self) -> bool {
-        self.series.is_sound()
+        let vectors =
+            self.information.iter().chain(&self.score).chain(&self.squares).chain([&self.weight, &self.sigma]);
+        self.series.is_sound() && vectors.into_iter().all(|number| number.abs() < LARGEST) && self.sigma >= 0.0
     }
 }
 

@@ -107,7 +107,7 @@ impl MotionFilter {
     fn moved(&self, found: &RegisteredPose, seconds: f64) -> Option<Track> {
         let mut track = self.track.clone()?;
         if self.phase == Phase::Lost {
-            track.relocate(found.pose);
+            track.relocate(found.pose, seconds);
         } else {
             let change = found.pose * track.body_pose().try_inverse()?;
             track.set_motion(self.settings.model.motion_between(&change, seconds)?);

@@ -237,9 +237,10 @@ impl Track {
         self.view().largest_noise(self.reference.radius)
     }
 
-    /// Puts the object into a new pose and forgets motion and pose, keeping the outline.
-    pub(crate) fn relocate(&mut self, pose: Matrix3<f64>) {
+    /// Puts the object into a new pose some time later, and forgets motion and pose, keeping the outline.
+    pub(crate) fn relocate(&mut self, pose: Matrix3<f64>, seconds: f64) {
         self.belief.relocate(pose);
+        self.sensitivity.relocate(seconds, self.belief.parameter_count());
     }
 
     /// Takes a motion for granted that a step was made by, as long as nothing else is known. Of motions that differ in null directions

@@ -111,6 +111,12 @@ impl Sensitivity {
         }
     }
 
+    /// Pose and motion are forgotten, and learnt anew from what is seen some time later; the outline is kept.
+    pub(crate) fn relocate(&mut self, seconds: f64, k: usize) {
+        self.elapsed += seconds;
+        self.state.rows_mut(0, 2 * k).fill(0.0);
+    }
+
     /// Cells are new from those that it has on, and are measured by a frame in the pose that is believed: their offsets take in all of it.
     pub(crate) fn begin_cells(&mut self, belief: &Belief, map: &OutlineMap) {
         let Some(at) = self.instant(belief, &belief.pose, map) else {

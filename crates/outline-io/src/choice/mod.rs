@@ -184,7 +184,10 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
         };
         coarse.extend(std::thread::scope(|scope| {
             let threads: Vec<_> = others.iter().map(|channel| scope.spawn(in_others(channel))).collect();
-            threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default()).collect::<Vec<_>>()
+            threads
+                .into_iter()
+                .flat_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+                .collect::<Vec<_>>()
         }));
     }
     if !is_good(&fine) {

@@ -8,6 +8,9 @@ const AROUND: usize = 4;
 /// Rounds after which all points go back.
 const ROUNDS: usize = 4;
 
+/// Twice the area of a triangle, in square pixels, below which its corners lie on one line.
+const ON_ONE_LINE: f64 = 1e-9;
+
 /// Puts points of a closed line that have been moved back to where they were, near places where the line crosses itself, until it does
 /// so nowhere; it did not before it was moved.
 pub(super) fn undo_crossings(before: &[Point2<f64>], moved: &mut [Point2<f64>]) {
@@ -55,13 +58,25 @@ fn crossing_segments(points: &[Point2<f64>]) -> Vec<usize> {
 }
 
 fn do_cross((a, b): (Point2<f64>, Point2<f64>), (c, d): (Point2<f64>, Point2<f64>)) -> bool {
-    let side = |p: Point2<f64>, q: Point2<f64>, r: Point2<f64>| (q - p).perp(&(r - p));
-    side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
+    // Points on one line are on neither side, however they are rounded.
+    let side = |p: Point2<f64>, q: Point2<f64>, r: Point2<f64>| {
+        let doubled = (q - p).perp(&(r - p));
+        if doubled.abs() < ON_ONE_LINE { 0.0 } else { doubled }
+    };
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_on_one_line_do_not_cross() {
+        let along = |k: usize| Point2::new(10.0 + 0.37 * k as f64, 20.0 + 0.37 * k as f64);
+        let mut points: Vec<_> = (0..40).map(along).collect();
+        points.extend([Point2::new(24.8, 20.0), Point2::new(10.0, 20.0 - 1e-3)]);
+        assert_eq!(crossing_segments(&points), Vec::<usize>::new());
+    }
 
     #[test]
     fn a_line_that_crosses_itself_goes_back_there_and_stays_moved_elsewhere() {
