@@ -130,6 +130,12 @@ impl Input {
         self.warnings().iter().for_each(|warning| warn(warning));
     }
 
+    /// Says how the pictures are traced where that was chosen, and whether it is not to be trusted.
+    pub(crate) fn tell_tracing(&self) {
+        self.pictures().map(PictureInput::notes).unwrap_or_default().iter().for_each(|told| note(told));
+        self.pictures().map(PictureInput::doubts).unwrap_or_default().iter().for_each(|warning| warn(warning));
+    }
+
     /// Says what was seen to be wrong while the input was read.
     pub(crate) fn tell_in_the_end(&self) {
         self.pictures().and_then(PictureInput::closing_remark).iter().for_each(|warning| warn(warning));

@@ -89,7 +89,8 @@ impl PixelAspectCheck {
         let stretch = tried[best].0 + if bend > 0.0 { 0.5 * step * (a - c) / bend } else { 0.0 };
         let as_it_is = self.change_of_shape(1.0)?;
         let is_doubtless = (stretch - 1.0).abs() > SMALL && as_it_is > BETTER * b && b < NOT_RIGID;
-        (is_doubtless && self.turns(stretch)).then_some(stretch)
+        // A body that tilts may seem to turn once it is stretched, but not as it is.
+        (is_doubtless && self.turns(stretch) && self.turns(1.0)).then_some(stretch)
     }
 
     /// Whether a direction of the body is seen to turn where x is stretched: a body that tilts changes its shape too, but in one direction.

@@ -24,7 +24,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
-    input.tell();
+    input.tell_tracing();
     let mut sink = Sink::stdout();
     let mut collected = Collected::default();
     let (mut reasons, mut first_missing, mut warnings) = (Vec::new(), None::<Missing>, MissingWarnings::default());

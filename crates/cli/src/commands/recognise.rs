@@ -25,7 +25,7 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     let mut recogniser = learnt(args)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();
-    input.tell();
+    input.tell_tracing();
     let mut sink = Sink::stdout();
     let mut objects = SeenObjects::default();
     let (mut reasons, mut warnings, mut failure) = (Vec::new(), MissingWarnings::default(), None);

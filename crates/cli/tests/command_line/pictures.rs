@@ -363,7 +363,7 @@ fn values_out_of_range_are_refused_with_the_range() {
     for (arguments, status, message) in [
         (format!("identify {frames} --pixel-size -1"), 2, "-1 is not above 0"),
         (format!("outline {frames} --smoothing -0.5"), 2, "-0.5 is below 0"),
-        (format!("fit {frames} --frame 7"), 1, "no frame 7, there are frames 0-2"),
+        (format!("fit {frames} --light --frame 7"), 1, "no frame 7, there are frames 0-2"),
     ] {
         let output = run(&arguments, "");
         assert_eq!((output.status.code(), stderr(&output).lines().count()), (Some(status), 1), "{arguments}");

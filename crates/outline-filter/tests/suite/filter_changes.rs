@@ -95,7 +95,9 @@ fn an_object_that_spins_evenly_and_travels_straight_keeps_its_angular_velocity_t
             let found = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
             let (value, std) = (found.value.expect("known"), found.standard_deviation.expect("known"));
             let context = format!("{omega} {velocity:?}, seed {seed}: {value} {std}");
-            assert!((value - omega).abs() < 5.0 * std && std < 1e-3 * (1.0 + omega.abs()), "{context}");
+            // Chance makes one of the motions that are left out doubtful in some runs, which widens deviations.
+            assert!((value - omega).abs() < 1e-3 * (1.0 + omega.abs()), "{context}");
+            assert!((value - omega).abs() < 5.0 * std && std < 1.5e-3 * (1.0 + omega.abs()), "{context}");
             assert!(run.motion_changed() && run.frames_rejected() <= 3, "{context}: {}", run.frames_rejected());
         }
     }
