@@ -86,10 +86,20 @@ impl Found {
 impl PictureInput {
     /// Pictures in files, folders and patterns.
     pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions) -> Result<Self, Failure> {
-        let sequence = PictureSequence::open(paths, sequence_settings(options));
-        let preview = sequence.as_ref().ok().map(|sequence| Preview::of_paths(paths, sequence));
-        let again = |options: &PictureOptions| PictureSequence::open(paths, sequence_settings(options));
-        Self::of(sequence, preview, again, paths.to_owned(), options)
+        let inputs = paths.to_owned();
+        let open = |options: &PictureOptions| {
+            PictureSequence::open(paths, sequence_settings(options))
+                .map_err(|error| Failure::unusable(described(&error, paths)))
+        };
+        let mut sequence = open(options)?;
+        let preview = Preview::of_paths(paths, &sequence);
+        let base = picture_settings(options, sequence.pixel_aspect(), None)?;
+        base.check().map_err(Failure::unusable)?;
+        let (options, chosen) = choose(&preview, &base, options);
+        if chosen.is_some() && options.channel().channel() != Channel::Luminance {
+            sequence = open(&options)?;
+        }
+        Self::of(sequence, Some(preview), inputs, (options, chosen))
     }
 
     /// Pictures in a stream.
@@ -100,11 +110,10 @@ impl PictureInput {
         waiting: Waiting,
     ) -> Result<Self, Failure> {
         let inputs = vec![PathBuf::from(name)];
-        let is_whole = options.background.as_ref().is_some_and(|path| path.as_os_str() == "whole");
-        if (options.has_way() || waiting == Waiting::None) && !is_whole {
-            let sequence = PictureSequence::from_stream(source, name, sequence_settings(options));
-            let again = |_: &PictureOptions| PictureSequence::open(&[], SequenceSettings::default());
-            let mut input = Self::of(sequence, None, again, inputs, options)?;
+        if (options.has_way() || waiting == Waiting::None) && !options.compares_with_whole() {
+            let sequence = PictureSequence::from_stream(source, name, sequence_settings(options))
+                .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
+            let mut input = Self::of(sequence, None, inputs, (options.clone(), None))?;
             input.is_traced_unseen = !options.has_way();
             return Ok(input);
         }
@@ -123,34 +132,19 @@ impl PictureInput {
         let settings = picture_settings(options, None, None)?;
         let (options, chosen) = choose(&preview, &settings, options);
         let stream = Cursor::new(beginning).chain(source);
-        let sequence = PictureSequence::from_stream(stream, name, sequence_settings(&options));
-        let again = |_: &PictureOptions| PictureSequence::open(&[], SequenceSettings::default());
-        let mut input = Self::of(sequence, Some(preview), again, inputs, &options)?;
-        input.chosen = chosen;
-        Ok(input)
+        let sequence = PictureSequence::from_stream(stream, name, sequence_settings(&options))
+            .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
+        Self::of(sequence, Some(preview), inputs, (options, chosen))
     }
 
     fn of(
-        sequence: Result<PictureSequence, PictureError>,
+        sequence: PictureSequence,
         preview: Option<Preview>,
-        again: impl Fn(&PictureOptions) -> Result<PictureSequence, PictureError>,
         inputs: Vec<PathBuf>,
-        options: &PictureOptions,
+        (options, chosen): (PictureOptions, Option<Chosen>),
     ) -> Result<Self, Failure> {
-        let failed = |error: PictureError| Failure::unusable(described(&error, &inputs));
-        let mut sequence = sequence.map_err(failed)?;
-        let base = picture_settings(options, sequence.pixel_aspect(), None)?;
-        base.check().map_err(Failure::unusable)?;
-        let (options, chosen) = match &preview {
-            Some(preview) => choose(preview, &base, options),
-            None => (options.clone(), None),
-        };
-        if chosen.as_ref().is_some() && options.channel().channel() != Channel::Luminance {
-            sequence = again(&options).map_err(failed)?;
-        }
         let settings = picture_settings(&options, sequence.pixel_aspect(), preview.as_ref())?;
-        let is_whole = options.background.as_ref().is_some_and(|path| path.as_os_str() == "whole");
-        if is_whole && settings.background.is_none() {
+        if options.compares_with_whole() && settings.background.is_none() {
             return Err(Failure::unusable(
                 "--background whole: the pictures cannot be read ahead; give --background FILE or median",
             ));
@@ -380,7 +374,7 @@ fn picture_settings(
             Some(Background::RunningMedian(options.background_window.unwrap_or(MEDIAN_SIZE).into()))
         }
         Some(path) if path.as_os_str() == "surface" => Some(Background::Surface),
-        Some(path) if path.as_os_str() == "whole" => preview.and_then(|p| p.ground(channel)).map(Background::Picture),
+        Some(_) if options.compares_with_whole() => preview.and_then(|p| p.ground(channel)).map(Background::Picture),
         Some(path) => {
             let picture = read_picture_channel(path, channel);
             let failed = |error| Failure::unusable(format_args!("--background {}", plain(&error)));

@@ -163,16 +163,16 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
             _ => None,
         };
         let picture = &frame.picture;
-        let surface = match self.settings.background {
-            Some(Background::Surface) => Some(Arc::new(ground_surface(picture))),
-            _ => None,
-        };
         if let Some(latest) = self.latest.as_ref().filter(|latest| latest.is_of(picture, ground)) {
             return self.identities.assign(frame.frame, latest.traced.clone()?);
         }
         // Makes room before more is needed.
         self.latest = None;
         let limit = self.identities.limit();
+        let surface = match self.settings.background {
+            Some(Background::Surface) => Some(Arc::new(ground_surface(picture))),
+            _ => None,
+        };
         let traced = match surface.as_ref().or(ground) {
             None => trace_objects(picture, &self.settings.trace, limit),
             Some(ground) => {

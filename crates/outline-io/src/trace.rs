@@ -140,10 +140,10 @@ fn mask_outlines<'a>(
 ) -> Result<Traced<'a>, TraceError> {
     // Two-valued pictures are smoothed where the outline is traced, others before objects are looked for in them.
     let smooth = match settings.smoothing {
-        Smoothing::Gaussian(sigma) if sigma > 0.0 && !is_two_valued(picture) => Some((sigma, blurred(picture, sigma))),
+        Smoothing::Gaussian(sigma) if sigma > 0.0 && !is_two_valued(picture) => Some(blurred(picture, sigma)),
         _ => None,
     };
-    let (raw, picture) = (picture, smooth.map_or(Cow::Borrowed(picture), |(_, smooth)| Cow::Owned(smooth)));
+    let (raw, picture) = (picture, smooth.map_or(Cow::Borrowed(picture), Cow::Owned));
     let levels = Levels::of(&picture, settings.contrast, settings.threshold)?;
     let sigma = match (settings.smoothing, levels.two_valued) {
         (Smoothing::Gaussian(_), false) => 0.0,
@@ -176,7 +176,8 @@ fn mask_outlines<'a>(
     Ok(Box::new(traced))
 }
 
-fn is_two_valued(picture: &GrayImage) -> bool {
+/// Whether a picture has no more than two grey values.
+pub(crate) fn is_two_valued(picture: &GrayImage) -> bool {
     let mut seen = [false; 256];
     picture.as_raw().iter().for_each(|value| seen[usize::from(*value)] = true);
     seen.iter().filter(|seen| **seen).count() <= 2

@@ -32,24 +32,16 @@ impl Mask {
         if width == 0 || height == 0 || width.checked_mul(height).is_none_or(|pixels| pixels > MOST_PIXELS) {
             return Err(SimulationError::MaskSize { width, height, limit: MOST_PIXELS });
         }
-        let corners: Vec<_> = outline.points().map(|p| Point2::from(grid.to_pixels(p))).collect();
-        if let Some(&value) = corners.iter().flat_map(|p| &p.coords).find(|value| !value.is_finite()) {
+        let in_pixels = |p: &Point2<f64>| Point2::from(grid.to_pixels(p));
+        // Each contour of a closed outline by itself; open arcs one after the other.
+        let polygons: Vec<Vec<Point2<f64>>> = match outline {
+            Outline::Closed(_) => outline.pieces().map(|piece| piece.points.iter().map(in_pixels).collect()).collect(),
+            Outline::Open(_) => vec![outline.points().map(in_pixels).collect()],
+        };
+        if let Some(&value) = polygons.iter().flatten().flat_map(|p| &p.coords).find(|value| !value.is_finite()) {
             return Err(SimulationError::OutOfRange { setting: "place in the mask", value, range: "finite" });
         }
-        let mut accumulator = Accumulator::new(width, height);
-        // Each contour of a closed outline by itself; open arcs one after the other.
-        let lengths: Vec<usize> = match outline {
-            Outline::Closed(_) => outline.pieces().map(|piece| piece.points.len()).collect(),
-            Outline::Open(_) => vec![corners.len()],
-        };
-        let mut rest = corners.as_slice();
-        for length in lengths {
-            let (contour, others) = rest.split_at(length);
-            for (from, to) in contour.iter().zip(contour.iter().cycle().skip(1)) {
-                accumulator.add_edge(*from, *to);
-            }
-            rest = others;
-        }
+        let accumulator = Accumulator::of_polygons(polygons.iter().map(Vec::as_slice), [width, height]);
         Ok(Self { width, height, grey: accumulator.grey() })
     }
 
@@ -73,6 +65,17 @@ struct Accumulator {
 impl Accumulator {
     fn new(width: usize, height: usize) -> Self {
         Self { width, height, changes: vec![0.0; (width + 1) * height] }
+    }
+
+    /// Closed polygons in `[column, row]` of the picture.
+    fn of_polygons<'a>(polygons: impl Iterator<Item = &'a [Point2<f64>]>, [width, height]: [usize; 2]) -> Self {
+        let mut accumulator = Self::new(width, height);
+        for polygon in polygons {
+            for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+                accumulator.add_edge(*from, *to);
+            }
+        }
+        accumulator
     }
 
     fn add_edge(&mut self, from: Point2<f64>, to: Point2<f64>) {
@@ -134,15 +137,6 @@ impl Accumulator {
 }
 
 /// The share of every pixel that lies within closed polygons in `[column, row]` of the picture; holes run the other way round.
-pub(crate) fn covered_shares<'a>(
-    polygons: impl Iterator<Item = &'a [Point2<f64>]>,
-    [width, height]: [usize; 2],
-) -> Vec<f64> {
-    let mut accumulator = Accumulator::new(width, height);
-    for polygon in polygons {
-        for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
-            accumulator.add_edge(*from, *to);
-        }
-    }
-    accumulator.coverage().collect()
+pub(crate) fn covered_shares<'a>(polygons: impl Iterator<Item = &'a [Point2<f64>]>, size: [usize; 2]) -> Vec<f64> {
+    Accumulator::of_polygons(polygons, size).coverage().collect()
 }

@@ -150,6 +150,11 @@ impl PictureOptions {
         self.dark || self.light || self.threshold.is_some() || self.background.is_some() || self.ring.is_some()
     }
 
+    /// Whether pictures are compared with the median of the whole input.
+    pub(crate) fn compares_with_whole(&self) -> bool {
+        self.background.as_ref().is_some_and(|path| path.as_os_str() == "whole")
+    }
+
     /// Names and values of the options, for a report.
     pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
         let found = match (self.ring, &self.background, self.threshold) {

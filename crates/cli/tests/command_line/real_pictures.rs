@@ -13,6 +13,13 @@ fn data(name: &str) -> Option<String> {
     Some(path.to_str().expect("UTF-8").to_owned())
 }
 
+/// The frames of the robot, and its angles by its own tracker, if they are there.
+fn robot() -> Option<(String, Vec<f64>)> {
+    let (frames, tracker) =
+        data("sequences/microrobot_h/frames").zip(data("sequences/microrobot_h/authors_tracker.csv"))?;
+    Some((frames, tracked(&std::fs::read_to_string(tracker).expect("the tracker"))))
+}
+
 /// Number and poses of the frames that were used, by the name of the column.
 fn used(trajectory: &str) -> Vec<(usize, impl Fn(&str) -> f64 + use<>)> {
     let mut rows = trajectory.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
@@ -56,12 +63,7 @@ fn errors_of_turn(angles: &[(usize, f64)], tracker: &[f64]) -> (f64, f64) {
 
 #[test]
 fn the_turn_of_the_robot_in_raw_frames_is_that_of_its_own_tracker() {
-    let (Some(frames), Some(tracker)) =
-        (data("sequences/microrobot_h/frames"), data("sequences/microrobot_h/authors_tracker.csv"))
-    else {
-        return;
-    };
-    let tracker = tracked(&std::fs::read_to_string(tracker).expect("the tracker"));
+    let Some((frames, tracker)) = robot() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let base = folder.path().to_str().expect("UTF-8");
     let found = "--ring dark --channel red --fps 15.07 --quiet";
@@ -155,12 +157,7 @@ fn the_bolt_moves_evenly_while_in_view_and_is_followed_out_of_it() {
 
 #[test]
 fn the_robot_is_found_and_followed_without_an_option_but_the_rate_and_its_aspect_is_told() {
-    let (Some(frames), Some(tracker)) =
-        (data("sequences/microrobot_h/frames"), data("sequences/microrobot_h/authors_tracker.csv"))
-    else {
-        return;
-    };
-    let tracker = tracked(&std::fs::read_to_string(tracker).expect("the tracker"));
+    let Some((frames, tracker)) = robot() else { return };
     let folder = tempfile::tempdir().expect("a folder");
     let poses = folder.path().join("poses.csv");
     let output = run(&format!("identify {frames} --fps 15.07 --trajectory {}", poses.display()), "");

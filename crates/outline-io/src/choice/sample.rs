@@ -6,6 +6,7 @@ use super::scaled::{factor_for, scaled};
 use crate::channel::Channel;
 use crate::picture_error::PictureError;
 use crate::picture_sequence::PictureFrame;
+use crate::trace::is_two_valued;
 
 /// Pictures that follow each other, so that they show how evenly something moves.
 const BURST: u64 = 3;
@@ -175,11 +176,6 @@ impl PictureSample {
     /// Whether the pictures are masks.
     pub(super) fn is_two_valued(&self) -> bool {
         let Some((_, pictures)) = self.channels.first() else { return false };
-        self.factor == 1
-            && pictures.iter().all(|picture| {
-                let mut seen = [false; 256];
-                picture.as_raw().iter().for_each(|value| seen[usize::from(*value)] = true);
-                seen.iter().filter(|seen| **seen).count() <= 2
-            })
+        self.factor == 1 && pictures.iter().all(|picture| is_two_valued(picture))
     }
 }
