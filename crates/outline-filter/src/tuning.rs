@@ -209,6 +209,8 @@ pub(crate) mod update {
     /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
     /// that once in a million frames.
     pub(crate) const SUDDEN: f64 = 25.0;
+    /// What makes a measurement of the pose solvable along what it says nothing of.
+    pub(crate) const SINGULAR: f64 = 1e-9;
 }
 
 /// Remapping: the map cut anew from several frames.
@@ -339,7 +341,7 @@ pub(crate) mod dynamics {
     pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
     /// sixty frames, fourteen, three, and none.
-    pub(crate) const LEVELS: [f64; 4] = [1e-9, 1e-5, 1e-1, 1e3];
+    pub(crate) const LEVELS: [f64; 6] = [1e-9, 1e-5, 1e-1, 1e3, 1e5, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;
     /// As these, where the velocity of the middle alone changes.
@@ -349,8 +351,6 @@ pub(crate) mod dynamics {
     pub(crate) const MIDDLE: f64 = 0.02;
     /// Probability that an interval of 95 % leaves out.
     pub(crate) const LEFT_OUT: f64 = 0.05;
-    /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
-    pub(crate) const REACH: f64 = 0.26;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
     /// Share of a hypothesis below which it counts for nothing.
@@ -360,8 +360,6 @@ pub(crate) mod dynamics {
     pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
     /// Share by which a frame corrects the variance of a pose.
     pub(crate) const VARIANCE_GAIN: f64 = 0.1;
-    /// What makes a measurement of the pose solvable along what it says nothing of.
-    pub(crate) const SINGULAR: f64 = 1e-9;
     /// While a constant generator is more probable than this, which is what an interval of 95 % leaves out, its own estimate is stated, and
     /// widened by the others; then the object is expected where all hypotheses take it...
     pub(crate) const LEADS_FROM: f64 = LEFT_OUT;
@@ -417,7 +415,8 @@ pub(crate) mod family {
     pub(crate) const LEFT: f64 = 0.01;
     /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.
     pub(crate) const SINGULAR: f64 = 1e-9;
-    /// Frames looked at: all of the first so many, and then every so many.
+    /// Frames looked at: all of the first so many, and while the motion is known from fewer; else every so many. A frame that stands for
+    /// several must not correct more than it has found.
     pub(crate) const ALL_OF_THE_FIRST: usize = 16;
     pub(crate) const EVERY: usize = 4;
 }
@@ -445,6 +444,8 @@ pub(crate) mod statement {
     pub(crate) const MOST_REJECTED: f64 = 0.4;
     /// Fewest frames rejected that say so.
     pub(crate) const FEWEST_REJECTED: usize = 5;
+    /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
+    pub(crate) const REACH: f64 = 0.26;
 }
 
 /// States that are read from bytes.

@@ -97,6 +97,13 @@ fn the_turn_of_the_robot_in_raw_frames_is_that_of_its_own_tracker() {
                 (*frame, angle.to_degrees())
             }))
             .collect();
+        if motion == "rigid" {
+            let mut deviations: Vec<f64> = used(&trajectory).iter().map(|(_, value)| value("angle_std")).collect();
+            deviations.sort_by(f64::total_cmp);
+            let (middle, largest) = (deviations[deviations.len() / 2], deviations[deviations.len() - 1]);
+            println!("deviations of the turn: {middle:.4} in the median, {largest:.3} at most");
+            assert!(middle < 0.02 && largest < 0.3, "{middle} {largest}");
+        }
         let (median, total) = errors_of_turn(&angles, &tracker);
         println!(
             "{motion}: {} outlines, {} frames used, turn within {median:.2} degrees, the whole within {total:.2}",

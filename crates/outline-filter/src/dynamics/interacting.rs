@@ -11,7 +11,12 @@ use super::{
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;
-use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
+use crate::{
+    belief::StateMatrix,
+    map::NullDirection,
+    tuning::{dynamics as tuning, statement::REACH},
+    update::{PoseMeasurement, solved},
+};
 
 /// Hypotheses at most.
 const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
@@ -275,7 +280,7 @@ impl DynamicsFilter {
         let mut covariance = EntryMatrix::zeros();
         // Where one of them is stated, its interval reaches the others that are not left out.
         let others = 1.0 - self.weights().generator / sum;
-        let reach = if of_given.is_some() && others > 0.0 { (tuning::REACH / others).max(1.0) } else { 1.0 };
+        let reach = if of_given.is_some() && others > 0.0 { (REACH / others).max(1.0) } else { 1.0 };
         for (weight, x, p, wider) in parts() {
             for j in 0..2 * k {
                 for i in 0..2 * k {
@@ -344,15 +349,6 @@ fn centred(
     let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
     let covariance = EntryMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
     (mean, covariance)
-}
-
-/// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
-fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
-    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
-    let jitter =
-        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
-    let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
-    regular.lu().solve(b)
 }
 
 #[cfg(feature = "serde")]

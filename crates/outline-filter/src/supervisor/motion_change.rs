@@ -1,7 +1,17 @@
 //! How fast the motion changes, estimated from the innovations.
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::SVector;
+
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
-use crate::{dynamics::DynamicsFilter, prediction::ByKind, tuning::motion_change as tuning, update::PoseInnovation};
+use crate::{
+    belief::{StateMatrix, StateVector},
+    dynamics::DynamicsFilter,
+    prediction::ByKind,
+    track::Outcome,
+    tuning::{motion_change as tuning, statement::REACH},
+    update::PoseInnovation,
+};
 
 const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 
@@ -24,12 +34,52 @@ pub(super) struct MotionHistory {
     pub(super) change: MotionChange,
     /// None before the third frame, and where dynamics are not told.
     pub(super) dynamics: Option<DynamicsFilter>,
+    pub(super) contradiction: Option<Contradiction>,
+    /// Time since a frame was taken last.
+    since_taken: f64,
+}
+
+/// A frame that shows the object elsewhere than it was expected, and was not taken: it is wrong, or the motion has changed.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Contradiction {
+    /// Change of the motion since a frame was taken last that takes the object there, normalised.
+    change: SVector<f64, MAX_PARAMETERS>,
 }
 
 impl MotionHistory {
     /// Whether the motion has been seen to change by more than a constant generator does.
     pub(super) fn is_changing(&self) -> bool {
         self.change.is_seen() || self.dynamics.as_ref().is_some_and(DynamicsFilter::leads)
+    }
+
+    /// Takes what became of a frame some time after the one before, of a motion with so many parameters.
+    pub(super) fn take(&mut self, outcome: &Outcome, seconds: f64, parameters: usize) {
+        self.since_taken += seconds;
+        if outcome.is_accepted() {
+            (self.contradiction, self.since_taken) = (None, 0.0);
+            if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {
+                dynamics.update(measured);
+            }
+        } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error(parameters)) {
+            self.contradiction = Some(Contradiction { change: pose / self.since_taken });
+        }
+    }
+
+    /// A covariance of pose and motion, of k parameters, by which an interval of 95 % reaches what a frame shows that has not been taken.
+    pub(super) fn contradicted(&self, k: usize) -> Option<StateMatrix> {
+        let Contradiction { change } = self.contradiction?;
+        let apart = StateVector::from_fn(|i, _| match i {
+            i if i < k => change[i] * self.since_taken,
+            i if i < 2 * k => change[i - k],
+            _ => 0.0,
+        });
+        Some(REACH * apart * apart.transpose())
+    }
+
+    /// Forgets what was tied to another pose.
+    pub(super) fn begin_anew(&mut self) {
+        (self.dynamics, self.contradiction, self.since_taken) = (None, None, 0.0);
     }
 }
 
@@ -137,7 +187,11 @@ impl MotionHistory {
     /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
     pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
         let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
-        self.change.is_finite() && self.dynamics.as_ref().is_none_or(of_settings)
+        let is_contradiction = |of: &Contradiction| of.change.iter().all(|entry| entry.is_finite());
+        self.change.is_finite()
+            && self.dynamics.as_ref().is_none_or(of_settings)
+            && self.contradiction.as_ref().is_none_or(is_contradiction)
+            && self.since_taken.is_finite()
     }
 }
 

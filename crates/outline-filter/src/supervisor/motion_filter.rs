@@ -268,7 +268,7 @@ impl MotionFilter {
         let turn = self.hypotheses.taken();
         let outcome = self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
         if self.hypotheses.taken() != turn {
-            self.history.dynamics = None;
+            self.history.begin_anew();
         }
         Some(outcome)
     }
@@ -288,7 +288,7 @@ impl MotionFilter {
         self.track = Some(track);
         self.track_time = time;
         self.phase = phase;
-        self.history.dynamics = None;
+        self.history.begin_anew();
     }
 
     /// The settings.

@@ -49,6 +49,9 @@ impl MotionFilter {
             let summary = dynamics.combined((!dynamics.leads()).then_some(&own), Purpose::Statement).unwrap_or(own);
             random = summary.widened(model, &middle, &dynamics.factors(), [&none, &none])?;
         }
+        if let Some(covariance) = self.history.contradicted(model.parameter_count()) {
+            random.covariance += covariance;
+        }
         let (left_out, moments) = track.left_out();
         let mut all = random;
         all.covariance += moments;

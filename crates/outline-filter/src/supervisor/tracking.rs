@@ -48,7 +48,7 @@ pub(super) fn advance(
     // Errors that are larger than the model's, such as those of a camera that shakes, are no change of the motion.
     let widening = history.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening);
     let outcome = measured(settings, (track, frame), &mut history.change, (known, widening), comparison);
-    take(history, &outcome);
+    history.take(&outcome, seconds, track.model().parameter_count());
     outcome
 }
 
@@ -114,15 +114,5 @@ fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHis
         dynamics.take_reference(&expected.pose);
     } else if let Some(variances) = history.change.variances() {
         track.add_change(variances);
-    }
-}
-
-/// Takes what an accepted frame tells of the pose.
-fn take(history: &mut MotionHistory, outcome: &Outcome) {
-    if !outcome.is_accepted() {
-        return;
-    }
-    if let Some((dynamics, measured)) = history.dynamics.as_mut().zip(outcome.pose.as_ref()) {
-        dynamics.update(measured);
     }
 }

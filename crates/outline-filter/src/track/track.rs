@@ -55,7 +55,7 @@ pub(crate) struct Outcome {
     pub(crate) measurement: FrameMeasurement,
     pub(crate) verdict: Result<(), Rejection>,
     pub(crate) innovation: PoseInnovation,
-    /// What the frame tells of the pose by itself, if it was taken.
+    /// What the frame tells of the pose by itself, if it shows the outline, taken or not.
     pub(crate) pose: Option<PoseMeasurement>,
     /// Of the frame given what was known before it; none unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
@@ -197,10 +197,9 @@ impl Track {
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
         let correlation = correlation_of(&frame.measurements, measurement.noise.map(|noise| noise / radius));
         let verdict = gate.verdict(&measurement);
-        let mut pose = None;
-        if verdict.is_ok() {
-            let measured = PoseMeasurement::of(&self.belief, &proposal, frame);
-            pose = Some(measured.over(variance));
+        let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
+        let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
+        if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
             self.frames += 1;
             self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
@@ -215,6 +214,7 @@ impl Track {
                 self.grow_along(contours, frame);
             }
         }
+        let pose = measured.map(|measured| measured.over(variance));
         Outcome { measurement, verdict, innovation, pose, likelihood }
     }
 

@@ -3,7 +3,7 @@ use crate::filter_support::{filter, filtered, frames_of, settings};
 use freeform_estimate::ProcessNoise;
 use freeform_outline_filter::{FilterSettings, MotionFilter, Phase};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
-use freeform_sim_camera::{BuiltInShape, Motion, Settings};
+use freeform_sim_camera::{BuiltInShape, Frame, Motion, Settings};
 use nalgebra::Affine2;
 
 #[test]
@@ -150,4 +150,44 @@ fn an_object_that_takes_the_place_of_one_whose_motion_changed_has_not_changed_it
     };
     // It has half of the frames.
     assert!(deviation(&run) < 6.0 * deviation(&alone), "{} {}", deviation(&run), deviation(&alone));
+}
+
+/// Time, what the turn of the pose is off, and its standard deviation, of every frame from the eighth on; whether it was used.
+fn turns(frames: &[Frame], turned: impl Fn(f64) -> f64) -> Vec<(f64, f64, bool)> {
+    let mut run = filter(MotionModel::Rigid);
+    let mut found = Vec::new();
+    for (number, frame) in frames.iter().enumerate() {
+        let is_used = run.step(frame.time, &frame.outline).expect("a later frame").is_accepted();
+        let Some(state) = run.state().filter(|_| number >= 8) else { continue };
+        let turn = state.pose_parameters().into_iter().next().expect("the turn comes first");
+        let off = turn.value - turned(frame.time);
+        found.push((off.sin().atan2(off.cos()), turn.standard_deviation, is_used));
+    }
+    found
+}
+
+#[test]
+fn the_pose_of_an_object_that_is_pushed_again_and_again_is_within_its_deviations_also_where_a_frame_is_not_used() {
+    let pushes =
+        [1.2, -0.4, 0.1, 1.8, 1.0, 0.0, 0.0, -1.1, 0.6, 1.9, 0.3, -0.7, 0.0, 1.4, 0.9, -1.6, 0.2, 0.0, 1.1, -0.2];
+    let phase = |number: usize| 0.2 * number as f64;
+    let motions = pushes.iter().enumerate().map(|(number, omega)| {
+        (phase(number), AffineMotion::from(RigidMotion { omega: *omega, b1: 0.1 * omega, b2: -0.2 }))
+    });
+    let motion = Motion::piecewise(motions.collect()).expect("phases");
+    let parts = |time: f64| {
+        pushes.iter().enumerate().map(move |(number, omega)| omega * (time - phase(number)).clamp(0.0, 0.2))
+    };
+    let (mut rejected, mut wide) = (0, 0);
+    for seed in 0..6 {
+        let frames = frames_of(BuiltInShape::Bird, motion.clone(), Settings { fps: 15.0, ..settings(60, seed) });
+        let found = turns(&frames, |time| parts(time).sum());
+        for (off, std, is_used) in &found {
+            assert!(off.abs() < 5.0 * std, "seed {seed}: {off} {std} {is_used}");
+        }
+        rejected += found.iter().filter(|(.., is_used)| !is_used).count();
+        wide += found.iter().filter(|(_, std, _)| *std > 0.3).count();
+    }
+    println!("{rejected} not used, {wide} of little worth");
+    assert!(rejected > 10 && wide < 20, "{rejected} {wide}");
 }
