@@ -53,10 +53,16 @@ pub(crate) mod contour {
     pub(crate) const NORMAL_NOISE: f64 = 0.05;
     /// As [`NORMAL_NOISE`], for the pilot regression.
     pub(crate) const PILOT_NORMAL_NOISE: f64 = 0.25;
-    /// Neighbours are looked for among one of so many parts of the points, on either side, where outliers lie between.
+    /// Neighbours are looked for among one of so many parts of the points, on either side, where outliers lie between; and windows reach no
+    /// further.
     pub(crate) const PARTS: usize = 8;
+    /// As [`PARTS`], for windows that are wider than normals usually need: what is seen of an outline by little is waves, and a window of a
+    /// tenth of it leaves nine tenths of three waves.
+    pub(crate) const FINE_PARTS: usize = 20;
     /// Smallest and largest half window of the local regression, in points.
     pub(crate) const HALF_WINDOWS: std::ops::RangeInclusive<usize> = 2..=30;
+    /// Largest that is wider than normals usually need, in points.
+    pub(crate) const LARGEST_FINE: usize = 120;
     /// Residuals of a regression that a point took part in are divided by their deviation, no less than this share of a variance.
     pub(crate) const LEAST_RESIDUAL_VARIANCE: f64 = 0.05;
     /// Points whose residuals keep less of their variance than this tell nothing of the noise.
@@ -69,6 +75,15 @@ pub(crate) mod null_space {
     pub(crate) const DEGENERATE: f64 = 0.003;
     /// Times what the errors of the normals would make of the levers in a direction that is not seen: that, and some more.
     pub(crate) const EXPLAINED: f64 = 2.0;
+    /// Eigenvalue of the lever arms of a turn below which better normals are asked for than others need.
+    pub(crate) const WEAKLY_SHOWN: f64 = 0.02;
+    /// Levers of a turn that is weakly shown, in those that the errors of the normals make. What these take from each frame adds up over n
+    /// frames, to errors that are n to the power of one in so many as large.
+    pub(crate) const LEVER_PER_NOISE: f64 = 100.0;
+    /// As that, what is enough where no better normals are to be had.
+    pub(crate) const LEAST_LEVER_PER_NOISE: f64 = 50.0;
+    /// Eigenvalue of the lever arms below which a direction is hardly shown: an ellipse whose axes differ by a seventh.
+    pub(crate) const HARDLY_SHOWN: f64 = 0.01;
     /// Deviation of a normal's direction that cells are far enough apart for, rad...
     pub(crate) const CHORD_NOISE: f64 = 0.035;
     /// ...but no further than one of so many parts of all.

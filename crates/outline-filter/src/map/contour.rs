@@ -57,17 +57,28 @@ impl Contour {
         Some(sigma)
     }
 
-    /// Smallest window that gives normals their direction, for noise `sigma`.
-    pub(crate) fn half_window(&self, sigma: f64) -> usize {
-        self.half_window_for(sigma, tuning::NORMAL_NOISE)
+    /// Smallest window that gives normals their direction, for noise `sigma`; where it need not be wide, one for a deviation of the direction
+    /// of no more than `normal_noise`, in rad.
+    pub(super) fn half_window(&self, sigma: f64, normal_noise: f64) -> usize {
+        let usual = self.half_window_for(sigma, tuning::NORMAL_NOISE);
+        if normal_noise < tuning::NORMAL_NOISE {
+            let largest = (self.points.len() / tuning::FINE_PARTS).min(tuning::LARGEST_FINE);
+            self.narrowest(sigma, normal_noise, largest).max(usual)
+        } else {
+            usual
+        }
     }
 
     fn half_window_for(&self, sigma: f64, normal_noise: f64) -> usize {
-        let step = self.median_step();
-        let needed = (sigma / (normal_noise * step)).powi(2);
-        let enough = |w: &usize| (w * (w + 1) * (2 * w + 1)) as f64 / 3.0 >= needed;
-        let largest = (self.points.len() / 8).clamp(*tuning::HALF_WINDOWS.start(), *tuning::HALF_WINDOWS.end());
-        tuning::HALF_WINDOWS.take_while(|w| *w <= largest).find(enough).unwrap_or(largest)
+        let largest = self.points.len() / tuning::PARTS;
+        self.narrowest(sigma, normal_noise, largest.min(*tuning::HALF_WINDOWS.end()))
+    }
+
+    fn narrowest(&self, sigma: f64, normal_noise: f64, largest: usize) -> usize {
+        let noise = sigma / self.median_step();
+        let smallest = *tuning::HALF_WINDOWS.start();
+        let is_enough = |w: &usize| direction_variance(noise, *w) <= normal_noise * normal_noise;
+        (smallest..=largest).find(is_enough).unwrap_or(largest.max(smallest))
     }
 
     /// Places every `spacing` along the smoothed contour.
@@ -244,6 +255,12 @@ impl Contour {
     }
 }
 
+/// Variance of the direction of a local regression over so many points to either side, in rad squared, for noise in units of their distance.
+pub(super) fn direction_variance(noise: f64, half_window: usize) -> f64 {
+    let w = half_window as f64;
+    3.0 * noise * noise / (w * (w + 1.0) * (2.0 * w + 1.0))
+}
+
 /// Median, the upper one of two; reorders the list.
 pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     if values.is_empty() {
@@ -256,5 +273,5 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
 /// Whether a contour may be smoothed over so many points to either side.
 #[cfg(feature = "serde")]
 pub(super) fn is_half_window(points: usize) -> bool {
-    tuning::HALF_WINDOWS.contains(&points)
+    (*tuning::HALF_WINDOWS.start()..=tuning::LARGEST_FINE).contains(&points)
 }

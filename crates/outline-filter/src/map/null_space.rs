@@ -2,8 +2,8 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, turn_rate};
 use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::OutlineMap;
-use crate::tuning::null_space as tuning;
+use super::{OutlineMap, contour::direction_variance};
+use crate::tuning::{contour::NORMAL_NOISE, null_space as tuning};
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +54,8 @@ pub(super) struct NullSpace {
     pub(super) frame: Matrix3<f64>,
     pub(super) middle: Point2<f64>,
     pub(super) turn: TurnEvidence,
+    /// Smallest eigenvalue of the levers of a turn that may be shown, less what errors of the normals make of it.
+    weakest_turn: f64,
 }
 
 impl Default for NullSpace {
@@ -63,6 +65,7 @@ impl Default for NullSpace {
             frame: Matrix3::identity(),
             middle: Point2::origin(),
             turn: TurnEvidence::default(),
+            weakest_turn: f64::INFINITY,
         }
     }
 }
@@ -211,14 +214,25 @@ impl OutlineMap {
             levers_of_noise += variance / count * along * along.transpose();
         }
         let middle = self.area_centroid().unwrap_or(centroid);
+        let of_cells = direction_variance(sigma / self.step, self.half_window);
+        let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_cells);
         let eigen = levers.symmetric_eigen();
         let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
         let space = &mut self.null_space;
         space.in_body.clear();
+        space.weakest_turn = f64::INFINITY;
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
             let of_noise = (vector.transpose() * levers_of_noise * vector)[(0, 0)];
-            if *value < tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise) {
-                let generator = model.generator(&vector.as_slice()[..k]);
+            let told = *value - of_noise;
+            let generator = model.generator(&vector.as_slice()[..k]);
+            let mut is_shown = *value >= tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise);
+            // Where shapes may change, a weak direction is more of that than of a turn.
+            let is_turn = model <= MotionModel::Similarity && turn_rate(&generator).abs() > tuning::HOLDS_TURN;
+            if is_shown && is_turn {
+                space.weakest_turn = space.weakest_turn.min(told);
+                is_shown = told >= needed;
+            }
+            if !is_shown {
                 let Some(inverse) = to_body.try_inverse() else { continue };
                 space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
             }
@@ -229,6 +243,14 @@ impl OutlineMap {
             TurnEvidence::NewAndHidden => TurnEvidence::New,
             turn => turn,
         };
+    }
+
+    /// Deviation that directions of normals may have at most, in rad. Points slide along an outline that errs in its normals, and the
+    /// levers that these errors make say that they do not: the less an outline shows of its turn, the better its normals must be.
+    pub(crate) fn normal_noise(&self) -> f64 {
+        let weakest = self.null_space.weakest_turn;
+        let is_weak = weakest < tuning::WEAKLY_SHOWN;
+        if is_weak { NORMAL_NOISE.min((weakest / tuning::LEVER_PER_NOISE).sqrt()) } else { NORMAL_NOISE }
     }
 
     /// Normal of the outline at a cell, and the variance of its direction in rad squared, by the cells some way before and after it. Where

@@ -26,6 +26,8 @@ pub(crate) struct OutlineMap {
     pub(super) spacing: f64,
     /// Of the regression that places and normals come from, in points.
     pub(super) half_window: usize,
+    /// Mean distance of the points of that regression.
+    pub(super) step: f64,
     /// Most places that a frame has shown at once.
     pub(super) most_seen: usize,
     pub(super) null_space: NullSpace,
@@ -35,16 +37,17 @@ impl OutlineMap {
     /// One without cells, for contours with noise of deviation `sigma`, of which `points` will be measured. `None` where their length
     /// is none.
     pub(crate) fn for_contours(resolution: Resolution) -> Option<Self> {
-        let Resolution { spacing, half_window } = resolution;
+        let Resolution { spacing, half_window, step } = resolution;
         let map = Self {
             cells: Vec::new(),
             field: NearestField::default(),
             spacing,
             half_window,
+            step,
             most_seen: 0,
             null_space: NullSpace::default(),
         };
-        (spacing > 0.0).then_some(map)
+        (spacing > 0.0 && step > 0.0).then_some(map)
     }
 
     pub(crate) fn cells(&self) -> &[Cell] {
@@ -116,17 +119,20 @@ impl OutlineMap {
 pub(crate) struct Resolution {
     spacing: f64,
     half_window: usize,
+    /// Mean distance of the points.
+    step: f64,
 }
 
 impl Resolution {
-    /// For contours, and the deviation of their noise, which is no less than `least_noise`; `points` of one frame will be measured on the cells.
-    pub(crate) fn of(contours: &[Contour], least_noise: f64, points: usize) -> (Self, f64) {
+    /// For contours, and the deviation of their noise, which is no less than `least_noise`; `points` of one frame will be measured on the
+    /// cells, whose normals have directions with deviations of no more than `normal_noise`, in rad.
+    pub(crate) fn of(contours: &[Contour], least_noise: f64, points: usize, normal_noise: f64) -> (Self, f64) {
         let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
         for contour in contours {
             let mut contour = contour.clone();
             let weight = contour.len() as f64;
             let Some(sigma) = contour.noise().map(|noise| noise.max(least_noise)) else { continue };
-            window = contour.half_window(sigma).max(window);
+            window = contour.half_window(sigma, normal_noise).max(window);
             variance += weight * sigma * sigma;
             count += weight;
             length += contour.smooth_length(window);
@@ -137,7 +143,7 @@ impl Resolution {
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);
         let spacing =
             plenty.min(tuning::NOISE_PER_CELL * sigma).max(length / finest).min(length / tuning::CELLS_PER_LENGTH);
-        (Self { spacing, half_window: window }, sigma)
+        (Self { spacing, half_window: window, step: length / f64::max(count, 1.0) }, sigma)
     }
 }
 
@@ -155,6 +161,7 @@ impl OutlineMap {
             && self.cells.iter().all(is_cell)
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
             && super::contour::is_half_window(self.half_window)
+            && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.step)
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
             && in_body.iter().flatten().chain(frame).all(within)

@@ -65,6 +65,9 @@ impl Track {
         let (model, least_noise) = (self.belief.model, tuning::LEAST_NOISE * self.noise.sigma);
         let first_pose = self.first_pose;
         let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least_noise, buffers)?;
+        if track.turn_is_unseen() {
+            return None;
+        }
         track.first_pose = first_pose;
         track.noise.take_level_of(&self.noise);
         track.doubt_first_pose();

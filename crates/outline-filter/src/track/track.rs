@@ -14,7 +14,7 @@ use crate::{
     map::{Contour, NullDirection, OutlineMap, Resolution, TurnEvidence},
     measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
-    tuning::{map::FEWEST_POINTS, update as tuning},
+    tuning::{contour::NORMAL_NOISE, map::FEWEST_POINTS, update as tuning},
     update::{
         FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold, with_hold,
     },
@@ -90,8 +90,25 @@ impl Track {
         least_noise: f64,
         frame: &mut Frame,
     ) -> Option<Self> {
+        let mut cut = |contours, normal_noise| {
+            Self::cut_with(model, reference, pose, contours, (least_noise, normal_noise), frame)
+        };
+        let track = cut(contours.clone(), NORMAL_NOISE)?;
+        let needed = track.map.normal_noise();
+        if needed < NORMAL_NOISE { cut(contours, needed).or(Some(track)) } else { Some(track) }
+    }
+
+    /// As [`cut`](Self::cut), with normals whose directions have deviations of no more than that given last.
+    fn cut_with(
+        model: MotionModel,
+        reference: Reference,
+        pose: Matrix3<f64>,
+        contours: Vec<Contour>,
+        (least_noise, normal_noise): (f64, f64),
+        frame: &mut Frame,
+    ) -> Option<Self> {
         let loaded = frame.points.len();
-        let (resolution, sigma) = Resolution::of(&contours, least_noise, loaded);
+        let (resolution, sigma) = Resolution::of(&contours, least_noise, loaded, normal_noise);
         if loaded < FEWEST_POINTS || !sigma.is_finite() {
             return None;
         }
