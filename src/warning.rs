@@ -26,6 +26,11 @@ pub enum Warning {
         /// Their names.
         parameters: Vec<&'static str>,
     },
+    /// The outlines show these parameters, but they are not known well enough to be stated (motion filter).
+    NotKnown {
+        /// Their names.
+        parameters: Vec<&'static str>,
+    },
     /// The outlines contain no information on these parameters: the lines of a round outline do not turn with it (adaptive method).
     RotationNotObservable {
         /// Their names.
@@ -116,7 +121,7 @@ impl Warning {
             Self::Ambiguous(_) | Self::AmbiguousCorrespondence { .. } => 2,
             Self::WrongFamily { .. } | Self::AffineBias => 3,
             Self::Aliases { .. } => 4,
-            Self::NotObservable { .. } | Self::RotationNotObservable { .. } => 5,
+            Self::NotObservable { .. } | Self::NotKnown { .. } | Self::RotationNotObservable { .. } => 5,
             Self::Restarted { .. } | Self::MayNotHaveSettled { .. } | Self::LinesNotFollowed { .. } => 6,
             Self::MotionChanged => 7,
             Self::FramesRejected { .. } => 8,
@@ -130,6 +135,7 @@ impl Warning {
         match self {
             Self::PointsOutOfOrder { .. } => "points_out_of_order",
             Self::NotObservable { .. } => "not_observable",
+            Self::NotKnown { .. } => "not_known",
             Self::RotationNotObservable { .. } => "rotation_not_observable",
             Self::Lost => "lost",
             Self::Reacquiring { .. } => "reacquiring",
@@ -167,6 +173,9 @@ impl fmt::Display for Warning {
             ),
             Self::NotObservable { parameters } => {
                 write!(f, "not observable from these outlines: {}", parameters.join(", "))
+            }
+            Self::NotKnown { parameters } => {
+                write!(f, "not known well enough at the end to be stated: {}", parameters.join(", "))
             }
             Self::RotationNotObservable { parameters } => {
                 write!(f, "rotation is not observable from these outlines; unknown: {}", parameters.join(", "))

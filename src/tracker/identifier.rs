@@ -1,6 +1,6 @@
 //! The identifier of one object, whichever method it is.
 use freeform_curve_fit::{Fit, Outline};
-use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
+use freeform_estimate::{MotionEstimate, MotionState, ParameterEstimate, PointVelocity};
 use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, Unstated};
 
 use super::{
@@ -163,10 +163,16 @@ impl FilteredObject {
         let mut warnings = Vec::new();
         if let Some((_, estimate)) = last_known {
             let ambiguous = ambiguity.as_ref().map_or(&[][..], |ambiguity| &ambiguity.parameters);
-            let unknown = estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name);
-            let parameters: Vec<_> = unknown.filter(|name| !ambiguous.contains(name)).collect();
-            if !parameters.is_empty() {
-                warnings.push(Warning::NotObservable { parameters });
+            let unknown = estimate.parameters().zip(filter.hidden_parameters()).filter(|(p, _)| p.value.is_none());
+            let unknown = unknown.filter(|(p, _)| !ambiguous.contains(&p.name));
+            let (hidden, others): (Vec<_>, Vec<_>) = unknown.partition(|(_, is_hidden)| *is_hidden);
+            let names = |of: Vec<(ParameterEstimate, bool)>| of.into_iter().map(|(p, _)| p.name).collect::<Vec<_>>();
+            let (hidden, others) = (names(hidden), names(others));
+            if !hidden.is_empty() {
+                warnings.push(Warning::NotObservable { parameters: hidden });
+            }
+            if !others.is_empty() {
+                warnings.push(Warning::NotKnown { parameters: others });
             }
         }
         match (filter.phase(), last_known) {

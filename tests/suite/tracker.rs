@@ -252,6 +252,7 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
     let warnings = [
         Warning::PointsOutOfOrder { frame: 1, perimeters: 9.0 },
         Warning::NotObservable { parameters: parameters() },
+        Warning::NotKnown { parameters: parameters() },
         Warning::RotationNotObservable { parameters: parameters() },
         Warning::Lost,
         Warning::Reacquiring { last_known: 1.0 },
@@ -273,7 +274,7 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
     assert!(warnings.iter().all(|warning| !warning.to_string().is_empty() && !warning.to_string().contains('\n')));
     let ambiguous = "ambiguous: another turn explains the outlines equally well: -14.3 or -57.3 instead of 28.6 degrees from one \
                      frame to the next";
-    assert_eq!(warnings[7].to_string(), ambiguous);
+    assert_eq!(warnings[8].to_string(), ambiguous);
 }
 
 #[test]

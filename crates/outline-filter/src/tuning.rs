@@ -56,8 +56,8 @@ pub(crate) mod contour {
     /// Neighbours are looked for among one of so many parts of the points, on either side, where outliers lie between; and windows reach no
     /// further.
     pub(crate) const PARTS: usize = 8;
-    /// As [`PARTS`], for windows that are wider than normals usually need: what is seen of an outline by little is waves, and a window of a
-    /// tenth of it leaves nine tenths of three waves.
+    /// As [`PARTS`], for windows that are wider than normals usually need: over a tenth of an outline, smoothing leaves nine tenths of the
+    /// height of a wave that is a third of it long.
     pub(crate) const FINE_PARTS: usize = 20;
     /// Smallest and largest half window of the local regression, in points.
     pub(crate) const HALF_WINDOWS: std::ops::RangeInclusive<usize> = 2..=30;
@@ -75,14 +75,14 @@ pub(crate) mod null_space {
     pub(crate) const DEGENERATE: f64 = 0.003;
     /// Times what the errors of the normals would make of the levers in a direction that is not seen: that, and some more.
     pub(crate) const EXPLAINED: f64 = 2.0;
-    /// Eigenvalue of the lever arms of a turn below which better normals are asked for than others need.
+    /// Eigenvalue of the lever arms of a turn below which its normals are taken from wider windows.
     pub(crate) const WEAKLY_SHOWN: f64 = 0.02;
-    /// Levers of a turn that is weakly shown, in those that the errors of the normals make. What these take from each frame adds up over n
-    /// frames, to errors that are n to the power of one in so many as large.
+    /// Eigenvalue of the lever arms of such a turn, in what errors of the normals make of it, that windows are chosen for. Over n frames errors
+    /// grow as n^(1/100) beyond what is stated.
     pub(crate) const LEVER_PER_NOISE: f64 = 100.0;
-    /// As that, what is enough where no better normals are to be had.
+    /// As that, below which the turn is held as not shown.
     pub(crate) const LEAST_LEVER_PER_NOISE: f64 = 50.0;
-    /// Eigenvalue of the lever arms below which a direction is hardly shown: an ellipse whose axes differ by a seventh.
+    /// Eigenvalue of the lever arms above which it never is: that of an ellipse whose axes differ by a seventh.
     pub(crate) const HARDLY_SHOWN: f64 = 0.01;
     /// Deviation of a normal's direction that cells are far enough apart for, rad...
     pub(crate) const CHORD_NOISE: f64 = 0.035;
@@ -344,7 +344,7 @@ pub(crate) mod dynamics {
     /// Factor of the stated variances of a constant velocity, which remembers all frames and adds up what errors of poses have in common.
     /// Measured: deviations 1.75 times as large.
     pub(crate) const IN_COMMON: f64 = 3.0;
-    /// Probability of each change from one hypothesis to another in a frame: a thousandth for all of them together.
+    /// Probability of each change from one hypothesis to another in a frame: 0.17 % for all of them together.
     pub(crate) const TRANSITION: f64 = 0.000_15;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
     pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
@@ -355,7 +355,7 @@ pub(crate) mod dynamics {
     /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
     pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
-    /// sixty frames, fourteen, three, and none.
+    /// sixty frames, fourteen, three, and none; the last are those of bodies that are pushed.
     pub(crate) const LEVELS: [f64; 6] = [1e-9, 1e-5, 1e-1, 1e3, 1e5, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;

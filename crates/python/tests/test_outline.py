@@ -46,7 +46,7 @@ def test_outlines_can_be_pickled():
     hole = [[0.25, 0.25], [0.25, 0.75], [0.75, 0.75]]
     body = ff.Outline._from_pieces([np.asarray(SQUARE, dtype=float), np.asarray(hole)], True)
     again = pickle.loads(pickle.dumps(body))
-    assert again == body and [len(piece) for piece in again.pieces()] == [len(SQUARE), 3]
+    assert again == body and [len(piece) for piece in again.pieces] == [len(SQUARE), 3]
 
 
 def test_outlines_become_a_table_and_come_back():

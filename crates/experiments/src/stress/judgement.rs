@@ -7,9 +7,10 @@ use super::sequence::Truth;
 
 /// Codes of warnings that do not question a value that is stated: that others are not, that single frames were not used, that the
 /// values are those at the end, or that there are others (which count where one of them is the true one). Every other warning makes up for a wrong value.
-pub const NOTES: [&str; 7] = [
+pub const NOTES: [&str; 8] = [
     "aliases",
     "not_observable",
+    "not_known",
     "rotation_not_observable",
     "frame_rejected",
     "more_frames_rejected",
@@ -206,6 +207,7 @@ mod tests {
         for note in [
             Warning::MotionChanged,
             Warning::NotObservable { parameters: vec!["b1"] },
+            Warning::NotKnown { parameters: vec!["b1"] },
             Warning::FramesRejected { rejected: 20, frames: 50 },
         ] {
             assert!(with(note).is_silent());

@@ -214,6 +214,13 @@ impl DynamicsFilter {
         self.leads
     }
 
+    /// Whether others than a constant generator are neither ruled out nor lead already.
+    pub(crate) fn has_others(&self) -> bool {
+        let of_generator =
+            self.hypotheses.iter().zip(&self.weights).find(|(h, _)| h.course == Course::ConstantGenerator);
+        !self.leads && of_generator.is_some_and(|(_, weight)| 1.0 - weight > tuning::LEFT_OUT)
+    }
+
     /// Factors, at least 1, by which the innovations say that deviations about the middle are to be widened.
     pub(crate) fn factors(&self) -> CentredDeviations {
         let spread = self.series.spread(self.model.parameter_count());

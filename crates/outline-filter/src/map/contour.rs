@@ -57,8 +57,8 @@ impl Contour {
         Some(sigma)
     }
 
-    /// Smallest window that gives normals their direction, for noise `sigma`; where it need not be wide, one for a deviation of the direction
-    /// of no more than `normal_noise`, in rad.
+    /// Smallest window that gives normals a direction with a deviation of no more than `normal_noise`, in rad, for noise `sigma`: as far as
+    /// a tenth of the contour allows where that is less than normals usually need.
     pub(super) fn half_window(&self, sigma: f64, normal_noise: f64) -> usize {
         let usual = self.half_window_for(sigma, tuning::NORMAL_NOISE);
         if normal_noise < tuning::NORMAL_NOISE {
@@ -81,8 +81,14 @@ impl Contour {
         (smallest..=largest).find(is_enough).unwrap_or(largest.max(smallest))
     }
 
+    /// A window that was chosen for another contour, no wider than this one allows where it is wider than windows usually are.
+    fn no_wider(&self, half_window: usize) -> usize {
+        half_window.min((self.points.len() / tuning::PARTS).max(*tuning::HALF_WINDOWS.end()))
+    }
+
     /// Places every `spacing` along the smoothed contour.
     pub(crate) fn resampled(&mut self, sigma: f64, half_window: usize, spacing: f64) -> Option<SmoothPiece> {
+        let half_window = self.no_wider(half_window);
         self.mark_outliers(half_window, sigma);
         let mut fits: Vec<LocalFit> = (0..self.points.len())
             .filter(|i| !self.outlier[*i])
@@ -127,6 +133,7 @@ impl Contour {
 
     /// Length of the contour, smoothed.
     pub(crate) fn smooth_length(&self, half_window: usize) -> f64 {
+        let half_window = self.no_wider(half_window);
         let fits = (0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| self.local_fit(i, half_window));
         let (mut length, mut before, mut first) = (0.0, None, None);
         for LocalFit { position, .. } in fits {

@@ -55,6 +55,7 @@ pub(super) struct NullSpace {
     pub(super) middle: Point2<f64>,
     pub(super) turn: TurnEvidence,
     /// Smallest eigenvalue of the levers of a turn that may be shown, less what errors of the normals make of it.
+    #[cfg_attr(feature = "serde", serde(skip))]
     weakest_turn: f64,
 }
 

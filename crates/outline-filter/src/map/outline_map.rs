@@ -26,7 +26,7 @@ pub(crate) struct OutlineMap {
     pub(super) spacing: f64,
     /// Of the regression that places and normals come from, in points.
     pub(super) half_window: usize,
-    /// Mean distance of the points of that regression.
+    /// Mean distance of the points of that regression, normalised.
     pub(super) step: f64,
     /// Most places that a frame has shown at once.
     pub(super) most_seen: usize,

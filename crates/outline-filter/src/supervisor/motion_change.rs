@@ -34,16 +34,20 @@ pub(super) struct MotionHistory {
     pub(super) change: MotionChange,
     /// None before the third frame, and where dynamics are not told.
     pub(super) dynamics: Option<DynamicsFilter>,
-    pub(super) contradiction: Option<Contradiction>,
+    contradiction: Option<Contradiction>,
     /// Time since a frame was taken last.
     since_taken: f64,
 }
 
+/// Changes of a motion and times beyond this are none, normalised.
+#[cfg(feature = "serde")]
+const LARGEST_CHANGE: f64 = 1e100;
+
 /// A frame that shows the object elsewhere than it was expected, and was not taken: it is wrong, or the motion has changed.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Contradiction {
-    /// Change of the motion since a frame was taken last that takes the object there, normalised.
+struct Contradiction {
+    /// Change of the motion since a frame was taken last that takes the object there, normalised; of a turn that is small meanwhile.
     change: SVector<f64, MAX_PARAMETERS>,
 }
 
@@ -187,11 +191,11 @@ impl MotionHistory {
     /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
     pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
         let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
-        let is_contradiction = |of: &Contradiction| of.change.iter().all(|entry| entry.is_finite());
+        let is_contradiction = |of: &Contradiction| of.change.iter().all(|entry| entry.abs() < LARGEST_CHANGE);
         self.change.is_finite()
             && self.dynamics.as_ref().is_none_or(of_settings)
             && self.contradiction.as_ref().is_none_or(is_contradiction)
-            && self.since_taken.is_finite()
+            && (0.0..LARGEST_CHANGE).contains(&self.since_taken)
     }
 }
 

@@ -87,6 +87,14 @@ impl MotionFilter {
         Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
     }
 
+    /// Which parameters, in the order of the model, the outline does not show, as far as it is known by now. Others that are not stated are
+    /// not known well enough.
+    #[must_use]
+    pub fn hidden_parameters(&self) -> [bool; MAX_PARAMETERS] {
+        let none = [false; MAX_PARAMETERS];
+        self.track.as_ref().map_or(none, |track| track.blind_parameters(track.body_pose()))
+    }
+
     /// Why nothing is stated of the motion although frames have been taken; `None` where it is stated.
     #[must_use]
     pub fn unstated(&self) -> Option<Unstated> {

@@ -1,8 +1,5 @@
 //! A track moved on to a frame, and the changes of its motion found.
-use super::{
-    motion_change::{MotionChange, MotionHistory},
-    settings::FilterSettings,
-};
+use super::{motion_change::MotionHistory, settings::FilterSettings};
 use crate::{
     dynamics::{DynamicsFilter, Purpose},
     measurement::Frame,
@@ -45,9 +42,7 @@ pub(super) fn advance(
     comparison: Comparison,
 ) -> Outcome {
     predict(settings, track, history, seconds);
-    // Errors that are larger than the model's, such as those of a camera that shakes, are no change of the motion.
-    let widening = history.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening);
-    let outcome = measured(settings, (track, frame), &mut history.change, (known, widening), comparison);
+    let outcome = measured(settings, (track, frame), history, known, comparison);
     history.take(&outcome, seconds, track.model().parameter_count());
     outcome
 }
@@ -56,10 +51,13 @@ pub(super) fn advance(
 fn measured(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
-    change: &mut MotionChange,
-    (known, widening): (Known, f64),
+    history: &mut MotionHistory,
+    known: Known,
     comparison: Comparison,
 ) -> Outcome {
+    let MotionHistory { change, dynamics, .. } = history;
+    // Errors that are larger than the model's, such as those of a camera that shakes, are no change of the motion.
+    let widening = dynamics.as_ref().map_or(1.0, DynamicsFilter::widening);
     let parameters = track.model().parameter_count();
     let anywhere = match known {
         Known::ShowsObject => Gate { largest_noise: None, ..gate(settings, track) },
@@ -73,8 +71,20 @@ fn measured(
     if !settings.finds_changes() {
         return outcome;
     }
-    let innovation = outcome.innovation;
     let is_there = outcome.measurement.agreement >= settings.smallest_agreement;
+    // Not where a constant generator takes the object, but where other dynamics do that are not ruled out.
+    let others = dynamics.as_mut().filter(|dynamics| is_there && !outcome.is_accepted() && dynamics.has_others());
+    if let Some(dynamics) = others {
+        let (mut followed, mut their) = (track.clone(), dynamics.clone());
+        if lead(&mut followed, &mut their) {
+            let found = followed.update(frame, &as_before, comparison);
+            if found.is_accepted() {
+                (*track, *dynamics) = (followed, their);
+                outcome = found;
+            }
+        }
+    }
+    let innovation = outcome.innovation;
     if !outcome.is_accepted() && known != Known::Nothing && is_there && innovation.fisher[0] > 0.0 {
         // If the outline is there, but for the second time (or beyond doubt) not where it was going, the motion has changed.
         let mut changed = track.clone();
@@ -106,13 +116,18 @@ fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHis
     if !moved {
         history.dynamics = None;
     }
-    let leading = history.dynamics.as_mut().filter(|dynamics| dynamics.leads());
-    if let Some((dynamics, expected)) =
-        leading.and_then(|d| d.combined(None, Purpose::Prediction).map(|expected| (d, expected)))
-    {
-        track.expect(&expected);
-        dynamics.take_reference(&expected.pose);
-    } else if let Some(variances) = history.change.variances() {
+    let is_led = history.dynamics.as_mut().is_some_and(|dynamics| dynamics.leads() && lead(track, dynamics));
+    if !is_led && let Some(variances) = history.change.variances() {
         track.add_change(variances);
     }
+}
+
+/// Puts a track where all hypotheses of dynamics together expect it; whether they do.
+fn lead(track: &mut Track, dynamics: &mut DynamicsFilter) -> bool {
+    let Some(expected) = dynamics.combined(None, Purpose::Prediction) else { return false };
+    let is_taken = dynamics.take_reference(&expected.pose);
+    if is_taken {
+        track.expect(&expected);
+    }
+    is_taken
 }

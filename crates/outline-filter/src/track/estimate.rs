@@ -172,7 +172,7 @@ impl Track {
 
     /// Parameters, in image units, that take part in a motion which the outline does not show. The velocity at the origin of the image is
     /// one of them wherever the middle of a turn that is not seen is not there.
-    fn blind_parameters(&self, pose: &Matrix3<f64>) -> [bool; MAX_PARAMETERS] {
+    pub(crate) fn blind_parameters(&self, pose: &Matrix3<f64>) -> [bool; MAX_PARAMETERS] {
         let mut blind = [false; MAX_PARAMETERS];
         let (model, radius) = (self.belief.model, self.reference.radius);
         let to_image = self.reference.to_image();

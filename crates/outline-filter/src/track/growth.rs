@@ -32,7 +32,9 @@ impl Track {
     pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) {
         let model = self.belief.model;
         let map = Arc::make_mut(&mut self.map);
-        let Some(first_new) = map.grow(contours, self.noise.sigma / self.belief.scale(), &self.belief.offsets) else {
+        // Of the body frame.
+        let sigma = self.noise.sigma / self.belief.scale();
+        let Some(first_new) = map.grow(contours, sigma, &self.belief.offsets) else {
             return;
         };
         let cells = map.cells().len();
@@ -41,7 +43,7 @@ impl Track {
         self.noise.resize(cells);
         self.shape.resize(cells);
         let (null, turn_was_unseen) = (map.null_directions(model, &self.belief.pose), map.turn_is_unseen(model));
-        map.find_null_directions(model, self.noise.sigma);
+        map.find_null_directions(model, sigma);
         if !null.is_empty() {
             let variance = self.noise.effective_variance();
             self.belief.forget(&null, variance);

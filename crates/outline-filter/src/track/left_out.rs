@@ -145,12 +145,12 @@ mod tests {
     }
 
     #[test]
-    fn sensitivities_stay_those_of_a_pose_while_the_motion_is_known_from_few_frames() {
+    fn sensitivities_stay_bounded_while_the_motion_is_known_from_few_frames() {
         // Variances that make every frame correct all, most, and some of the motion.
         for variance in [1.0, 1e-3, 1e-6, 1e-8] {
             let track = tracked(0.0, 0, (120, [variance; 2]));
             let largest = track.sensitivity.state.amax();
-            // Growth has moved the outline by the time times its size, and rows read one after the other by the speed.
+            // A unit of growth moves points by about their distance times the six seconds that have passed.
             println!("{variance}: {largest}");
             assert!(largest < 20.0, "{variance}: {largest}");
         }

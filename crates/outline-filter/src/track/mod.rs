@@ -1,5 +1,6 @@
 //! A track: one object with its map, what is believed of it, and the noise; frames are taken, and the map grows or is cut anew.
 mod comparison;
+mod cutting;
 mod estimate;
 mod first_pose;
 mod growth;

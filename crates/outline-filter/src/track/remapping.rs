@@ -38,7 +38,7 @@ impl Track {
     }
 
     /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken, and all
-    /// then taken one by one; `take` says whether a frame was. `None` where one of them is not.
+    /// then taken one by one; `take` says whether a frame was. `None` where one of them is not, and where the new cells do not show the turn.
     pub(crate) fn remapped(
         &self,
         frames: &[PlacedFrame<'_>],

@@ -6,7 +6,7 @@ use super::solve::Proposal;
 use crate::{
     belief::{Belief, CellInformation},
     measurement::Frame,
-    tuning::update::SINGULAR,
+    tuning::{dynamics::LARGEST_VARIANCE, update::SINGULAR},
 };
 
 /// In normalised coordinates, of the error of the predicted pose, on the left; the outline taken as known before the frame.
@@ -63,9 +63,11 @@ impl PoseMeasurement {
         }
     }
 
-    /// The error of the predicted pose, of k parameters, that the frame asks for.
+    /// The error of the predicted pose, of k parameters, that the frame asks for, divided by a variance: next to none along what it hardly
+    /// shows.
     pub(crate) fn error(&self, k: usize) -> Option<SVector<f64, MAX_PARAMETERS>> {
-        solved(&self.information, &self.pulled, k)
+        let before = SMatrix::from_diagonal_element(1.0 / LARGEST_VARIANCE);
+        solved(&(self.information + before), &self.pulled, k)
     }
 
     /// In units of a variance of the noise.

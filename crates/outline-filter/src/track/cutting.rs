@@ -1,0 +1,77 @@
+//! A track cut from contours.
+use std::sync::Arc;
+
+use freeform_riccati::MotionModel;
+use nalgebra::Matrix3;
+
+use super::{Track, first_pose::FirstPose};
+use crate::{
+    belief::Belief,
+    dynamics::FamilyTests,
+    map::{Contour, OutlineMap, Resolution},
+    measurement::{Frame, NoiseModel, Reference},
+    prediction::ShapeNoise,
+    tuning::{contour::NORMAL_NOISE, map::FEWEST_POINTS, update as tuning},
+    update::Sensitivity,
+};
+
+impl Track {
+    /// Takes cells along contours in the body frame, and the loaded points, which were seen in a pose, as their first measurement. `None`
+    /// where the contours do not make an outline. Their noise is no less than what is known of it.
+    pub(super) fn cut(
+        model: MotionModel,
+        reference: Reference,
+        pose: Matrix3<f64>,
+        contours: Vec<Contour>,
+        least_noise: f64,
+        frame: &mut Frame,
+    ) -> Option<Self> {
+        let mut cut = |contours, normal_noise| {
+            Self::cut_with(model, reference, pose, contours, (least_noise, normal_noise), frame)
+        };
+        let track = cut(contours.clone(), NORMAL_NOISE)?;
+        let needed = track.map.normal_noise();
+        if needed < NORMAL_NOISE { cut(contours, needed).or(Some(track)) } else { Some(track) }
+    }
+
+    /// As [`cut`](Self::cut), with normals whose directions have deviations of no more than that given last.
+    fn cut_with(
+        model: MotionModel,
+        reference: Reference,
+        pose: Matrix3<f64>,
+        contours: Vec<Contour>,
+        (least_noise, normal_noise): (f64, f64),
+        frame: &mut Frame,
+    ) -> Option<Self> {
+        let loaded = frame.points.len();
+        let (resolution, sigma) = Resolution::of(&contours, least_noise, loaded, normal_noise);
+        if loaded < FEWEST_POINTS || !sigma.is_finite() {
+            return None;
+        }
+        let mut belief = Belief::new(model);
+        belief.pose = pose;
+        let k = belief.parameter_count();
+        for i in 0..k {
+            belief.information.dense[i][i] = tuning::GAUGE_WEIGHT * loaded as f64;
+            belief.information.dense[k + i][k + i] = tuning::MOTION_PRIOR;
+        }
+        let mut track = Self {
+            reference,
+            map: Arc::new(OutlineMap::for_contours(resolution)?),
+            belief,
+            noise: NoiseModel::new(sigma),
+            shape: ShapeNoise::default(),
+            sensitivity: Sensitivity::new(),
+            family: FamilyTests::default(),
+            first_pose: FirstPose::default(),
+            frames: 0,
+        };
+        track.grow_along(contours, frame);
+        if track.map.cells().len() < 3 {
+            return None;
+        }
+        track.belief.marginal = track.belief.information.marginal();
+        track.noise.allow_for_cells(track.map.sagitta(), track.map.spacing());
+        Some(track)
+    }
+}
