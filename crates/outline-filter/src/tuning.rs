@@ -224,8 +224,6 @@ pub(crate) mod update {
     /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
     /// that once in a million frames.
     pub(crate) const SUDDEN: f64 = 25.0;
-    /// What makes a measurement of the pose solvable along what it says nothing of.
-    pub(crate) const SINGULAR: f64 = 1e-9;
 }
 
 /// Remapping: the map cut anew from several frames.
@@ -373,6 +371,8 @@ pub(crate) mod dynamics {
     /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
     pub(crate) const LEAST_VARIANCE: f64 = 1e-18;
     pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
+    /// What makes a measurement of the pose solvable along what it says nothing of.
+    pub(crate) const SINGULAR: f64 = 1e-9;
     /// Share by which a frame corrects the variance of a pose.
     pub(crate) const VARIANCE_GAIN: f64 = 0.1;
     /// While a constant generator is more probable than this, which is what an interval of 95 % leaves out, its own estimate is stated, and
@@ -468,6 +468,8 @@ pub(crate) mod statement {
 pub(crate) mod saved_state {
     /// Counters of a filter stay below this: more frames than a camera sees in a thousand years.
     pub(crate) const MOST_COUNTED: usize = 1 << 48;
+    /// Numbers beyond this are none of a filter, and their squares are none at all.
+    pub(crate) const LARGEST_NUMBER: f64 = 1e100;
     /// How far probabilities may sum to something else than 1, by rounding.
     pub(crate) const SUM_OFF: f64 = 1e-6;
 }

@@ -15,7 +15,7 @@ use crate::{
     belief::StateMatrix,
     map::NullDirection,
     tuning::{dynamics as tuning, statement::REACH},
-    update::{PoseMeasurement, solved},
+    update::PoseMeasurement,
 };
 
 /// Hypotheses at most.
@@ -356,6 +356,15 @@ fn centred(
     let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
     let covariance = EntryMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
     (mean, covariance)
+}
+
+/// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
+fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
+    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
+    let jitter =
+        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
+    let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
+    regular.lu().solve(b)
 }
 
 #[cfg(feature = "serde")]
