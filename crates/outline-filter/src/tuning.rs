@@ -181,6 +181,9 @@ pub(crate) mod likelihood {
     pub(crate) const VARIANCE: f64 = 3.0;
     /// Deviations of the difference by which one of many poses must be worse.
     pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Mean square of the residuals, in that of the best pose, from which on another is far worse at a first look, and is not measured: far
+    /// beyond what any comparison asks for.
+    pub(crate) const FAR_WORSE: f64 = 6.0;
     /// Points that turns are compared by; more of them would not decide more.
     pub(crate) const ENOUGH_POINTS: usize = 2000;
 }
@@ -253,9 +256,11 @@ pub(crate) mod registration {
     pub(crate) const FEW_POINTS: usize = 80;
     /// Share of the points, nearest first, that a pose is scored by: the rest may be hidden in the map or wrong.
     pub(crate) const TRIMMED: f64 = 0.75;
-    /// Steps of the search for each start.
+    /// Steps of the search for each start, at most.
     pub(crate) const SEARCH_STEPS: usize = 8;
-    /// Steps of the refinement of the best.
+    /// Largest step after which a pose has settled, normalised, in deviations of the noise: far less than what a pose is known to.
+    pub(crate) const SETTLED: f64 = 0.01;
+    /// Steps of the refinement of the best, at most.
     pub(crate) const REFINEMENT_STEPS: usize = 15;
     /// Poses that are refined.
     pub(crate) const REFINED: usize = 5;

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::solve::Proposal;
 use crate::{
-    belief::{Belief, CellInformation},
+    belief::{Belief, OffsetInformation},
     measurement::Frame,
     tuning::dynamics::LARGEST_VARIANCE,
 };
@@ -25,14 +25,14 @@ impl PoseMeasurement {
     /// without.
     pub(crate) fn of(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
         match belief.parameter_count() {
-            3 => Self::sized::<3>(belief, proposal, frame),
-            4 => Self::sized::<4>(belief, proposal, frame),
-            6 => Self::sized::<6>(belief, proposal, frame),
-            _ => Self::sized::<8>(belief, proposal, frame),
+            3 => Self::sized::<3, 6>(belief, proposal, frame),
+            4 => Self::sized::<4, 8>(belief, proposal, frame),
+            6 => Self::sized::<6, 12>(belief, proposal, frame),
+            _ => Self::sized::<8, 16>(belief, proposal, frame),
         }
     }
 
-    fn sized<const K: usize>(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
+    fn sized<const K: usize, const S: usize>(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
         let before = &belief.information;
         let mut information = [[0.0; K]; K];
         let mut pulled = [0.0; K];
@@ -40,15 +40,15 @@ impl PoseMeasurement {
             pulled[i] = proposal.right[i];
             (0..K).for_each(|j| information[i][j] = proposal.dense[i][j] - before.dense[i][j]);
         }
-        let nothing = CellInformation::NOTHING;
-        for (number, (cell, right)) in frame.cells.iter().zip(&frame.right).enumerate() {
-            let known = before.cells.get(number).unwrap_or(&nothing);
-            if cell.own <= known.own {
+        let [own, own_before] = [&frame.cells, &before.cells].map(OffsetInformation::own);
+        let [coupling, coupling_before] = [&frame.cells, &before.cells].map(OffsetInformation::rows::<S>);
+        for (number, right) in frame.right.iter().enumerate() {
+            if own[number] <= own_before[number] {
                 continue;
             }
-            let inverse = 1.0 / cell.own;
+            let inverse = 1.0 / own[number];
             let mut added = [0.0; K];
-            (0..K).for_each(|i| added[i] = cell.coupling[i] - known.coupling[i]);
+            (0..K).for_each(|i| added[i] = coupling[number][i] - coupling_before[number][i]);
             for i in 0..K {
                 let factor = added[i] * inverse;
                 pulled[i] -= factor * right;
