@@ -85,7 +85,8 @@ def motions_of(outlines: DataFrame) -> DataFrame:
 # ## A cluster, a stream, a checkpoint
 #
 # The checkpoint has to be on storage that outlives the cluster, as the result has. RocksDB keeps the states on the disks of the workers
-# and writes changes to the checkpoint; states that Spark holds in the memory of Java cannot be used here.
+# and writes changes to the checkpoint; states that Spark holds in the memory of Java cannot be used here. Where states are forgotten after
+# a time, Spark would run batch after batch while nothing comes in, only to look at the clock; without those, it does so with the next data.
 
 
 def session(master: str, partitions: int) -> SparkSession:
@@ -95,6 +96,7 @@ def session(master: str, partitions: int) -> SparkSession:
     builder = SparkSession.builder.master(master).appName("freeform stream").config("spark.ui.enabled", "false")
     builder = builder.config(f"{states}.providerClass", "org.apache.spark.sql.execution.streaming.state.RocksDBStateStoreProvider")
     builder = builder.config(f"{states}.rocksdb.changelogCheckpointing.enabled", "true")
+    builder = builder.config("spark.sql.streaming.noDataMicroBatches.enabled", "false")
     return builder.config("spark.sql.shuffle.partitions", partitions).getOrCreate()
 
 
