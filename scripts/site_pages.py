@@ -103,8 +103,11 @@ def on_page_markdown(markdown, page, config, files):
             return f"{text}({target})"
         anchor = target.partition("#")[1] + target.partition("#")[2]
         there = page_of(path) or (f"sources/{path}.md" if (ROOT / path).is_file() else None)
-        if there is None:
-            raise PluginError(f"{source}: {target} leads nowhere")
+        if there is None or (ROOT / path).is_dir() and path.startswith("docs/"):
+            if not (ROOT / path).is_dir():
+                raise PluginError(f"{source}: {target} leads nowhere")
+            # A folder without a page of its own.
+            return text[1:-1]
         return f"{text}({posixpath.relpath(there, posixpath.dirname(page.file.src_uri) or '.')}{anchor})"
 
     pieces = re.split(r"(^```.*?^```$)", markdown, flags=re.DOTALL | re.MULTILINE)

@@ -1,0 +1,162 @@
+"""What docs/scale.md states: cost per object and frame by every way, and the size of what is kept of an object.
+
+    python examples/distributed/measure.py [--spark]
+
+All ways do the same work in the same run, one after the other and twice around, since the machine may be shared: what is compared are
+ratios within a run. Without `--spark` no Java is needed.
+"""
+
+import argparse
+import contextlib
+import io
+import pickle
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow.parquet as pq
+
+import dask_batch
+import freeform_motion as ff
+import record
+
+OBJECTS, FRAMES, POINTS, BUCKETS = 64, 120, 400, 8
+
+
+def seconds(call):
+    began = time.perf_counter()
+    call()
+    return time.perf_counter() - began
+
+
+def each(name, taken, outlines):
+    """A line of the table: microseconds for each object and frame, of wall time."""
+    print(f"{name:58} {1e6 * taken / outlines:8.1f} us", flush=True)
+
+
+def in_process(recording):
+    """The filter alone, and the way of an example in one process."""
+    rows = [row for number in range(8) for row in record.rows(number, FRAMES, POINTS)]
+    outlines = [(row["object"], row["time"], ff.Outline(np.column_stack([row["x"], row["y"]]))) for row in rows]
+
+    def steps(given):
+        filters = {}
+        for name, moment, outline in given:
+            filters.setdefault(name, ff.MotionFilter()).step(moment, outline)
+
+    each("step(Outline), first frames included", seconds(lambda: steps(outlines)), len(outlines))
+    arrays = [(name, moment, outline.points) for name, moment, outline in outlines]
+    each("step(array)", seconds(lambda: steps(arrays)), len(outlines))
+    each("identify(table of Parquet), both cores, reading included", seconds(lambda: identify(recording)), OBJECTS * FRAMES)
+
+
+def identify(recording):
+    table = pq.read_table(recording, partitioning=None).sort_by([("object", "ascending"), ("frame", "ascending")])
+    ff.identify(dask_batch.points_of(table), progress=False)
+
+
+def state(size):
+    """What a filter of one object keeps, and what moving it costs."""
+    print(f"\n{size} points")
+    for shape in ("bird", "glider", "plane"):
+        motion_filter = ff.MotionFilter()
+        sizes = {}
+        for frame in ff.simulate(shape, omega=1.5, b=(0.2, -0.1), seconds=20.0, points=size):
+            motion_filter.step(frame.time, frame.outline)
+            sizes[frame.index] = len(motion_filter.to_bytes())
+        data = motion_filter.to_bytes()
+        saved = seconds(lambda: [motion_filter.to_bytes() for _ in range(50)]) / 50
+        restored = seconds(lambda: [ff.MotionFilter.from_bytes(data) for _ in range(50)]) / 50
+        told = ", ".join(f"frame {n}: {sizes[n]}" for n in (0, 1, 29, 119, 599))
+        print(f"{shape}: bytes at {told}; pickled {len(pickle.dumps(motion_filter))}; saved in {1e6 * saved:.0f} us, "
+              f"restored in {1e6 * restored:.0f} us")
+
+
+def memory(size, count=300):
+    """Memory of a filter while it runs: what the process grows by, for each of many filters."""
+    frames = [(frame.time, frame.outline) for frame in ff.simulate("bird", omega=1.5, seconds=1.0, points=size)]
+
+    def resident():
+        fields = Path("/proc/self/status").read_text()
+        return int(fields.split("VmRSS:")[1].split()[0]) * 1024
+
+    filters = [ff.MotionFilter() for _ in range(count)]
+    before = resident()
+    for motion_filter in filters:
+        for moment, outline in frames:
+            motion_filter.step(moment, outline)
+    print(f"memory of a running filter, {size} points: {(resident() - before) / count / 1e3:.0f} kB")
+
+
+def with_dask(recording):
+    from dask.distributed import Client
+
+    with tempfile.TemporaryDirectory() as folder, Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
+        for name in ("Dask, two workers (first tasks, with imports)", "Dask, two workers (again)"):
+            motions = Path(folder) / name[-7:-1].strip()
+            with contextlib.redirect_stdout(io.StringIO()):
+                taken = seconds(lambda motions=motions: dask_batch.identify_recording(client, recording, motions))
+            each(name, taken, OBJECTS * FRAMES)
+
+
+def with_spark(recording, live):
+    import spark_batch
+    import spark_stream
+
+    spark = spark_stream.session("local-cluster[2,1,1024]", 4)
+    outlines = spark.read.option("recursiveFileLookup", "true").parquet(str(recording))
+    for name in ("Spark batch, two workers (first job, with imports)", "Spark batch, two workers (again)"):
+        found = spark_batch.identify_recording(outlines, BUCKETS)
+        each(name, seconds(found.collect), OBJECTS * FRAMES)
+    with tempfile.TemporaryDirectory() as folder:
+        stream = spark.readStream.schema(spark_stream.OUTLINES).option("maxFilesPerTrigger", 1).parquet(str(live))
+        query = spark_stream.motions_of(stream).writeStream.format("parquet").outputMode("append")
+        query = query.option("path", f"{folder}/motions").option("checkpointLocation", f"{folder}/checkpoint")
+        query = query.trigger(availableNow=True).start()
+        query.awaitTermination()
+        for progress in query.recentProgress:
+            taken, rows = progress["durationMs"]["triggerExecution"] / 1e3, progress["numInputRows"]
+            if rows:
+                times = {k: v for k, v in progress["durationMs"].items() if v > 50}
+                each(f"Spark stream, batch {progress['batchId']} of {rows} outlines, {taken:.1f} s", taken, rows)
+                print("   ", times)
+        written = sum(path.stat().st_size for path in Path(folder, "checkpoint").rglob("*") if path.is_file())
+        print(f"checkpoint on disk: {written / 1e6:.1f} MB for {OBJECTS} objects")
+    spark.stop()
+
+
+def state_in_frames():
+    """Python's own part of a row of a stream: a pandas row into a filter."""
+    import spark_stream
+
+    rows = pd.DataFrame(list(record.rows(0, FRAMES, POINTS)))
+    each("follow(rows of pandas), first frames included", seconds(lambda: list(spark_stream.follow(ff.MotionFilter(), rows))), FRAMES)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--spark", action="store_true")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        recording, live = Path(folder) / "outlines", Path(folder) / "live"
+        record.write_buckets(recording, OBJECTS, FRAMES, POINTS, BUCKETS)
+        record.write_stream(live, OBJECTS, FRAMES, POINTS, frames_per_file=30)
+        table = pq.read_table(recording, partitioning=None)
+        size = sum(path.stat().st_size for path in recording.rglob("*.parquet"))
+        print(f"Parquet: {size / table.num_rows:.0f} bytes an outline of {POINTS} points; in memory {table.nbytes / table.num_rows:.0f}")
+        for _ in range(2):
+            in_process(recording)
+            state_in_frames()
+            with_dask(recording)
+        if options.spark:
+            with_spark(recording, live)
+            in_process(recording)
+        for points in (100, 400):
+            state(points)
+            memory(points)
+
+
+if __name__ == "__main__":
+    main()
