@@ -21,6 +21,7 @@ class CompiledDocstrings(griffe.Extension):
             compiled = getattr(freeform_motion, name, None)
             if not described.is_alias and described.is_class and compiled is not None:
                 document(described, compiled)
+                show_how_it_is_made(described)
                 for member, inner in described.members.items():
                     if not member.startswith("_"):
                         document(inner, getattr(compiled, member))
@@ -31,4 +32,12 @@ def document(described, compiled):
     text = inspect.getdoc(compiled)
     if not text:
         raise ValueError(f"{described.path} has no docstring")
-    described.docstring = griffe.Docstring(text, parent=described)
+    described.docstring = griffe.Docstring(text, parent=described, parser=griffe.Parser.numpy)
+
+
+def show_how_it_is_made(described):
+    """Lets the signature of a class be that of `__new__`, which is what compiled classes have."""
+    made_by = described.members.get("__new__")
+    if made_by is not None:
+        parameters = griffe.Parameters(*made_by.parameters)
+        described.set_member("__init__", griffe.Function("__init__", parameters=parameters, parent=described))
