@@ -2,8 +2,9 @@
 
     python examples/distributed/measure.py [--spark]
 
-All ways do the same work in the same run, one after the other and twice around, since the machine may be shared: what is compared are
-ratios within a run. Without `--spark` no Java is needed.
+All ways do the same work in the same run, one after the other and twice around. What counts is the processor time of this process and
+all that it started, since that hardly depends on what else the machine does; wall time is printed beside it. Without `--spark` no Java
+is needed.
 """
 
 import argparse
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import psutil
 import pyarrow.parquet as pq
 
 import dask_batch
@@ -25,20 +27,29 @@ import record
 OBJECTS, FRAMES, POINTS, BUCKETS = 64, 120, 400, 8
 
 
+def processor_seconds():
+    """Processor time of this process and of all that it started so far."""
+    times = [process.cpu_times() for process in psutil.Process().children(recursive=True)]
+    ended = psutil.Process().cpu_times()
+    return time.process_time() + sum(t.user + t.system for t in times) + ended.children_user + ended.children_system
+
+
 def seconds(call):
-    began = time.perf_counter()
+    """Processor and wall time of a call."""
+    before, began = processor_seconds(), time.perf_counter()
     call()
-    return time.perf_counter() - began
+    return processor_seconds() - before, time.perf_counter() - began
 
 
 def each(name, taken, outlines):
-    """A line of the table: microseconds for each object and frame, of wall time."""
-    print(f"{name:58} {1e6 * taken / outlines:8.1f} us", flush=True)
+    """A line of the table: microseconds for each object and frame."""
+    processor, wall = (1e6 * t / outlines for t in taken)
+    print(f"{name:52} {processor:8.1f} us of processor, {wall:8.1f} us of wall time", flush=True)
 
 
 def in_process(recording):
     """The filter alone, and the way of an example in one process."""
-    rows = [row for number in range(8) for row in record.rows(number, FRAMES, POINTS)]
+    rows = [row for number in range(16) for row in record.rows(number, FRAMES, POINTS)]
     outlines = [(row["object"], row["time"], ff.Outline(np.column_stack([row["x"], row["y"]]))) for row in rows]
 
     def steps(given):
@@ -47,6 +58,15 @@ def in_process(recording):
             filters.setdefault(name, ff.MotionFilter()).step(moment, outline)
 
     each("step(Outline), first frames included", seconds(lambda: steps(outlines)), len(outlines))
+    by_object = {name: [(m, o) for n, m, o in outlines if n == name] for name in {name for name, _, _ in outlines}}
+    later = []
+    for given in by_object.values():
+        motion_filter = ff.MotionFilter()
+        for moment, outline in given[:30]:
+            motion_filter.step(moment, outline)
+        later.append((motion_filter, given[30:]))
+    rest = seconds(lambda: [motion_filter.step(*frame) for motion_filter, given in later for frame in given])
+    each("step(Outline), after the first second", rest, sum(len(given) for _, given in later))
     arrays = [(name, moment, outline.points) for name, moment, outline in outlines]
     each("step(array)", seconds(lambda: steps(arrays)), len(outlines))
     each("identify(table of Parquet), both cores, reading included", seconds(lambda: identify(recording)), OBJECTS * FRAMES)
@@ -67,8 +87,8 @@ def state(size):
             motion_filter.step(frame.time, frame.outline)
             sizes[frame.index] = len(motion_filter.to_bytes())
         data = motion_filter.to_bytes()
-        saved = seconds(lambda: [motion_filter.to_bytes() for _ in range(50)]) / 50
-        restored = seconds(lambda: [ff.MotionFilter.from_bytes(data) for _ in range(50)]) / 50
+        saved = seconds(lambda: [motion_filter.to_bytes() for _ in range(200)])[0] / 200
+        restored = seconds(lambda: [ff.MotionFilter.from_bytes(data) for _ in range(200)])[0] / 200
         told = ", ".join(f"frame {n}: {sizes[n]}" for n in (0, 1, 29, 119, 599))
         print(f"{shape}: bytes at {told}; pickled {len(pickle.dumps(motion_filter))}; saved in {1e6 * saved:.0f} us, "
               f"restored in {1e6 * restored:.0f} us")
@@ -106,6 +126,8 @@ def with_spark(recording, live):
     import spark_stream
 
     spark = spark_stream.session("local-cluster[2,1,1024]", 4)
+    for name in ("spark_batch.py", "spark_stream.py", "record.py"):
+        spark.sparkContext.addPyFile(str(Path(__file__).with_name(name)))
     outlines = spark.read.option("recursiveFileLookup", "true").parquet(str(recording))
     for name in ("Spark batch, two workers (first job, with imports)", "Spark batch, two workers (again)"):
         found = spark_batch.identify_recording(outlines, BUCKETS)
@@ -114,25 +136,24 @@ def with_spark(recording, live):
         stream = spark.readStream.schema(spark_stream.OUTLINES).option("maxFilesPerTrigger", 1).parquet(str(live))
         query = spark_stream.motions_of(stream).writeStream.format("parquet").outputMode("append")
         query = query.option("path", f"{folder}/motions").option("checkpointLocation", f"{folder}/checkpoint")
-        query = query.trigger(availableNow=True).start()
-        query.awaitTermination()
-        for progress in query.recentProgress:
-            taken, rows = progress["durationMs"]["triggerExecution"] / 1e3, progress["numInputRows"]
-            if rows:
-                times = {k: v for k, v in progress["durationMs"].items() if v > 50}
-                each(f"Spark stream, batch {progress['batchId']} of {rows} outlines, {taken:.1f} s", taken, rows)
-                print("   ", times)
+        query = query.trigger(availableNow=True)
+        started = []
+        taken = seconds(lambda: (started.append(query.start()), started[0].awaitTermination()))
+        each("Spark stream, all batches with the first imports", taken, OBJECTS * FRAMES)
+        for progress in started[0].recentProgress:
+            print("    batch of", progress["numInputRows"], {k: v for k, v in progress["durationMs"].items() if v > 50})
         written = sum(path.stat().st_size for path in Path(folder, "checkpoint").rglob("*") if path.is_file())
         print(f"checkpoint on disk: {written / 1e6:.1f} MB for {OBJECTS} objects")
     spark.stop()
 
 
-def state_in_frames():
+def of_rows():
     """Python's own part of a row of a stream: a pandas row into a filter."""
     import spark_stream
 
-    rows = pd.DataFrame(list(record.rows(0, FRAMES, POINTS)))
-    each("follow(rows of pandas), first frames included", seconds(lambda: list(spark_stream.follow(ff.MotionFilter(), rows))), FRAMES)
+    objects = [pd.DataFrame(list(record.rows(number, FRAMES, POINTS))) for number in range(16)]
+    taken = seconds(lambda: [list(spark_stream.follow(ff.MotionFilter(), rows)) for rows in objects])
+    each("follow(rows of pandas), first frames included", taken, len(objects) * FRAMES)
 
 
 def main():
@@ -148,7 +169,7 @@ def main():
         print(f"Parquet: {size / table.num_rows:.0f} bytes an outline of {POINTS} points; in memory {table.nbytes / table.num_rows:.0f}")
         for _ in range(2):
             in_process(recording)
-            state_in_frames()
+            of_rows()
             with_dask(recording)
         if options.spark:
             with_spark(recording, live)
