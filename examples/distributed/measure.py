@@ -10,6 +10,7 @@ is needed.
 import argparse
 import contextlib
 import io
+import os
 import pickle
 import tempfile
 import time
@@ -125,9 +126,9 @@ def with_spark(recording, live):
     import spark_batch
     import spark_stream
 
+    # What a script defines goes to the workers by itself; what it imports from beside it does not.
+    os.environ["PYTHONPATH"] = str(Path(__file__).parent)
     spark = spark_stream.session("local-cluster[2,1,1024]", 4)
-    for name in ("spark_batch.py", "spark_stream.py", "record.py"):
-        spark.sparkContext.addPyFile(str(Path(__file__).with_name(name)))
     outlines = spark.read.option("recursiveFileLookup", "true").parquet(str(recording))
     for name in ("Spark batch, two workers (first job, with imports)", "Spark batch, two workers (again)"):
         found = spark_batch.identify_recording(outlines, BUCKETS)
