@@ -12,6 +12,8 @@ import contextlib
 import io
 import os
 import pickle
+import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -26,6 +28,7 @@ import freeform_motion as ff
 import record
 
 OBJECTS, FRAMES, POINTS, BUCKETS = 64, 120, 400, 8
+SPARK_FRAMES = 60
 
 
 def processor_seconds():
@@ -73,6 +76,21 @@ def in_process(recording):
     each("identify(table of Parquet), both cores, reading included", seconds(lambda: identify(recording)), OBJECTS * FRAMES)
 
 
+def settings():
+    """What a frame costs after the first second, by the number of points and what is assumed of the motion."""
+    for points in (100, 400):
+        for dynamics in ("auto", "generator"):
+            taken, frames = np.zeros(2), 0
+            for shape in record.SHAPES:
+                motion_filter = ff.MotionFilter(dynamics=dynamics)
+                given = [(f.time, f.outline) for f in ff.simulate(shape, omega=1.5, b=(0.2, -0.1), seconds=8.0, points=points)]
+                for frame in given[:30]:
+                    motion_filter.step(*frame)
+                taken += seconds(lambda given=given, step=motion_filter.step: [step(*frame) for frame in given[30:]])
+                frames += len(given) - 30
+            each(f"step(Outline), {points} points, dynamics {dynamics}", taken, frames)
+
+
 def identify(recording):
     table = pq.read_table(recording, partitioning=None).sort_by([("object", "ascending"), ("frame", "ascending")])
     ff.identify(dask_batch.points_of(table), progress=False)
@@ -115,36 +133,54 @@ def with_dask(recording):
     from dask.distributed import Client
 
     with tempfile.TemporaryDirectory() as folder, Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
-        for name in ("Dask, two workers (first tasks, with imports)", "Dask, two workers (again)"):
-            motions = Path(folder) / name[-7:-1].strip()
+        for name in ("Dask, first tasks, with imports", "Dask, again"):
+            motions = Path(folder) / name
             with contextlib.redirect_stdout(io.StringIO()):
                 taken = seconds(lambda motions=motions: dask_batch.identify_recording(client, recording, motions))
             each(name, taken, OBJECTS * FRAMES)
 
 
-def with_spark(recording, live):
+def with_spark(folder):
+    """Cost of a batch, of an object in a batch, and of an outline, from runs that differ in their numbers."""
     import spark_batch
     import spark_stream
 
     # What a script defines goes to the workers by itself; what it imports from beside it does not.
     os.environ["PYTHONPATH"] = str(Path(__file__).parent)
     spark = spark_stream.session("local-cluster[2,1,1024]", 4)
-    outlines = spark.read.option("recursiveFileLookup", "true").parquet(str(recording))
-    for name in ("Spark batch, two workers (first job, with imports)", "Spark batch, two workers (again)"):
-        found = spark_batch.identify_recording(outlines, BUCKETS)
-        each(name, seconds(found.collect), OBJECTS * FRAMES)
-    with tempfile.TemporaryDirectory() as folder:
+
+    def batch(objects):
+        outlines = spark.read.option("recursiveFileLookup", "true").parquet(str(folder / f"batch-{objects}"))
+        return seconds(spark_batch.identify_recording(outlines, BUCKETS).collect)
+
+    def stream(name, objects, frames_per_file):
+        live, results = folder / name, folder / f"{name}-results"
+        record.write_stream(live, objects, SPARK_FRAMES, POINTS, frames_per_file)
         stream = spark.readStream.schema(spark_stream.OUTLINES).option("maxFilesPerTrigger", 1).parquet(str(live))
         query = spark_stream.motions_of(stream).writeStream.format("parquet").outputMode("append")
-        query = query.option("path", f"{folder}/motions").option("checkpointLocation", f"{folder}/checkpoint")
-        query = query.trigger(availableNow=True)
+        query = query.option("path", str(results)).option("checkpointLocation", f"{results}.checkpoint").trigger(availableNow=True)
         started = []
         taken = seconds(lambda: (started.append(query.start()), started[0].awaitTermination()))
-        each("Spark stream, all batches with the first imports", taken, OBJECTS * FRAMES)
-        for progress in started[0].recentProgress:
-            print("    batch of", progress["numInputRows"], {k: v for k, v in progress["durationMs"].items() if v > 50})
-        written = sum(path.stat().st_size for path in Path(folder, "checkpoint").rglob("*") if path.is_file())
-        print(f"checkpoint on disk: {written / 1e6:.1f} MB for {OBJECTS} objects")
+        each(f"Spark stream, {objects} objects in {SPARK_FRAMES // frames_per_file} batches", taken, objects * SPARK_FRAMES)
+        walls = [progress["durationMs"]["triggerExecution"] / 1e3 for progress in started[0].recentProgress]
+        written = sum(path.stat().st_size for path in Path(f"{results}.checkpoint").rglob("*") if path.is_file())
+        print(f"    batches of {walls} s; checkpoint {written / objects / 1e3:.0f} kB an object")
+        return taken[0]
+
+    for objects in (OBJECTS, 4 * OBJECTS):
+        record.write_buckets(folder / f"batch-{objects}", objects, SPARK_FRAMES, POINTS, BUCKETS)
+    each("Spark batch, first job, with imports", batch(OBJECTS), OBJECTS * SPARK_FRAMES)
+    few, many = batch(OBJECTS), batch(4 * OBJECTS)
+    each(f"Spark batch, {OBJECTS} objects", few, OBJECTS * SPARK_FRAMES)
+    each(f"Spark batch, {4 * OBJECTS} objects", many, 4 * OBJECTS * SPARK_FRAMES)
+    each("Spark batch, each further outline", np.subtract(many, few), 3 * OBJECTS * SPARK_FRAMES)
+
+    stream("first", 16, 30)
+    costs = [stream("few", 16, 15), stream("many", 256, 15), stream("often", 256, 5)]
+    # Batches, objects in batches, outlines.
+    counts = [[4, 64, 960], [4, 1024, 15360], [12, 3072, 15360]]
+    found = np.linalg.solve(np.array(counts, dtype=float), np.array(costs))
+    print("processor time: a batch {:.2f} s, an object in a batch {:.2f} ms, an outline {:.3f} ms".format(*(found * [1, 1e3, 1e3])))
     spark.stop()
 
 
@@ -159,12 +195,15 @@ def of_rows():
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--spark", action="store_true")
+    parser.add_argument("--spark", action="store_true", help="Spark too")
+    parser.add_argument("--memory", type=int, metavar="POINTS", help="only the memory of a running filter")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        recording, live = Path(folder) / "outlines", Path(folder) / "live"
+    if options.memory:
+        return memory(options.memory)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        recording = folder / "outlines"
         record.write_buckets(recording, OBJECTS, FRAMES, POINTS, BUCKETS)
-        record.write_stream(live, OBJECTS, FRAMES, POINTS, frames_per_file=30)
         table = pq.read_table(recording, partitioning=None)
         size = sum(path.stat().st_size for path in recording.rglob("*.parquet"))
         print(f"Parquet: {size / table.num_rows:.0f} bytes an outline of {POINTS} points; in memory {table.nbytes / table.num_rows:.0f}")
@@ -173,11 +212,13 @@ def main():
             of_rows()
             with_dask(recording)
         if options.spark:
-            with_spark(recording, live)
+            with_spark(folder)
             in_process(recording)
+        settings()
         for points in (100, 400):
             state(points)
-            memory(points)
+            # In a process of its own: this one has memory to spare.
+            subprocess.run([sys.executable, __file__, "--memory", str(points)], check=True)
 
 
 if __name__ == "__main__":
