@@ -18,7 +18,7 @@ import freeform_motion as ff
 
 EXAMPLES = Path(__file__).parents[1]
 sys.path.insert(0, str(EXAMPLES))
-import record  # noqa: E402
+import record
 
 OBJECTS, FRAMES, POINTS, BUCKETS = 400, 30, 100, 16
 STREAMS = 12
