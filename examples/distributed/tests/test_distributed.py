@@ -22,7 +22,7 @@ import record
 
 OBJECTS, FRAMES, POINTS, BUCKETS = 400, 30, 100, 16
 STREAMS = 12
-PATIENCE = 300.0
+PATIENCE = 600.0
 
 
 class Run:
