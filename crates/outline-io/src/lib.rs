@@ -16,6 +16,7 @@
 //! ```
 //!
 //! - [`OutlineReader`] and [`OutlineWriter`] stream outlines as CSV.
+//! - `ParquetReader` and `ParquetWriter` (feature `parquet`) do so as Parquet; [`TableWriter`] writes either.
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
@@ -54,13 +55,33 @@ mod natural_order;
 mod not_csv;
 mod object_mask;
 mod outline_columns;
+mod outline_file;
 mod outline_rows;
+#[cfg(feature = "parquet")]
+mod parquet_batch;
+#[cfg(feature = "parquet")]
+mod parquet_columns;
+#[cfg(feature = "parquet")]
+mod parquet_leaf;
+#[cfg(feature = "parquet")]
+mod parquet_pages;
+#[cfg(feature = "parquet")]
+mod parquet_reader;
+#[cfg(feature = "parquet")]
+mod parquet_schema;
+#[cfg(feature = "parquet")]
+mod parquet_source;
+#[cfg(feature = "parquet")]
+mod parquet_table;
+#[cfg(feature = "parquet")]
+mod parquet_writer;
 mod picture;
 mod picture_error;
 mod picture_outlines;
 mod picture_sequence;
 mod pixel_aspect;
 mod ring;
+mod rounding;
 mod segment;
 mod shape;
 mod threshold;
@@ -85,6 +106,11 @@ pub use identity::{Identities, Selection};
 pub use image::GrayImage;
 pub use labels::LabelMask;
 pub use outline_columns::{ColumnOutlines, ColumnsError, OutlineColumns};
+pub use outline_file::{OutlineFile, TableFormat, TableWriter};
+#[cfg(feature = "parquet")]
+pub use parquet_reader::ParquetReader;
+#[cfg(feature = "parquet")]
+pub use parquet_writer::ParquetWriter;
 pub use picture::{decode_picture, read_picture, read_picture_channel};
 pub use picture_error::{PictureError, PictureErrorKind, TraceError};
 pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};

@@ -8,6 +8,8 @@ mod csv_round_trip;
 mod edges;
 mod identities;
 mod labels;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod pictures_as_people_have_them;
 mod sequences;
 mod support;
