@@ -7,6 +7,7 @@ use thiserror::Error;
 use crate::column::Column;
 use crate::file_name::readable;
 use crate::picture_error::{PictureError, TraceError};
+use crate::polygon_error::PolygonError;
 
 /// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40`, `name: row 7: column x` or `name`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -143,6 +144,9 @@ pub enum ReadErrorKind {
         /// Longest name accepted, in bytes.
         limit: usize,
     },
+    /// Polygons of an annotation program that could not be read.
+    #[error(transparent)]
+    Polygons(PolygonError),
     /// Rows in disorder that would fill the memory.
     #[error(
         "the rows are not in the order of the frames, and are too many to be ordered in memory: order the file by frame and object"

@@ -17,6 +17,7 @@
 //!
 //! - [`OutlineReader`] and [`OutlineWriter`] stream outlines as CSV.
 //! - `ParquetReader` and `ParquetWriter` (feature `parquet`) do so as Parquet; [`TableWriter`] writes either.
+//! - [`OutlineFile`] reads Parquet, and polygons of COCO, labelme and TrackMate.
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
@@ -28,6 +29,7 @@ mod background;
 mod basins;
 mod channel;
 mod choice;
+mod coco;
 mod column;
 mod compressed_video;
 mod contrast;
@@ -48,6 +50,7 @@ mod gif_interval;
 mod ground_surface;
 mod identity;
 mod jpeg_end;
+mod labelme;
 mod labels;
 mod latest_frames;
 mod morphology;
@@ -80,6 +83,8 @@ mod picture_error;
 mod picture_outlines;
 mod picture_sequence;
 mod pixel_aspect;
+mod polygon_error;
+mod polygons;
 mod ring;
 mod rounding;
 mod segment;
@@ -88,6 +93,7 @@ mod threshold;
 mod tiff_pages;
 mod trace;
 mod trace_settings;
+mod trackmate;
 mod y4m;
 
 pub use affine_moment_invariants::AffineMomentInvariants;
@@ -116,6 +122,8 @@ pub use picture_error::{PictureError, PictureErrorKind, TraceError};
 pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
 pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings, has_picture_extension, picture_files};
 pub use pixel_aspect::PixelAspectCheck;
+pub use polygon_error::PolygonError;
+pub use polygons::{PolygonSettings, VerticalAxis};
 pub use ring::Ring;
 pub use shape::read_shape;
 pub use threshold::Threshold;

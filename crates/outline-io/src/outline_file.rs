@@ -1,10 +1,13 @@
 //! Files of outlines in any of the formats of tables: the one place where the format is chosen.
-use std::io::Write;
-use std::path::Path;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
 
 use crate::csv_writer::{OutlineWriter, WriterOptions};
-use crate::error::{ReadError, WriteError};
+use crate::error::{Place, ReadError, ReadErrorKind, WriteError};
 use crate::frame::OutlineFrame;
+use crate::polygon_error::PolygonError;
+use crate::polygons::{FILE_LIMIT, PolygonOutlines, PolygonSettings, begins_like_polygons, failed, read_polygons};
 
 /// Formats in which outlines are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,6 +99,7 @@ impl<W: Write> TableWriter<W> {
 pub struct OutlineFile {
     outlines: Box<dyn Iterator<Item = Result<OutlineFrame, ReadError>>>,
     comments: String,
+    is_rate_assumed: bool,
 }
 
 impl std::fmt::Debug for OutlineFile {
@@ -113,13 +117,64 @@ impl OutlineFile {
         #[cfg(feature = "parquet")]
         {
             let reader = crate::parquet_reader::ParquetReader::open(path)?;
-            Ok(Self { comments: reader.comments().to_owned(), outlines: Box::new(reader) })
+            Ok(Self { comments: reader.comments().to_owned(), outlines: Box::new(reader), is_rate_assumed: false })
         }
         #[cfg(not(feature = "parquet"))]
         {
-            let place = crate::error::Place { file: path.display().to_string(), lines: None, rows: None, column: None };
-            Err(ReadError { place, kind: crate::error::ReadErrorKind::ParquetLeftOut })
+            let place = Place { file: path.display().to_string(), lines: None, rows: None, column: None };
+            Err(ReadError { place, kind: ReadErrorKind::ParquetLeftOut })
         }
+    }
+
+    /// Whether the beginning of a file is that of JSON or XML, of which polygons are read.
+    #[must_use]
+    pub fn begins_like_polygons(start: &[u8]) -> bool {
+        begins_like_polygons(start)
+    }
+
+    /// The polygons of annotation programs: one file of COCO (JSON) or of TrackMate (XML), or files of labelme, one a picture.
+    ///
+    /// - COCO: the frames are the images, by `frame_id` where all have one, else by the names of their files in natural order. An object is
+    ///   named by `track_id`, `instance_id` or `attributes.track_id`, else by its category. Several polygons are several contours.
+    /// - labelme: the frames are the files, by the names of their pictures in natural order. An object is named by its label, followed by
+    ///   `group_id` where it has one; polygons of one group are contours of one body. Other shapes are left out.
+    /// - TrackMate: an object is a track, or a branch of it. Times are those of the spots where their unit is one of time.
+    ///
+    /// The boundary is the largest contour of a body. Outlines come frame by frame.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is larger than a gigabyte, is none of these, or has bodies that cannot be told apart.
+    pub fn open_polygons(paths: &[PathBuf], settings: &PolygonSettings) -> Result<Self, ReadError> {
+        let read = |path: &PathBuf| {
+            let name = path.display().to_string();
+            let bytes = File::open(path)
+                .map_err(|error| ReadError {
+                    place: Place { file: name.clone(), lines: None, rows: None, column: None },
+                    kind: ReadErrorKind::Io(error),
+                })
+                .and_then(|file| read_whole(file, &name))?;
+            Ok((name, bytes))
+        };
+        Self::of_polygons(&paths.iter().map(read).collect::<Result<Vec<_>, _>>()?, settings)
+    }
+
+    /// The same of a source, which is read to its end. The name is used in error messages.
+    ///
+    /// # Errors
+    /// As [`Self::open_polygons`].
+    pub fn polygons_from(source: impl Read, name: &str, settings: &PolygonSettings) -> Result<Self, ReadError> {
+        Self::of_polygons(&[(name.to_owned(), read_whole(source, name)?)], settings)
+    }
+
+    fn of_polygons(files: &[(String, Vec<u8>)], settings: &PolygonSettings) -> Result<Self, ReadError> {
+        let PolygonOutlines { outlines, is_rate_assumed } = read_polygons(files, settings)?;
+        Ok(Self { outlines: Box::new(outlines.into_iter()), comments: String::new(), is_rate_assumed })
+    }
+
+    /// Whether the rate of the frames is neither given nor in the file: 30 frames per second are assumed then.
+    #[must_use]
+    pub fn is_rate_assumed(&self) -> bool {
+        self.is_rate_assumed
     }
 
     /// The comment lines of the file, without `#`.
@@ -127,6 +182,18 @@ impl OutlineFile {
     pub fn comments(&self) -> &str {
         &self.comments
     }
+}
+
+/// All bytes of a source of bounded length.
+fn read_whole(source: impl Read, name: &str) -> Result<Vec<u8>, ReadError> {
+    let place = || Place { file: name.to_owned(), lines: None, rows: None, column: None };
+    let mut bytes = Vec::new();
+    let read = source.take(FILE_LIMIT + 1).read_to_end(&mut bytes);
+    read.map_err(|error| ReadError { place: place(), kind: ReadErrorKind::Io(error) })?;
+    if bytes.len() as u64 > FILE_LIMIT {
+        return Err(failed(name, PolygonError::TooLarge { limit: FILE_LIMIT }));
+    }
+    Ok(bytes)
 }
 
 impl Iterator for OutlineFile {

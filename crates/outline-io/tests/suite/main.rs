@@ -11,6 +11,7 @@ mod labels;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod pictures_as_people_have_them;
+mod polygons;
 mod sequences;
 mod support;
 mod tracing;
