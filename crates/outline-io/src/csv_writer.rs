@@ -5,9 +5,9 @@ use freeform_curve_fit::Outline;
 
 use crate::column::Column;
 use crate::csv_field::NUMBER_LIMIT;
-use crate::error::WriteError;
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
 use crate::rounding::Rounding;
+use crate::write_error::WriteError;
 
 /// Which optional columns a file has; the header comes first, so they are fixed before the first outline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -94,6 +94,7 @@ mod tiff_pages;
 mod trace;
 mod trace_settings;
 mod trackmate;
+mod write_error;
 mod y4m;
 
 pub use affine_moment_invariants::AffineMomentInvariants;
@@ -105,7 +106,7 @@ pub use contrast::Contrast;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
 pub use edges::EdgeFit;
-pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, WriteError};
+pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError};
 pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
 pub use identity::{Identities, Selection};
@@ -129,6 +130,7 @@ pub use shape::read_shape;
 pub use threshold::Threshold;
 pub use trace::{TracedOutline, trace_mask, trace_objects};
 pub use trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
+pub use write_error::WriteError;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

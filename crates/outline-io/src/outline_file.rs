@@ -4,10 +4,11 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::csv_writer::{OutlineWriter, WriterOptions};
-use crate::error::{Place, ReadError, ReadErrorKind, WriteError};
+use crate::error::{Place, ReadError, ReadErrorKind};
 use crate::frame::OutlineFrame;
 use crate::polygon_error::PolygonError;
 use crate::polygons::{FILE_LIMIT, PolygonOutlines, PolygonSettings, begins_like_polygons, failed, read_polygons};
+use crate::write_error::WriteError;
 
 /// Formats in which outlines are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,10 +12,10 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
 
 use crate::csv_writer::WriterOptions;
-use crate::error::WriteError;
 use crate::frame::OutlineFrame;
 use crate::parquet_table::COMMENTS;
 use crate::rounding::Rounding;
+use crate::write_error::WriteError;
 
 /// Points after which a row group is written; it holds 16 MB of coordinates.
 const GROUP_POINTS: usize = 1 << 20;
