@@ -54,7 +54,7 @@ impl OutlineReader<File> {
         match File::open(path.as_ref()) {
             Ok(file) => Self::new(file, name),
             Err(error) => Err(ReadError {
-                place: Place { file: name, lines: None, column: None },
+                place: Place { file: name, lines: None, rows: None, column: None },
                 kind: ReadErrorKind::Io(error),
             }),
         }

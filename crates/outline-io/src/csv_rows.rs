@@ -41,7 +41,7 @@ impl<R: Read> Rows<R> {
         let mut start = Vec::new();
         let head = source.by_ref().take(HEAD_LENGTH).read_to_end(&mut start);
         if let Some(kind) = head.err().map(ReadErrorKind::Io).or_else(|| not_csv(&start)) {
-            return Err(ReadError { place: Place { file, lines: None, column: None }, kind });
+            return Err(ReadError { place: Place { file, lines: None, rows: None, column: None }, kind });
         }
         if start.starts_with(b"\xef\xbb\xbf") {
             start.drain(..3);
@@ -162,7 +162,7 @@ impl<R: Read> Rows<R> {
 
     /// An error between the given lines.
     pub(crate) fn error_at(&self, lines: Option<(u64, u64)>, column: Option<Column>, kind: ReadErrorKind) -> ReadError {
-        ReadError { place: Place { file: self.file.clone(), lines, column }, kind }
+        ReadError { place: Place { file: self.file.clone(), lines, rows: None, column }, kind }
     }
 
     fn read_row(&mut self) -> Result<bool, ReadError> {

@@ -145,7 +145,7 @@ impl ColumnOutlines<'_> {
         outline.map(|outline| OutlineFrame { frame, time, object: object.clone(), outline }).map_err(
             |source: OutlineError| {
                 let lines = Some((first as u64, last as u64));
-                let place = Place { file: TABLE.to_owned(), lines, column: None };
+                let place = Place { file: TABLE.to_owned(), lines, rows: None, column: None };
                 ReadError { place, kind: ReadErrorKind::Degenerate { object, frame, source } }
             },
         )
@@ -234,5 +234,5 @@ fn check_number(value: f64, column: Column, row: usize) -> Result<(), ReadError>
 
 fn at(column: Column, row: usize, kind: ReadErrorKind) -> ReadError {
     let lines = Some((row as u64, row as u64));
-    ReadError { place: Place { file: TABLE.to_owned(), lines, column: Some(column) }, kind }
+    ReadError { place: Place { file: TABLE.to_owned(), lines, rows: None, column: Some(column) }, kind }
 }
