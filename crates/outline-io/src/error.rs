@@ -14,25 +14,29 @@ use crate::polygon_error::PolygonError;
 pub struct Place {
     /// The file's name, or a stand-in such as `<stdin>`.
     pub file: String,
-    /// First and last line, counted from 1; equal for a single line.
-    pub lines: Option<(u64, u64)>,
-    /// First and last row, counted from 0, of a file that has no lines.
-    pub rows: Option<(u64, u64)>,
+    /// First and last line, or row where the file has no lines.
+    pub span: Option<Span>,
     /// The column.
     pub column: Option<Column>,
+}
+
+/// A stretch of a file, by its first and last part; equal for a single one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Span {
+    /// Lines, counted from 1.
+    Lines(u64, u64),
+    /// Rows of a table, counted from 0.
+    Rows(u64, u64),
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", readable(&self.file))?;
-        match self.lines {
-            Some((first, last)) if first == last => write!(f, ":{first}")?,
-            Some((first, last)) => write!(f, ":{first}-{last}")?,
-            None => {}
-        }
-        match self.rows {
-            Some((first, last)) if first == last => write!(f, ": row {first}")?,
-            Some((first, last)) => write!(f, ": rows {first}-{last}")?,
+        match self.span {
+            Some(Span::Lines(first, last)) if first == last => write!(f, ":{first}")?,
+            Some(Span::Lines(first, last)) => write!(f, ":{first}-{last}")?,
+            Some(Span::Rows(first, last)) if first == last => write!(f, ": row {first}")?,
+            Some(Span::Rows(first, last)) => write!(f, ": rows {first}-{last}")?,
             None => {}
         }
         match self.column {

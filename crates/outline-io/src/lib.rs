@@ -106,7 +106,7 @@ pub use contrast::Contrast;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
 pub use edges::EdgeFit;
-pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError};
+pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, Span};
 pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
 pub use identity::{Identities, Selection};

@@ -122,7 +122,7 @@ impl OutlineFile {
         }
         #[cfg(not(feature = "parquet"))]
         {
-            let place = Place { file: path.display().to_string(), lines: None, rows: None, column: None };
+            let place = Place { file: path.display().to_string(), span: None, column: None };
             Err(ReadError { place, kind: ReadErrorKind::ParquetLeftOut })
         }
     }
@@ -150,7 +150,7 @@ impl OutlineFile {
             let name = path.display().to_string();
             let bytes = File::open(path)
                 .map_err(|error| ReadError {
-                    place: Place { file: name.clone(), lines: None, rows: None, column: None },
+                    place: Place { file: name.clone(), span: None, column: None },
                     kind: ReadErrorKind::Io(error),
                 })
                 .and_then(|file| read_whole(file, &name))?;
@@ -187,7 +187,7 @@ impl OutlineFile {
 
 /// All bytes of a source of bounded length.
 fn read_whole(source: impl Read, name: &str) -> Result<Vec<u8>, ReadError> {
-    let place = || Place { file: name.to_owned(), lines: None, rows: None, column: None };
+    let place = || Place { file: name.to_owned(), span: None, column: None };
     let mut bytes = Vec::new();
     let read = source.take(FILE_LIMIT + 1).read_to_end(&mut bytes);
     read.map_err(|error| ReadError { place: place(), kind: ReadErrorKind::Io(error) })?;

@@ -224,7 +224,7 @@ pub(crate) fn coordinates(found: &Found, cells: Cells, rows: usize) -> (Vec<f64>
         Values::Text(_) => Vec::new(),
     };
     // A bad number is told rather than a null behind it.
-    if let Some(first) = values.iter().position(|value| !(value.abs() <= NUMBER_LIMIT)) {
+    if let Some(first) = values.iter().position(|value| value.is_nan() || value.abs() > NUMBER_LIMIT) {
         let row = ends.partition_point(|end| *end <= first);
         if row < ends.len()
             && let Err(kind) = checked(values[first])

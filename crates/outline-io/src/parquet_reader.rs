@@ -5,7 +5,7 @@ use bytes::Bytes;
 use nalgebra::Point2;
 
 use crate::column::Column;
-use crate::error::{Place, ReadError, ReadErrorKind};
+use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::frame::OutlineFrame;
 use crate::latest_frames::LatestFrames;
 use crate::natural_order::natural_order;
@@ -79,7 +79,7 @@ impl ParquetReader {
     pub(crate) fn open_needing(path: &Path, needed: Needed) -> Result<Self, ReadError> {
         let name = path.display().to_string();
         let source = File::open(path).and_then(Source::of_file).map_err(|error| ReadError {
-            place: Place { file: name.clone(), lines: None, rows: None, column: None },
+            place: Place { file: name.clone(), span: None, column: None },
             kind: ReadErrorKind::Io(error),
         })?;
         Self::of(Table::open(source, name, needed)?)
@@ -298,8 +298,7 @@ impl ParquetReader {
             ReadError {
                 place: Place {
                     file: self.table.file.clone(),
-                    lines: None,
-                    rows: Some((first_line.min(last_line), last_line.max(first_line))),
+                    span: Some(Span::Rows(first_line.min(last_line), last_line.max(first_line))),
                     column: None,
                 },
                 kind: ReadErrorKind::Degenerate { object, frame, source },

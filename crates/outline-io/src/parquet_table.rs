@@ -8,7 +8,7 @@ use parquet::file::reader::ChunkReader;
 
 use crate::column::Column;
 use crate::csv_columns::HeaderError;
-use crate::error::{Place, ReadError, ReadErrorKind};
+use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::parquet_batch::{BadRow, Batch, Marks, coordinates, frames, marks, names, numbers};
 use crate::parquet_columns::{Arity, Found, Layout, Needed, TableColumns};
 use crate::parquet_leaf::{Cells, Leaf};
@@ -47,8 +47,7 @@ pub(crate) enum Wanted {
 
 impl Table {
     pub(crate) fn open(source: Source, file: String, needed: Needed) -> Result<Self, ReadError> {
-        let failed =
-            |column, kind| ReadError { place: Place { file: file.clone(), lines: None, rows: None, column }, kind };
+        let failed = |column, kind| ReadError { place: Place { file: file.clone(), span: None, column }, kind };
         let metadata = metadata(&source).map_err(|kind| failed(None, kind))?;
         let schema = metadata.file_metadata().schema_descr();
         let columns = TableColumns::find(schema, needed).map_err(|(column, kind)| failed(column, kind))?;
@@ -78,7 +77,14 @@ impl Table {
 
     pub(crate) fn error(&self, row: Option<u64>, bad: HeaderError) -> ReadError {
         let rows = row.map(|row| (row, row));
-        ReadError { place: Place { file: self.file.clone(), lines: None, rows, column: bad.0 }, kind: bad.1 }
+        ReadError {
+            place: Place {
+                file: self.file.clone(),
+                span: rows.map(|(first, last)| Span::Rows(first, last)),
+                column: bad.0,
+            },
+            kind: bad.1,
+        }
     }
 }
 

@@ -149,7 +149,7 @@ fn area(points: &[Point2<f64>]) -> f64 {
 }
 
 fn place(name: &str) -> Place {
-    Place { file: name.to_owned(), lines: None, rows: None, column: None }
+    Place { file: name.to_owned(), span: None, column: None }
 }
 
 pub(crate) fn failed(name: &str, error: PolygonError) -> ReadError {

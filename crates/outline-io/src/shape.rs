@@ -32,7 +32,7 @@ pub fn read_shape(path: impl AsRef<Path>) -> Result<Outline, ReadShapeError> {
     let path = path.as_ref();
     let file = path.display().to_string();
     let io = |error| {
-        let place = Place { file: path.display().to_string(), lines: None, rows: None, column: None };
+        let place = Place { file: path.display().to_string(), span: None, column: None };
         ReadError { place, kind: ReadErrorKind::Io(error) }
     };
     let mut source = File::open(path).map_err(io)?;
@@ -96,7 +96,7 @@ fn first_of_parquet(path: &Path) -> Result<Option<Outline>, ReadError> {
 
 #[cfg(not(feature = "parquet"))]
 fn first_of_parquet(path: &Path) -> Result<Option<Outline>, ReadError> {
-    let place = Place { file: path.display().to_string(), lines: None, rows: None, column: None };
+    let place = Place { file: path.display().to_string(), span: None, column: None };
     Err(ReadError { place, kind: ReadErrorKind::ParquetLeftOut })
 }
 

@@ -3,8 +3,8 @@ use std::path::PathBuf;
 
 use freeform_curve_fit::Outline;
 use freeform_outline_io::{
-    OutlineFrame, OutlineReader, OutlineWriter, ParquetReader, ParquetWriter, ReadError, ReadErrorKind, WriterOptions,
-    read_shape,
+    OutlineFrame, OutlineReader, OutlineWriter, ParquetReader, ParquetWriter, ReadError, ReadErrorKind, Span,
+    WriterOptions, read_shape,
 };
 use nalgebra::Point2;
 use proptest::prelude::*;
@@ -89,7 +89,7 @@ fn a_file_that_cannot_be_used_is_refused_with_row_and_column() {
         ("bad-mixed-lists", "column y: the type is DOUBLE, expected lists, as column x has"),
     ] {
         let path = sample(&format!("{name}.parquet"));
-        let error = ParquetReader::open(&path).and_then(|reader| reader.collect::<Result<Vec<_>, _>>());
+        let error = ParquetReader::open(&path).and_then(Iterator::collect::<Result<Vec<_>, _>>);
         let message = error.expect_err(name).to_string();
         assert!(message.contains(expected), "{name}: {message}");
         assert!(message.starts_with(&path.display().to_string()) && message.lines().count() == 1, "{message}");
@@ -113,7 +113,7 @@ fn outlines_before_a_bad_row_are_returned_before_the_error() {
 fn a_row_without_points_is_no_outline_and_the_reading_goes_on() {
     let items: Vec<_> = ParquetReader::open(sample("degenerate.parquet")).expect("a table").collect();
     let error = items[1].as_ref().expect_err("no points");
-    assert!(error.is_recoverable() && error.place.rows == Some((1, 1)), "{error}");
+    assert!(error.is_recoverable() && error.place.span == Some(Span::Rows(1, 1)), "{error}");
     assert!(items.len() == 3 && items[0].is_ok() && items[2].is_ok());
 }
 
@@ -234,9 +234,9 @@ proptest! {
     #[test]
     fn what_is_written_is_read_back_to_the_last_bit_in_any_order(frames in sequence(), turn in 0..100_usize) {
         let options = WriterOptions::needed_for(&frames);
-        let bits = |frames: &[OutlineFrame]| -> Vec<(String, u64, u64, Vec<(u64, u64)>)> {
+        let bits = |frames: &[OutlineFrame]| -> Vec<_> {
             let points = |frame: &OutlineFrame| {
-                frame.outline.points().map(|point| (point.x.to_bits(), point.y.to_bits())).collect()
+                frame.outline.points().map(|point| (point.x.to_bits(), point.y.to_bits())).collect::<Vec<_>>()
             };
             frames.iter().map(|frame| (frame.object.clone(), frame.frame, frame.time.to_bits(), points(frame))).collect()
         };
