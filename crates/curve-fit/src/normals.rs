@@ -257,7 +257,7 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
-    use crate::outline::{OpenArc, OpenOutline};
+    use crate::open_outline::{OpenArc, OpenOutline};
 
     fn circle(count: usize) -> Vec<Point2<f64>> {
         let angle = |i: usize| std::f64::consts::TAU * i as f64 / count as f64;
