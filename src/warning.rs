@@ -1,6 +1,6 @@
 use std::fmt;
 
-use freeform_outline_filter::{Ambiguity, WrongFamily};
+use freeform_outline_filter::{Ambiguity, Dynamics, WrongFamily};
 use freeform_riccati::MotionModel;
 
 use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
@@ -58,7 +58,10 @@ pub enum Warning {
     /// Another turn from one frame to the next explains the outlines equally well.
     Ambiguous(Ambiguity),
     /// The motion changed; the estimate is the motion at the end.
-    MotionChanged,
+    MotionChanged {
+        /// How it goes on at the end, where that is told.
+        dynamics: Option<Dynamics>,
+    },
     /// Too many frames were rejected for the others to be trusted: nothing is stated.
     TooManyRejected {
         /// Frames rejected since the object was begun with.
@@ -123,7 +126,7 @@ impl Warning {
             Self::Aliases { .. } => 4,
             Self::NotObservable { .. } | Self::NotKnown { .. } | Self::RotationNotObservable { .. } => 5,
             Self::Restarted { .. } | Self::MayNotHaveSettled { .. } | Self::LinesNotFollowed { .. } => 6,
-            Self::MotionChanged => 7,
+            Self::MotionChanged { .. } => 7,
             Self::FramesRejected { .. } => 8,
             Self::FrameRejected(_) | Self::MoreFramesRejected { .. } => 9,
         }
@@ -142,7 +145,7 @@ impl Warning {
             Self::Restarted { .. } => "restarted",
             Self::FramesRejected { .. } => "frames_rejected",
             Self::Ambiguous(_) => "ambiguous",
-            Self::MotionChanged => "motion_changed",
+            Self::MotionChanged { .. } => "motion_changed",
             Self::TooManyRejected { .. } => "too_many_rejected",
             Self::WrongFamily { family: WrongFamily::Growth, .. } => "wrong_family_growth",
             Self::WrongFamily { family: WrongFamily::Shear, .. } => "wrong_family_shear",
@@ -189,7 +192,10 @@ impl fmt::Display for Warning {
             Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
             Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
-            Self::MotionChanged => f.write_str("the motion changed: the values are those at the end"),
+            Self::MotionChanged { dynamics: Some(Dynamics::Velocity) } => f.write_str(
+                "the middle of the object moves at a constant velocity, not about a fixed point, so that b changes: the values are those at the end",
+            ),
+            Self::MotionChanged { .. } => f.write_str("the motion changed: the values are those at the end"),
             Self::TooManyRejected { rejected, frames } => write!(
                 f,
                 "{rejected} of {frames} frames do not fit the others, so that no motion is stated: the outlines may be of \

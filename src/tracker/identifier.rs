@@ -200,7 +200,8 @@ impl FilteredObject {
             warnings.push(Warning::Aliases { omega: aliases });
         }
         if filter.motion_changed() {
-            warnings.push(Warning::MotionChanged);
+            let dynamics = filter.dynamics().map(|weights| weights.most_probable());
+            warnings.push(Warning::MotionChanged { dynamics });
         }
         warnings.sort_by_key(Warning::order);
         warnings

@@ -12,6 +12,7 @@ mod observation;
 mod queues;
 mod recording;
 mod result;
+mod seeking;
 mod settings;
 #[cfg(feature = "serde")]
 mod state_bytes;
@@ -25,6 +26,8 @@ use self::{identifier::Identifier, object::TrackedObject};
 
 #[cfg(feature = "serde")]
 pub use self::state_bytes::TrackerStateError;
+pub use freeform_outline_filter::{ExpectedOutline, ExpectedPart};
+
 pub use self::{
     attendance::{Attendance, Sighting},
     observation::{ObjectPhase, Observation},

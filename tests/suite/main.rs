@@ -9,6 +9,7 @@ mod paper_experiments;
 mod projective;
 mod rectification;
 mod robustness;
+mod seeking;
 mod soak;
 mod tracker;
 #[cfg(feature = "serde")]

@@ -189,6 +189,18 @@ impl Input {
         self.pictures().and_then(PictureInput::closing_remark).iter().for_each(|warning| warn(warning));
     }
 
+    /// Whether all objects of the last picture have been handed on.
+    pub(crate) fn is_picture_over(&self) -> bool {
+        self.pictures().is_some_and(PictureInput::is_picture_over)
+    }
+
+    /// Takes it that an object was in a picture although it was not traced there.
+    pub(crate) fn keep(&mut self, object: &str, frame: u64) {
+        if let Source::Pictures(pictures) = &mut self.source {
+            pictures.keep(object, frame);
+        }
+    }
+
     /// The pictures that the outlines come from.
     pub(crate) fn pictures(&self) -> Option<&PictureInput> {
         match &self.source {

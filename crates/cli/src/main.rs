@@ -3,6 +3,7 @@ mod args;
 mod awaited;
 mod command_line;
 mod commands;
+mod edge_seeker;
 mod failure;
 mod fitted_outline;
 mod history;

@@ -216,6 +216,18 @@ impl PictureInput {
         self.outlines.source().is_interlaced()
     }
 
+    /// Whether all objects of the last picture have been handed on.
+    pub(crate) fn is_picture_over(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// Takes it that an object was in a picture although it was not traced there, so that it keeps its name.
+    pub(crate) fn keep(&mut self, object: &str, frame: u64) {
+        if let Ok(name) = object.parse() {
+            self.outlines.keep(name, frame);
+        }
+    }
+
     /// Number of pictures, where it is known.
     pub(crate) fn frame_count(&self) -> Option<u64> {
         self.outlines.source().frame_count()
@@ -280,7 +292,7 @@ impl PictureInput {
                 }
                 self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
                 let PictureFrame { frame, time, file, picture } = traced.frame;
-                let seen_in = Rc::new(SeenIn { frame, grid: self.trace.pixel_grid(picture.height()), picture });
+                let seen_in = Rc::new(SeenIn { frame, time, grid: self.trace.pixel_grid(picture.height()), picture });
                 match traced.objects {
                     Err(error) => {
                         let reason = format!("{file}: frame {frame}: {error}");
@@ -369,6 +381,12 @@ fn picture_settings(
     preview: Option<&Preview>,
 ) -> Result<PictureSettings, Failure> {
     let channel = options.channel().channel();
+    let is_median = options.background.as_ref().is_some_and(|path| path.as_os_str() == "median");
+    if options.background_window.is_some() && !is_median {
+        return Err(Failure::unusable(
+            "--background-window: how many pictures the median is of, so only for --background median",
+        ));
+    }
     let background = match &options.background {
         Some(path) if path.as_os_str() == "median" => {
             Some(Background::RunningMedian(options.background_window.unwrap_or(MEDIAN_SIZE).into()))

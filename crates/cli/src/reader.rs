@@ -1,19 +1,16 @@
 //! An input as it is gone through.
-use std::num::NonZero;
 use std::rc::Rc;
 
 use freeform_motion::Tracker;
 use freeform_motion::tracker::{Attendance, Followed, ObjectResult, ReadAhead, Recorded, Sighting};
 
-use crate::failure::{Failure, warn};
+use crate::edge_seeker::EdgeSeeker;
+use crate::failure::{Failure, note, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
 use crate::progress::{Progress, would_stand_in_output};
 use crate::seen::{Item, Missing, SeenIn};
-
-/// Outlines from pictures read ahead, which are held with their pictures.
-const OUTLINES_OF_PICTURES_AHEAD: NonZero<usize> = NonZero::new(32).expect("positive");
 
 /// What comes of reading on: a frame of an object, as far as it could be read, with the picture that it was seen in, if it was; or a
 /// picture without an outline.
@@ -25,7 +22,8 @@ pub(crate) struct Left {
     pub(crate) result: ObjectResult,
 }
 
-/// Has a tracker take all frames of an input, many of which are read while those before are dealt with, and hands on what each gave.
+/// Has a tracker take all frames of an input, and hands on what each gave. Many rows of a file are read while those before are dealt with; a
+/// picture is dealt with before the next one is read, as what is known of an object helps to find it there.
 /// Returns the error that ended the reading, if any; what came before it has been taken.
 pub(crate) fn follow(
     tracker: &mut Tracker,
@@ -34,20 +32,25 @@ pub(crate) fn follow(
     mut observe: impl FnMut(&Event) -> Result<(), Failure>,
 ) -> Result<Option<Failure>, Failure> {
     let progress = Progress::of_frames(input.frame_count(), quiet);
-    let ahead = match input.has_pictures() {
-        true => ReadAhead { outlines: OUTLINES_OF_PICTURES_AHEAD, ..ReadAhead::default() },
-        false => ReadAhead::default(),
-    };
+    let has_pictures = input.has_pictures();
     let mut reader = Reader::new(input, quiet, &progress);
     let mut first_missing = None;
-    tracker.follow_recording(&mut reader, ahead, |event| {
+    let mut hand_on = |event: Event| {
         observe(&event)?;
         if let Followed::Gap(missing) = event {
             first_missing.get_or_insert(missing);
         }
         progress.advance();
         Ok(())
-    })?;
+    };
+    if has_pictures {
+        while let Some(item) = reader.next() {
+            let events = reader.events_of(tracker, item);
+            events.into_iter().try_for_each(&mut hand_on)?;
+        }
+    } else {
+        tracker.follow_recording(&mut reader, ReadAhead::default(), hand_on)?;
+    }
     // Nothing but pictures without an object: the first says why.
     let nothing = first_missing.filter(|_| tracker.objects().len() == 0).map(Missing::into_failure);
     Ok(reader.finish().or(nothing))
@@ -65,31 +68,29 @@ pub(crate) fn follow_stream(
     let mut reader = Reader::new(input, quiet, &progress);
     let (mut first_missing, mut is_any_seen) = (None, false);
     let mut present = Attendance::default();
-    for item in reader.by_ref() {
-        let (event, left) = match item {
-            Recorded::Gap(missing) => (Followed::Gap(missing), Vec::new()),
-            Recorded::Outline(frame, seen_in) => {
-                let left = present.take(&frame.object, frame.frame, Some(frame.time));
-                (Followed::Object(tracker.push(&frame), Some((frame, seen_in))), left)
-            }
-            Recorded::NoOutline { object, frame, reason } => {
-                let left = present.take(&object, frame, None);
-                (Followed::Object(tracker.reject(&object, frame, reason), None), left)
-            }
+    while let Some(item) = reader.next() {
+        // Before a name comes again that is that of a new object by now.
+        let left = match &item {
+            Recorded::Gap(_) => Vec::new(),
+            Recorded::Outline(frame, _) => present.take(&frame.object, frame.frame, Some(frame.time)),
+            Recorded::NoOutline { object, frame, .. } => present.take(object, *frame, None),
         };
         for seen in left {
+            reader.seeker.forget(&seen.object);
             if let Some(result) = tracker.close(&seen.object) {
                 observe(Err(&Left { seen, result }))?;
             }
         }
-        observe(Ok(&event))?;
-        match event {
-            Followed::Gap(missing) => {
-                first_missing.get_or_insert(missing);
+        for event in reader.events_of(tracker, item) {
+            observe(Ok(&event))?;
+            match event {
+                Followed::Gap(missing) => {
+                    first_missing.get_or_insert(missing);
+                }
+                Followed::Object(..) => is_any_seen = true,
             }
-            Followed::Object(..) => is_any_seen = true,
+            progress.advance();
         }
-        progress.advance();
     }
     let nothing = first_missing.filter(|_| !is_any_seen).map(Missing::into_failure);
     Ok(reader.finish().or(nothing))
@@ -102,6 +103,7 @@ struct Reader<'a> {
     progress: &'a Progress,
     warnings: MissingWarnings,
     failure: Option<Failure>,
+    seeker: EdgeSeeker,
 }
 
 impl Iterator for Reader<'_> {
@@ -110,17 +112,13 @@ impl Iterator for Reader<'_> {
     /// What comes next; nothing from the end of the input, an error that ends it, or Ctrl-C on.
     fn next(&mut self) -> Option<Item> {
         // What came after Ctrl-C may be cut short.
-        let item = match self.input.next().filter(|_| !interrupt::was_asked_for())? {
-            Ok(item) => item,
+        match self.input.next().filter(|_| !interrupt::was_asked_for())? {
+            Ok(item) => Some(item),
             Err(failure) => {
                 self.failure = Some(failure);
-                return None;
+                None
             }
-        };
-        if let Item::Gap(missing) = &item {
-            self.tell(missing);
         }
-        Some(item)
     }
 }
 
@@ -129,7 +127,35 @@ impl<'a> Reader<'a> {
         if !quiet {
             progress.pause(|| input.tell());
         }
-        Self { input, quiet, progress, warnings: MissingWarnings::default(), failure: None }
+        let (warnings, seeker) = (MissingWarnings::default(), EdgeSeeker::default());
+        Self { input, quiet, progress, warnings, failure: None, seeker }
+    }
+
+    /// What an item gives, and, after the last one of a picture, the objects that were not in it but are found by their edges.
+    fn events_of(&mut self, tracker: &mut Tracker, item: Item) -> Vec<Event> {
+        let event = self.seeker.push(tracker, item);
+        let seen_in = match &event {
+            Followed::Object(_, Some((_, seen_in))) => seen_in.clone(),
+            Followed::Object(_, None) => None,
+            Followed::Gap(missing) => missing.seen_in.clone(),
+        };
+        let mut events = match seen_in.filter(|_| self.input.is_picture_over()) {
+            Some(seen_in) => self.seeker.seek_others(tracker, &seen_in),
+            None => Vec::new(),
+        };
+        let found = events.iter().filter_map(|event| match event {
+            Followed::Object(observation, _) => Some((observation.object.as_str(), observation.frame)),
+            Followed::Gap(_) => None,
+        });
+        found.for_each(|(object, frame)| self.input.keep(object, frame));
+        match &event {
+            Followed::Gap(missing) if events.is_empty() => self.tell(missing),
+            // The objects are there, though not as a whole.
+            Followed::Gap(_) => return events,
+            Followed::Object(..) => {}
+        }
+        events.insert(0, event);
+        events
     }
 
     fn tell(&mut self, missing: &Missing) {
@@ -144,9 +170,10 @@ impl<'a> Reader<'a> {
 
     /// Says what has been left for the end of the reading, and why that came before its time, if it did.
     fn finish(self) -> Option<Failure> {
-        let Self { input, quiet, progress, warnings, failure } = self;
+        let Self { input, quiet, progress, warnings, failure, seeker } = self;
         if !quiet {
             progress.pause(|| input.tell_in_the_end());
+            seeker.notes().iter().for_each(|told| progress.pause(|| note(told)));
         }
         warnings.finish().for_each(|warning| progress.pause(|| warn(&warning)));
         failure

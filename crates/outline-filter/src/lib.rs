@@ -60,7 +60,9 @@ mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
-pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated};
+pub use supervisor::{
+    Ambiguity, ExpectedOutline, ExpectedPart, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated,
+};
 #[cfg(feature = "serde")]
 pub use supervisor::{StateError, with_header, without_header};
 pub use update::{FrameMeasurement, Rejection};

@@ -172,6 +172,13 @@ impl Identities {
         }
     }
 
+    /// Takes it that an object is where it is expected in a frame, although it was not traced there.
+    pub(crate) fn keep(&mut self, name: u64, frame: u64) {
+        for known in self.known.iter_mut().filter(|known| known.name == name && known.frame < frame) {
+            (known.centre, known.frame) = (known.expected(frame), frame);
+        }
+    }
+
     fn nearest(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Result<TracedOutline, TraceError> {
         let Some(known) = self.known.first_mut() else {
             let first = traced.into_iter().next().ok_or(TraceError::NoPixels)?;

@@ -105,7 +105,7 @@ pub use column::Column;
 pub use contrast::Contrast;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
-pub use edges::EdgeFit;
+pub use edges::{EdgeFit, EdgeProfile, SoughtEdges};
 pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, Span};
 pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};

@@ -123,6 +123,11 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         &self.source
     }
 
+    /// Takes it that an object was in a picture, at most the last one, although it was not traced there: it keeps its name.
+    pub fn keep(&mut self, name: u64, frame: u64) {
+        self.identities.keep(name, frame);
+    }
+
     /// The next picture, which the median knows.
     fn next_picture(&mut self) -> Option<Result<PictureFrame, PictureError>> {
         let size = match self.settings.background {

@@ -23,6 +23,7 @@ mod recognise;
 mod rectify;
 mod reproduce;
 mod simulate;
+mod sought_edges;
 mod support;
 #[cfg(feature = "parquet")]
 mod tables;

@@ -205,7 +205,7 @@ mod tests {
     fn notes_do_not_make_up_for_a_wrong_value_and_warnings_do() {
         let with = |warning| judged(&ObjectResult { warnings: vec![warning], ..result(3.0) });
         for note in [
-            Warning::MotionChanged,
+            Warning::MotionChanged { dynamics: None },
             Warning::NotObservable { parameters: vec!["b1"] },
             Warning::NotKnown { parameters: vec!["b1"] },
             Warning::FramesRejected { rejected: 20, frames: 50 },

@@ -70,8 +70,17 @@ impl OutlineMap {
         }
     }
 
+    /// Whether the normals of most cells are on the right of a chain.
+    pub(crate) fn runs_with_normals(&self, chain: &[usize]) -> bool {
+        let side = |pair: &[usize]| {
+            let [a, b] = [&self.cells[pair[0]], &self.cells[pair[1]]];
+            (a.normal + b.normal).perp(&(b.centre - a.centre)).signum()
+        };
+        chain.windows(2).map(side).sum::<f64>() >= 0.0
+    }
+
     /// The cells in their order along the outline, one list for each connected part, and whether it is closed.
-    fn chains(&self) -> Vec<(Vec<usize>, bool)> {
+    pub(crate) fn chains(&self) -> Vec<(Vec<usize>, bool)> {
         let mut seen = vec![false; self.cells.len()];
         let mut chains = Vec::new();
         let is_end = |i: usize| self.cells[i].neighbours.contains(&i);

@@ -105,7 +105,7 @@ impl OutlineMap {
     }
 
     /// Where the outline lies on the normal of a cell; new cells have no offset yet.
-    pub(super) fn outline_at(&self, number: usize, offsets: &[f64]) -> Point2<f64> {
+    pub(crate) fn outline_at(&self, number: usize, offsets: &[f64]) -> Point2<f64> {
         let cell = &self.cells[number];
         cell.centre + offsets.get(number).copied().unwrap_or(0.0) * cell.normal
     }

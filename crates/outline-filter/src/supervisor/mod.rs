@@ -2,6 +2,7 @@
 mod acquisition;
 mod ambiguity;
 mod error;
+mod expected_outline;
 mod hypotheses;
 mod initialisation;
 mod motion_change;
@@ -15,6 +16,7 @@ mod window;
 
 pub use ambiguity::Ambiguity;
 pub use error::FilterError;
+pub use expected_outline::{ExpectedOutline, ExpectedPart};
 pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use settings::FilterSettings;
 #[cfg(feature = "serde")]

@@ -103,7 +103,7 @@ fn measured(
 }
 
 /// Moves a track on to where its motion has led it, by what is known of its dynamics.
-fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHistory, seconds: f64) {
+pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHistory, seconds: f64) {
     if history.dynamics.is_none()
         && let Some(setting) = settings.followed_dynamics()
     {

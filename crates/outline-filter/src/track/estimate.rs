@@ -20,7 +20,7 @@ impl Track {
         self.summary_by(&self.belief.marginal)
     }
 
-    fn summary_by(&self, marginal: &StateMatrix) -> Option<Summary> {
+    pub(super) fn summary_by(&self, marginal: &StateMatrix) -> Option<Summary> {
         let belief = &self.belief;
         let covariance = scaled_inverse(marginal, belief.parameter_count())? * self.noise.effective_variance();
         let is_finite = covariance.iter().all(|e| e.is_finite());

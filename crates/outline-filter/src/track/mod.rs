@@ -7,6 +7,7 @@ mod growth;
 #[cfg(test)]
 mod jacobians;
 mod left_out;
+mod outline;
 mod remapping;
 #[cfg(test)]
 mod sides;

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use freeform_curve_fit::Outline;
 use freeform_estimate::ProcessNoise;
 use freeform_riccati::{MotionModel, ParameterVector};
-use nalgebra::{Affine2, Matrix3, Point2, Projective2};
+use nalgebra::{Affine2, Matrix3, Projective2};
 
 use super::first_pose::FirstPose;
 #[cfg(feature = "serde")]
@@ -268,13 +268,6 @@ impl Track {
     #[cfg(test)]
     pub(crate) fn set_noise(&mut self, sigma: f64) {
         self.noise.sigma = sigma;
-    }
-
-    /// The outline as it is known now, image coordinates: one point per cell, in no particular order where the map has grown.
-    pub(crate) fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
-        let to_image = self.reference.to_image() * self.belief.pose;
-        let cells = self.map.cells().iter().zip(&self.belief.offsets);
-        cells.map(move |(cell, offset)| freeform_riccati::map_point(&to_image, &(cell.centre + *offset * cell.normal)))
     }
 
     /// Whether neither the outline nor the frames show the turn.

@@ -5,6 +5,7 @@
 //! nor a shading moves it. The width `w` is one for a contour.
 mod blur_width;
 mod crossings;
+mod edge_profile;
 mod step_fit;
 
 use freeform_curve_fit::isoline::Crossing;
@@ -12,6 +13,8 @@ use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
 use crate::contrast::{Contrast, signal};
+pub use edge_profile::{EdgeProfile, SoughtEdges};
+
 use crossings::undo_crossings;
 use step_fit::StepFit;
 

@@ -1,0 +1,49 @@
+//! The outline of a track as it is known, in the image.
+use freeform_riccati::{map_point, pull_back};
+use nalgebra::Point2;
+
+use super::Track;
+use crate::{
+    map::Cell,
+    update::{hold, with_hold},
+};
+
+impl Track {
+    /// The outline as it is known now, image coordinates: one point per cell, in no particular order where the map has grown.
+    pub(crate) fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
+        let to_image = self.reference.to_image() * self.belief.pose;
+        let cells = self.map.cells().iter().zip(&self.belief.offsets);
+        cells.map(move |(cell, offset)| map_point(&to_image, &(cell.centre + *offset * cell.normal)))
+    }
+
+    /// Its connected parts, each in order with its normals on the right, image coordinates, and whether they are closed.
+    pub(crate) fn outline_parts(&self) -> impl Iterator<Item = (Vec<Point2<f64>>, bool)> + '_ {
+        let to_image = self.reference.to_image() * self.belief.pose;
+        let offsets = &self.belief.offsets;
+        self.map.chains().into_iter().map(move |(mut chain, is_closed)| {
+            if !self.map.runs_with_normals(&chain) {
+                chain.reverse();
+            }
+            let at = |cell: usize| map_point(&to_image, &self.map.outline_at(cell, offsets));
+            (chain.into_iter().map(at).collect(), is_closed)
+        })
+    }
+
+    /// Standard deviation of the place of the outline along its normals, normalised, where it is known least; `None` where the covariance
+    /// cannot be computed.
+    pub(crate) fn deviation_along_normals(&self) -> Option<f64> {
+        let (belief, null) = (&self.belief, self.null_directions());
+        let held = with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref());
+        let covariance = self.summary_by(&held)?.covariance;
+        let k = belief.parameter_count();
+        let inverse = belief.pose.try_inverse()?;
+        let variance = |cell: &Cell| {
+            let place = map_point(&belief.pose, &cell.centre);
+            let normal = pull_back(&inverse, &place, &cell.centre, &cell.normal).normalize();
+            let along = belief.model.normal_velocities(&place, &normal);
+            let term = |i: usize, j: usize| along[i] * covariance[(i, j)] * along[j];
+            (0..k).flat_map(|i| (0..k).map(move |j| (i, j))).map(|(i, j)| term(i, j)).sum::<f64>()
+        };
+        Some(self.map.cells().iter().map(variance).fold(0.0, f64::max).sqrt())
+    }
+}
