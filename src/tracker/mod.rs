@@ -6,9 +6,11 @@
 //! [`Trajectory`] keeps the poses.
 mod attendance;
 mod contour_order;
+mod family;
 mod identifier;
 mod object;
 mod observation;
+mod plane_object;
 mod queues;
 mod recording;
 mod result;
@@ -27,6 +29,7 @@ use self::{identifier::Identifier, object::TrackedObject};
 pub use self::state_bytes::TrackerStateError;
 pub use self::{
     attendance::{Attendance, Sighting},
+    family::MotionFamily,
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
     result::ObjectResult,

@@ -68,6 +68,15 @@ impl Motion {
         Self { kind: Kind::Varying(Arc::new(move |time| generator(time).into())) }
     }
 
+    /// The motion in space of a plane that a perspective camera sees; `None` of a motion of the picture.
+    #[must_use]
+    pub fn plane(&self) -> Option<PlaneMotion> {
+        match self.kind {
+            Kind::Plane(plane, _) => Some(plane),
+            _ => None,
+        }
+    }
+
     /// Whether the motion is known to be the same at all times.
     #[must_use]
     pub fn is_constant(&self) -> bool {
