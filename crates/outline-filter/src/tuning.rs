@@ -477,6 +477,8 @@ pub(crate) mod redrawing {
     /// Deviation of a normal's direction that its neighbours are chosen for, rad: a fifth of that of the first frames, so that what it takes
     /// from the weakest directions of a projective pose is below a hundredth.
     pub(crate) const NORMAL_NOISE: f64 = 0.01;
+    /// Neighbours on either side that a curvature comes from.
+    pub(crate) const NEIGHBOURS_OF_CURVATURE: usize = 3;
     /// Most neighbours on either side: more would cut corners.
     pub(crate) const MOST_NEIGHBOURS: usize = 6;
 }

@@ -33,21 +33,57 @@ impl OutlineMap {
         (1..tuning::MOST_NEIGHBOURS).find(is_enough).unwrap_or(tuning::MOST_NEIGHBOURS)
     }
 
+    /// Curvature of the outline at every cell: where it lies `t` along from the middle of a cell, it is `curvature t^2 / 2` off along the
+    /// normal. 0 at ends.
+    pub(crate) fn curvatures(&self) -> Vec<f64> {
+        (0..self.cells.len()).map(|number| self.curvature(number)).collect()
+    }
+
+    fn curvature(&self, number: usize) -> f64 {
+        let cell = &self.cells[number];
+        let tangent = Vector2::new(-cell.normal.y, cell.normal.x);
+        // The parabola of least squares through the places about the cell.
+        let mut places = vec![(0.0, 0.0)];
+        self.walk(number, tuning::NEIGHBOURS_OF_CURVATURE, |_, pair| {
+            places.extend(pair.map(|other| {
+                let apart = self.cells[other].centre - cell.centre;
+                (tangent.dot(&apart), cell.normal.dot(&apart))
+            }));
+        });
+        let count = places.len() as f64;
+        let mean = places.iter().map(|(t, _)| t * t).sum::<f64>() / count;
+        let (along, squares) = places.iter().fold((0.0, 0.0), |(along, squares), (t, z)| {
+            let lever = t * t - mean;
+            (along + lever * z, squares + lever * lever)
+        });
+        if squares > 0.0 { 2.0 * along / squares } else { 0.0 }
+    }
+
     /// Normal of the line through the places of a cell's neighbours, so many on either side, where there are.
     fn normal_across(&self, number: usize, reach: usize) -> Vector2<f64> {
         let cell = &self.cells[number];
         let mut slope = Vector2::zeros();
+        self.walk(number, reach, |steps, [a, b]| {
+            slope += steps as f64 * (self.cells[a].centre - self.cells[b].centre);
+        });
+        let normal = Vector2::new(-slope.y, slope.x);
+        let length = normal.norm();
+        if length > 0.0 { normal * (normal.dot(&cell.normal).signum() / length) } else { cell.normal }
+    }
+
+    /// Walks from a cell both ways as long as there are cells on both sides: windows that are not symmetric would take a bend for a slope.
+    fn walk(&self, number: usize, reach: usize, mut visit: impl FnMut(usize, [usize; 2])) {
+        let cell = &self.cells[number];
         let mut sides = [[number, number]; 2];
         for (side, first) in sides.iter_mut().zip(cell.neighbours) {
             side[1] = first;
         }
         for steps in 1..=reach {
             let [[_, a], [_, b]] = sides;
-            // Windows that are not symmetric would take a bend for a slope.
             if a == b || a == number || b == number {
                 break;
             }
-            slope += steps as f64 * (self.cells[a].centre - self.cells[b].centre);
+            visit(steps, [a, b]);
             for side in &mut sides {
                 let [before, at] = *side;
                 let [one, other] = self.cells[at].neighbours;
@@ -56,8 +92,5 @@ impl OutlineMap {
                 *side = if next == at { [at, number] } else { [at, next] };
             }
         }
-        let normal = Vector2::new(-slope.y, slope.x);
-        let length = normal.norm();
-        if length > 0.0 { normal * (normal.dot(&cell.normal).signum() / length) } else { cell.normal }
     }
 }

@@ -1,7 +1,7 @@
 //! What the frames of a plane are measured against, whatever its motion.
 use std::sync::Arc;
 
-use freeform_riccati::{MotionModel, PinholeCamera, PlaneMotion};
+use freeform_riccati::{MotionModel, PinholeCamera, PlaneMotion, map_point};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 use crate::{
@@ -25,6 +25,8 @@ pub(super) struct Scenery {
     map: Arc<OutlineMap>,
     /// The map that this one was drawn from.
     source: Arc<OutlineMap>,
+    /// Of its cells, once it has been drawn anew; none before.
+    curvatures: Vec<f64>,
     pub(super) noise: NoiseModel,
     pub(super) reference: Reference,
     /// Pose, body to image, of the first frame.
@@ -51,7 +53,16 @@ impl Scenery {
             (to_picture.try_inverse()? * camera.to_picture(), camera.from_picture() * to_picture);
         let (map, noise) = (Arc::clone(track.map()), track.noise().clone());
         let source = Arc::clone(&map);
-        Some(Self { map, source, noise, reference, first_pose: *track.first_body_pose(), from_camera, to_camera })
+        Some(Self {
+            map,
+            source,
+            curvatures: Vec::new(),
+            noise,
+            reference,
+            first_pose: *track.first_body_pose(),
+            from_camera,
+            to_camera,
+        })
     }
 
     /// Whether its outline comes from that of a track.
@@ -62,6 +73,7 @@ impl Scenery {
     /// Draws the outline anew where the offsets put it, which are known to such a deviation.
     pub(super) fn redraw(&mut self, offsets: &[f64], deviation: f64) {
         self.map = self.map.redrawn(offsets, deviation);
+        self.curvatures = self.map.curvatures();
     }
 
     /// Nothing believed but the offsets of a track.
@@ -107,6 +119,20 @@ impl Scenery {
         frame.clear_shifts(self.map.cells().len());
         let null = self.map.null_directions(MODEL, pose);
         View { map: &self.map, belief, noise: &self.noise }.measure(frame, pose, &null, Pass::First);
+        if !self.curvatures.is_empty() {
+            self.bend(frame, pose);
+        }
+    }
+
+    /// Takes off the residuals what the bend of the outline makes of a point that does not lie in the middle of its cell.
+    fn bend(&self, frame: &mut Frame, pose: &Matrix3<f64>) {
+        let Some(inverse) = pose.try_inverse() else { return };
+        for (m, p) in frame.measurements.iter_mut().zip(&frame.points).filter(|(m, _)| m.cell != NO_CELL) {
+            let cell = &self.map.cells()[m.cell];
+            let along = cell.normal.perp(&(map_point(&inverse, p) - cell.centre));
+            let along = along.clamp(-2.0 * self.map.spacing(), 2.0 * self.map.spacing());
+            m.residual -= 0.5 * self.curvatures[m.cell] * along * along * m.by_offset;
+        }
     }
 
     /// The pose in which the loaded frame shows the outline that is believed, from one near it, and what the frame tells of it.
