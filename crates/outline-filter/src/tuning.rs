@@ -541,9 +541,11 @@ pub(crate) mod plane {
     pub(crate) const LARGEST_DEVIATION: f64 = 0.25;
     /// The same of the normal.
     pub(crate) const LARGEST_DEVIATION_OF_NORMAL: f64 = 0.25;
-    /// A plane that has moved by less, in its distance, and one whose velocity is fewer deviations, hardly moves.
+    /// A plane that has moved by less, in its distance, hardly moves.
     pub(crate) const HARDLY_MOVED: f64 = 0.02;
-    pub(crate) const SEEN: f64 = 4.0;
+    /// Squared velocity in units of its covariance from which on the plane moves beyond doubt. A velocity and a normal are five degrees of
+    /// freedom that can follow noise: chance makes 30 of them once in 80,000, and less where both are chosen among several minima.
+    pub(crate) const MOVES: f64 = 50.0;
     /// Known beforehand, as deviations: turns over the whole time in rad, ways in distances, and the normal. So weak that they bound only
     /// what no frame tells of.
     pub(crate) const LARGEST_MOTION: f64 = 100.0;

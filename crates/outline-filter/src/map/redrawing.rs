@@ -94,3 +94,69 @@ impl OutlineMap {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::map::{Cell, nearest_field::NearestField, null_space::NullSpace};
+
+    /// Cells around a circle, or along three quarters of it, whose normals are off by up to a twentieth.
+    fn circle(radius: f64, count: usize, closed: bool) -> OutlineMap {
+        let spacing = std::f64::consts::TAU * radius / count as f64;
+        let number_of_cells = if closed { count } else { 3 * count / 4 };
+        let cells = (0..number_of_cells)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * i as f64 / count as f64;
+                let off = angle + 0.05 * (7.0 * i as f64).sin();
+                let neighbours = match (closed, i) {
+                    (true, _) => [(i + count - 1) % count, (i + 1) % count],
+                    (false, 0) => [0, 1],
+                    (false, _) if i + 1 == number_of_cells => [i - 1, i],
+                    (false, _) => [i - 1, i + 1],
+                };
+                let centre = Point2::new(radius * angle.cos(), radius * angle.sin());
+                Cell { centre, normal: Vector2::new(off.cos(), off.sin()), neighbours }
+            })
+            .collect();
+        OutlineMap {
+            cells,
+            field: NearestField::default(),
+            spacing,
+            half_window: 2,
+            step: spacing,
+            most_seen: 0,
+            null_space: NullSpace::default(),
+        }
+    }
+
+    #[test]
+    fn a_map_drawn_anew_lies_where_the_offsets_put_it_with_the_normals_and_the_bend_of_the_outline() {
+        for closed in [true, false] {
+            let map = circle(2.0, 200, closed);
+            let cells = map.cells().len();
+            let drawn = map.redrawn(&vec![0.01; cells], 1e-3);
+            for (number, (cell, curvature)) in drawn.cells().iter().zip(drawn.curvatures()).enumerate() {
+                assert!((cell.centre.coords.norm() - 2.01).abs() < 1e-4);
+                let is_inside = closed || (6..cells - 6).contains(&number);
+                let off = cell.normal.perp(&cell.centre.coords.normalize()).abs();
+                // Neighbours that were moved along normals that are off tell a little less.
+                assert!(cell.normal.dot(&cell.centre.coords) > 0.0 && (!is_inside || off < 4e-3), "{number}: {off}");
+                assert!(!is_inside || (curvature + 1.0 / 2.01).abs() < 0.02, "{number}: {curvature}");
+                assert_eq!(drawn.nearest(&cell.centre), Some(number));
+            }
+            // An end has no neighbours on both sides, and keeps what it had.
+            if !closed {
+                assert_eq!((drawn.cells()[0].normal, drawn.curvatures()[0]), (map.cells()[0].normal, 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn more_neighbours_are_asked_where_places_are_less_certain() {
+        let map = circle(2.0, 200, true);
+        let reach = [1e-5, 1e-3, 3e-3, 1.0].map(|noise| map.reach(noise));
+        assert!(reach.is_sorted() && reach[0] == 1 && reach[3] == tuning::MOST_NEIGHBOURS, "{reach:?}");
+    }
+}

@@ -138,3 +138,45 @@ pub(super) fn squares(measurements: &[Measurement], sigma: f64) -> f64 {
     };
     measurements.iter().map(square).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::dense_filter::random_measurements;
+
+    const CELLS: usize = 5;
+
+    fn sums(measurements: &[Measurement]) -> Information {
+        let mut sums = Information::none(CELLS);
+        sums.add(measurements, &Matrix8::identity());
+        sums
+    }
+
+    #[test]
+    fn sums_of_frames_that_are_no_longer_kept_say_the_same_from_anywhere() {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let [old, new] = [(); 2].map(|()| random_measurements(&mut rng, 8, 0..CELLS, 60));
+        let weak = Vector8::repeat(1e-12);
+        let together: Vec<_> = old.iter().chain(&new).copied().collect();
+        let all = sums(&together).solve(&weak).expect("a solution");
+        // What is further on lies that much less off.
+        let (motion, offsets) = (Vector8::from_fn(|i, _| 0.1 * i as f64 - 0.3), [0.2, -0.1, 0.0, 0.3, -0.2]);
+        let moved = |m: &Measurement| Measurement {
+            residual: m.residual - Vector8::from(m.jacobian).dot(&motion) - m.by_offset * offsets[m.cell],
+            ..*m
+        };
+        let mut further = sums(&new.iter().map(moved).collect::<Vec<_>>());
+        further.add_about(&sums(&old), &motion, &offsets);
+        let step = further.solve(&weak).expect("a solution");
+        assert!((step.motion + motion - all.motion).amax() < 1e-9, "{}", step.motion);
+        for ((step, offset), all) in step.offsets.iter().zip(offsets).zip(&all.offsets) {
+            assert!((step + offset - all).abs() < 1e-9);
+        }
+        // The sum of squares falls by as much on the way there and on, as all the way.
+        let fallen = sums(&together).fall_to(&motion, &offsets) + step.fall;
+        assert!((fallen - all.fall).abs() < 1e-9 * all.fall, "{fallen} {}", all.fall);
+    }
+}

@@ -1,8 +1,8 @@
 //! What the frames of a plane are measured against, whatever its motion.
 use std::sync::Arc;
 
-use freeform_riccati::{MotionModel, PinholeCamera, PlaneMotion, map_point};
-use nalgebra::{Matrix3, SMatrix, SVector};
+use freeform_riccati::{MotionModel, PinholeCamera, PlaneMotion, map_point, pull_back};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector2};
 
 use crate::{
     belief::Belief,
@@ -129,9 +129,14 @@ impl Scenery {
         let Some(inverse) = pose.try_inverse() else { return };
         for (m, p) in frame.measurements.iter_mut().zip(&frame.points).filter(|(m, _)| m.cell != NO_CELL) {
             let cell = &self.map.cells()[m.cell];
-            let along = cell.normal.perp(&(map_point(&inverse, p) - cell.centre));
-            let along = along.clamp(-2.0 * self.map.spacing(), 2.0 * self.map.spacing());
-            m.residual -= 0.5 * self.curvatures[m.cell] * along * along * m.by_offset;
+            let q = map_point(&inverse, p);
+            let tangent = Vector2::new(-cell.normal.y, cell.normal.x);
+            let most = 2.0 * self.map.spacing();
+            let along = tangent.dot(&(q - cell.centre)).clamp(-most, most);
+            // The noise along the outline adds its variance to the square, and a different one as the plane comes nearer or tilts.
+            let noise = self.sigma() * pull_back(&inverse, p, &q, &tangent).norm();
+            let square = along * along - noise * noise;
+            m.residual -= 0.5 * self.curvatures[m.cell] * square * m.by_offset;
         }
     }
 

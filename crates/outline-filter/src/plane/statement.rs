@@ -1,8 +1,9 @@
 //! What is stated of the motion of a plane, and why something is not.
 use freeform_estimate::PlaneEstimate;
 use freeform_riccati::PlaneMotion;
+use nalgebra::{Matrix3, Vector3};
 
-use super::{plane_filter::PlaneFilter, solution::Solution};
+use super::{plane_filter::PlaneFilter, scenery::Matrix8, solution::Solution};
 use crate::tuning::plane as tuning;
 
 /// Two motions of a plane that the frames do not decide between yet.
@@ -71,9 +72,8 @@ impl PlaneFilter {
         if alone.known().iter().all(|known| *known) {
             return None;
         }
-        let (v, covariance) = (alone.motion().velocity, alone.covariance());
-        let moved = V.into_iter().map(|j| covariance[(j, j)]).sum::<f64>().sqrt();
-        let is_slow = v.norm() * self.span() < tuning::HARDLY_MOVED || v.norm() < tuning::SEEN * moved;
+        let velocity = alone.motion().velocity;
+        let is_slow = velocity.norm() * self.span() < tuning::HARDLY_MOVED || !moves(&velocity, alone.covariance());
         let has_normal = N.into_iter().all(|j| alone.known()[j]);
         Some(if is_slow && !has_normal { PlaneUnknown::HardlyMoves } else { PlaneUnknown::NotYet })
     }
@@ -110,7 +110,9 @@ impl PlaneFilter {
         let (scenery, span) = (self.scenery.as_ref()?, self.span());
         let covariance = solution.covariance(scenery, span)? * solution.agreement.excess();
         let deviation = |j: usize| covariance[(j, j)].max(0.0).sqrt();
-        let normal = N.into_iter().all(|j| deviation(j) <= tuning::LARGEST_DEVIATION_OF_NORMAL);
+        // Noise alone is best explained by some small velocity, with a normal that fits it.
+        let normal = moves(&solution.motion.velocity, &covariance)
+            && N.into_iter().all(|j| deviation(j) <= tuning::LARGEST_DEVIATION_OF_NORMAL);
         let mut known = [normal; PlaneMotion::PARAMETERS];
         for j in W.chain(V) {
             let is_worth = deviation(j) * span <= tuning::LARGEST_DEVIATION;
@@ -120,6 +122,13 @@ impl PlaneFilter {
         let estimate = PlaneEstimate::new(solution.motion, covariance, known);
         estimate.is_finite().then_some(estimate)
     }
+}
+
+/// Whether a velocity is beyond doubt, given the covariance of all parameters: Wald's statistic.
+fn moves(velocity: &Vector3<f64>, covariance: &Matrix8) -> bool {
+    let of_velocity: Matrix3<f64> = covariance.fixed_view::<3, 3>(V.start, V.start).into_owned();
+    freeform_estimate::scaled_solution(&of_velocity, velocity)
+        .is_some_and(|weighted| velocity.dot(&weighted) > tuning::MOVES)
 }
 
 /// In which parameters two solutions differ by more than a little.
