@@ -6,7 +6,7 @@ set -eu
 cd "$(dirname "$0")"
 seconds=$1
 shift
-[ $# -gt 0 ] || set -- csv_reader names picture_reader picture_stream picture_folder tracing fit_and_decomposition adaptive_identifier motion_filter saved_state
+[ $# -gt 0 ] || set -- csv_reader parquet_reader polygon_reader names picture_reader picture_stream picture_folder tracing fit_and_decomposition adaptive_identifier motion_filter saved_state
 instrumentation="-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4
  -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table
  -Cllvm-args=-sanitizer-coverage-trace-compares"

@@ -1,6 +1,6 @@
 //! The identifier of one object, whichever method it is.
 use freeform_curve_fit::{Fit, Outline};
-use freeform_estimate::{MotionEstimate, MotionState, ParameterEstimate, PlaneEstimate, PointVelocity};
+use freeform_estimate::{MotionEstimate, MotionState, PlaneEstimate, PointVelocity};
 use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, PlaneAmbiguity, PlaneFilter, Unstated};
 
 use super::{
@@ -197,10 +197,10 @@ impl FilteredObject {
         if let Some((_, estimate)) = last_known {
             let ambiguous = ambiguity.as_ref().map_or(&[][..], |ambiguity| &ambiguity.parameters);
             let unknown = estimate.parameters().zip(filter.hidden_parameters()).filter(|(p, _)| p.value.is_none());
-            let unknown = unknown.filter(|(p, _)| !ambiguous.contains(&p.name));
-            let (hidden, others): (Vec<_>, Vec<_>) = unknown.partition(|(_, is_hidden)| *is_hidden);
-            let names = |of: Vec<(ParameterEstimate, bool)>| of.into_iter().map(|(p, _)| p.name).collect::<Vec<_>>();
-            let (hidden, others) = (names(hidden), names(others));
+            let (mut hidden, mut others) = (Vec::new(), Vec::new());
+            for (parameter, is_hidden) in unknown.filter(|(p, _)| !ambiguous.contains(&p.name)) {
+                if is_hidden { &mut hidden } else { &mut others }.push(parameter.name);
+            }
             if !hidden.is_empty() {
                 warnings.push(Warning::NotObservable { parameters: hidden });
             }

@@ -3,7 +3,7 @@ use std::io::Cursor;
 
 use crate::checks::{
     adaptive_identifier, csv_reader, fit_and_decomposition, motion_filter, names, picture_folder, picture_reader,
-    picture_stream, tracing,
+    picture_stream, polygon_reader, tracing,
 };
 use freeform_motion::outline_io::GrayImage;
 use rand::{Rng as _, RngExt as _, SeedableRng as _};
@@ -48,6 +48,33 @@ fn any_bytes_are_read_as_csv_or_refused() {
         1,0.1,1,2,\"b\",\n1,0.1,2,2,b,\n1,0.1,1,3,b,\n# comment\n1,0.1,0,0,a,0\n1,0.1,0,1,a,0\n";
     csv_reader(good);
     damaged(good, 2, 5000).for_each(|bytes| csv_reader(&bytes));
+}
+
+/// A file that the tests of `outline-io` have too.
+fn sample(name: &str) -> Vec<u8> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/outline-io/tests/data");
+    std::fs::read(folder.join(name)).expect("a sample")
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn any_bytes_are_read_as_parquet_or_refused() {
+    use crate::checks::parquet_reader;
+    random_bytes(21, 500, 300).for_each(|bytes| parquet_reader(&[b"PAR1", &bytes[..], b"PAR1"].concat()));
+    for name in ["good-arrow", "good-gzip", "good-zstd", "good-types", "good-polars", "good-points", "arcs-rows"] {
+        let good = sample(&format!("parquet/{name}.parquet"));
+        parquet_reader(&good);
+        damaged(&good, 22, 2000).for_each(|bytes| parquet_reader(&bytes));
+    }
+}
+
+#[test]
+fn any_bytes_are_read_as_polygons_or_refused() {
+    for name in ["coco.json", "labelme-9.json", "trackmate.xml"] {
+        let good = sample(&format!("polygons/{name}"));
+        polygon_reader(&good);
+        damaged(&good, 23, 2000).for_each(|bytes| polygon_reader(&bytes));
+    }
 }
 
 #[test]

@@ -3,14 +3,20 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-use freeform_motion::outline_io::{OutlineReader, PictureSequence, ReadError, ReadErrorKind};
+use freeform_motion::outline_io::{
+    OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind, TableFormat,
+    VerticalAxis, picture_files,
+};
 
 use crate::args::PictureOptions;
 use crate::awaited::Awaited;
 use crate::failure::{Failure, note, plain, warn};
-use crate::picture_input::PictureInput;
+use crate::picture_input::{ASSUMED_RATE, PictureInput};
 use crate::seen::Item;
 use crate::truth::SimulatedMotion;
+
+/// Options for pictures that hold for polygons in pictures too.
+const OPTIONS_OF_POLYGONS: [&str; 4] = ["--fps", "--pixel-size", "--y-up", "--y-down"];
 
 /// Longest head of comment lines that is looked through for the truth, in bytes.
 const HEAD_LIMIT: u64 = 1 << 16;
@@ -28,13 +34,14 @@ pub(crate) enum Waiting {
 pub(crate) struct Input {
     /// The name of the file in messages.
     pub(crate) name: String,
-    /// The motion that the head of the file says it was simulated with.
-    pub(crate) truth: Option<SimulatedMotion>,
+    /// The comment lines that the file begins with, without `#`.
+    pub(crate) comments: Vec<String>,
     source: Source,
 }
 
 enum Source {
     Csv(Box<OutlineReader<Box<dyn Read>>>),
+    File(OutlineFile),
     Pictures(Box<PictureInput>),
 }
 
@@ -47,9 +54,12 @@ impl Input {
             [first, rest @ ..] => format!("{} and {} more", first.display(), rest.len()),
             [] => return Err(Failure::unusable("no input is named")),
         };
-        if let (Some(csv), [_, _, ..]) = (paths.iter().find(|path| is_csv(path)), paths) {
-            let reason = "outlines are read from one CSV file, several inputs are pictures";
-            return Err(Failure::unusable(format_args!("{}: {reason}", csv.display())));
+        if let (Some((table, format)), [_, _, ..]) = (paths.iter().find_map(|path| Some((path, table(path)?))), paths) {
+            let reason = format_args!("outlines are read from one {format} file, several inputs are pictures");
+            return Err(Failure::unusable(format_args!("{}: {reason}", table.display())));
+        }
+        if let Some(files) = labelme_files(paths)? {
+            return Self::of_polygons(|settings| OutlineFile::open_polygons(&files, settings), name, options);
         }
         let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
         if path.as_os_str() == "-" {
@@ -63,13 +73,40 @@ impl Input {
             return Self::of_pictures(PictureInput::open(paths, options)?, name);
         }
         match File::open(path) {
-            Ok(file) => Self::from_source(BufReader::new(file), name, options, waiting),
+            Ok(file) => {
+                let mut source = BufReader::new(file);
+                let start = source.fill_buf().unwrap_or_default();
+                if TableFormat::is_parquet(start) || TableFormat::of(path) == TableFormat::Parquet {
+                    refuse_options(&options.given(), &name, "Parquet")?;
+                    return Self::of_file(OutlineFile::open_parquet(path), name);
+                }
+                Self::from_source(source, name, options, waiting)
+            }
             Err(error) => Err(Failure::unusable(format_args!("{name}: {}", plain(&error)))),
         }
     }
 
     fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
-        Ok(Self { name, truth: None, source: Source::Pictures(Box::new(pictures)) })
+        Ok(Self { name, comments: Vec::new(), source: Source::Pictures(Box::new(pictures)) })
+    }
+
+    fn of_file(file: Result<OutlineFile, ReadError>, name: String) -> Result<Self, Failure> {
+        let file = file.map_err(|error| unreadable(&error))?;
+        let comments = file.comments().lines().map(str::to_owned).collect();
+        Ok(Self { name, comments, source: Source::File(file) })
+    }
+
+    fn of_polygons(
+        open: impl FnOnce(&PolygonSettings) -> Result<OutlineFile, ReadError>,
+        name: String,
+        options: &PictureOptions,
+    ) -> Result<Self, Failure> {
+        let only_for_pictures: Vec<_> =
+            options.given().into_iter().filter(|option| !OPTIONS_OF_POLYGONS.contains(option)).collect();
+        refuse_options(&only_for_pictures, &name, "polygons")?;
+        let vertical = if options.y_down { VerticalAxis::Down } else { VerticalAxis::Up };
+        let settings = PolygonSettings { frames_per_second: options.fps, vertical, pixel_size: options.pixel_size };
+        Self::of_file(open(&settings), name)
     }
 
     fn from_source(
@@ -87,18 +124,26 @@ impl Input {
             let pictures = PictureInput::from_stream(source, &name, options, waiting)?;
             return Self::of_pictures(pictures, name);
         }
-        if let given @ [_, ..] = &options.given()[..] {
-            let options = given.join(", ");
-            return Err(Failure::unusable(format_args!("{options}: only for pictures, but {name} was read as CSV")));
+        if OutlineFile::begins_like_polygons(start) {
+            return Self::of_polygons(
+                |settings| OutlineFile::polygons_from(source, &name.clone(), settings),
+                name.clone(),
+                options,
+            );
         }
+        refuse_options(&options.given(), &name, "CSV")?;
         let head = comment_lines(&mut source).map_err(failed)?;
-        let truth = String::from_utf8_lossy(&head)
-            .lines()
-            .find_map(|line| SimulatedMotion::parse(line.trim_start_matches('#')));
+        let comment = |line: &str| line.trim_start_matches('#').trim().to_owned();
+        let comments = String::from_utf8_lossy(&head).lines().map(comment).collect();
         // The head is read again with the rest, so that line numbers are right.
         let whole: Box<dyn Read> = Box::new(Cursor::new(head).chain(source));
         let outlines = OutlineReader::new(whole, name.clone()).map_err(|error| unreadable(&error))?;
-        Ok(Self { name, truth, source: Source::Csv(Box::new(outlines)) })
+        Ok(Self { name, comments, source: Source::Csv(Box::new(outlines)) })
+    }
+
+    /// The motion that the head of the file says it was simulated with.
+    pub(crate) fn truth(&self) -> Option<SimulatedMotion> {
+        self.comments.iter().find_map(|comment| SimulatedMotion::parse(comment))
     }
 
     /// Number of frames, where it is known before they are read.
@@ -113,6 +158,9 @@ impl Input {
 
     /// What may be wrong with the input, before it is read.
     pub(crate) fn warnings(&self) -> Vec<String> {
+        if matches!(&self.source, Source::File(file) if file.is_rate_assumed()) {
+            return vec![format!("{ASSUMED_RATE} frames/s assumed, the file does not say; give the rate with --fps")];
+        }
         let Some(pictures) = self.pictures() else { return Vec::new() };
         let mut warnings = Vec::new();
         if pictures.is_interlaced() {
@@ -144,7 +192,7 @@ impl Input {
     /// The pictures that the outlines come from.
     pub(crate) fn pictures(&self) -> Option<&PictureInput> {
         match &self.source {
-            Source::Csv(_) => None,
+            Source::Csv(_) | Source::File(_) => None,
             Source::Pictures(pictures) => Some(pictures),
         }
     }
@@ -156,11 +204,46 @@ impl Iterator for Input {
     fn next(&mut self) -> Option<Self::Item> {
         match &mut self.source {
             Source::Pictures(pictures) => pictures.next().map(Ok),
-            Source::Csv(outlines) => Some(match outlines.next()? {
-                Ok(frame) => Ok(Item::Outline(frame, None)),
-                Err(error) => rejected(error),
-            }),
+            Source::Csv(outlines) => outlines.next().map(item),
+            Source::File(outlines) => outlines.next().map(item),
         }
+    }
+}
+
+/// Refuses options that are only for pictures.
+fn refuse_options(given: &[&str], name: &str, format: &str) -> Result<(), Failure> {
+    match given {
+        [] => Ok(()),
+        given => {
+            let options = given.join(", ");
+            Err(Failure::unusable(format_args!("{options}: only for pictures, but {name} was read as {format}")))
+        }
+    }
+}
+
+/// The files of labelme that paths stand for: several, a pattern of them, or a folder without pictures.
+fn labelme_files(paths: &[PathBuf]) -> Result<Option<Vec<PathBuf>>, Failure> {
+    let is_json = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+    if let [folder] = paths
+        && folder.is_dir()
+        && picture_files(folder).is_err()
+    {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| is_json(path)).collect();
+        return Ok(Some(files).filter(|files| !files.is_empty()));
+    }
+    let is_one_file = matches!(paths, [path] if path.exists() || !PictureSequence::is_named_by(path));
+    if is_one_file || !paths.iter().all(|path| is_json(path)) {
+        return Ok(None);
+    }
+    let files: Result<Vec<_>, _> = paths.iter().map(|path| picture_files(path)).collect();
+    files.map(|files| Some(files.concat())).map_err(Failure::unusable)
+}
+
+fn item(outline: Result<OutlineFrame, ReadError>) -> Result<Item, Failure> {
+    match outline {
+        Ok(frame) => Ok(Item::Outline(frame, None)),
+        Err(error) => rejected(error),
     }
 }
 
@@ -178,8 +261,12 @@ fn unreadable(error: &ReadError) -> Failure {
     Failure::unusable(error)
 }
 
-fn is_csv(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+/// The format of a table that the extension says.
+fn table(path: &Path) -> Option<&'static str> {
+    if TableFormat::of(path) == TableFormat::Parquet {
+        return Some("Parquet");
+    }
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")).then_some("CSV")
 }
 
 /// The lines at the beginning that start with `#`. Nothing beyond them is taken from the source.

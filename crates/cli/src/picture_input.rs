@@ -38,7 +38,7 @@ const LONGEST_HEADER: u64 = 1 << 12;
 const FRAME_HEADER: u64 = 6;
 
 /// Frames per second of pictures that do not tell.
-const ASSUMED_RATE: u32 = 30;
+pub(crate) const ASSUMED_RATE: u32 = 30;
 
 /// The outlines in pictures, one object after the other.
 pub(crate) struct PictureInput {

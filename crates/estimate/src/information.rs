@@ -54,15 +54,22 @@ where
     Some(OMatrix::from_fn_generic(rows, columns, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
-/// Solution x of `matrix x = right` for a positive definite matrix, which is scaled to unit diagonal on the way, so that entries of
-/// different units, or known to very different precision, do no harm. `None` where it is not positive definite.
+/// Solution x of `matrix x = right`, one column for each column of `right`, for a positive definite matrix, which is scaled to unit diagonal on
+/// the way, so that entries of different units, or known to very different precision, do no harm. `None` where it is not positive definite.
 #[must_use]
-pub fn scaled_solution<D: Dim>(matrix: &OMatrix<f64, D, D>, right: &OVector<f64, D>) -> Option<OVector<f64, D>>
+pub fn scaled_solution<D: Dim, C: Dim>(
+    matrix: &OMatrix<f64, D, D>,
+    right: &OMatrix<f64, D, C>,
+) -> Option<OMatrix<f64, D, C>>
 where
-    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+    DefaultAllocator: Allocator<D, D> + Allocator<D> + Allocator<D, C>,
 {
     let (scale, factor) = scaled_cholesky(matrix)?;
-    Some(factor.solve(&right.component_mul(&scale)).component_mul(&scale))
+    let scaled = |m: OMatrix<f64, D, C>| {
+        let (rows, columns) = m.shape_generic();
+        OMatrix::from_fn_generic(rows, columns, |i, j| m[(i, j)] * scale[i])
+    };
+    Some(scaled(factor.solve(&scaled(right.clone()))))
 }
 
 /// Factor of a matrix that was scaled on both sides to unit diagonal, and the scale.

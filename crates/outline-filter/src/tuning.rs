@@ -181,6 +181,9 @@ pub(crate) mod likelihood {
     pub(crate) const VARIANCE: f64 = 3.0;
     /// Deviations of the difference by which one of many poses must be worse.
     pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Mean square of the residuals, in that of the best pose, from which on another is far worse at a first look, and is not measured: far
+    /// beyond what any comparison asks for.
+    pub(crate) const FAR_WORSE: f64 = 6.0;
     /// Points that turns are compared by; more of them would not decide more.
     pub(crate) const ENOUGH_POINTS: usize = 2000;
 }
@@ -224,8 +227,6 @@ pub(crate) mod update {
     /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
     /// that once in a million frames.
     pub(crate) const SUDDEN: f64 = 25.0;
-    /// What makes a measurement of the pose solvable along what it says nothing of.
-    pub(crate) const SINGULAR: f64 = 1e-9;
 }
 
 /// Remapping: the map cut anew from several frames.
@@ -255,9 +256,11 @@ pub(crate) mod registration {
     pub(crate) const FEW_POINTS: usize = 80;
     /// Share of the points, nearest first, that a pose is scored by: the rest may be hidden in the map or wrong.
     pub(crate) const TRIMMED: f64 = 0.75;
-    /// Steps of the search for each start.
+    /// Steps of the search for each start, at most.
     pub(crate) const SEARCH_STEPS: usize = 8;
-    /// Steps of the refinement of the best.
+    /// Largest step after which a pose has settled, normalised, in deviations of the noise: far less than what a pose is known to.
+    pub(crate) const SETTLED: f64 = 0.01;
+    /// Steps of the refinement of the best, at most.
     pub(crate) const REFINEMENT_STEPS: usize = 15;
     /// Poses that are refined.
     pub(crate) const REFINED: usize = 5;
@@ -373,6 +376,8 @@ pub(crate) mod dynamics {
     /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
     pub(crate) const LEAST_VARIANCE: f64 = 1e-18;
     pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
+    /// What makes a measurement of the pose solvable along what it says nothing of.
+    pub(crate) const SINGULAR: f64 = 1e-9;
     /// Share by which a frame corrects the variance of a pose.
     pub(crate) const VARIANCE_GAIN: f64 = 0.1;
     /// While a constant generator is more probable than this, which is what an interval of 95 % leaves out, its own estimate is stated, and
@@ -468,6 +473,8 @@ pub(crate) mod statement {
 pub(crate) mod saved_state {
     /// Counters of a filter stay below this: more frames than a camera sees in a thousand years.
     pub(crate) const MOST_COUNTED: usize = 1 << 48;
+    /// Numbers beyond this are none of a filter, and their squares are none at all.
+    pub(crate) const LARGEST_NUMBER: f64 = 1e100;
     /// How far probabilities may sum to something else than 1, by rounding.
     pub(crate) const SUM_OFF: f64 = 1e-6;
 }

@@ -53,10 +53,9 @@ impl OutlineReader<File> {
         let name = path.as_ref().display().to_string();
         match File::open(path.as_ref()) {
             Ok(file) => Self::new(file, name),
-            Err(error) => Err(ReadError {
-                place: Place { file: name, lines: None, column: None },
-                kind: ReadErrorKind::Io(error),
-            }),
+            Err(error) => {
+                Err(ReadError { place: Place { file: name, span: None, column: None }, kind: ReadErrorKind::Io(error) })
+            }
         }
     }
 }

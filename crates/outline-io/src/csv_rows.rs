@@ -7,7 +7,7 @@ use crate::column::Column;
 use crate::csv_columns::{HeaderError, Role};
 use crate::csv_field::{leading_number, unquoted_length};
 use crate::csv_lines::{COMMENT, Lines, ROW_LIMIT};
-use crate::error::{Place, ReadError, ReadErrorKind};
+use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::not_csv::{HEAD_LENGTH, not_csv};
 
 /// The rows of a CSV file one after the other, with their line numbers; comments and blank lines left out. Two rows
@@ -41,7 +41,7 @@ impl<R: Read> Rows<R> {
         let mut start = Vec::new();
         let head = source.by_ref().take(HEAD_LENGTH).read_to_end(&mut start);
         if let Some(kind) = head.err().map(ReadErrorKind::Io).or_else(|| not_csv(&start)) {
-            return Err(ReadError { place: Place { file, lines: None, column: None }, kind });
+            return Err(ReadError { place: Place { file, span: None, column: None }, kind });
         }
         if start.starts_with(b"\xef\xbb\xbf") {
             start.drain(..3);
@@ -162,7 +162,10 @@ impl<R: Read> Rows<R> {
 
     /// An error between the given lines.
     pub(crate) fn error_at(&self, lines: Option<(u64, u64)>, column: Option<Column>, kind: ReadErrorKind) -> ReadError {
-        ReadError { place: Place { file: self.file.clone(), lines, column }, kind }
+        ReadError {
+            place: Place { file: self.file.clone(), span: lines.map(|(first, last)| Span::Lines(first, last)), column },
+            kind,
+        }
     }
 
     fn read_row(&mut self) -> Result<bool, ReadError> {

@@ -5,11 +5,9 @@ use freeform_curve_fit::Outline;
 
 use crate::column::Column;
 use crate::csv_field::NUMBER_LIMIT;
-use crate::error::WriteError;
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
-
-/// Decimals of times in seconds where numbers are rounded.
-const TIME_DECIMALS: usize = 9;
+use crate::rounding::Rounding;
+use crate::write_error::WriteError;
 
 /// Which optional columns a file has; the header comes first, so they are fixed before the first outline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -36,6 +34,27 @@ impl WriterOptions {
             ..options
         })
     }
+
+    /// Refuses what the columns cannot hold or would not be read back.
+    pub(crate) fn check(&self, frame: &OutlineFrame) -> Result<(), WriteError> {
+        let OutlineFrame { object, time, .. } = frame;
+        if !self.object_column && object != DEFAULT_OBJECT {
+            return Err(WriteError::NoObjectColumn { object: object.clone() });
+        }
+        if !self.arc_column && matches!(frame.outline, Outline::Open(_)) {
+            return Err(WriteError::NoArcColumn { object: object.clone(), frame: frame.frame });
+        }
+        if !self.contour_column && has_several(&frame.outline) {
+            return Err(WriteError::NoContourColumn { object: object.clone(), frame: frame.frame });
+        }
+        if object.chars().any(char::is_control) || object.trim_ascii() != object {
+            return Err(WriteError::ObjectName { object: object.clone() });
+        }
+        if !time.is_finite() || time.abs() > NUMBER_LIMIT {
+            return Err(WriteError::Time { object: object.clone(), frame: frame.frame, time: *time });
+        }
+        Ok(())
+    }
 }
 
 /// Writes outlines one by one as CSV that [`OutlineReader`](crate::OutlineReader) reads back to the last bit, unless
@@ -44,8 +63,7 @@ impl WriterOptions {
 pub struct OutlineWriter<W: Write> {
     writer: csv::Writer<W>,
     options: WriterOptions,
-    /// Decimals of coordinates where they are rounded, known from the first outline.
-    decimals: Option<usize>,
+    rounding: Rounding,
     /// Holds one number as text.
     text: Vec<u8>,
 }
@@ -64,7 +82,7 @@ impl<W: Write> OutlineWriter<W> {
         writer
             .write_record(required.chain(object).chain(arc).chain(contour).map(|column| column.name()))
             .map_err(io_error)?;
-        Ok(Self { writer, options, decimals: None, text: Vec::new() })
+        Ok(Self { writer, options, rounding: Rounding::to_share(options.resolution), text: Vec::new() })
     }
 
     /// Writes one outline.
@@ -74,18 +92,15 @@ impl<W: Write> OutlineWriter<W> {
     /// object's name has control characters or white space at an end. Nothing of the outline has been written then,
     /// unless the sink failed.
     pub fn write(&mut self, frame: &OutlineFrame) -> Result<(), WriteError> {
-        self.check(frame)?;
+        self.options.check(frame)?;
         let open = matches!(frame.outline, Outline::Open(_));
-        if let (Some(share), None) = (self.options.resolution, self.decimals) {
-            self.decimals = decimals_of(share * frame.outline.rms_radius());
-        }
-        let time_decimals = self.decimals.map(|_| TIME_DECIMALS);
+        self.rounding.take(&frame.outline);
         for (arc, piece) in frame.outline.pieces().enumerate() {
             for point in piece.points {
                 self.field(format_args!("{}", frame.frame))?;
-                self.number(frame.time, time_decimals)?;
-                self.number(point.x, self.decimals)?;
-                self.number(point.y, self.decimals)?;
+                self.number(self.rounding.time(frame.time))?;
+                self.number(self.rounding.coordinate(point.x))?;
+                self.number(self.rounding.coordinate(point.y))?;
                 if self.options.object_column {
                     self.writer.write_field(&frame.object).map_err(io_error)?;
                 }
@@ -121,16 +136,8 @@ impl<W: Write> OutlineWriter<W> {
         self.writer.into_inner().map_err(|error| WriteError::Io(error.into_error()))
     }
 
-    /// The shortest text that reads back as the same number, without long runs of zeros; or one with no more than so many
-    /// decimals.
-    fn number(&mut self, value: f64, decimals: Option<usize>) -> Result<(), WriteError> {
-        if let Some(decimals) = decimals {
-            let scale = 10_f64.powi(decimals as i32);
-            let rounded = (value * scale).round() / scale;
-            // Beyond 2^53 steps there is nothing to round.
-            let value = if (value * scale).abs() < 9e15 { rounded } else { value };
-            return self.number(value, None);
-        }
+    /// The shortest text that reads back as the same number, without long runs of zeros.
+    fn number(&mut self, value: f64) -> Result<(), WriteError> {
         if value == 0.0 || (1e-5..1e16).contains(&value.abs()) {
             self.field(format_args!("{value}"))
         } else {
@@ -143,36 +150,10 @@ impl<W: Write> OutlineWriter<W> {
         self.text.write_fmt(text)?;
         self.writer.write_field(&self.text).map_err(io_error)
     }
-
-    fn check(&self, frame: &OutlineFrame) -> Result<(), WriteError> {
-        let OutlineFrame { object, time, .. } = frame;
-        if !self.options.object_column && object != DEFAULT_OBJECT {
-            return Err(WriteError::NoObjectColumn { object: object.clone() });
-        }
-        if !self.options.arc_column && matches!(frame.outline, Outline::Open(_)) {
-            return Err(WriteError::NoArcColumn { object: object.clone(), frame: frame.frame });
-        }
-        if !self.options.contour_column && has_several(&frame.outline) {
-            return Err(WriteError::NoContourColumn { object: object.clone(), frame: frame.frame });
-        }
-        if object.chars().any(char::is_control) || object.trim_ascii() != object {
-            return Err(WriteError::ObjectName { object: object.clone() });
-        }
-        if !time.is_finite() || time.abs() > NUMBER_LIMIT {
-            return Err(WriteError::Time { object: object.clone(), frame: frame.frame, time: *time });
-        }
-        Ok(())
-    }
 }
 
 fn has_several(outline: &Outline) -> bool {
     matches!(outline, Outline::Closed(closed) if !closed.inner().is_empty())
-}
-
-/// Decimals that tell steps of this size apart; `None` where no number of them serves.
-fn decimals_of(step: f64) -> Option<usize> {
-    let decimals = -step.log10().floor();
-    (0.0..=15.0).contains(&decimals).then_some(decimals as usize)
 }
 
 /// Keeps the kind, by which a closed pipe is told from a full disc.

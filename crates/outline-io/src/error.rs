@@ -7,24 +7,36 @@ use thiserror::Error;
 use crate::column::Column;
 use crate::file_name::readable;
 use crate::picture_error::{PictureError, TraceError};
+use crate::polygon_error::PolygonError;
 
-/// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40` or `name`.
+/// Where in a file something is wrong. Displays as `name:12: column x`, `name:12-40`, `name: row 7: column x` or `name`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     /// The file's name, or a stand-in such as `<stdin>`.
     pub file: String,
-    /// First and last line, counted from 1; equal for a single line.
-    pub lines: Option<(u64, u64)>,
+    /// First and last line, or row where the file has no lines.
+    pub span: Option<Span>,
     /// The column.
     pub column: Option<Column>,
+}
+
+/// A stretch of a file, by its first and last part; equal for a single one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Span {
+    /// Lines, counted from 1.
+    Lines(u64, u64),
+    /// Rows of a table, counted from 0.
+    Rows(u64, u64),
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", readable(&self.file))?;
-        match self.lines {
-            Some((first, last)) if first == last => write!(f, ":{first}")?,
-            Some((first, last)) => write!(f, ":{first}-{last}")?,
+        match self.span {
+            Some(Span::Lines(first, last)) if first == last => write!(f, ":{first}")?,
+            Some(Span::Lines(first, last)) => write!(f, ":{first}-{last}")?,
+            Some(Span::Rows(first, last)) if first == last => write!(f, ": row {first}")?,
+            Some(Span::Rows(first, last)) => write!(f, ": rows {first}-{last}")?,
             None => {}
         }
         match self.column {
@@ -55,6 +67,9 @@ impl ReadError {
     }
 }
 
+/// What Parquet is read with, in messages.
+const READ_CODECS: &str = "snappy, zstd, gzip or no compression";
+
 /// Why outlines could not be read.
 #[derive(Debug, Error)]
 pub enum ReadErrorKind {
@@ -75,6 +90,75 @@ pub enum ReadErrorKind {
     /// Lines that end with a carriage return alone, as on very old systems.
     #[error("the lines end with carriage returns alone, expected line feeds: use tr '\\r' '\\n'")]
     LineEnds,
+    /// Parquet in a stream, or taken for CSV.
+    #[error(
+        "this is Parquet, whose table of contents stands at its end: it is read from a file that is named, not from a stream"
+    )]
+    ParquetStream,
+    /// Parquet, in a build that cannot read it.
+    #[error("this build reads no Parquet: build it with the feature parquet")]
+    ParquetLeftOut,
+    /// A file that is no Parquet, though its name says so.
+    #[error("not a Parquet file")]
+    NotParquet,
+    /// A Parquet file that contradicts itself, is cut short, or uses what is not read.
+    #[error("the Parquet file cannot be read: {source}")]
+    DamagedParquet {
+        /// What the reader met.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A compression of Parquet that is not read.
+    #[error(
+        "compressed with {codec}; Parquet is read with {READ_CODECS}, such as from write_parquet(..., compression=\"snappy\")"
+    )]
+    Codec {
+        /// Name of the compression.
+        codec: &'static str,
+    },
+    /// A column of a type that does not serve.
+    #[error("the type is {found}, expected {expected}")]
+    ColumnType {
+        /// The type in the file.
+        found: String,
+        /// What is read.
+        expected: &'static str,
+    },
+    /// Lists of one row that differ in length.
+    #[error("{found} value(s), column x has {expected} in this row")]
+    ListLength {
+        /// Values in the list.
+        found: usize,
+        /// Values in the list of x.
+        expected: usize,
+    },
+    /// A number that should be whole.
+    #[error("{text:?} is not a whole number")]
+    NotAWholeNumber {
+        /// The number.
+        text: String,
+    },
+    /// An object without a name.
+    #[error("the name is missing")]
+    NoName,
+    /// A name that fills the memory.
+    #[error("a name of {length} bytes, at most {limit} are read")]
+    NameTooLong {
+        /// Its length in bytes.
+        length: usize,
+        /// Longest name accepted, in bytes.
+        limit: usize,
+    },
+    /// Polygons of an annotation program that could not be read.
+    #[error(transparent)]
+    Polygons(PolygonError),
+    /// Rows in disorder that would fill the memory.
+    #[error(
+        "the rows are not in the order of the frames, and are too many to be ordered in memory: order the file by frame and object"
+    )]
+    TooManyToSort {
+        /// Most points that are held.
+        limit: usize,
+    },
     /// Nothing in the file but comments and blank lines.
     #[error("the file is empty, expected a header such as frame,time,x,y")]
     Empty,
@@ -252,54 +336,6 @@ fn separator_hint(header: &str) -> &'static str {
         _ if header.contains('\t') => ": columns are separated by commas, not by tabs",
         _ => "",
     }
-}
-
-/// Why an outline could not be written.
-#[derive(Debug, Error)]
-pub enum WriteError {
-    /// The sink failed; a closed pipe keeps its kind.
-    #[error("cannot write the outline: {0}")]
-    Io(#[from] io::Error),
-    /// An object other than the default one, but the header has no `object` column.
-    #[error("object {object:?} needs an object column, which the header does not have")]
-    NoObjectColumn {
-        /// The object's name.
-        object: String,
-    },
-    /// An open outline, but the header has no `arc` column.
-    #[error(
-        "the open outline of object {object:?} in frame {frame} needs an arc column, which the header does not have"
-    )]
-    NoArcColumn {
-        /// The object's name.
-        object: String,
-        /// The frame's number.
-        frame: u64,
-    },
-    /// An outline with several contours, in a file without a column for them.
-    #[error("the contours of object {object:?} in frame {frame} need a contour column, which the header does not have")]
-    NoContourColumn {
-        /// The object's name.
-        object: String,
-        /// The frame's number.
-        frame: u64,
-    },
-    /// A name that would not be read back: control characters, or white space at an end.
-    #[error("object name {object:?} has control characters or white space at an end")]
-    ObjectName {
-        /// The name.
-        object: String,
-    },
-    /// A time that is not finite or beyond 1e100.
-    #[error("the time of frame {frame} of object {object:?} is {time:e}, not a number up to 1e100")]
-    Time {
-        /// The object's name.
-        object: String,
-        /// The frame's number.
-        frame: u64,
-        /// The time.
-        time: f64,
-    },
 }
 
 /// Why a file gave no shape.

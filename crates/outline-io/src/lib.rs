@@ -16,6 +16,8 @@
 //! ```
 //!
 //! - [`OutlineReader`] and [`OutlineWriter`] stream outlines as CSV.
+//! - `ParquetReader` and `ParquetWriter` (feature `parquet`) do so as Parquet; [`TableWriter`] writes either.
+//! - [`OutlineFile`] reads Parquet, and polygons of COCO, labelme and TrackMate.
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
@@ -27,6 +29,7 @@ mod background;
 mod basins;
 mod channel;
 mod choice;
+mod coco;
 mod column;
 mod compressed_video;
 mod contrast;
@@ -47,6 +50,7 @@ mod gif_interval;
 mod ground_surface;
 mod identity;
 mod jpeg_end;
+mod labelme;
 mod labels;
 mod latest_frames;
 mod morphology;
@@ -54,19 +58,43 @@ mod natural_order;
 mod not_csv;
 mod object_mask;
 mod outline_columns;
+mod outline_file;
 mod outline_rows;
+#[cfg(feature = "parquet")]
+mod parquet_batch;
+#[cfg(feature = "parquet")]
+mod parquet_columns;
+#[cfg(feature = "parquet")]
+mod parquet_leaf;
+#[cfg(feature = "parquet")]
+mod parquet_pages;
+#[cfg(feature = "parquet")]
+mod parquet_reader;
+#[cfg(feature = "parquet")]
+mod parquet_schema;
+#[cfg(feature = "parquet")]
+mod parquet_source;
+#[cfg(feature = "parquet")]
+mod parquet_table;
+#[cfg(feature = "parquet")]
+mod parquet_writer;
 mod picture;
 mod picture_error;
 mod picture_outlines;
 mod picture_sequence;
 mod pixel_aspect;
+mod polygon_error;
+mod polygons;
 mod ring;
+mod rounding;
 mod segment;
 mod shape;
 mod threshold;
 mod tiff_pages;
 mod trace;
 mod trace_settings;
+mod trackmate;
+mod write_error;
 mod y4m;
 
 pub use affine_moment_invariants::AffineMomentInvariants;
@@ -78,23 +106,31 @@ pub use contrast::Contrast;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
 pub use edges::EdgeFit;
-pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, WriteError};
+pub use error::{Place, ReadError, ReadErrorKind, ReadShapeError, Span};
 pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
 pub use identity::{Identities, Selection};
 pub use image::GrayImage;
 pub use labels::LabelMask;
 pub use outline_columns::{ColumnOutlines, ColumnsError, OutlineColumns};
+pub use outline_file::{OutlineFile, TableFormat, TableWriter};
+#[cfg(feature = "parquet")]
+pub use parquet_reader::ParquetReader;
+#[cfg(feature = "parquet")]
+pub use parquet_writer::ParquetWriter;
 pub use picture::{decode_picture, read_picture, read_picture_channel};
 pub use picture_error::{PictureError, PictureErrorKind, TraceError};
 pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
 pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings, has_picture_extension, picture_files};
 pub use pixel_aspect::PixelAspectCheck;
+pub use polygon_error::PolygonError;
+pub use polygons::{PolygonSettings, VerticalAxis};
 pub use ring::Ring;
 pub use shape::read_shape;
 pub use threshold::Threshold;
 pub use trace::{TracedOutline, trace_mask, trace_objects};
 pub use trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
+pub use write_error::WriteError;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -18,6 +18,9 @@ pub(crate) fn not_csv(start: &[u8]) -> Option<ReadErrorKind> {
     if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
         return Some(ReadErrorKind::Utf16);
     }
+    if start.starts_with(b"PAR1") {
+        return Some(ReadErrorKind::ParquetStream);
+    }
     // Without a mark: a header of plain letters with a zero beside each.
     let zeros: Vec<bool> = start.iter().map(|byte| *byte == 0).collect();
     if start.len() as u64 == HEAD_LENGTH && zeros[0] != zeros[1] && zeros.iter().skip(2).eq(zeros.iter().take(4)) {

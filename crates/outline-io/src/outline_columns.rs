@@ -2,7 +2,7 @@ use freeform_curve_fit::OutlineError;
 use nalgebra::Point2;
 
 use crate::column::Column;
-use crate::error::{Place, ReadError, ReadErrorKind};
+use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
 use crate::outline_rows::{closed_outline, open_outline};
 
@@ -144,8 +144,8 @@ impl ColumnOutlines<'_> {
         let object = name.to_owned();
         outline.map(|outline| OutlineFrame { frame, time, object: object.clone(), outline }).map_err(
             |source: OutlineError| {
-                let lines = Some((first as u64, last as u64));
-                let place = Place { file: TABLE.to_owned(), lines, column: None };
+                let span = Some(Span::Rows(first as u64, last as u64));
+                let place = Place { file: TABLE.to_owned(), span, column: None };
                 ReadError { place, kind: ReadErrorKind::Degenerate { object, frame, source } }
             },
         )
@@ -233,6 +233,6 @@ fn check_number(value: f64, column: Column, row: usize) -> Result<(), ReadError>
 }
 
 fn at(column: Column, row: usize, kind: ReadErrorKind) -> ReadError {
-    let lines = Some((row as u64, row as u64));
-    ReadError { place: Place { file: TABLE.to_owned(), lines, column: Some(column) }, kind }
+    let span = Some(Span::Rows(row as u64, row as u64));
+    ReadError { place: Place { file: TABLE.to_owned(), span, column: Some(column) }, kind }
 }

@@ -12,6 +12,7 @@ use crate::csv_reader::OutlineReader;
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind, ReadShapeError};
 use crate::frame::DEFAULT_OBJECT;
+use crate::outline_file::TableFormat;
 use crate::outline_rows::OutlineRows;
 use crate::picture::read_picture;
 use crate::trace::trace_mask;
@@ -21,7 +22,7 @@ use crate::trace_settings::TraceSettings;
 const MAGIC_LENGTH: u64 = 16;
 
 /// Reads one closed outline to use as a shape: from a picture, the outer outline of its largest object with the default
-/// [`TraceSettings`]; from CSV as [`OutlineReader`] reads it, the first outline; from CSV with a header that has `x` and
+/// [`TraceSettings`]; from Parquet, the first outline; from CSV as [`OutlineReader`] reads it, the first outline; from CSV with a header that has `x` and
 /// `y` but neither `frame` nor `time`, all its rows as one outline. Content and extension tell a picture from CSV. The
 /// outline returned is always closed.
 ///
@@ -31,7 +32,7 @@ pub fn read_shape(path: impl AsRef<Path>) -> Result<Outline, ReadShapeError> {
     let path = path.as_ref();
     let file = path.display().to_string();
     let io = |error| {
-        let place = Place { file: path.display().to_string(), lines: None, column: None };
+        let place = Place { file: path.display().to_string(), span: None, column: None };
         ReadError { place, kind: ReadErrorKind::Io(error) }
     };
     let mut source = File::open(path).map_err(io)?;
@@ -42,6 +43,9 @@ pub fn read_shape(path: impl AsRef<Path>) -> Result<Outline, ReadShapeError> {
         let picture = read_picture(path)?;
         let traced = trace_mask(&picture, &TraceSettings::default());
         return traced.map(|traced| traced.outline).map_err(|source| ReadShapeError::Trace { file, source });
+    }
+    if TableFormat::is_parquet(&magic) || TableFormat::of(path) == TableFormat::Parquet {
+        return closed(first_of_parquet(path)?, file);
     }
     source.rewind().map_err(io)?;
     read_shape_csv(BufReader::new(source), file)
@@ -69,11 +73,31 @@ fn read_shape_csv(source: impl Read, file: String) -> Result<Outline, ReadShapeE
         }
         ShapeColumns::Points { x, y } => read_points(rows, x, y)?,
     };
+    closed(outline, file)
+}
+
+/// The outline, if it serves as a shape.
+fn closed(outline: Option<Outline>, file: String) -> Result<Outline, ReadShapeError> {
     match outline {
         None => Err(ReadShapeError::NoOutline { file }),
         Some(Outline::Open(_)) => Err(ReadShapeError::Open { file }),
         Some(outline) => Ok(outline),
     }
+}
+
+/// The first outline of a Parquet file, which may lack frames.
+#[cfg(feature = "parquet")]
+fn first_of_parquet(path: &Path) -> Result<Option<Outline>, ReadError> {
+    use crate::parquet_columns::Needed;
+    use crate::parquet_reader::ParquetReader;
+    let first = ParquetReader::open_needing(path, Needed::Shape)?.next();
+    Ok(first.transpose()?.map(|frame| frame.outline))
+}
+
+#[cfg(not(feature = "parquet"))]
+fn first_of_parquet(path: &Path) -> Result<Option<Outline>, ReadError> {
+    let place = Place { file: path.display().to_string(), span: None, column: None };
+    Err(ReadError { place, kind: ReadErrorKind::ParquetLeftOut })
 }
 
 /// All rows as one closed outline, none if there are no rows.

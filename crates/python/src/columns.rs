@@ -3,7 +3,7 @@ use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::outline_io::{OutlineColumns, OutlineFrame, ReadError, ReadErrorKind};
+use freeform_motion::outline_io::{OutlineColumns, OutlineFrame, ReadError, ReadErrorKind, Span};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{Followed, Method, Observation, ReadAhead, Recorded, Trajectory};
 use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
@@ -174,9 +174,13 @@ fn recorded(outline: Result<OutlineFrame, ReadError>) -> Recorded<(), Gap> {
 /// An error with its place in the table, rows counted from 0.
 fn table_error(error: &ReadError) -> String {
     let column = error.place.column.map_or(String::new(), |column| format!(", column {column}"));
-    match error.place.lines {
-        Some((first, last)) if first == last => format!("row {first}{column}: {}", error.kind),
-        Some((first, last)) => format!("rows {first} to {last}{column}: {}", error.kind),
+    match error.place.span {
+        Some(Span::Rows(first, last) | Span::Lines(first, last)) if first == last => {
+            format!("row {first}{column}: {}", error.kind)
+        }
+        Some(Span::Rows(first, last) | Span::Lines(first, last)) => {
+            format!("rows {first} to {last}{column}: {}", error.kind)
+        }
         None => error.kind.to_string(),
     }
 }

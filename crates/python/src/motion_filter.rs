@@ -241,7 +241,7 @@ impl PyMotionFilter {
         self.lock().settings().model.to_string()
     }
 
-    /// Everything that the filter knows, as bytes: 50 to 100 kB. Pickling uses them too.
+    /// Everything that the filter knows, as bytes: 30 to 70 kB. Pickling uses them too.
     ///
     /// Returns
     /// -------

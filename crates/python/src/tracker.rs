@@ -174,7 +174,7 @@ impl PyTracker {
         self.lock().settings().scale.map(CameraScale::value)
     }
 
-    /// Everything that the tracker knows, as bytes: 50 to 100 kB for each object. Pickling uses them too.
+    /// Everything that the tracker knows, as bytes: 30 to 70 kB for each object. Pickling uses them too.
     ///
     /// Returns
     /// -------

@@ -1,4 +1,4 @@
-use nalgebra::{Matrix3, Projective2};
+use nalgebra::{Complex, Matrix2, Matrix3, Projective2};
 
 use crate::{
     exponential::exponential,
@@ -164,6 +164,23 @@ impl MotionModel {
             Self::Affine | Self::Projective => exponential(&(generator * seconds)),
         };
         Projective2::from_matrix_unchecked(map)
+    }
+}
+
+impl MotionModel {
+    /// Linear part of [`flow`](Self::flow), which the velocity has no part in; for all but projective motion.
+    ///
+    /// # Panics
+    /// If `parameters` does not have `parameter_count` entries.
+    #[must_use]
+    pub fn linear_flow(self, parameters: &[f64], seconds: f64) -> Matrix2<f64> {
+        let mut generator = self.generator(parameters);
+        if self <= Self::Similarity {
+            let linear = (Complex::new(generator[(0, 0)], -generator[(0, 1)]) * seconds).exp();
+            return Matrix2::new(linear.re, -linear.im, linear.im, linear.re);
+        }
+        (generator[(0, 2)], generator[(1, 2)]) = (0.0, 0.0);
+        exponential(&(generator * seconds)).fixed_view::<2, 2>(0, 0).into_owned()
     }
 }
 

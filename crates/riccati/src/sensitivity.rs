@@ -6,6 +6,8 @@ use crate::{exponential::exponential, motion_model::MotionModel};
 const SERIES_NORM: f64 = 0.25;
 /// Terms of the series, enough for full precision at twice that norm (a commutator at most doubles it).
 const SERIES_TERMS: u32 = 16;
+/// Size of a term, beside the sum, from which on those that follow, each less than half of the one before, are far below its rounding.
+const LEFT_OUT: f64 = 1e-19;
 
 /// Derivative of a flow in the direction of another generator:
 /// `d/d eps expm((A + eps E) t) = V expm(A t)`, `V = integral over s from 0 to t of expm(A s) E expm(-A s)`.
@@ -26,6 +28,9 @@ pub fn flow_sensitivity(generator: &Matrix3<f64>, direction: &Matrix3<f64>, seco
     for k in 2..=SERIES_TERMS {
         term = (generator * term - term * generator) * (step / f64::from(k));
         sum += term;
+        if term.amax() < LEFT_OUT * sum.amax() {
+            break;
+        }
     }
     // V(2 t) = V(t) + expm(A t) V(t) expm(-A t).
     for doubling in 0..halvings {

@@ -27,18 +27,65 @@ pub(crate) fn csv_reader(bytes: &[u8]) {
     let (frames, messages) = read_all(bytes);
     let slowly = read_all(ByteByByte(bytes));
     assert_eq!((&frames, &messages), (&slowly.0, &slowly.1), "the buffer matters");
-    for frame in &frames {
-        assert!(frame.time.is_finite() && frame.outline.points().all(|p| p.x.is_finite() && p.y.is_finite()));
-    }
-    for message in &messages {
-        assert!(message.starts_with("input") && message.lines().count() == 1, "{message:?}");
-    }
+    check_outlines(&frames, &messages);
     let mut writer = OutlineWriter::new(Vec::new(), WriterOptions::needed_for(&frames)).expect("memory takes it");
     if frames.iter().all(|frame| writer.write(frame).is_ok()) {
         let written = writer.finish().expect("memory takes it");
         let (again, messages) = read_all(written.as_slice());
         assert!(messages.is_empty(), "{messages:?}");
         assert_eq!(again, frames, "written and read back");
+    }
+}
+
+/// Any bytes as Parquet: finite outlines, one-line messages, and read back as written.
+#[cfg(feature = "parquet")]
+pub(crate) fn parquet_reader(bytes: &[u8]) {
+    use freeform_motion::outline_io::{ParquetReader, ParquetWriter};
+    let read = |bytes: &[u8]| -> (Vec<OutlineFrame>, Vec<String>) {
+        let (mut frames, mut messages) = (Vec::new(), Vec::new());
+        match ParquetReader::from_bytes(bytes.to_vec(), "input") {
+            Ok(reader) => reader.for_each(|frame| match frame {
+                Ok(frame) => frames.push(frame),
+                Err(error) => messages.push(error.to_string()),
+            }),
+            Err(error) => messages.push(error.to_string()),
+        }
+        (frames, messages)
+    };
+    let (frames, messages) = read(bytes);
+    check_outlines(&frames, &messages);
+    let mut writer = ParquetWriter::new(Vec::new(), WriterOptions::needed_for(&frames), &[]).expect("memory takes it");
+    if frames.iter().all(|frame| writer.write(frame).is_ok()) {
+        let (mut again, messages) = read(&writer.finish().expect("memory takes it"));
+        assert!(messages.is_empty(), "{messages:?}");
+        let mut frames = frames;
+        for list in [&mut frames, &mut again] {
+            list.sort_by(|a, b| (a.frame, &a.object).cmp(&(b.frame, &b.object)));
+        }
+        assert_eq!(again, frames, "written and read back");
+    }
+}
+
+/// Any bytes as polygons: finite outlines and one-line messages.
+pub(crate) fn polygon_reader(bytes: &[u8]) {
+    use freeform_motion::outline_io::{OutlineFile, PolygonSettings};
+    let (mut frames, mut messages) = (Vec::new(), Vec::new());
+    match OutlineFile::polygons_from(bytes, "input", &PolygonSettings::default()) {
+        Ok(file) => file.for_each(|frame| match frame {
+            Ok(frame) => frames.push(frame),
+            Err(error) => messages.push(error.to_string()),
+        }),
+        Err(error) => messages.push(error.to_string()),
+    }
+    check_outlines(&frames, &messages);
+}
+
+fn check_outlines(frames: &[OutlineFrame], messages: &[String]) {
+    for frame in frames {
+        assert!(frame.time.is_finite() && frame.outline.points().all(|p| p.x.is_finite() && p.y.is_finite()));
+    }
+    for message in messages {
+        assert!(message.starts_with("input") && message.lines().count() == 1, "{message:?}");
     }
 }
 

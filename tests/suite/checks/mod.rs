@@ -7,8 +7,11 @@ mod stages;
 #[cfg(feature = "serde")]
 mod states;
 
+#[cfg(feature = "parquet")]
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]
-pub(crate) use files::{csv_reader, names, picture_folder, picture_reader, picture_stream, tracing};
+pub(crate) use files::parquet_reader;
+#[allow(unused_imports, reason = "every target in `fuzz` takes a part")]
+pub(crate) use files::{csv_reader, names, picture_folder, picture_reader, picture_stream, polygon_reader, tracing};
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]
 pub(crate) use finite::{assert_covariance, assert_finite};
 #[allow(unused_imports, reason = "every target in `fuzz` takes a part")]

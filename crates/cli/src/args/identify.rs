@@ -32,7 +32,8 @@ If the file begins with the comment lines of 'freeform simulate', the true motio
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("identify")))]
 pub(crate) struct IdentifyArgs {
-    /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
+    /// Outlines as CSV, Parquet or polygons (COCO, labelme, TrackMate), or pictures: files, a folder, a quoted pattern; '-' is
+    /// standard input
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
 
@@ -118,7 +119,8 @@ frames before it. Ctrl-C ends the command after the current line.";
 #[derive(Debug, Args)]
 #[command(after_help = TRACK_EXAMPLES, after_long_help = format!("{TRACK_EXAMPLES}\n\n{}", picture_inputs("track")))]
 pub(crate) struct TrackArgs {
-    /// Outlines as CSV, or pictures: files, a folder, a quoted pattern; '-' is standard input
+    /// Outlines as CSV, Parquet or polygons (COCO, labelme, TrackMate), or pictures: files, a folder, a quoted pattern; '-' is
+    /// standard input
     #[arg(default_value = "-", value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
 

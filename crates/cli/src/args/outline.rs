@@ -8,21 +8,22 @@ const EXAMPLES: &str = "\
 Examples:
   freeform outline mask-*.png --fps 25 --output outlines.csv
   freeform outline frames/ --dark | freeform identify -
+  freeform outline coco.json --fps 20 --output outlines.parquet
   freeform outline parts.gif --background median --objects all --overlay drawn.gif
   freeform outline 'frames/*.jpg' --ring dark --pixel-size 0.35 --pixel-aspect 1.14";
 
-/// Trace outlines in pictures and video, as CSV.
+/// Trace outlines in pictures and video, or take those of a file; write them as CSV or Parquet.
 ///
-/// Each picture is one frame. The outer outline of its largest object, or of all objects, is traced to a fraction of a
+/// Each picture is one frame. Polygons of COCO, labelme and TrackMate, CSV and Parquet are taken as they are. The outer outline of its largest object, or of all objects, is traced to a fraction of a
 /// pixel; holes are filled. An object clipped by the edge of the picture gives open arcs. y runs upwards from the lower edge.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES, after_long_help = format!("{EXAMPLES}\n\n{}", picture_inputs("outline")))]
 pub(crate) struct OutlineArgs {
-    /// The pictures in the order of time: files, folders, quoted patterns; '-' is standard input
+    /// Pictures in the order of time, or outlines: files, folders, quoted patterns; '-' is standard input
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
 
-    /// Where to write the outlines; '-' is standard output
+    /// Where to write the outlines, as Parquet if the name ends so; '-' is standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     pub(crate) output: PathBuf,
 

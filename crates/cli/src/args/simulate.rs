@@ -87,7 +87,7 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "QUALITY", requires = "pictures", value_parser = clap::value_parser!(u8).range(1..=100))]
     pub(crate) jpeg: Option<u8>,
 
-    /// Where to write the outlines; '-' is standard output
+    /// Where to write the outlines, as Parquet if the name ends so; '-' is standard output
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     pub(crate) output: PathBuf,
 }

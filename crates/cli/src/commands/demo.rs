@@ -2,7 +2,7 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use freeform_motion::outline_io::{OutlineFrame, WriteError};
+use freeform_motion::outline_io::{OutlineFrame, TableFormat, WriteError};
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 use freeform_motion::tracker::{Method, ObjectResult, Observation};
 use freeform_motion::{PipelineSettings, Tracker};
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let mut adaptive = Identification::new(by_adaptive_law.clone(), &folder.join(TRACE_ADAPTIVE))?;
     let mut outlines = WholeFile::create(&folder.join(OUTLINES))?;
     let mut first = None;
-    let written = write_sequence(&mut outlines, &simulator, |frame| {
+    let written = write_sequence(&mut outlines, TableFormat::Csv, &simulator, |frame| {
         filter.take(frame)?;
         let observation = adaptive.take(frame)?;
         if let (None, Some(fit)) = (&first, observation.fit) {

@@ -35,7 +35,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         tracker = Tracker::new(settings).map_err(Failure::unusable)?;
     }
     let name = input.name.clone();
-    let of_file = input.truth.filter(|_| args.truth.is_none());
+    let of_file = input.truth().filter(|_| args.truth.is_none());
     if !args.quiet && of_file.is_some() && args.options.rectify.is_some() {
         warn("the truth in the file is that in the picture, not in the plane of --rectify, so it is not shown");
     }

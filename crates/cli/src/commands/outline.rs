@@ -1,4 +1,4 @@
-use freeform_motion::outline_io::{OutlineWriter, WriteError, WriterOptions};
+use freeform_motion::outline_io::{TableFormat, TableWriter, WriteError, WriterOptions};
 
 use crate::args::OutlineArgs;
 use crate::failure::{Failure, warn};
@@ -10,13 +10,13 @@ use crate::overlay::{Drawn, Overlay};
 use crate::progress::Progress;
 use crate::seen::{Item, Missing};
 
-/// Traces the outlines of pictures and writes them.
+/// Traces the outlines of pictures, or takes those of a file, and writes them.
 pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = std::iter::once(&args.output).chain(&args.overlay).map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
-    if !input.has_pictures() {
-        return Err(Failure::unusable(format_args!("{}: not a picture", input.name)));
+    if !input.has_pictures() && args.overlay.is_some() {
+        return Err(Failure::unusable(format_args!("{}: not a picture, there is nothing to draw on", input.name)));
     }
     interrupt::listen();
     let name = input.name.clone();
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     };
     match outcome {
         Outcome { outlines: 0, first_missing: Some(missing) } => Err(missing.into_failure()),
-        Outcome { outlines: 0, first_missing: None } => Err(Failure::no_result(format_args!("{name}: no pictures"))),
+        Outcome { outlines: 0, first_missing: None } => Err(Failure::no_result(format_args!("{name}: no outline"))),
         _ => sink.finish(),
     }
 }
@@ -50,8 +50,10 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
     let progress = Progress::of_frames(input.frame_count(), args.quiet || sink.is_disturbed_by_progress());
     let single = input.frame_count() == Some(1);
     let (mut writer, mut sink) = (None, Some(sink));
-    let object_column = input.pictures().is_some_and(|pictures| pictures.options().follows_all());
-    let contour_column = input.pictures().is_some_and(|pictures| pictures.options().traces_contours());
+    // What a file holds is not known before all of it has been read.
+    let object_column = input.pictures().is_none_or(|pictures| pictures.options().follows_all());
+    let contour_column = input.pictures().is_none_or(|pictures| pictures.options().traces_contours());
+    let comments = std::mem::take(&mut input.comments);
     let mut warnings = MissingWarnings::default();
     for item in input.by_ref() {
         // What came after Ctrl-C may be cut short.
@@ -64,7 +66,7 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
                 // The header waits for the first outline, so that nothing is printed where there is none.
                 if let Some(sink) = sink.take() {
                     let options = WriterOptions { arc_column: true, object_column, contour_column, resolution: None };
-                    match OutlineWriter::new(sink, options) {
+                    match TableWriter::new(sink, TableFormat::of(&args.output), options, &comments) {
                         Ok(new) => writer = Some(new),
                         Err(error) => return Ok(Err(error)),
                     }
@@ -79,7 +81,7 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
                     overlay.draw(seen_in, &drawn)?;
                 }
             }
-            // Pictures give no such item.
+            Item::NoOutline { reason, .. } if !args.quiet => progress.pause(|| warn(&reason)),
             Item::NoOutline { .. } => {}
             Item::Gap(missing) => {
                 // The reason of a single picture is told in the end.
@@ -101,7 +103,7 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
         overlay.finish()?;
     }
     Ok(match writer {
-        Some(mut writer) => writer.flush().map(|()| outcome),
+        Some(writer) => writer.finish().map(|_| outcome),
         None => Ok(outcome),
     })
 }

@@ -1,7 +1,9 @@
 use std::io::Write;
 use std::path::Path;
 
-use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame, OutlineWriter, WriteError, WriterOptions, read_shape};
+use freeform_motion::outline_io::{
+    DEFAULT_OBJECT, OutlineFrame, TableFormat, TableWriter, WriteError, WriterOptions, read_shape,
+};
 use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator};
 
 use crate::args::{DisturbanceArgs, MotionChoice, PlaneBefore, SimulateArgs};
@@ -20,7 +22,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
     }
     let simulator = simulator(args)?;
     let mut sink = Sink::open(&args.output)?;
-    let written = write_sequence(&mut sink, &simulator, |_| Ok(()));
+    let written = write_sequence(&mut sink, TableFormat::of(&args.output), &simulator, |_| Ok(()));
     match written {
         Ok(()) => sink.finish(),
         Err(SequenceError::Write(WriteError::Io(error))) => Err(sink.failure(&error)),
@@ -44,17 +46,16 @@ pub(crate) enum SequenceError {
 /// Writes the head with the truth and all outlines; hands every outline on after it has been written.
 pub(crate) fn write_sequence(
     sink: &mut impl Write,
+    format: TableFormat,
     simulator: &Simulator,
     mut observe: impl FnMut(&OutlineFrame) -> Result<(), Failure>,
 ) -> Result<(), SequenceError> {
-    let write = |error| SequenceError::Write(WriteError::Io(error));
-    let truth = SimulatedMotion::of(simulator);
-    writeln!(sink, "# {}", command_line()).and_then(|()| writeln!(sink, "# {truth}")).map_err(write)?;
+    let head = [command_line(), SimulatedMotion::of(simulator).to_string()];
     let arc_column = simulator.settings().occlusion.fraction > 0.0;
     // Objects have about unit size in the image; far below the noise there is nothing to tell.
     let resolution = (simulator.settings().noise > 1e3 * RESOLUTION).then_some(RESOLUTION);
     let options = WriterOptions { arc_column, resolution, ..WriterOptions::default() };
-    let mut writer = OutlineWriter::new(sink, options).map_err(SequenceError::Write)?;
+    let mut writer = TableWriter::new(sink, format, options, &head).map_err(SequenceError::Write)?;
     let progress = Progress::of_frames(Some(simulator.frame_count() as u64), false);
     for Frame { index, time, outline, .. } in simulator.frames() {
         let frame = OutlineFrame { frame: index as u64, time, object: DEFAULT_OBJECT.to_owned(), outline };
@@ -62,7 +63,7 @@ pub(crate) fn write_sequence(
         observe(&frame).map_err(SequenceError::Other)?;
         progress.advance();
     }
-    writer.flush().map_err(SequenceError::Write)
+    writer.finish().map(drop).map_err(SequenceError::Write)
 }
 
 fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {

@@ -87,6 +87,15 @@ fn reading_uncertainties_runs() {
     run_guide("reading-uncertainties.md");
 }
 
+#[cfg(feature = "parquet")]
+#[test]
+fn tables_runs() {
+    let printed = run_guide("tables.md");
+    let (from_parquet, from_csv) = printed.split_at(printed.len() / 2);
+    assert!(from_parquet.contains("omega"), "{printed}");
+    assert_eq!(from_parquet, from_csv);
+}
+
 #[test]
 fn each_crate_runs() {
     run_guide("each-crate.md");

@@ -25,6 +25,8 @@ mod rectify;
 mod reproduce;
 mod simulate;
 mod support;
+#[cfg(feature = "parquet")]
+mod tables;
 mod track;
 mod trajectory;
 mod whole_files;

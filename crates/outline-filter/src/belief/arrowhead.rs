@@ -2,25 +2,13 @@
 use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 use nalgebra::{SMatrix, SVector};
 
+use super::OffsetInformation;
+
 /// Pose error and motion parameters of the largest model.
 pub(crate) const STATE: usize = 2 * MAX_PARAMETERS;
 
 pub(crate) type StateVector = SVector<f64, STATE>;
 pub(crate) type StateMatrix = SMatrix<f64, STATE, STATE>;
-
-/// What the offset of one cell has to do with the rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct CellInformation {
-    /// Between pose and motion, and the offset.
-    pub(crate) coupling: [f64; STATE],
-    /// Of the offset itself.
-    pub(crate) own: f64,
-}
-
-impl CellInformation {
-    pub(crate) const NOTHING: Self = Self { coupling: [0.0; STATE], own: 0.0 };
-}
 
 /// Arrowhead information matrix over (pose error, motion, offsets) in units of the noise. The state has `2 k` entries, k the number of
 /// parameters; the rest of the fixed-size arrays is zero.
@@ -29,12 +17,12 @@ impl CellInformation {
 pub(crate) struct Arrowhead {
     pub(crate) k: usize,
     pub(crate) dense: [[f64; STATE]; STATE],
-    pub(crate) cells: Vec<CellInformation>,
+    pub(crate) cells: OffsetInformation,
 }
 
 impl Arrowhead {
     pub(crate) fn new(k: usize) -> Self {
-        Self { k, dense: [[0.0; STATE]; STATE], cells: Vec::new() }
+        Self { k, dense: [[0.0; STATE]; STATE], cells: OffsetInformation::new(2 * k) }
     }
 
     /// Forgets all of pose and motion; couplings stay.
@@ -46,22 +34,23 @@ impl Arrowhead {
     /// `L <- F^-T L F^-1`, coupling `<- F^-T coupling`.
     pub(crate) fn predict(&mut self, inverse: &ParameterMatrix, product: &ParameterMatrix) {
         match self.k {
-            3 => self.predict_sized::<3>(inverse, product),
-            4 => self.predict_sized::<4>(inverse, product),
-            6 => self.predict_sized::<6>(inverse, product),
-            _ => self.predict_sized::<8>(inverse, product),
+            3 => self.predict_sized::<3, 6>(inverse, product),
+            4 => self.predict_sized::<4, 8>(inverse, product),
+            6 => self.predict_sized::<6, 12>(inverse, product),
+            _ => self.predict_sized::<8, 16>(inverse, product),
         }
     }
 
-    fn predict_sized<const K: usize>(&mut self, inverse: &ParameterMatrix, product: &ParameterMatrix) {
-        let transform = |v: &mut [f64; STATE]| transform::<K>(v, inverse, product);
-        self.dense.iter_mut().take(2 * K).for_each(transform);
-        let rows = self.dense;
-        for (i, row) in self.dense.iter_mut().enumerate() {
-            row.iter_mut().zip(&rows).for_each(|(entry, other)| *entry = other[i]);
+    fn predict_sized<const K: usize, const S: usize>(&mut self, inverse: &ParameterMatrix, product: &ParameterMatrix) {
+        let transform = |v: &mut [f64; S]| transform::<K, S>(v, inverse, product);
+        let mut rows: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| self.dense[i][j]));
+        rows.iter_mut().for_each(transform);
+        let mut columns: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
+        columns.iter_mut().for_each(transform);
+        for (row, moved) in self.dense.iter_mut().zip(&columns) {
+            row[..S].copy_from_slice(moved);
         }
-        self.dense.iter_mut().take(2 * K).for_each(transform);
-        self.cells.iter_mut().for_each(|cell| transform(&mut cell.coupling));
+        self.cells.all_mut::<S>().1.iter_mut().for_each(transform);
     }
 
     /// Information of pose and motion with the offsets eliminated, `L - sum c c' / o`; unit diagonal beyond the state.
@@ -98,9 +87,9 @@ pub(crate) fn moved_marginal(
 }
 
 /// `v <- F^-T v`.
-fn transform<const K: usize>(v: &mut [f64; STATE], inverse: &ParameterMatrix, product: &ParameterMatrix) {
-    let mut moved = [0.0; STATE];
-    moved[K..2 * K].copy_from_slice(&v[K..2 * K]);
+fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &ParameterMatrix, product: &ParameterMatrix) {
+    let mut moved = [0.0; S];
+    moved[K..].copy_from_slice(&v[K..]);
     for i in 0..K {
         for j in 0..K {
             moved[j] += inverse[i][j] * v[i];
@@ -111,10 +100,10 @@ fn transform<const K: usize>(v: &mut [f64; STATE], inverse: &ParameterMatrix, pr
 }
 
 /// Subtracts `c c' / o` of every cell.
-fn eliminate<const S: usize>(cells: &[CellInformation], sum: &mut [[f64; STATE]; STATE]) {
+fn eliminate<const S: usize>(cells: &OffsetInformation, sum: &mut [[f64; STATE]; STATE]) {
     // A sum of the size of the model fits where the processor is fastest; that of the largest one does not.
     let mut taken = [[0.0; S]; S];
-    for CellInformation { coupling, own } in cells {
+    for (coupling, own) in cells.rows::<S>().iter().zip(cells.own()) {
         if *own <= 0.0 {
             continue;
         }

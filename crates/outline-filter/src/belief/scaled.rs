@@ -1,15 +1,19 @@
 //! Solutions and inverses over the `2 k` entries of a state; unit diagonal beyond them.
 use nalgebra::SMatrix;
 
-use super::arrowhead::{StateMatrix, StateVector};
+use super::arrowhead::{STATE, StateMatrix};
 
-/// Solution of `m x = b` for a positive definite matrix over the entries of a state.
-pub(crate) fn scaled_solution(m: &StateMatrix, b: &StateVector, k: usize) -> Option<StateVector> {
+/// Solution of `m x = b`, column by column, for a positive definite matrix over the entries of a state.
+pub(crate) fn scaled_solution<const C: usize>(
+    m: &StateMatrix,
+    b: &SMatrix<f64, STATE, C>,
+    k: usize,
+) -> Option<SMatrix<f64, STATE, C>> {
     match k {
-        3 => solution_sized::<6>(m, b),
-        4 => solution_sized::<8>(m, b),
-        6 => solution_sized::<12>(m, b),
-        _ => solution_sized::<16>(m, b),
+        3 => solution_sized::<6, C>(m, b),
+        4 => solution_sized::<8, C>(m, b),
+        6 => solution_sized::<12, C>(m, b),
+        _ => solution_sized::<16, C>(m, b),
     }
 }
 
@@ -23,10 +27,13 @@ pub(crate) fn scaled_inverse(m: &StateMatrix, k: usize) -> Option<StateMatrix> {
     }
 }
 
-fn solution_sized<const S: usize>(m: &StateMatrix, b: &StateVector) -> Option<StateVector> {
+fn solution_sized<const S: usize, const C: usize>(
+    m: &StateMatrix,
+    b: &SMatrix<f64, STATE, C>,
+) -> Option<SMatrix<f64, STATE, C>> {
     let m: SMatrix<f64, S, S> = m.fixed_view::<S, S>(0, 0).into_owned();
     let x = freeform_estimate::scaled_solution(&m, &b.fixed_rows::<S>(0).into_owned())?;
-    let mut solution = StateVector::zeros();
+    let mut solution = SMatrix::<f64, STATE, C>::zeros();
     solution.fixed_rows_mut::<S>(0).copy_from(&x);
     Some(solution)
 }

@@ -106,12 +106,11 @@ impl Belief {
     pub(crate) fn is_sound(&self, cells: usize) -> bool {
         let Arrowhead { k, dense, cells: information } = &self.information;
         let Memory { step, span, effective } = self.memory;
-        let of_cells = information.iter().flat_map(|cell| cell.coupling.iter().chain([&cell.own]));
         let numbers = self.pose.iter().chain(&self.motion).chain(&self.offsets).chain(dense.iter().flatten());
-        let numbers = numbers.chain(of_cells).chain(&self.marginal).chain([&step, &span]);
+        let numbers = numbers.chain(&self.marginal).chain([&step, &span]);
         *k == self.model.parameter_count()
             && self.offsets.len() == cells
-            && information.len() == cells
+            && information.is_sound(cells, 2 * k)
             && numbers.into_iter().all(|number| number.is_finite())
             && !effective.iter().any(|seconds| seconds.is_nan())
             && self.pose.try_inverse().is_some()

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::{AGREES, DenseFilter, Problem, random_measurements, transition};
 use crate::{
-    belief::{Belief, CellInformation, StateMatrix, StateVector},
+    belief::{Belief, StateMatrix, StateVector},
     measurement::{Frame, Measurement},
     tuning::update::GAUGE_WEIGHT,
     update::accumulate,
@@ -59,7 +59,8 @@ proptest! {
         let after = &before + added.view((0, 0), (state, state));
         let rest = &before - &before * after.cholesky().expect("positive definite").inverse() * &before;
         let cells = &belief.information.cells;
-        let slopes = DMatrix::from_fn(state, cells.len(), |i, j| -cells[j].coupling[i] / cells[j].own);
+        let couplings: Vec<_> = cells.couplings().collect();
+        let slopes = DMatrix::from_fn(state, cells.len(), |i, j| -couplings[j][i] / cells.own()[j]);
         let mut dropped = slopes.transpose() * rest * &slopes;
         dropped.fill_diagonal(0.0);
         let largest = dropped.amax();
@@ -124,7 +125,7 @@ proptest! {
 fn a_new_pose_keeps_what_each_offset_is_known_to_where_the_pose_is_given() {
     for model in MotionModel::ALL {
         let mut problem = Problem::of(model, 5, 1);
-        let own: Vec<f64> = problem.belief.information.cells.iter().map(|cell| cell.own).collect();
+        let own = problem.belief.information.cells.own().to_vec();
         let pose = problem.belief.pose;
         problem.belief.relocate(pose);
         let dense = DenseFilter::of(&problem.belief.information);
@@ -144,7 +145,8 @@ fn deviations_over_those_of_the_dense_filter(frames: usize, changes: f64) -> Vec
     belief.motion[..3].copy_from_slice(&[1.0, 0.2, -0.1]);
     let gauge = GAUGE_WEIGHT * points * cells as f64;
     (0..3).for_each(|i| (belief.information.dense[i][i], belief.information.dense[3 + i][3 + i]) = (gauge, 1e-2));
-    belief.information.cells = vec![CellInformation { own: 1e-3, ..CellInformation::NOTHING }; cells];
+    belief.information.cells.resize(cells);
+    belief.information.cells.own_mut().fill(1e-3);
     belief.marginal = belief.information.marginal();
     let noise = ProcessNoise { rates: changes, velocities: changes };
     let mut added = StateMatrix::zeros();

@@ -7,7 +7,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 use crate::{
-    belief::{Arrowhead, CellInformation, StateMatrix},
+    belief::{Arrowhead, StateMatrix},
     measurement::Measurement,
 };
 pub(crate) use problems::{Problem, random_measurements};
@@ -126,7 +126,8 @@ fn dense_information(information: &Arrowhead) -> DMatrix<f64> {
     for i in 0..state {
         (0..state).for_each(|j| whole[(i, j)] = 0.5 * (information.dense[i][j] + information.dense[j][i]));
     }
-    for (number, CellInformation { coupling, own }) in information.cells.iter().enumerate() {
+    let cells = &information.cells;
+    for (number, (coupling, own)) in cells.couplings().zip(cells.own()).enumerate() {
         let at = state + number;
         whole[(at, at)] = *own;
         for i in 0..state {

@@ -5,7 +5,7 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
 use crate::{
-    belief::{Belief, CellInformation, StateMatrix},
+    belief::{Arrowhead, Belief, StateMatrix},
     measurement::Measurement,
 };
 
@@ -30,21 +30,21 @@ impl Problem {
         belief.motion = random_motion(&mut rng, model);
         belief.pose = model.flow(&random_motion(&mut rng, model)[..k], 1.0).into_inner();
         belief.memory.advance(0.1);
-        let information = &mut belief.information;
-        (0..2 * k).for_each(|i| information.dense[i][i] = rng.random_range(0.5..2.0));
-        for _ in 0..cells {
-            let mut cell = CellInformation { own: rng.random_range(0.2..2.0), ..CellInformation::NOTHING };
+        let Arrowhead { dense, cells: of_cells, .. } = &mut belief.information;
+        (0..2 * k).for_each(|i| dense[i][i] = rng.random_range(0.5..2.0));
+        of_cells.resize(cells);
+        for (own, coupling) in of_cells.iter_mut() {
+            *own = rng.random_range(0.2..2.0);
             for _ in 0..rng.random_range(1..4) {
                 // What was measured before has come to tell of the motion too.
                 let row: Vec<f64> = (0..2 * k).map(|_| rng.random_range(-1.0..1.0)).collect();
                 let by_offset = rng.random_range(0.5..1.5);
                 for (i, a) in row.iter().enumerate() {
-                    row.iter().enumerate().for_each(|(j, b)| information.dense[i][j] += a * b);
-                    cell.coupling[i] += by_offset * a;
+                    row.iter().enumerate().for_each(|(j, b)| dense[i][j] += a * b);
+                    coupling[i] += by_offset * a;
                 }
-                cell.own += by_offset * by_offset;
+                *own += by_offset * by_offset;
             }
-            information.cells.push(cell);
         }
         belief.offsets = (0..cells).map(|_| rng.random_range(-0.1..0.1)).collect();
         belief.marginal = belief.information.marginal();

@@ -100,14 +100,32 @@ pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N
         8 => carried_sized::<N, 8>(f, p),
         9 => carried_sized::<N, 9>(f, p),
         12 => carried_sized::<N, 12>(f, p),
-        _ => f * p * f.transpose(),
+        _ => carried_sized::<N, N>(f, p),
     }
 }
 
 fn carried_sized<const N: usize, const S: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-    let (f, p) = (f.fixed_view::<S, S>(0, 0).into_owned(), p.fixed_view::<S, S>(0, 0).into_owned());
+    // By columns `P F'` and then `(F P) F'`. Most entries of a transition are zero.
+    let by_columns = |p: &[[f64; S]; S]| {
+        let mut product = [[0.0; S]; S];
+        for (i, column) in product.iter_mut().enumerate() {
+            for (l, p) in p.iter().enumerate() {
+                let factor = f[(i, l)];
+                if factor != 0.0 {
+                    (0..S).for_each(|row| column[row] += factor * p[row]);
+                }
+            }
+        }
+        product
+    };
+    let whole: [[f64; S]; S] = std::array::from_fn(|j| std::array::from_fn(|i| p[(i, j)]));
+    let right = by_columns(&whole);
+    let left: [[f64; S]; S] = std::array::from_fn(|j| std::array::from_fn(|i| right[i][j]));
+    let both = by_columns(&left);
     let mut carried = SMatrix::<f64, N, N>::zeros();
-    carried.fixed_view_mut::<S, S>(0, 0).copy_from(&(f * p * f.transpose()));
+    for (j, column) in both.iter().enumerate() {
+        (0..S).for_each(|i| carried[(i, j)] = column[i]);
+    }
     carried
 }
 
@@ -121,4 +139,26 @@ pub(super) fn as_map(linear: &Matrix2<f64>) -> Matrix3<f64> {
     let mut map = Matrix3::identity();
     map.fixed_view_mut::<2, 2>(0, 0).copy_from(linear);
     map
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_covariance_is_carried_as_by_whole_matrices(
+            f in prop::collection::vec(prop::option::of(-2.0_f64..2.0), 81), p in prop::collection::vec(-2.0_f64..2.0, 81),
+        ) {
+            let f = SMatrix::<f64, 9, 9>::from_fn(|i, j| f[9 * i + j].unwrap_or(0.0));
+            let p = SMatrix::<f64, 9, 9>::from_fn(|i, j| p[9 * i + j] + p[9 * j + i]);
+            for n in [6, 8, 9] {
+                let within = |m: &SMatrix<f64, 9, 9>| SMatrix::<f64, 9, 9>::from_fn(|i, j| if i < n && j < n { m[(i, j)] } else { 0.0 });
+                let expected = within(&f) * within(&p) * within(&f).transpose();
+                prop_assert!((carried(&f, &p, n) - expected).amax() < 1e-12);
+            }
+        }
+    }
 }

@@ -4,6 +4,8 @@ use std::sync::OnceLock;
 use nalgebra::{DMatrix, DVector};
 
 use super::innovations::InnovationSeries;
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::LARGEST_NUMBER;
 use crate::{
     tuning::family as tuning,
     update::{LEFT_OUT, LeftOutMatrix, LeftOutScore, LeftOutVector},
@@ -34,10 +36,6 @@ const GROUPS: [(WrongFamily, &[usize]); 5] = [
     (WrongFamily::RollingShutter, &[5]),
     (WrongFamily::Lens, &[1, 2, 6, 7, 8]),
 ];
-
-/// Sums beyond this are none of a series of frames.
-#[cfg(feature = "serde")]
-const LARGEST: f64 = 1e100;
 
 /// Tests of what a family of motions leaves out, over frames: generalised likelihood ratios.
 #[derive(Debug, Clone, Default)]
@@ -212,7 +210,7 @@ impl FamilyTests {
     pub(crate) fn is_sound(&self) -> bool {
         let vectors =
             self.information.iter().chain(&self.score).chain(&self.squares).chain([&self.weight, &self.sigma]);
-        self.series.is_sound() && vectors.into_iter().all(|number| number.abs() < LARGEST) && self.sigma >= 0.0
+        self.series.is_sound() && vectors.into_iter().all(|number| number.abs() < LARGEST_NUMBER) && self.sigma >= 0.0
     }
 }
 

@@ -6,12 +6,6 @@ use crate::tuning::dynamics as tuning;
 
 use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts};
 
-/// Pose, motion and accelerations of the largest model.
-pub(super) const ENTRIES: usize = 3 * LARGEST;
-
-pub(super) type Entries = SVector<f64, ENTRIES>;
-pub(super) type EntryMatrix = SMatrix<f64, ENTRIES, ENTRIES>;
-
 /// What the motion does between frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -60,14 +54,14 @@ impl Course {
     }
 }
 
-/// State of one hypothesis. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j` its acceleration, k the number of
-/// parameters; all about the middle: rates first, then the velocity of the middle.
+/// State of one hypothesis for a model of k parameters, N = 3 k. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j`
+/// its acceleration; all about the middle: rates first, then the velocity of the middle.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Hypothesis {
+pub(super) struct Hypothesis<const N: usize> {
     pub(super) course: Course,
-    pub(super) mean: Entries,
-    pub(super) covariance: EntryMatrix,
+    pub(super) mean: SVector<f64, N>,
+    pub(super) covariance: SMatrix<f64, N, N>,
 }
 
 /// What a frame tells of the pose by itself, about the middle of the reference pose.
@@ -98,16 +92,18 @@ pub(super) struct Step<'a> {
     pub(super) pose_variance: &'a CentredVector,
 }
 
-impl Hypothesis {
+impl<const N: usize> Hypothesis<N> {
+    /// Number of parameters.
+    const K: usize = N / 3;
+
     /// Number of entries in use.
-    pub(super) fn size(&self, k: usize) -> usize {
-        if self.course.has_more_than_motion() { 3 * k } else { 2 * k }
+    pub(super) fn size(&self) -> usize {
+        if self.course.has_more_than_motion() { N } else { 2 * Self::K }
     }
 
     /// Rates of the motion, as a linear map.
     pub(super) fn rates(&self, model: MotionModel) -> Matrix2<f64> {
-        let k = model.parameter_count();
-        parts(&model.generator(&self.mean.as_slice()[k..2 * k])).0
+        parts(&model.generator(&self.mean.as_slice()[Self::K..2 * Self::K])).0
     }
 
     /// Takes next to nothing to be known of the entries behind the motion, which depend on no others then; `share` of the variance is added.
@@ -117,7 +113,7 @@ impl Hypothesis {
         (pose_variance, seconds): (&CentredVector, f64),
         share: f64,
     ) {
-        let k = model.parameter_count();
+        let k = Self::K;
         if self.course == Course::ConstantVelocity {
             let rates = self.rates(model) * tuning::MIDDLE;
             let added = share * rates * rates.transpose();
@@ -131,7 +127,7 @@ impl Hypothesis {
 
     /// Moves on by a step; whether the numbers allow it.
     pub(super) fn predict(&mut self, step: &Step<'_>) -> bool {
-        let (model, k, dt) = (step.model, step.model.parameter_count(), step.seconds);
+        let (model, k, dt) = (step.model, Self::K, step.seconds);
         let rates = k - 2;
         let entry = |at: usize| CentredVector::from_fn(|j, _| if j < k { self.mean[at * k + j] } else { 0.0 });
         let [error, motion, mut acceleration] = [entry(0), entry(1), entry(2)];
@@ -141,10 +137,7 @@ impl Hypothesis {
         }
         let (a, v) = parts(&model.generator(&motion.as_slice()[..k]));
         let w = parts(&model.generator(&acceleration.as_slice()[..k])).1;
-        let of_rates = |of: &CentredVector, seconds: f64| {
-            let only = CentredVector::from_fn(|j, _| if j < rates { of[j] } else { 0.0 });
-            parts(&model.flow(&only.as_slice()[..k], seconds).into_inner()).0
-        };
+        let of_rates = |of: &CentredVector, seconds: f64| model.linear_flow(&of.as_slice()[..k], seconds);
         let (turn, shift, later) = match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {
                 let (turn, shift) = parts(&model.flow(&motion.as_slice()[..k], dt).into_inner());
@@ -173,7 +166,7 @@ impl Hypothesis {
         if self.course == Course::ConstantVelocity {
             self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
         }
-        self.covariance = carried(&transition, &self.covariance, self.size(k));
+        self.covariance = carried(&transition, &self.covariance, self.size());
         if let Course::Accelerating { level, rates: all } = self.course {
             for j in if all { 0 } else { rates }..k {
                 let density = level * step.pose_variance[j] / dt.powi(5);
@@ -193,7 +186,8 @@ impl Hypothesis {
                 }
             }
         }
-        self.mean.iter().all(|e| e.is_finite()) && self.covariance.iter().all(|e| e.is_finite())
+        // A sum is finite only if all of its members are.
+        (self.mean.sum() + self.covariance.sum()).is_finite()
     }
 
     /// Propagation of errors over a step: `turn` is the linear part of the motion over it, a and v are rates and velocity before it, and
@@ -202,18 +196,22 @@ impl Hypothesis {
         &self,
         step: &Step<'_>,
         (turn, a, v, later): (&Matrix2<f64>, &Matrix2<f64>, &Vector2<f64>, &Vector2<f64>),
-    ) -> EntryMatrix {
-        let (model, k, dt) = (step.model, step.model.parameter_count(), step.seconds);
+    ) -> SMatrix<f64, N, N> {
+        let (model, k, dt) = (step.model, Self::K, step.seconds);
         let rates = k - 2;
-        let mut f = EntryMatrix::identity();
-        let map = as_map(turn);
-        let back = map.try_inverse().unwrap_or(map);
-        let carried = model.adjoint(&map, &back);
-        for i in 0..rates {
-            for j in 0..rates {
-                let own = f64::from(u8::from(i == j));
-                f[(i, j)] = carried[i][j];
-                f[(i, k + j)] = 0.5 * dt * (own + carried[i][j]);
+        let mut f = SMatrix::<f64, N, N>::identity();
+        if model <= MotionModel::Similarity {
+            // Turns and growth commute.
+            (0..rates).for_each(|i| f[(i, k + i)] = dt);
+        } else {
+            let map = as_map(turn);
+            let carried = model.adjoint(&map, &map.try_inverse().unwrap_or(map));
+            for i in 0..rates {
+                for j in 0..rates {
+                    let own = f64::from(u8::from(i == j));
+                    f[(i, j)] = carried[i][j];
+                    f[(i, k + j)] = 0.5 * dt * (own + carried[i][j]);
+                }
             }
         }
         for i in rates..k {
@@ -257,8 +255,8 @@ impl Hypothesis {
     }
 
     /// Compares a measurement of the pose with what was predicted, and takes it; `None` where the numbers do not allow it.
-    pub(super) fn update(&mut self, measurement: &CentredMeasurement, model: MotionModel) -> Option<Innovation> {
-        match model.parameter_count() {
+    pub(super) fn update(&mut self, measurement: &CentredMeasurement) -> Option<Innovation> {
+        match Self::K {
             3 => self.update_sized::<3>(measurement),
             4 => self.update_sized::<4>(measurement),
             _ => self.update_sized::<LARGEST>(measurement),
@@ -269,7 +267,7 @@ impl Hypothesis {
     where
         Const<K>: DimMin<Const<K>, Output = Const<K>>,
     {
-        let n = self.size(K);
+        let n = self.size();
         let information = measurement.information.fixed_view::<K, K>(0, 0) / self.course.shaking();
         let predicted = self.covariance.fixed_view::<K, K>(0, 0).into_owned();
         let off = measurement.deviation.fixed_rows::<K>(0) - self.mean.fixed_rows::<K>(0);
@@ -308,8 +306,9 @@ impl Hypothesis {
     }
 
     /// Takes it that nothing happens in a direction that the outline does not show, given with its dual.
-    pub(super) fn hold(&mut self, direction: &CentredVector, dual: &CentredVector, k: usize) {
-        let mut projection = EntryMatrix::identity();
+    pub(super) fn hold(&mut self, direction: &CentredVector, dual: &CentredVector) {
+        let k = Self::K;
+        let mut projection = SMatrix::<f64, N, N>::identity();
         for block in 0..3 {
             for i in 0..k {
                 (0..k).for_each(|j| projection[(block * k + i, block * k + j)] -= direction[i] * dual[j]);
@@ -321,7 +320,7 @@ impl Hypothesis {
 
     /// The velocity of the middle taken at another point of the object.
     pub(super) fn move_middle(&mut self, model: MotionModel, from: &CentredPose, to: &CentredPose) {
-        let k = model.parameter_count();
+        let k = Self::K;
         let apart = map_point(&from.pose, &to.middle) - from.centre();
         let carried = self.rates(model) * apart;
         self.mean[2 * k - 2] += carried.x;

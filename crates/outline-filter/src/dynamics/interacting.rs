@@ -1,10 +1,10 @@
 //! The hypotheses side by side.
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
-    hypothesis::{CentredMeasurement, Course, Entries, EntryMatrix, Hypothesis, Step},
+    hypothesis::{CentredMeasurement, Course, Hypothesis, Step},
     innovations::InnovationSeries,
     mixing::mix,
     setting::{Dynamics, DynamicsWeights},
@@ -15,7 +15,7 @@ use crate::{
     belief::StateMatrix,
     map::NullDirection,
     tuning::{dynamics as tuning, statement::REACH},
-    update::{PoseMeasurement, solved},
+    update::PoseMeasurement,
 };
 
 /// Hypotheses at most.
@@ -23,20 +23,21 @@ const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LE
 
 type Weights = [f64; MOST];
 
-/// Hypotheses of how the motion goes on, each with a state of its own, and their probabilities.
+/// Hypotheses of how the motion goes on, each with a state of its own of N entries, three for each parameter of the model, and their
+/// probabilities.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct DynamicsFilter {
+pub(crate) struct InteractingHypotheses<const N: usize> {
     model: MotionModel,
     setting: Dynamics,
-    hypotheses: Vec<Hypothesis>,
+    hypotheses: Vec<Hypothesis<N>>,
     /// In the same order; zeros behind them.
     weights: Weights,
     /// What the errors of all poses are taken from.
     reference: CentredPose,
     /// Variance of a pose as one frame tells it.
     pose_variance: CentredVector,
-    pub(crate) series: InnovationSeries<LARGEST>,
+    series: InnovationSeries<LARGEST>,
     /// Factor of the variance of a pose by the most probable hypothesis.
     shaking: f64,
     leads: bool,
@@ -51,7 +52,7 @@ pub(crate) enum Purpose {
     Statement,
 }
 
-impl DynamicsFilter {
+impl<const N: usize> InteractingHypotheses<N> {
     /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
     /// (projective), and numbers that do not allow it.
     pub(crate) fn begin(
@@ -62,7 +63,7 @@ impl DynamicsFilter {
         seconds: f64,
     ) -> Option<Self> {
         let k = model.parameter_count();
-        if k > LARGEST || seconds <= 0.0 {
+        if 3 * k != N || seconds <= 0.0 {
             return None;
         }
         let reference = CentredPose { pose: summary.pose, middle };
@@ -141,13 +142,12 @@ impl DynamicsFilter {
         let Some(to) = self.reference.about_origin(self.model).filter(|_| !null.is_empty()) else { return };
         let (from, k) = (self.reference.about_middle(self.model), self.model.parameter_count());
         for NullDirection { direction, dual } in null {
-            let direction = from * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*direction);
-            let dual = to.transpose() * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(*dual);
-            let short = |v: &nalgebra::SVector<f64, MAX_PARAMETERS>| {
-                CentredVector::from_fn(|i, _| if i < k { v[i] } else { 0.0 })
-            };
+            let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
+            let dual = to.transpose() * SVector::<f64, MAX_PARAMETERS>::from(*dual);
+            let short =
+                |v: &SVector<f64, MAX_PARAMETERS>| CentredVector::from_fn(|i, _| if i < k { v[i] } else { 0.0 });
             for hypothesis in &mut self.hypotheses {
-                hypothesis.hold(&short(&direction), &short(&dual), k);
+                hypothesis.hold(&short(&direction), &short(&dual));
             }
         }
     }
@@ -173,7 +173,7 @@ impl DynamicsFilter {
         let mut logarithms = [f64::NEG_INFINITY; MOST];
         let mut standardised = [None; MOST];
         for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {
-            let innovation = hypothesis.update(&measurement, self.model);
+            let innovation = hypothesis.update(&measurement);
             logarithms[number] = innovation.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
             standardised[number] = innovation.map(|i| i.standardised);
         }
@@ -257,7 +257,7 @@ impl DynamicsFilter {
             Some(summary) => {
                 let (mut mean, covariance) = centred(&change, summary, k);
                 let off = model.motion_between(&(summary.pose * self.reference.pose.try_inverse()?), 1.0)?;
-                let moved = change * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(off);
+                let moved = change * SVector::<f64, MAX_PARAMETERS>::from(off);
                 (0..k).for_each(|j| mean[j] = moved[j]);
                 Some((mean, covariance))
             }
@@ -282,9 +282,9 @@ impl DynamicsFilter {
         // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
         let mean = match of_given {
             Some((mean, _)) => *mean,
-            _ => parts().fold(Entries::zeros(), |mean, (weight, x, ..)| mean + x * (weight / sum)),
+            _ => parts().fold(SVector::zeros(), |mean, (weight, x, ..)| mean + x * (weight / sum)),
         };
-        let mut covariance = EntryMatrix::zeros();
+        let mut covariance = SMatrix::<f64, N, N>::zeros();
         // Where one of them is stated, its interval reaches the others that are not left out.
         let others = 1.0 - self.weights().generator / sum;
         let reach = if of_given.is_some() && others > 0.0 { (REACH / others).max(1.0) } else { 1.0 };
@@ -297,9 +297,8 @@ impl DynamicsFilter {
             }
         }
         let to = self.reference.about_origin(model)?;
-        let large = |at: usize| {
-            nalgebra::SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 })
-        };
+        let large =
+            |at: usize| SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 });
         let (error, motion) = (to * large(0), to * large(1));
         let pose = model.flow(&error.as_slice()[..k], 1.0).into_inner() * self.reference.pose;
         let both = StateMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
@@ -313,7 +312,7 @@ impl DynamicsFilter {
         let (model, k) = (self.model, self.model.parameter_count());
         let Some(inverse) = self.reference.pose.try_inverse() else { return false };
         let Some(moved) = model.motion_between(&(pose * inverse), 1.0) else { return false };
-        let moved = self.reference.about_middle(model) * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(moved);
+        let moved = self.reference.about_middle(model) * SVector::<f64, MAX_PARAMETERS>::from(moved);
         let apart = to.centre() - self.reference.centre();
         for hypothesis in &mut self.hypotheses {
             for j in 0..k - 2 {
@@ -345,21 +344,30 @@ fn courses(setting: Dynamics) -> Vec<Course> {
 }
 
 /// Motion and covariance of a summary about the middle.
-fn centred(
+fn centred<const N: usize>(
     change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
     summary: &Summary,
     k: usize,
-) -> (Entries, EntryMatrix) {
-    let motion = change * nalgebra::SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
-    let mut mean = Entries::zeros();
+) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    let motion = change * SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
+    let mut mean = SVector::zeros();
     (0..k).for_each(|j| mean[k + j] = motion[j]);
     let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
-    let covariance = EntryMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
+    let covariance = SMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
     (mean, covariance)
 }
 
+/// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
+fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
+    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
+    let jitter =
+        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
+    let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
+    regular.lu().solve(b)
+}
+
 #[cfg(feature = "serde")]
-impl DynamicsFilter {
+impl<const N: usize> InteractingHypotheses<N> {
     /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.
     pub(crate) fn is_sound(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
         let is_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
@@ -368,7 +376,7 @@ impl DynamicsFilter {
         let (weights, beyond) = self.weights.split_at(count.min(MOST));
         self.model == model
             && Some(self.setting) == setting
-            && model.parameter_count() <= LARGEST
+            && 3 * model.parameter_count() == N
             && followed.eq(courses(self.setting))
             && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
             && weights.iter().all(|weight| (0.0..=1.0).contains(weight))

@@ -1,16 +1,17 @@
 //! Mixing: every hypothesis may have been one of the others a step ago.
 use freeform_riccati::MotionModel;
+use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{CentredVector, parts},
-    hypothesis::{Course, Entries, EntryMatrix, Hypothesis},
+    hypothesis::{Course, Hypothesis},
 };
 use crate::tuning::dynamics as tuning;
 
 /// Mean and covariance of all hypotheses together, as one course or another has its state.
-struct Pooled {
-    mean: Entries,
-    covariance: EntryMatrix,
+struct Pooled<const N: usize> {
+    mean: SVector<f64, N>,
+    covariance: SMatrix<f64, N, N>,
     /// Share of those that know nothing of the accelerations.
     without: f64,
 }
@@ -18,13 +19,13 @@ struct Pooled {
 /// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
 ///
 /// The change has the same probability between any two, so that every mixture has two parts: the hypothesis itself, and all together.
-pub(super) fn mix(
-    hypotheses: &mut [Hypothesis],
+pub(super) fn mix<const N: usize>(
+    hypotheses: &mut [Hypothesis<N>],
     weights: &mut [f64],
     model: MotionModel,
     (pose_variance, seconds): (&CentredVector, f64),
 ) {
-    let (count, k) = (hypotheses.len(), model.parameter_count());
+    let (count, k) = (hypotheses.len(), N / 3);
     if count < 2 {
         return;
     }
@@ -39,10 +40,10 @@ pub(super) fn mix(
         };
         let total = tuning::TRANSITION * all + (stays - tuning::TRANSITION) * *weight;
         let [changed, own] = [tuning::TRANSITION * all / total, (stays - tuning::TRANSITION) * *weight / total];
-        let n = hypothesis.size(k);
+        let n = hypothesis.size();
         // What a course has alone is as it was, or nothing is known of it.
         let shared = if hypothesis.course == Course::ConstantVelocity { 2 * k } else { n };
-        let mut apart = [0.0; super::hypothesis::ENTRIES];
+        let mut apart = [0.0; N];
         for (i, apart) in apart.iter_mut().enumerate().take(shared) {
             *apart = of_all.mean[i] - hypothesis.mean[i];
             hypothesis.mean[i] += changed * *apart;
@@ -62,11 +63,11 @@ pub(super) fn mix(
     }
 }
 
-impl Pooled {
-    fn of(hypotheses: &[Hypothesis], weights: &[f64], accelerations: Accelerations, model: MotionModel) -> Self {
-        let k = model.parameter_count();
+impl<const N: usize> Pooled<N> {
+    fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], accelerations: Accelerations, model: MotionModel) -> Self {
+        let k = N / 3;
         let all: f64 = weights.iter().sum();
-        let mut pooled = Self { mean: Entries::zeros(), covariance: EntryMatrix::zeros(), without: 0.0 };
+        let mut pooled = Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), without: 0.0 };
         let sources = || hypotheses.iter().zip(weights).filter(|(_, weight)| **weight > tuning::LEAST_SHARE * all);
         let sum: f64 = sources().map(|(_, weight)| weight).sum();
         for (source, weight) in sources() {
@@ -120,11 +121,11 @@ impl Accelerations {
     }
 
     /// The state of a hypothesis with these accelerations: those that it does not have follow from its motion.
-    fn mean_of(self, source: &Hypothesis, model: MotionModel) -> Entries {
+    fn mean_of<const N: usize>(self, source: &Hypothesis<N>, model: MotionModel) -> SVector<f64, N> {
         if self.are_part_of(source.course) {
             return source.mean;
         }
-        let k = model.parameter_count();
+        let k = N / 3;
         let mut mean = source.mean;
         match source.course {
             // Along an arc the velocity of the middle turns all the time.

@@ -90,12 +90,17 @@ impl OutlineMap {
     }
 
     /// Whether a body point lies beyond a known end of the outline, its nearest cell given.
+    #[inline(always)]
     pub(crate) fn is_beyond_end(&self, number: usize, q: &Point2<f64>) -> bool {
+        let [a, b] = self.cells[number].neighbours;
+        (a == number || b == number) && self.is_beyond(number, q)
+    }
+
+    /// Whether a body point lies beyond a cell that is an end.
+    #[cold]
+    fn is_beyond(&self, number: usize, q: &Point2<f64>) -> bool {
         let cell = &self.cells[number];
         let [a, b] = cell.neighbours;
-        if a != number && b != number {
-            return false;
-        }
         let tangent = Vector2::new(-cell.normal.y, cell.normal.x);
         let along = tangent.dot(&(q - cell.centre));
         let known = if a == number { b } else { a };

@@ -57,12 +57,15 @@ impl View<'_> {
     ) {
         let Frame { points, measurements, values, shifts, pieces, places, .. } = frame;
         places.clear();
+        let in_body = |p: &Point2<f64>| map_point_by::<AFFINE>(inverse, p);
         if half_window == 0 {
-            places.extend_from_slice(points);
+            places.extend(points.iter().map(in_body));
         } else {
             if pass == Pass::First {
                 // What the points count with in the means.
-                self.associate::<AFFINE>(measurements, inverse, points, points);
+                places.extend(points.iter().map(in_body));
+                self.associate(measurements, |i, _| places[i]);
+                places.clear();
                 for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
                     self.distance::<AFFINE>(measurement, p, inverse, shifts);
                 }
@@ -70,11 +73,13 @@ impl View<'_> {
             }
             for piece in pieces.iter() {
                 let range = piece.range();
-                mean_of_neighbours(&points[range.clone()], &measurements[range], piece.closed, half_window, places);
+                let of_piece = (&points[range.clone()], &measurements[range]);
+                mean_of_neighbours(of_piece, piece.closed, half_window, |place| places.push(in_body(&place)));
             }
         }
-        self.associate::<AFFINE>(measurements, inverse, points, places);
-        self.keep_to_sides::<AFFINE>(measurements, pieces, places, inverse, half_window);
+        // The means where the points count, the points where they do not.
+        self.associate(measurements, |i, m| if m.weight > 0.0 { places[i] } else { in_body(&points[i]) });
+        self.keep_to_sides(measurements, pieces, places, half_window);
         for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
             let normal = self.distance::<AFFINE>(measurement, p, inverse, shifts);
             self.linearise(measurement, p, &normal, null);
@@ -91,25 +96,16 @@ impl View<'_> {
         (0.5 * (needed.min(most) - 1.0)).round().max(0.0) as usize
     }
 
-    /// The cells of points, by the means of their neighbours where they count and by themselves where they do not.
-    fn associate<const AFFINE: bool>(
-        &self,
-        measurements: &mut [Measurement],
-        inverse: &Matrix3<f64>,
-        points: &[Point2<f64>],
-        places: &[Point2<f64>],
-    ) {
+    /// The cells of points, by places in the body frame.
+    fn associate(&self, measurements: &mut [Measurement], place: impl Fn(usize, &Measurement) -> Point2<f64>) {
         let map = self.map;
-        let body_place = |measurement: &Measurement, p, place| {
-            map_point_by::<AFFINE>(inverse, if measurement.weight > 0.0 { place } else { p })
-        };
         // A first look at all of them waits for none; which way to go from there cannot be foreseen.
-        for (measurement, (p, place)) in measurements.iter_mut().zip(points.iter().zip(places)) {
-            measurement.cell = map.near(&body_place(measurement, p, place)).unwrap_or(NO_CELL);
+        for (i, measurement) in measurements.iter_mut().enumerate() {
+            measurement.cell = map.near(&place(i, measurement)).unwrap_or(NO_CELL);
         }
-        for (measurement, (p, place)) in measurements.iter_mut().zip(points.iter().zip(places)) {
+        for (i, measurement) in measurements.iter_mut().enumerate() {
             if measurement.cell != NO_CELL {
-                let q = body_place(measurement, p, place);
+                let q = place(i, measurement);
                 let number = map.nearest_from(measurement.cell, &q);
                 measurement.cell = if map.is_beyond_end(number, &q) { NO_CELL } else { number };
             }
@@ -119,11 +115,10 @@ impl View<'_> {
 
 /// Mean of the neighbours of every point along a piece of the contour, weighted, the point itself included.
 fn mean_of_neighbours(
-    points: &[Point2<f64>],
-    measurements: &[Measurement],
+    (points, measurements): (&[Point2<f64>], &[Measurement]),
     closed: bool,
     half_window: usize,
-    places: &mut Vec<Point2<f64>>,
+    mut take: impl FnMut(Point2<f64>),
 ) {
     let count = points.len();
     let w = half_window.min((count - 1) / 2);
@@ -151,6 +146,6 @@ fn mean_of_neighbours(
                 sum + at(i + now) - at(i - 1 - before)
             };
         }
-        places.push(if sum.z > 1e-3 { Point2::from(sum.xy() * (1.0 / sum.z)) } else { *point });
+        take(if sum.z > 1e-3 { Point2::from(sum.xy() * (1.0 / sum.z)) } else { *point });
     }
 }

@@ -3,7 +3,7 @@ use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Point2};
 
 use super::Measurement;
-use crate::{belief::CellInformation, map::Contour};
+use crate::{belief::OffsetInformation, map::Contour};
 
 /// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius, and the unit of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,13 +55,13 @@ pub(crate) struct Frame {
     pub(crate) points: Vec<Point2<f64>>,
     /// Pieces of the contour that the points make.
     pub(crate) pieces: Vec<Piece>,
-    /// Means of neighbouring points, which say where along the outline they lie.
+    /// Means of neighbouring points in the body frame, which say where along the outline they lie.
     pub(crate) places: Vec<Point2<f64>>,
     pub(crate) measurements: Vec<Measurement>,
     /// Corrections of the offsets that are being tried.
     pub(crate) shifts: Vec<f64>,
     /// Information on the offsets with the frame, before it is taken.
-    pub(crate) cells: Vec<CellInformation>,
+    pub(crate) cells: OffsetInformation,
     /// Right-hand sides of the offsets.
     pub(crate) right: Vec<f64>,
     /// For whatever needs a list of numbers.

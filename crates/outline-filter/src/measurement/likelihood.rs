@@ -1,5 +1,6 @@
 //! How badly a pose explains a frame, for comparison with other poses.
-use nalgebra::Matrix3;
+use freeform_riccati::map_point;
+use nalgebra::{Matrix3, Point2};
 
 use super::{Frame, Measurement, Pass, View};
 use crate::{
@@ -73,9 +74,52 @@ impl View<'_> {
         all.into_iter().map(|list| of_innovations(list.into_iter(), scale, correlation)).collect()
     }
 
+    /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), for comparison with the first of the poses. What a first look finds
+    /// far worse than that, which is most of many poses, is not measured: its squares are those of the first look.
+    pub(crate) fn negative_log_likelihoods_beside_first(
+        &self,
+        frame: &mut Frame,
+        poses: &[Matrix3<f64>],
+    ) -> Vec<NegativeLogLikelihood> {
+        let Some((first, others)) = poses.split_first() else { return Vec::new() };
+        let limit = tuning::FAR_WORSE * self.rough_mean_square(&frame.points, first).max(1.0);
+        let rough: Vec<_> = others.iter().map(|pose| self.rough_mean_square(&frame.points, pose)).collect();
+        let near = others.iter().zip(&rough).filter(|(_, square)| **square <= limit).map(|(pose, _)| *pose);
+        let near: Vec<_> = std::iter::once(*first).chain(near).collect();
+        let mut measured = self.negative_log_likelihoods(frame, &near).into_iter();
+        let Some(of_first) = measured.next() else { return Vec::new() };
+        let far = |square: f64| NegativeLogLikelihood { squares: square * of_first.points, ..of_first };
+        let others = rough
+            .into_iter()
+            .map(|square| if square > limit { far(square) } else { measured.next().unwrap_or_else(|| far(square)) });
+        std::iter::once(of_first).chain(others).collect()
+    }
+
+    /// Mean square of the distances of points from the cells nearest to them in a pose, in units of the noise.
+    fn rough_mean_square(&self, points: &[Point2<f64>], pose: &Matrix3<f64>) -> f64 {
+        let (map, offsets) = (self.map, &self.belief.offsets);
+        let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
+        let length = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
+        let scale = length / self.comparable_noise();
+        let square = |p: &Point2<f64>| {
+            let q = map_point(&inverse, p);
+            let Some(number) = map.nearest(&q) else { return tuning::UNKNOWN };
+            if map.is_beyond_end(number, &q) {
+                return tuning::UNKNOWN;
+            }
+            let cell = &map.cells()[number];
+            let from = q - cell.centre;
+            // The nearest cell is one that lies beside the point, or the point is far from all of them.
+            let is_beside = cell.normal.perp(&from).abs() < map.spacing();
+            let distance = if is_beside { cell.normal.dot(&from) - offsets[number] } else { from.norm() };
+            (scale * distance).powi(2).min(tuning::LARGEST * tuning::LARGEST)
+        };
+        points.iter().map(square).sum::<f64>() / points.len() as f64
+    }
+
     /// Distance of a point from the outline as it was known, as if that were exact; `None` where nothing was known.
     fn innovation_of(&self, m: &Measurement, shifts: &[f64]) -> Option<f64> {
-        let own = self.belief.information.cells.get(m.cell).map(|cell| cell.own).filter(|own| *own > 0.0)?;
+        let own = self.belief.information.cells.own().get(m.cell).copied().filter(|own| *own > 0.0)?;
         let variance = 1.0 + m.by_offset * m.by_offset / own;
         Some((m.residual + m.by_offset * shifts[m.cell]) / variance.sqrt())
     }

@@ -75,16 +75,14 @@ impl Belief {
         let gain = covariance * after;
         let rest = covariance - gain * covariance;
         let mut dense = after;
-        for cell in &mut self.information.cells {
-            if cell.own <= 0.0 {
-                continue;
-            }
-            let slope = StateVector::from(cell.coupling) / cell.own;
-            let own = 1.0 / (1.0 / cell.own + (slope.transpose() * rest * slope).x.max(0.0));
+        for (known, entries) in self.information.cells.iter_mut().filter(|(known, _)| **known > 0.0) {
+            let mut slope = StateVector::zeros();
+            slope.iter_mut().zip(entries.iter()).for_each(|(slope, coupling)| *slope = coupling / *known);
+            let own = 1.0 / (1.0 / *known + (slope.transpose() * rest * slope).x.max(0.0));
             let coupling = gain.transpose() * slope * own;
             dense += coupling * coupling.transpose() / own;
-            cell.own = own;
-            cell.coupling = coupling.into();
+            *known = own;
+            entries.iter_mut().zip(coupling.iter()).for_each(|(entry, coupling)| *entry = *coupling);
         }
         for (i, row) in self.information.dense.iter_mut().enumerate().take(2 * k) {
             (0..2 * k).for_each(|j| row[j] = dense[(i, j)]);

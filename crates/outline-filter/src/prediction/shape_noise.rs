@@ -1,6 +1,6 @@
 //! Shape process noise: outlines that change slowly, as those of segmented pictures do, seen by innovations of the offsets that repeat.
 use crate::{
-    belief::{Belief, CellInformation, STATE},
+    belief::{Arrowhead, Belief, OffsetInformation},
     tuning::shape_noise as tuning,
 };
 
@@ -44,16 +44,17 @@ impl ShapeNoise {
         &mut self,
         belief: &Belief,
         shifts: &[f64],
-        before: &[CellInformation],
+        before: &OffsetInformation,
         sigma: f64,
     ) {
         let scale = belief.scale() / sigma;
         let (mut products, mut squares, mut count) = (0.0, 0.0, 0.0);
-        for (number, last) in self.last.iter_mut().enumerate() {
-            let gain = 1.0 - before[number].own / belief.information.cells[number].own;
+        let known = before.own().iter().zip(belief.information.cells.own());
+        for ((last, (before, after)), shift) in self.last.iter_mut().zip(known).zip(shifts) {
+            let gain = 1.0 - before / after;
             // Also false where a cell has no information yet.
-            let is_told = gain > tuning::SMALLEST_GAIN && before[number].own > 0.0;
-            let innovation = if is_told { scale * shifts[number] / gain } else { 0.0 };
+            let is_told = gain > tuning::SMALLEST_GAIN && *before > 0.0;
+            let innovation = if is_told { scale * shift / gain } else { 0.0 };
             let innovation = innovation.clamp(-tuning::CLIPPED, tuning::CLIPPED);
             if innovation != 0.0 && *last != 0.0 {
                 let product = innovation * *last;
@@ -73,22 +74,18 @@ impl ShapeNoise {
         if self.variance <= 0.0 {
             return;
         }
-        for cell in &mut belief.information.cells {
-            if cell.own <= 0.0 {
-                continue;
-            }
-            let own = 1.0 / (1.0 / cell.own + self.variance);
-            let kept = own / cell.own;
+        let Arrowhead { dense, cells, .. } = &mut belief.information;
+        for (known, coupling) in cells.iter_mut().filter(|(known, _)| **known > 0.0) {
+            let own = 1.0 / (1.0 / *known + self.variance);
+            let kept = own / *known;
             // The marginal information `dense - c c' / own` stays as it is.
-            let lost = (1.0 - kept) / cell.own;
-            for i in 0..STATE {
-                let factor = lost * cell.coupling[i];
-                for j in 0..STATE {
-                    belief.information.dense[i][j] -= factor * cell.coupling[j];
-                }
+            let lost = (1.0 - kept) / *known;
+            for (row, c) in dense.iter_mut().zip(coupling.iter()) {
+                let factor = lost * c;
+                row.iter_mut().zip(coupling.iter()).for_each(|(entry, c)| *entry -= factor * c);
             }
-            cell.coupling.iter_mut().for_each(|entry| *entry *= kept);
-            cell.own = own;
+            coupling.iter_mut().for_each(|entry| *entry *= kept);
+            *known = own;
         }
     }
 }

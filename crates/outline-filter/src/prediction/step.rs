@@ -2,7 +2,7 @@ use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 use nalgebra::Matrix3;
 
 use crate::{
-    belief::{Belief, CellInformation, EarlierPoses, moved_marginal},
+    belief::{Belief, EarlierPoses, moved_marginal},
     tuning::update::MOTION_PRIOR,
 };
 
@@ -48,9 +48,7 @@ impl Belief {
             self.information.dense[i][i] = MOTION_PRIOR;
             self.information.dense[k + i][k + i] = MOTION_PRIOR;
         }
-        for cell in &mut self.information.cells {
-            *cell = CellInformation { own: cell.own, ..CellInformation::NOTHING };
-        }
+        self.information.cells.clear_couplings();
         self.marginal = self.information.marginal();
         self.earlier_poses = EarlierPoses::Known;
         self.memory.clear();

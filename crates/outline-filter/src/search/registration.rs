@@ -1,5 +1,5 @@
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point, pull_back};
-use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
+use freeform_riccati::{MotionModel, map_point, pull_back};
+use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::Landmarks;
 use crate::{
@@ -118,7 +118,7 @@ fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {
     wrapped(a.turn - b.turn).abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < tuning::SAME_POSE
 }
 
-/// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals.
+/// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals, at most so many.
 fn refined(
     track: &Track,
     points: &[Point2<f64>],
@@ -126,11 +126,30 @@ fn refined(
     start: &Matrix3<f64>,
     steps: usize,
 ) -> RegisteredPose {
+    match model.parameter_count() {
+        3 => refined_sized::<3>(track, points, model, start, steps),
+        4 => refined_sized::<4>(track, points, model, start, steps),
+        6 => refined_sized::<6>(track, points, model, start, steps),
+        _ => refined_sized::<8>(track, points, model, start, steps),
+    }
+}
+
+fn refined_sized<const K: usize>(
+    track: &Track,
+    points: &[Point2<f64>],
+    model: MotionModel,
+    start: &Matrix3<f64>,
+    steps: usize,
+) -> RegisteredPose
+where
+    Const<K>: DimMin<Const<K>, Output = Const<K>>,
+{
     let View { map, belief, noise } = track.view();
-    let k = model.parameter_count();
     let mut pose = *start;
     let mut distances = Vec::with_capacity(points.len());
-    let mut rows: Vec<(f64, [f64; MAX_PARAMETERS])> = Vec::with_capacity(points.len());
+    let mut rows: Vec<(f64, SVector<f64, K>)> = Vec::with_capacity(points.len());
+    let mut sizes = Vec::with_capacity(points.len());
+    let mut settled = false;
     for step in 0..=steps {
         let Some(inverse) = pose.try_inverse() else { break };
         let null = map.null_directions(belief.model, &pose);
@@ -150,31 +169,33 @@ fn refined(
             if model == belief.model {
                 null.iter().for_each(|direction| direction.project_out(&mut row));
             }
-            rows.push((residual, row));
+            rows.push((residual, SVector::from_fn(|i, _| row[i])));
         }
-        if step == steps {
+        if step == steps || settled {
             break;
         }
-        let mut sizes: Vec<f64> = rows.iter().map(|(r, _)| r.abs()).collect();
+        sizes.clear();
+        sizes.extend(rows.iter().map(|(r, _)| r.abs()));
         let scale = tuning::TUKEY * MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
-        let mut gram = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity() * tuning::DAMPING;
-        let mut right = SVector::<f64, MAX_PARAMETERS>::zeros();
+        let mut gram = SMatrix::<f64, K, K>::identity() * tuning::DAMPING;
+        let mut right = SVector::<f64, K>::zeros();
         for (residual, row) in &rows {
             let u = residual / scale;
             if u.abs() < 1.0 {
                 let weight = (1.0 - u * u).powi(2);
-                let row = SVector::from(*row);
-                gram += weight * row * row.transpose();
-                right += weight * *residual * row;
+                let weighted = weight * row;
+                gram += weighted * row.transpose();
+                right += *residual * weighted;
             }
         }
         let Some(factor) = gram.cholesky() else { break };
         let x = factor.solve(&right);
-        let next = model.flow(&x.as_slice()[..k], 1.0).into_inner() * pose;
+        let next = model.flow(x.as_slice(), 1.0).into_inner() * pose;
         if !next.iter().all(|e| e.is_finite()) || next.determinant().abs() < 1e-6 {
             break;
         }
         pose = next;
+        settled = x.amax() < tuning::SETTLED * noise.sigma;
     }
     distances.sort_unstable_by(f64::total_cmp);
     let kept = ((tuning::TRIMMED * distances.len() as f64) as usize).max(1).min(distances.len());

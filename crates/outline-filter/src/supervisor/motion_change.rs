@@ -4,6 +4,8 @@ use nalgebra::SVector;
 
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
+#[cfg(feature = "serde")]
+use crate::tuning::saved_state::LARGEST_NUMBER;
 use crate::{
     belief::{StateMatrix, StateVector},
     dynamics::DynamicsFilter,
@@ -12,6 +14,9 @@ use crate::{
     tuning::{motion_change as tuning, statement::REACH},
     update::PoseInnovation,
 };
+
+/// One entry for each parameter of a pose.
+type PoseVector = SVector<f64, MAX_PARAMETERS>;
 
 const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 
@@ -34,21 +39,11 @@ pub(super) struct MotionHistory {
     pub(super) change: MotionChange,
     /// None before the third frame, and where dynamics are not told.
     pub(super) dynamics: Option<DynamicsFilter>,
-    contradiction: Option<Contradiction>,
+    /// A frame that shows the object elsewhere than it was expected, and was not taken, is wrong, or the motion has changed: by so much since
+    /// a frame was taken last, normalised, of a turn that is small meanwhile.
+    contradiction: Option<PoseVector>,
     /// Time since a frame was taken last.
     since_taken: f64,
-}
-
-/// Changes of a motion and times beyond this are none, normalised.
-#[cfg(feature = "serde")]
-const LARGEST_CHANGE: f64 = 1e100;
-
-/// A frame that shows the object elsewhere than it was expected, and was not taken: it is wrong, or the motion has changed.
-#[derive(Debug, Clone, Copy)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Contradiction {
-    /// Change of the motion since a frame was taken last that takes the object there, normalised; of a turn that is small meanwhile.
-    change: SVector<f64, MAX_PARAMETERS>,
 }
 
 impl MotionHistory {
@@ -57,22 +52,22 @@ impl MotionHistory {
         self.change.is_seen() || self.dynamics.as_ref().is_some_and(DynamicsFilter::leads)
     }
 
-    /// Takes what became of a frame some time after the one before, of a motion with so many parameters.
-    pub(super) fn take(&mut self, outcome: &Outcome, seconds: f64, parameters: usize) {
+    /// Takes what became of a frame some time after the one before.
+    pub(super) fn take(&mut self, outcome: &Outcome, seconds: f64) {
         self.since_taken += seconds;
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
             if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {
                 dynamics.update(measured);
             }
-        } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error(parameters)) {
-            self.contradiction = Some(Contradiction { change: pose / self.since_taken });
+        } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error()) {
+            self.contradiction = Some(pose / self.since_taken);
         }
     }
 
     /// A covariance of pose and motion, of k parameters, by which an interval of 95 % reaches what a frame shows that has not been taken.
     pub(super) fn contradicted(&self, k: usize) -> Option<StateMatrix> {
-        let Contradiction { change } = self.contradiction?;
+        let change = self.contradiction?;
         let apart = StateVector::from_fn(|i, _| match i {
             i if i < k => change[i] * self.since_taken,
             i if i < 2 * k => change[i - k],
@@ -191,11 +186,11 @@ impl MotionHistory {
     /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
     pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
         let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
-        let is_contradiction = |of: &Contradiction| of.change.iter().all(|entry| entry.abs() < LARGEST_CHANGE);
+        let is_change = |change: &PoseVector| change.iter().all(|entry| entry.abs() < LARGEST_NUMBER);
         self.change.is_finite()
             && self.dynamics.as_ref().is_none_or(of_settings)
-            && self.contradiction.as_ref().is_none_or(is_contradiction)
-            && (0.0..LARGEST_CHANGE).contains(&self.since_taken)
+            && self.contradiction.as_ref().is_none_or(is_change)
+            && (0.0..LARGEST_NUMBER).contains(&self.since_taken)
     }
 }
 

@@ -43,7 +43,7 @@ pub(super) fn advance(
 ) -> Outcome {
     predict(settings, track, history, seconds);
     let outcome = measured(settings, (track, frame), history, known, comparison);
-    history.take(&outcome, seconds, track.model().parameter_count());
+    history.take(&outcome, seconds);
     outcome
 }
 

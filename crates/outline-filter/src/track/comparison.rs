@@ -22,12 +22,24 @@ impl Track {
         self.view().negative_log_likelihoods(frame, poses)
     }
 
+    /// As [`compared`](Self::compared), for comparison with the first of the poses alone: what is far worse than that is not measured.
+    pub(crate) fn compared_with_first(
+        &self,
+        outline: &Outline,
+        poses: &[Matrix3<f64>],
+        frame: &mut Frame,
+    ) -> Vec<NegativeLogLikelihood> {
+        frame.load(outline, self.reference);
+        frame.thin_out(ENOUGH_POINTS);
+        self.view().negative_log_likelihoods_beside_first(frame, poses)
+    }
+
     /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
     pub(crate) fn shows_turn(&self, outline: &Outline, pose: &Matrix3<f64>, frame: &mut Frame) -> bool {
         let turns = (1..=tuning::OTHER_TURNS).map(|i| tuning::GOLDEN_ANGLE * i as f64);
         let others = turns.filter(|turn| wrapped(*turn).abs() >= tuning::NEAR).map(|turn| self.turned(pose, turn));
         let poses: Vec<_> = std::iter::once(*pose).chain(others).collect();
-        let likelihoods = self.compared(outline, &poses, frame);
+        let likelihoods = self.compared_with_first(outline, &poses, frame);
         let worse = likelihoods[1..].iter().filter(|other| other.is_worse_than(&likelihoods[0])).count();
         // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in
         // what that frame does not show.

@@ -5,7 +5,7 @@ use freeform_curve_fit::Outline;
 
 use super::Track;
 use crate::{
-    belief::{CellInformation, StateVector},
+    belief::StateVector,
     map::Contour,
     measurement::{Frame, NO_CELL, Pass},
     update::accumulate,
@@ -38,7 +38,7 @@ impl Track {
             return;
         };
         let cells = map.cells().len();
-        self.belief.information.cells.resize(cells, CellInformation::NOTHING);
+        self.belief.information.cells.resize(cells);
         self.belief.offsets.resize(cells, 0.0);
         self.noise.resize(cells);
         self.shape.resize(cells);
@@ -62,8 +62,9 @@ impl Track {
         let mut work = self.belief.information.clone();
         accumulate(frame, &mut work, &StateVector::zeros());
         for (number, right) in frame.right.iter().enumerate().skip(first_new) {
-            if work.cells[number].own > 0.0 {
-                self.belief.offsets[number] += right / work.cells[number].own;
+            let own = work.cells.own()[number];
+            if own > 0.0 {
+                self.belief.offsets[number] += right / own;
             }
         }
         self.belief.information = work;
@@ -112,7 +113,7 @@ mod tests {
             let k = track.belief.parameter_count();
             (0..k).for_each(|i| track.belief.information.dense[k + i][k + i] = 100.0);
             // Ends that no point lies on have no information; the reference would divide by it.
-            track.belief.information.cells.iter_mut().for_each(|cell| cell.own = cell.own.max(1.0));
+            track.belief.information.cells.own_mut().iter_mut().for_each(|own| *own = own.max(1.0));
             track.belief.marginal = track.belief.information.marginal();
             let mut dense = DenseFilter::of(&track.belief.information);
             // Otherwise something would be forgotten.
@@ -129,7 +130,7 @@ mod tests {
                 dense.begin_cell(first.unwrap_or(&unseen));
                 of_cell.for_each(|m| dense.measure(m));
                 if first.is_none() {
-                    track.belief.information.cells[cell].own = 1.0;
+                    track.belief.information.cells.own_mut()[cell] = 1.0;
                 }
             }
             let difference = dense.difference(&track.belief.information, |_, _| true);

@@ -92,9 +92,10 @@ impl Track {
             self.view().measure(buffers, pose, &[], Pass::First);
             let Frame { measurements, points, places, .. } = &*buffers;
             for ((m, p), place) in measurements.iter().zip(points).zip(places) {
-                let place = if m.weight > 0.0 { place } else { p };
+                let at = map_point(&inverse, p);
+                let place = if m.weight > 0.0 { *place } else { at };
                 let cell = Some(m.cell).filter(|cell| *cell != NO_CELL);
-                list.push(CellPoint { cell, place: map_point(&inverse, place), at: map_point(&inverse, p) });
+                list.push(CellPoint { cell, place, at });
             }
         }
         Some(list)

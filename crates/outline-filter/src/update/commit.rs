@@ -23,7 +23,7 @@ pub(crate) fn commit(
     shape.compare_innovations(belief, &frame.shifts, &frame.cells, noise.sigma);
     let units = 1.0 / (noise.sigma * noise.sigma);
     for m in frame.measurements.iter().filter(|m| m.weight > 0.0) {
-        if let Some(factor) = without_leverage(m, belief.information.cells[m.cell].own) {
+        if let Some(factor) = without_leverage(m, belief.information.cells.own()[m.cell]) {
             noise.take_residual(m.cell, m.residual * m.residual * units * factor);
         }
     }

@@ -128,7 +128,7 @@ impl View<'_> {
             }
             known += 1;
             agreeing += usize::from(m.residual.abs() < tolerance);
-            if let Some(factor) = without_leverage(m, cells[m.cell].own).filter(|_| m.weight > 0.0) {
+            if let Some(factor) = without_leverage(m, cells.own()[m.cell]).filter(|_| m.weight > 0.0) {
                 values.push(m.residual.abs() * factor.sqrt());
             }
         }

@@ -14,6 +14,6 @@ pub use gate::{FrameMeasurement, Rejection};
 pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
 pub(crate) use normal_equations::accumulate;
-pub(crate) use pose_measurement::{PoseMeasurement, solved};
+pub(crate) use pose_measurement::PoseMeasurement;
 pub(crate) use sensitivity::{LEFT_OUT, LeftOutMatrix, LeftOutScore, LeftOutVector, Sensitivity};
 pub(crate) use solve::Proposal;

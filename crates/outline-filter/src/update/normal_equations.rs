@@ -10,14 +10,19 @@ pub(crate) fn accumulate(frame: &mut Frame, work: &mut Arrowhead, state: &StateV
     frame.right.clear();
     frame.right.resize(work.cells.len(), 0.0);
     match work.k {
-        3 => accumulate_sized::<3>(frame, work, state),
-        4 => accumulate_sized::<4>(frame, work, state),
-        6 => accumulate_sized::<6>(frame, work, state),
-        _ => accumulate_sized::<8>(frame, work, state),
+        3 => accumulate_sized::<3, 6>(frame, work, state),
+        4 => accumulate_sized::<4, 8>(frame, work, state),
+        6 => accumulate_sized::<6, 12>(frame, work, state),
+        _ => accumulate_sized::<8, 16>(frame, work, state),
     }
 }
 
-fn accumulate_sized<const K: usize>(frame: &mut Frame, work: &mut Arrowhead, state: &StateVector) -> StateVector {
+fn accumulate_sized<const K: usize, const S: usize>(
+    frame: &mut Frame,
+    work: &mut Arrowhead,
+    state: &StateVector,
+) -> StateVector {
+    let (own, coupling) = work.cells.all_mut::<S>();
     let mut right = StateVector::zeros();
     let mut dense = [[0.0; K]; K];
     for Measurement { cell, residual, by_offset, jacobian, weight } in &frame.measurements {
@@ -27,7 +32,7 @@ fn accumulate_sized<const K: usize>(frame: &mut Frame, work: &mut Arrowhead, sta
         let mut along = 0.0;
         (0..K).for_each(|i| along += jacobian[i] * state[i]);
         let target = residual + along + by_offset * frame.shifts[*cell];
-        let information = &mut work.cells[*cell];
+        let row = &mut coupling[*cell];
         let weighted = weight * by_offset;
         for i in 0..K {
             let wi = weight * jacobian[i];
@@ -35,9 +40,9 @@ fn accumulate_sized<const K: usize>(frame: &mut Frame, work: &mut Arrowhead, sta
                 dense[i][j] += wi * jacobian[j];
             }
             right[i] += wi * target;
-            information.coupling[i] += weighted * jacobian[i];
+            row[i] += weighted * jacobian[i];
         }
-        information.own += weighted * by_offset;
+        own[*cell] += weighted * by_offset;
         frame.right[*cell] += weighted * target;
     }
     for (sum, row) in work.dense.iter_mut().zip(&dense) {
@@ -48,10 +53,10 @@ fn accumulate_sized<const K: usize>(frame: &mut Frame, work: &mut Arrowhead, sta
 
 /// Right-hand side with the offsets eliminated.
 pub(super) fn reduce(work: &Arrowhead, right_of_cells: &[f64], mut right: StateVector) -> StateVector {
-    for (cell, r) in work.cells.iter().zip(right_of_cells) {
-        if cell.own > 0.0 && *r != 0.0 {
-            let factor = r / cell.own;
-            right.iter_mut().zip(&cell.coupling).for_each(|(right, coupling)| *right -= factor * coupling);
+    for ((coupling, own), r) in work.cells.couplings().zip(work.cells.own()).zip(right_of_cells) {
+        if *own > 0.0 && *r != 0.0 {
+            let factor = r / own;
+            right.iter_mut().zip(coupling).for_each(|(right, coupling)| *right -= factor * coupling);
         }
     }
     right

@@ -1,12 +1,12 @@
 //! What a frame tells of the pose by itself, for whoever expects the object where it likes.
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{Const, DimMin, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 use super::solve::Proposal;
 use crate::{
-    belief::{Belief, CellInformation},
+    belief::{Belief, OffsetInformation},
     measurement::Frame,
-    tuning::{dynamics::LARGEST_VARIANCE, update::SINGULAR},
+    tuning::dynamics::LARGEST_VARIANCE,
 };
 
 /// In normalised coordinates, of the error of the predicted pose, on the left; the outline taken as known before the frame.
@@ -25,14 +25,14 @@ impl PoseMeasurement {
     /// without.
     pub(crate) fn of(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
         match belief.parameter_count() {
-            3 => Self::sized::<3>(belief, proposal, frame),
-            4 => Self::sized::<4>(belief, proposal, frame),
-            6 => Self::sized::<6>(belief, proposal, frame),
-            _ => Self::sized::<8>(belief, proposal, frame),
+            3 => Self::sized::<3, 6>(belief, proposal, frame),
+            4 => Self::sized::<4, 8>(belief, proposal, frame),
+            6 => Self::sized::<6, 12>(belief, proposal, frame),
+            _ => Self::sized::<8, 16>(belief, proposal, frame),
         }
     }
 
-    fn sized<const K: usize>(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
+    fn sized<const K: usize, const S: usize>(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
         let before = &belief.information;
         let mut information = [[0.0; K]; K];
         let mut pulled = [0.0; K];
@@ -40,15 +40,15 @@ impl PoseMeasurement {
             pulled[i] = proposal.right[i];
             (0..K).for_each(|j| information[i][j] = proposal.dense[i][j] - before.dense[i][j]);
         }
-        let nothing = CellInformation::NOTHING;
-        for (number, (cell, right)) in frame.cells.iter().zip(&frame.right).enumerate() {
-            let known = before.cells.get(number).unwrap_or(&nothing);
-            if cell.own <= known.own {
+        let [own, own_before] = [&frame.cells, &before.cells].map(OffsetInformation::own);
+        let [coupling, coupling_before] = [&frame.cells, &before.cells].map(OffsetInformation::rows::<S>);
+        for (number, right) in frame.right.iter().enumerate() {
+            if own[number] <= own_before[number] {
                 continue;
             }
-            let inverse = 1.0 / cell.own;
+            let inverse = 1.0 / own[number];
             let mut added = [0.0; K];
-            (0..K).for_each(|i| added[i] = cell.coupling[i] - known.coupling[i]);
+            (0..K).for_each(|i| added[i] = coupling[number][i] - coupling_before[number][i]);
             for i in 0..K {
                 let factor = added[i] * inverse;
                 pulled[i] -= factor * right;
@@ -63,30 +63,14 @@ impl PoseMeasurement {
         }
     }
 
-    /// The error of the predicted pose, of k parameters, that the frame asks for, divided by a variance: next to none along what it hardly
-    /// shows.
-    pub(crate) fn error(&self, k: usize) -> Option<SVector<f64, MAX_PARAMETERS>> {
+    /// The error of the predicted pose that the frame asks for, divided by a variance: next to none along what it hardly shows.
+    pub(crate) fn error(&self) -> Option<SVector<f64, MAX_PARAMETERS>> {
         let before = SMatrix::from_diagonal_element(1.0 / LARGEST_VARIANCE);
-        solved(&(self.information + before), &self.pulled, k)
+        (self.information + before).lu().solve(&self.pulled)
     }
 
     /// In units of a variance of the noise.
     pub(crate) fn over(&self, variance: f64) -> Self {
         Self { information: self.information / variance, pulled: self.pulled / variance }
     }
-}
-
-/// Solution of `W x = b` over k entries for a matrix that may be singular: none along what it says nothing of.
-pub(crate) fn solved<const N: usize>(
-    information: &SMatrix<f64, N, N>,
-    b: &SVector<f64, N>,
-    k: usize,
-) -> Option<SVector<f64, N>>
-where
-    Const<N>: DimMin<Const<N>, Output = Const<N>>,
-{
-    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
-    let jitter = |j: usize| if j < k { SINGULAR * (information[(j, j)] + SINGULAR * largest) } else { 1.0 };
-    let regular = information + SMatrix::from_diagonal(&SVector::from_fn(|j, _| jitter(j)));
-    regular.lu().solve(b)
 }

@@ -143,49 +143,79 @@ impl Sensitivity {
         measured: &PoseMeasurement,
         repeats: f64,
     ) -> Option<LeftOutScore> {
+        match belief.parameter_count() {
+            3 => self.take_sized::<3, 6>((belief, map), frame, (pose, marginal), measured, repeats),
+            4 => self.take_sized::<4, 8>((belief, map), frame, (pose, marginal), measured, repeats),
+            6 => self.take_sized::<6, 12>((belief, map), frame, (pose, marginal), measured, repeats),
+            _ => self.take_sized::<8, 16>((belief, map), frame, (pose, marginal), measured, repeats),
+        }
+    }
+
+    fn take_sized<const K: usize, const S: usize>(
+        &mut self,
+        (belief, map): (&Belief, &OutlineMap),
+        frame: &mut Frame,
+        (pose, marginal): (&Matrix3<f64>, &StateMatrix),
+        measured: &PoseMeasurement,
+        repeats: f64,
+    ) -> Option<LeftOutScore> {
         let at = self.instant(belief, pose, map)?;
-        let k = belief.parameter_count();
-        let mut sums = Sums::NOTHING;
-        let mut right = SMatrix::<f64, STATE, LEFT_OUT>::zeros();
+        let of_pose: [[f64; LEFT_OUT]; K] = std::array::from_fn(|i| std::array::from_fn(|l| self.state[(i, l)]));
+        let mut sums = Sums::<K>::NOTHING;
+        let [with, before] = [&frame.cells, &belief.information.cells];
+        let (coupling, coupling_before) = (with.rows::<S>(), before.rows::<S>());
+        let (with, before) = (with.own(), before.own());
+        let mut right = [[0.0; LEFT_OUT]; STATE];
         let mut left = std::mem::take(&mut frame.values);
         left.clear();
         for (number, cell) in map.cells().iter().enumerate() {
-            let (with, before) = (&frame.cells[number], &belief.information.cells[number]);
-            let own = with.own - before.own;
+            let (with, before, coupling) = (with[number], before[number], &coupling[number]);
+            let own = with - before;
             if own <= 0.0 {
                 left.extend([0.0; LEFT_OUT]);
                 continue;
             }
-            let mut added = [0.0; MAX_PARAMETERS];
-            (0..k).for_each(|i| added[i] = with.coupling[i] - before.coupling[i]);
+            let added: [f64; K] = std::array::from_fn(|i| coupling[i] - coupling_before[number][i]);
             let (whole, ..) = at.displacement(cell, belief.offsets[number]);
-            let mut of_cell = whole - self.offsets[number];
-            (0..k).for_each(|i| of_cell -= self.state.row(i).transpose() * (added[i] / own));
-            if before.own > 0.0 {
-                let share = before.own / with.own;
-                sums.add(&of_cell, (&added, own, frame.right[number]), (share, k));
+            let mut of_cell: [f64; LEFT_OUT] = (whole - self.offsets[number]).into();
+            for (row, added) in of_pose.iter().zip(&added) {
+                let factor = added / own;
+                of_cell.iter_mut().zip(row).for_each(|(left, state)| *left -= factor * state);
+            }
+            if before > 0.0 {
+                let share = before / with;
+                sums.add(&of_cell, (&added, own, frame.right[number]), share);
                 sums.whole += share * own * whole.component_mul(&whole);
             }
-            for i in 0..2 * k {
-                let direct = if i < k { added[i] } else { 0.0 };
-                let factor = repeats * (direct - with.coupling[i] * own / with.own);
-                (0..LEFT_OUT).for_each(|l| right[(i, l)] += factor * of_cell[l]);
+            for (i, row) in right.iter_mut().enumerate().take(S) {
+                let direct = if i < K { added[i] } else { 0.0 };
+                let factor = repeats * (direct - coupling[i] * own / with);
+                row.iter_mut().zip(&of_cell).for_each(|(right, left)| *right += factor * left);
             }
-            left.extend((of_cell * (repeats * own / with.own)).iter());
+            let share = repeats * own / with;
+            left.extend(of_cell.map(|left| left * share));
         }
         // The estimates move as such residuals would move them.
-        for l in 0..LEFT_OUT {
-            let Some(step) = scaled_solution(marginal, &right.column(l).into_owned(), k) else { continue };
-            for ((offset, left), with) in self.offsets.iter_mut().zip(left.chunks(LEFT_OUT)).zip(&frame.cells) {
-                if with.own > 0.0 {
-                    let along: f64 = (0..2 * k).map(|i| with.coupling[i] * step[i]).sum();
-                    offset[l] += left[l] - along / with.own;
+        let right = SMatrix::<f64, STATE, LEFT_OUT>::from_fn(|i, l| right[i][l]);
+        if let Some(steps) = scaled_solution(marginal, &right, K) {
+            let by_entry: [[f64; LEFT_OUT]; STATE] = std::array::from_fn(|i| std::array::from_fn(|l| steps[(i, l)]));
+            let of_cells = self.offsets.iter_mut().zip(left.chunks(LEFT_OUT));
+            for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
+                if *with > 0.0 {
+                    let mut along = [0.0; LEFT_OUT];
+                    for (row, coupling) in by_entry.iter().zip(coupling) {
+                        along.iter_mut().zip(row).for_each(|(along, step)| *along += coupling * step);
+                    }
+                    let moved = offset.iter_mut().zip(left).zip(&along);
+                    moved.for_each(|((offset, left), along)| *offset += left - along / with);
                 }
             }
-            (0..2 * k).for_each(|i| self.state[(i, l)] += step[i]);
+            for l in 0..LEFT_OUT {
+                (0..S).for_each(|i| self.state[(i, l)] += steps[(i, l)]);
+            }
         }
         frame.values = left;
-        sums.score(measured, k)
+        sums.score(measured)
     }
 
     /// `None` where the model has all of the motions, or the pose has collapsed.
@@ -207,52 +237,51 @@ impl Sensitivity {
 }
 
 /// Sums over the cells of a frame, the offsets eliminated.
-struct Sums {
-    information: LeftOutMatrix,
+struct Sums<const K: usize> {
+    information: [[f64; LEFT_OUT]; LEFT_OUT],
     score: LeftOutVector,
     /// Squares of the displacements with what pose and outline have taken in.
     whole: LeftOutVector,
     /// With the pose.
-    with_pose: SMatrix<f64, MAX_PARAMETERS, LEFT_OUT>,
+    with_pose: [[f64; LEFT_OUT]; K],
     weight: f64,
 }
 
-impl Sums {
+impl<const K: usize> Sums<K> {
     const NOTHING: Self = Self {
-        information: LeftOutMatrix::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; LEFT_OUT])),
+        information: [[0.0; LEFT_OUT]; LEFT_OUT],
         score: LeftOutVector::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; 1])),
         whole: LeftOutVector::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; 1])),
-        with_pose: SMatrix::from_array_storage(nalgebra::ArrayStorage([[0.0; MAX_PARAMETERS]; LEFT_OUT])),
+        with_pose: [[0.0; LEFT_OUT]; K],
         weight: 0.0,
     };
 
     /// Adds a cell of which a `share` of the information was known before, with the coupling, the information and the right-hand side that
     /// the frame adds.
-    fn add(
-        &mut self,
-        left: &LeftOutVector,
-        (coupling, own, right): (&[f64; MAX_PARAMETERS], f64, f64),
-        (share, k): (f64, usize),
-    ) {
-        for l in 0..LEFT_OUT {
-            let factor = share * left[l];
-            let of_own = factor * own;
-            (0..=l).for_each(|m| self.information[(l, m)] += of_own * left[m]);
-            (0..k).for_each(|i| self.with_pose[(i, l)] += factor * coupling[i]);
-            self.score[l] += factor * right;
+    fn add(&mut self, left: &[f64; LEFT_OUT], (coupling, own, right): (&[f64; K], f64, f64), share: f64) {
+        let shared = left.map(|left| share * left);
+        for (row, shared) in self.information.iter_mut().zip(&shared) {
+            let of_own = shared * own;
+            row.iter_mut().zip(left).for_each(|(sum, left)| *sum += of_own * left);
         }
+        for (row, coupling) in self.with_pose.iter_mut().zip(coupling) {
+            row.iter_mut().zip(&shared).for_each(|(sum, shared)| *sum += shared * coupling);
+        }
+        self.score.iter_mut().zip(&shared).for_each(|(sum, shared)| *sum += shared * right);
         self.weight += own;
     }
 
     /// The pose eliminated.
-    fn score(&self, pose: &PoseMeasurement, k: usize) -> Option<LeftOutScore> {
+    fn score(&self, pose: &PoseMeasurement) -> Option<LeftOutScore> {
         let known = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| {
-            if i < k && j < k { pose.information[(i, j)] } else { f64::from(u8::from(i == j)) }
+            if i < K && j < K { pose.information[(i, j)] } else { f64::from(u8::from(i == j)) }
         });
-        let jitter = (0..k).map(|i| known[(i, i)]).fold(0.0, f64::max) * tuning::SINGULAR;
-        let explained = (known + SMatrix::identity() * jitter).cholesky()?.solve(&self.with_pose);
+        let jitter = (0..K).map(|i| known[(i, i)]).fold(0.0, f64::max) * tuning::SINGULAR;
+        let with_pose =
+            SMatrix::<f64, MAX_PARAMETERS, LEFT_OUT>::from_fn(|i, l| if i < K { self.with_pose[i][l] } else { 0.0 });
+        let explained = (known + SMatrix::identity() * jitter).cholesky()?.solve(&with_pose);
         let mut information = LeftOutMatrix::from_fn(|a, b| {
-            self.information[(a.max(b), a.min(b))] - self.with_pose.column(a).dot(&explained.column(b))
+            self.information[a.max(b)][a.min(b)] - with_pose.column(a).dot(&explained.column(b))
         });
         let mut score = self.score - explained.transpose() * pose.pulled;
         // What has been taken in is known to some percent.

@@ -6,7 +6,7 @@ use super::{
     normal_equations::{accumulate, reduce},
 };
 use crate::{
-    belief::{Arrowhead, CellInformation, STATE, StateMatrix, StateVector, scaled_solution},
+    belief::{Arrowhead, OffsetInformation, STATE, StateMatrix, StateVector, scaled_solution},
     map::NullDirection,
     measurement::{Frame, NO_CELL, Pass, View},
     tuning::update as tuning,
@@ -59,7 +59,7 @@ impl View<'_> {
             }
             let pass = if proposal.iterations == 0 { Pass::First } else { Pass::Again };
             self.measure(frame, &proposal.pose, &null, pass);
-            frame.cells.clone_from(&belief.information.cells);
+            frame.cells.copy_from(&belief.information.cells);
             std::mem::swap(&mut work.cells, &mut frame.cells);
             work.dense = belief.information.dense;
             let right = accumulate(frame, &mut work, &proposal.state);
@@ -87,13 +87,14 @@ impl View<'_> {
 
 impl Frame {
     /// Offsets that go with a solution for pose and motion, and what it leaves of the residuals.
-    fn take_step(&mut self, cells: &[CellInformation], step: &StateVector, state: &StateVector, k: usize) {
+    fn take_step(&mut self, cells: &OffsetInformation, step: &StateVector, state: &StateVector, k: usize) {
         self.values.clear();
-        for ((shift, cell), right) in self.shifts.iter_mut().zip(cells).zip(&self.right) {
+        let of_cells = cells.own().iter().zip(cells.couplings());
+        for ((shift, (own, coupling)), right) in self.shifts.iter_mut().zip(of_cells).zip(&self.right) {
             let before = *shift;
-            if cell.own > 0.0 {
-                let along: f64 = (0..2 * k).map(|i| cell.coupling[i] * state[i]).sum();
-                *shift = (right - along) / cell.own;
+            if *own > 0.0 {
+                let along: f64 = coupling.iter().zip(state.iter()).map(|(coupling, state)| coupling * state).sum();
+                *shift = (right - along) / own;
             }
             self.values.push(*shift - before);
         }
@@ -134,7 +135,7 @@ mod tests {
             let reduced = reduce(&work, &frame.right, right);
             let state = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
             frame.take_step(&work.cells, &state, &state, k);
-            frame.cells.clone_from(&work.cells);
+            frame.cells.copy_from(&work.cells);
             let marginal = work.marginal();
             let proposal = Proposal {
                 state,

@@ -1,7 +1,8 @@
 //! Outlines as columns of a table: the same as from a file, and the same mistakes found.
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_outline_io::{
-    ColumnsError, OutlineColumns, OutlineFrame, OutlineReader, OutlineWriter, ReadError, ReadErrorKind, WriterOptions,
+    ColumnsError, OutlineColumns, OutlineFrame, OutlineReader, OutlineWriter, ReadError, ReadErrorKind, Span,
+    WriterOptions,
 };
 use nalgebra::Point2;
 use proptest::prelude::*;
@@ -128,7 +129,8 @@ fn failure(table: &Table) -> (u64, ReadErrorKind) {
     let mut read = table.read();
     let last = read.pop().expect("something").expect_err("an error at the end");
     assert!(read.iter().all(|item| item.as_ref().is_ok_and(|_| true)), "{read:?}");
-    (last.place.lines.expect("a row").0, last.kind)
+    let Some(Span::Rows(row, _)) = last.place.span else { panic!("no row: {last}") };
+    (row, last.kind)
 }
 
 #[test]
@@ -166,7 +168,7 @@ fn reading_goes_on_after_points_that_are_no_outline() {
     table.y[..3].fill(0.0);
     let read = table.read();
     let error = read[0].as_ref().expect_err("points on one line");
-    assert!(error.is_recoverable() && error.place.lines == Some((0, 2)));
+    assert!(error.is_recoverable() && error.place.span == Some(Span::Rows(0, 2)));
     assert!(read[1..].iter().all(Result::is_ok));
     assert_eq!(read.len(), 12);
 }

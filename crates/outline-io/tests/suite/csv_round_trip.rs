@@ -50,7 +50,7 @@ fn outline() -> impl Strategy<Value = Outline> {
 }
 
 /// Frames with gaps in number and time, each showing some of the objects.
-fn sequence() -> impl Strategy<Value = Vec<OutlineFrame>> {
+pub(crate) fn sequence() -> impl Strategy<Value = Vec<OutlineFrame>> {
     let names = prop::collection::btree_set("[a-z0-9 ,\"#\u{e4}]{0,6}".prop_map(|name| name.trim().to_owned()), 1..4);
     let step = (1..5_u64, 1e-9..1e3_f64);
     let frames = prop::collection::vec((step, prop::collection::vec(prop::option::of(outline()), 3)), 0..6);

@@ -8,7 +8,10 @@ mod csv_round_trip;
 mod edges;
 mod identities;
 mod labels;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod pictures_as_people_have_them;
+mod polygons;
 mod sequences;
 mod support;
 mod tracing;

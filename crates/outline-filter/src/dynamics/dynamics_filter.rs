@@ -1,0 +1,109 @@
+//! The hypotheses in the size of the model.
+use freeform_riccati::MotionModel;
+use nalgebra::{Matrix3, Point2};
+
+use super::{
+    centred::{CentredDeviations, CentredPose, Summary},
+    interacting::{InteractingHypotheses, Purpose},
+    setting::{Dynamics, DynamicsWeights},
+};
+use crate::{map::NullDirection, update::PoseMeasurement};
+
+/// Hypotheses of how the motion goes on, for the models that have dynamics. Matrices have the size that a model needs: most of the work on
+/// larger ones would be on zeros.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum DynamicsFilter {
+    Rigid(InteractingHypotheses<9>),
+    Similarity(InteractingHypotheses<12>),
+    Affine(InteractingHypotheses<18>),
+}
+
+/// The same of whichever size there is.
+macro_rules! of_any_size {
+    ($filter:expr, $hypotheses:ident => $value:expr) => {
+        match $filter {
+            DynamicsFilter::Rigid($hypotheses) => $value,
+            DynamicsFilter::Similarity($hypotheses) => $value,
+            DynamicsFilter::Affine($hypotheses) => $value,
+        }
+    };
+}
+
+impl DynamicsFilter {
+    /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
+    /// (projective), and numbers that do not allow it.
+    pub(crate) fn begin(
+        model: MotionModel,
+        setting: Dynamics,
+        summary: &Summary,
+        middle: Point2<f64>,
+        seconds: f64,
+    ) -> Option<Self> {
+        match model {
+            MotionModel::Rigid => {
+                InteractingHypotheses::begin(model, setting, summary, middle, seconds).map(Self::Rigid)
+            }
+            MotionModel::Similarity => {
+                InteractingHypotheses::begin(model, setting, summary, middle, seconds).map(Self::Similarity)
+            }
+            MotionModel::Affine => {
+                InteractingHypotheses::begin(model, setting, summary, middle, seconds).map(Self::Affine)
+            }
+            MotionModel::Projective => None,
+        }
+    }
+
+    /// Moves all hypotheses on by a step, after mixing their states; `pose` is where the object is predicted otherwise.
+    /// Whether the numbers allow it.
+    pub(crate) fn predict(&mut self, pose: &CentredPose, seconds: f64, null: &[NullDirection]) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.predict(pose, seconds, null))
+    }
+
+    /// Takes what an accepted frame tells of the pose: the error of the reference pose.
+    pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
+        of_any_size!(self, hypotheses => hypotheses.update(measured));
+    }
+
+    /// Probabilities of the three kinds of dynamics.
+    pub(crate) fn weights(&self) -> DynamicsWeights {
+        of_any_size!(self, hypotheses => hypotheses.weights())
+    }
+
+    /// Whether the object must not be expected where a constant generator takes it.
+    pub(crate) fn leads(&self) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.leads())
+    }
+
+    /// Whether others than a constant generator are neither ruled out nor lead already.
+    pub(crate) fn has_others(&self) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.has_others())
+    }
+
+    /// Factors, at least 1, by which the innovations say that deviations about the middle are to be widened.
+    pub(crate) fn factors(&self) -> CentredDeviations {
+        of_any_size!(self, hypotheses => hypotheses.factors())
+    }
+
+    /// Mean square of the innovations, at least 1: how much larger than the model's errors are.
+    pub(crate) fn widening(&self) -> f64 {
+        of_any_size!(self, hypotheses => hypotheses.widening())
+    }
+
+    /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
+    /// outline as well.
+    pub(crate) fn combined(&self, given: Option<&Summary>, purpose: Purpose) -> Option<Summary> {
+        of_any_size!(self, hypotheses => hypotheses.combined(given, purpose))
+    }
+
+    /// Takes another reference pose, near the one before.
+    pub(crate) fn take_reference(&mut self, pose: &Matrix3<f64>) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.take_reference(pose))
+    }
+
+    /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_sound(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.is_sound(model, setting))
+    }
+}
