@@ -1,6 +1,6 @@
 use std::fmt;
 
-use freeform_outline_filter::{Ambiguity, Dynamics, WrongFamily};
+use freeform_outline_filter::{Ambiguity, Dynamics, PlaneAmbiguity, WrongFamily};
 use freeform_riccati::MotionModel;
 
 use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
@@ -57,6 +57,18 @@ pub enum Warning {
     },
     /// Another turn from one frame to the next explains the outlines equally well.
     Ambiguous(Ambiguity),
+    /// A second motion of a plane in space explains the outlines about as well.
+    TwoPlanes(Box<PlaneAmbiguity>),
+    /// The plane hardly moves, but for a turn about the camera, which all planes show alike.
+    PlaneHardlyMoves {
+        /// Names of what is not known for it.
+        parameters: Vec<&'static str>,
+    },
+    /// The outlines lie further from where a constant motion of a plane puts them than their noise.
+    PlaneMisfit {
+        /// Mean square of their distances over what is expected.
+        excess: f64,
+    },
     /// The motion changed; the estimate is the motion at the end.
     MotionChanged {
         /// How it goes on at the end, where that is told.
@@ -121,10 +133,13 @@ impl Warning {
         match self {
             Self::PointsOutOfOrder { .. } | Self::Diverged => 0,
             Self::TooManyRejected { .. } | Self::Lost | Self::Reacquiring { .. } => 1,
-            Self::Ambiguous(_) | Self::AmbiguousCorrespondence { .. } => 2,
-            Self::WrongFamily { .. } | Self::AffineBias => 3,
+            Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
+            Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias => 3,
             Self::Aliases { .. } => 4,
-            Self::NotObservable { .. } | Self::NotKnown { .. } | Self::RotationNotObservable { .. } => 5,
+            Self::NotObservable { .. }
+            | Self::NotKnown { .. }
+            | Self::PlaneHardlyMoves { .. }
+            | Self::RotationNotObservable { .. } => 5,
             Self::Restarted { .. } | Self::MayNotHaveSettled { .. } | Self::LinesNotFollowed { .. } => 6,
             Self::MotionChanged { .. } => 7,
             Self::FramesRejected { .. } => 8,
@@ -146,6 +161,9 @@ impl Warning {
             Self::FramesRejected { .. } => "frames_rejected",
             Self::Ambiguous(_) => "ambiguous",
             Self::MotionChanged { .. } => "motion_changed",
+            Self::TwoPlanes(_) => "two_planes",
+            Self::PlaneHardlyMoves { .. } => "plane_hardly_moves",
+            Self::PlaneMisfit { .. } => "plane_misfit",
             Self::TooManyRejected { .. } => "too_many_rejected",
             Self::WrongFamily { family: WrongFamily::Growth, .. } => "wrong_family_growth",
             Self::WrongFamily { family: WrongFamily::Shear, .. } => "wrong_family_shear",
@@ -196,6 +214,24 @@ impl fmt::Display for Warning {
                 "the middle of the object moves at a constant velocity, not about a fixed point, so that b changes: the values are those at the end",
             ),
             Self::MotionChanged { .. } => f.write_str("the motion changed: the values are those at the end"),
+            Self::TwoPlanes(ambiguity) => write!(
+                f,
+                "two motions of a plane explain the outlines, with probabilities {} and {}; they differ in {}",
+                significant(ambiguity.solutions[0].probability, 2),
+                significant(ambiguity.solutions[1].probability, 2),
+                ambiguity.parameters.join(", ")
+            ),
+            Self::PlaneHardlyMoves { parameters } => write!(
+                f,
+                "the plane hardly moves along, and a turn alone tells of no plane; unknown: {}",
+                parameters.join(", ")
+            ),
+            Self::PlaneMisfit { excess } => write!(
+                f,
+                "the outlines are not where a plane of constant angular velocity and velocity would be seen (mean square {} of \
+                 what is expected): the motion may change, or --focal or --principal be wrong; deviations are widened",
+                significant(*excess, 2)
+            ),
             Self::TooManyRejected { rejected, frames } => write!(
                 f,
                 "{rejected} of {frames} frames do not fit the others, so that no motion is stated: the outlines may be of \

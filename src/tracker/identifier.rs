@@ -1,10 +1,11 @@
 //! The identifier of one object, whichever method it is.
 use freeform_curve_fit::{Fit, Outline};
-use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, Unstated};
+use freeform_estimate::{MotionEstimate, MotionState, PlaneEstimate, PointVelocity};
+use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, PlaneAmbiguity, PlaneFilter, Unstated};
 
 use super::{
     observation::ObjectPhase,
+    plane_object::PlaneObject,
     settings::{MethodSettings, TrackerError},
 };
 use crate::pipeline::{Pipeline, PipelineSettings};
@@ -18,6 +19,8 @@ pub(super) enum Identifier {
     Adaptive(Box<Pipeline>),
     /// The motion filter on the points of the outlines.
     Filter(Box<FilteredObject>),
+    /// The motion filter, and all frames together for the motion in space.
+    Plane(Box<PlaneObject>),
 }
 
 /// A filter, and what it knew before it began to look for the object again.
@@ -33,6 +36,8 @@ pub(super) struct FilteredObject {
 pub(super) struct Step {
     pub(super) phase: Option<ObjectPhase>,
     pub(super) estimate: Option<MotionEstimate>,
+    pub(super) plane: Option<PlaneEstimate>,
+    pub(super) plane_ambiguity: Option<PlaneAmbiguity>,
     pub(super) fit: Option<Fit>,
     pub(super) residual: Option<f64>,
     pub(super) innovation: Option<f64>,
@@ -51,6 +56,9 @@ impl Identifier {
             MethodSettings::Filter(settings) => {
                 Self::Filter(Box::new(FilteredObject { filter: MotionFilter::new(*settings)?, last_known: None }))
             }
+            MethodSettings::Plane(camera, settings) => {
+                Self::Plane(Box::new(PlaneObject::new(PlaneFilter::new(*camera, *settings)?)))
+            }
         })
     }
 
@@ -67,6 +75,7 @@ impl Identifier {
                 Err(error) => Step { rejected_because: Some(RejectionCause::Pipeline(error)), ..Step::default() },
             },
             Self::Filter(object) => object.push(time, outline),
+            Self::Plane(object) => object.push(time, outline),
         }
     }
 
@@ -75,6 +84,23 @@ impl Identifier {
         match self {
             Self::Adaptive(pipeline) => pipeline.estimate(),
             Self::Filter(object) => object.last_known.map(|(_, estimate)| estimate),
+            Self::Plane(_) => None,
+        }
+    }
+
+    /// The motion of a plane in space as it was last known.
+    pub(super) fn plane(&self) -> Option<PlaneEstimate> {
+        match self {
+            Self::Plane(object) => object.estimate(),
+            Self::Adaptive(_) | Self::Filter(_) => None,
+        }
+    }
+
+    /// Two motions of a plane in space that the outlines do not decide between.
+    pub(super) fn plane_ambiguity(&self) -> Option<PlaneAmbiguity> {
+        match self {
+            Self::Plane(object) => object.estimate().and_then(|_| object.filter.ambiguity()),
+            Self::Adaptive(_) | Self::Filter(_) => None,
         }
     }
 
@@ -82,7 +108,7 @@ impl Identifier {
     pub(super) fn velocity(&self) -> Option<PointVelocity> {
         match self {
             Self::Filter(object) => object.filter.velocity(),
-            Self::Adaptive(_) => None,
+            Self::Adaptive(_) | Self::Plane(_) => None,
         }
     }
 
@@ -90,7 +116,7 @@ impl Identifier {
     pub(super) fn ambiguity(&self) -> Option<Ambiguity> {
         match self {
             Self::Filter(object) => object.filter.ambiguity(),
-            Self::Adaptive(_) => None,
+            Self::Adaptive(_) | Self::Plane(_) => None,
         }
     }
 
@@ -98,7 +124,7 @@ impl Identifier {
     pub(super) fn aliases(&self) -> Vec<f64> {
         match self {
             Self::Filter(object) => object.filter.aliases(),
-            Self::Adaptive(_) => Vec::new(),
+            Self::Adaptive(_) | Self::Plane(_) => Vec::new(),
         }
     }
 
@@ -106,7 +132,7 @@ impl Identifier {
     pub(super) fn dynamics(&self) -> Option<DynamicsWeights> {
         match self {
             Self::Filter(object) => object.filter.dynamics(),
-            Self::Adaptive(_) => None,
+            Self::Adaptive(_) | Self::Plane(_) => None,
         }
     }
 
@@ -114,13 +140,19 @@ impl Identifier {
     pub(super) fn restarts(&self) -> usize {
         match self {
             Self::Filter(object) => object.filter.restarts(),
+            Self::Plane(object) => object.filter.follower().restarts(),
             Self::Adaptive(_) => 0,
         }
     }
 
     /// Whether the motion was seen to change, which a smoother that takes it for constant does not know.
     pub(super) fn motion_changed(&self) -> bool {
-        matches!(self, Self::Filter(object) if object.filter.motion_changed())
+        match self {
+            Self::Filter(object) => object.filter.motion_changed(),
+            // The generator of a plane changes with its normal.
+            Self::Plane(_) => true,
+            Self::Adaptive(_) => false,
+        }
     }
 
     /// What a user should know of the result.
@@ -128,6 +160,7 @@ impl Identifier {
         match self {
             Self::Adaptive(pipeline) => pipeline.warnings(),
             Self::Filter(object) => object.warnings(),
+            Self::Plane(object) => object.warnings(),
         }
     }
 }
@@ -148,12 +181,12 @@ impl FilteredObject {
         Step {
             phase: Some(step.phase.into()),
             estimate,
-            fit: None,
             residual: step.measurement.and_then(|measurement| measurement.noise),
             innovation: step.measurement.map(|measurement| measurement.innovation),
             state: self.filter.state(),
             ambiguity: self.filter.ambiguity(),
             rejected_because: step.rejection.map(RejectionCause::NotAccepted),
+            ..Step::default()
         }
     }
 

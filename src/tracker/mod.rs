@@ -6,9 +6,11 @@
 //! [`Trajectory`] keeps the poses.
 mod attendance;
 mod contour_order;
+mod family;
 mod identifier;
 mod object;
 mod observation;
+mod plane_object;
 mod queues;
 mod recording;
 mod result;
@@ -30,6 +32,7 @@ pub use freeform_outline_filter::{ExpectedOutline, ExpectedPart};
 
 pub use self::{
     attendance::{Attendance, Sighting},
+    family::MotionFamily,
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
     result::ObjectResult,

@@ -1,8 +1,10 @@
 use std::fmt;
 
 use freeform_curve_fit::Fit;
-use freeform_estimate::{MotionEstimate, MotionState};
-use freeform_outline_filter::{Ambiguity, Phase};
+use freeform_estimate::{MotionEstimate, MotionState, ParameterEstimate, PlaneEstimate};
+use freeform_outline_filter::{Ambiguity, Phase, PlaneAmbiguity};
+
+use super::result::parameters_of;
 
 use crate::Warning;
 use crate::rejection::FrameRejection;
@@ -20,6 +22,8 @@ pub struct Observation {
     pub phase: Option<ObjectPhase>,
     /// The motion estimated after the frame, in space if a camera scale is given. All numbers are finite. `None` if it is not known.
     pub estimate: Option<MotionEstimate>,
+    /// The motion of a plane in space as known after the frame.
+    pub plane: Option<PlaneEstimate>,
     /// Pose and motion with their joint covariance, in the image (motion filter). The state is the last one known: while the object is lost,
     /// its time is before that of the frame.
     pub state: Option<MotionState>,
@@ -31,6 +35,8 @@ pub struct Observation {
     pub innovation: Option<f64>,
     /// Turns between which the outlines so far do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
+    /// Two motions of a plane in space that the outlines so far do not decide between.
+    pub plane_ambiguity: Option<PlaneAmbiguity>,
     /// Why the frame was not used; `None` where it was.
     pub rejection: Option<FrameRejection>,
     /// How often the object had been given up and begun anew.
@@ -44,6 +50,12 @@ impl Observation {
     #[must_use]
     pub fn is_accepted(&self) -> bool {
         self.rejection.is_none()
+    }
+
+    /// The parameters of the motion, whichever family it is of.
+    #[must_use]
+    pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {
+        parameters_of(self.estimate.as_ref(), self.plane.as_ref())
     }
 }
 

@@ -1,8 +1,7 @@
-use freeform_estimate::{MotionEstimate, PointVelocity};
-use freeform_outline_filter::{Ambiguity, DynamicsWeights};
-use freeform_riccati::MotionModel;
+use freeform_estimate::{MotionEstimate, ParameterEstimate, PlaneEstimate, PointVelocity};
+use freeform_outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
 
-use super::settings::Method;
+use super::{family::MotionFamily, settings::Method};
 use crate::Warning;
 use crate::rejection::FrameRejection;
 
@@ -13,25 +12,47 @@ pub struct ObjectResult {
     pub object: String,
     /// The method of identification.
     pub method: Method,
-    /// The motion model.
-    pub motion: MotionModel,
+    /// The family of motions.
+    pub motion: MotionFamily,
     /// Number of frames, including rejected ones.
     pub frames: usize,
     /// Frames that were not used.
     pub frames_rejected: usize,
     /// Why the first rejected frame was not used.
     pub first_rejection: Option<FrameRejection>,
-    /// The last known motion, in space if a camera scale is given. All numbers are finite. `None` if no motion was found.
+    /// The last known motion, in space if a camera scale is given. All numbers are finite. `None` if no motion was found,
+    /// and for a plane in space.
     pub estimate: Option<MotionEstimate>,
+    /// The last known motion of a plane in space.
+    pub plane: Option<PlaneEstimate>,
     /// Velocity of the middle of the object in the last frame, in space if a camera scale is given (motion filter). It may be known while
     /// the angular velocity is not observable, as for a circle.
     pub velocity: Option<PointVelocity>,
     /// Turns between which the outlines do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
+    /// Two motions of a plane in space that the outlines do not decide between.
+    pub plane_ambiguity: Option<PlaneAmbiguity>,
     /// Other angular velocities, rad/s, that explain the outlines as well, because the outline has a symmetry (motion filter).
     pub aliases: Vec<f64>,
     /// Probabilities of the hypotheses of dynamics (motion filter, from the third frame on).
     pub dynamics: Option<DynamicsWeights>,
     /// Warnings on the result, causes before consequences.
     pub warnings: Vec<Warning>,
+}
+
+impl ObjectResult {
+    /// The parameters of the motion, whichever family it is of; none where no motion was found.
+    #[must_use]
+    pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {
+        parameters_of(self.estimate.as_ref(), self.plane.as_ref())
+    }
+}
+
+/// The parameters of whichever is known.
+pub(super) fn parameters_of(
+    estimate: Option<&MotionEstimate>,
+    plane: Option<&PlaneEstimate>,
+) -> Option<Vec<ParameterEstimate>> {
+    let of_picture = estimate.map(|estimate| estimate.parameters().collect());
+    of_picture.or_else(|| plane.map(|plane| plane.parameters().collect()))
 }

@@ -1,7 +1,9 @@
 use std::fmt;
 
 use freeform_outline_filter::{FilterError, FilterSettings};
-use freeform_riccati::{CameraScale, MotionModel};
+use freeform_riccati::{CameraScale, MotionModel, PinholeCamera};
+
+use super::family::MotionFamily;
 
 use crate::{PipelineError, PipelineSettings, Rectification};
 
@@ -22,6 +24,8 @@ pub struct TrackerSettings {
 pub enum MethodSettings {
     /// The motion filter.
     Filter(FilterSettings),
+    /// The motion filter on a plane in space, seen by a camera.
+    Plane(PinholeCamera, FilterSettings),
     /// The paper's adaptive identifier.
     Adaptive(Box<PipelineSettings>),
 }
@@ -57,12 +61,20 @@ impl TrackerSettings {
         Self { method, scale: None, rectification: None }
     }
 
-    /// The motion model.
+    /// Default settings of the motion filter for a plane that moves in space before a camera.
     #[must_use]
-    pub fn motion(&self) -> MotionModel {
+    pub fn of_plane(camera: PinholeCamera) -> Self {
+        let method = MethodSettings::Plane(camera, FilterSettings::default());
+        Self { method, scale: None, rectification: None }
+    }
+
+    /// The family of motions.
+    #[must_use]
+    pub fn motion(&self) -> MotionFamily {
         match &self.method {
-            MethodSettings::Filter(settings) => settings.model,
-            MethodSettings::Adaptive(settings) => settings.identify.model,
+            MethodSettings::Filter(settings) => settings.model.into(),
+            MethodSettings::Plane(..) => MotionFamily::Plane,
+            MethodSettings::Adaptive(settings) => settings.identify.model.into(),
         }
     }
 
@@ -70,7 +82,7 @@ impl TrackerSettings {
     #[must_use]
     pub fn method(&self) -> Method {
         match self.method {
-            MethodSettings::Filter(_) => Method::Filter,
+            MethodSettings::Filter(_) | MethodSettings::Plane(..) => Method::Filter,
             MethodSettings::Adaptive(_) => Method::Adaptive,
         }
     }

@@ -31,6 +31,9 @@ pub enum TrackerStateError {
         /// The method of the tracker.
         method: Method,
     },
+    /// The motion of a plane in space, which is that of all frames together, has no saved state.
+    #[error("objects whose motion in space is followed cannot be saved, those whose motion in the picture is can")]
+    Plane,
     /// The bytes are no saved state.
     #[error(transparent)]
     State(#[from] StateError),
@@ -105,8 +108,10 @@ impl Tracker {
     /// Another method than the motion filter.
     pub fn to_bytes(&self) -> Result<Vec<u8>, TrackerStateError> {
         let TrackerSettings { method, scale, rectification } = &self.settings;
-        let MethodSettings::Filter(settings) = method else {
-            return Err(TrackerStateError::Method { method: self.settings.method() });
+        let settings = match method {
+            MethodSettings::Filter(settings) => settings,
+            MethodSettings::Plane(..) => return Err(TrackerStateError::Plane),
+            MethodSettings::Adaptive(_) => return Err(TrackerStateError::Method { method: self.settings.method() }),
         };
         let objects = self.objects.list.iter().map(saved).collect::<Result<_, _>>()?;
         let state = SavedTracker {

@@ -134,7 +134,7 @@ impl Trajectory {
             return Err(SmoothingError::MotionChanged);
         }
         let noise = match &tracker.settings().method {
-            MethodSettings::Filter(settings) => settings.process_noise,
+            MethodSettings::Filter(settings) | MethodSettings::Plane(_, settings) => settings.process_noise,
             MethodSettings::Adaptive(_) => ProcessNoise::default(),
         };
         let mut objects: HashMap<String, Vec<&mut TrajectoryRow>> = HashMap::new();

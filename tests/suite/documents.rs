@@ -1,8 +1,8 @@
-//! What docs/paper.md and docs/motion-filter.md say of code and tests: every name in them is there.
+//! What docs/paper.md, docs/motion-filter.md and docs/plane-in-space.md say of code and tests: every name in them is there.
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const DOCUMENTS: [&str; 2] = ["docs/paper.md", "docs/motion-filter.md"];
+const DOCUMENTS: [&str; 3] = ["docs/paper.md", "docs/motion-filter.md", "docs/plane-in-space.md"];
 /// Where paths without a crate are looked up.
 const HOME: &str = "outline_filter";
 

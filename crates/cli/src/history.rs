@@ -2,7 +2,7 @@
 use std::collections::HashMap;
 
 use freeform_motion::curve_fit::Outline;
-use freeform_motion::estimate::MotionEstimate;
+use freeform_motion::estimate::ParameterEstimate;
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::tracker::Observation;
 
@@ -16,7 +16,7 @@ pub(crate) struct History {
     /// Time of the first frame in seconds.
     pub(crate) start: Option<f64>,
     /// Time in seconds and what was known then, if anything was.
-    pub(crate) estimates: Vec<(f64, Option<MotionEstimate>)>,
+    pub(crate) estimates: Vec<(f64, Option<Vec<ParameterEstimate>>)>,
     /// Time in seconds and root mean square residual, of frames that were used.
     pub(crate) residuals: Vec<[f64; 2]>,
     /// Time in seconds and squared innovation, of frames that were used.
@@ -58,7 +58,7 @@ impl Histories {
         });
         let history = &mut self.list[position];
         history.start = history.start.or(observation.time);
-        history.estimates.extend(observation.time.map(|time| (time, observation.estimate)));
+        history.estimates.extend(observation.time.map(|time| (time, observation.parameters())));
         if !observation.is_accepted() {
             history.rejected.push((observation.frame, observation.time));
             return;

@@ -6,6 +6,7 @@ mod commands;
 mod edge_seeker;
 mod failure;
 mod fitted_outline;
+mod handful;
 mod history;
 mod input;
 mod interrupt;

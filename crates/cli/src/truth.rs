@@ -1,15 +1,20 @@
 use std::fmt;
 
-use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion, RigidMotion};
+use freeform_motion::riccati::{CameraScale, MotionModel, PlaneMotion, ProjectiveMotion, RigidMotion};
 use freeform_motion::sim_camera::Simulator;
+use freeform_motion::tracker::MotionFamily;
 use nalgebra::Point2;
 
 /// What the comment line begins with, after `#`.
 const MARK: &str = "truth ";
 
+/// Names of the parameters of a plane in space in such a comment.
+const PLANE: [&str; PlaneMotion::PARAMETERS] = ["wx", "wy", "wz", "vx", "vy", "vz", "nx", "ny"];
+
 /// The true motion of simulated outlines, as stated in a comment at the head of their file:
 /// `# truth omega=1.57 b1=-3 b2=4 scale=0.1` or `# truth a1=0 ... a4=0 b1=-3 b2=4 scale=0.1`, projective ones with `c1=0.01
-/// c2=0.02` before the scale; behind it `v1=-3 v2=4`, and `time=9.9` where the motion changes.
+/// c2=0.02` before the scale; behind it `v1=-3 v2=4`, and `time=9.9` where the motion changes. Of a plane in space that motion is the one of
+/// the picture, and `wx=0.1 wy=0 wz=0.5 vx=0.1 vy=0 vz=0.1 nx=0.5 ny=0` follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SimulatedMotion {
     /// In space: image velocities over the scale, c times the scale.
@@ -20,6 +25,8 @@ pub(crate) struct SimulatedMotion {
     pub(crate) middle_velocity: Option<[f64; 2]>,
     /// The time in seconds at which the motion is that; `None`: at all times.
     pub(crate) time: Option<f64>,
+    /// The motion of a plane in space, with its normal at the first frame.
+    pub(crate) plane: Option<PlaneMotion>,
 }
 
 /// A true motion as it is shown next to a result.
@@ -31,9 +38,24 @@ pub(crate) struct Truth {
     pub(crate) middle_velocity: Option<[f64; 2]>,
     /// Whether the motion is the same in all frames.
     pub(crate) is_constant: bool,
+    /// The motion of a plane in space, which is the same in all frames, with its normal at the first.
+    pub(crate) plane: Option<PlaneMotion>,
 }
 
 impl Truth {
+    /// The true parameters in a family of motions; `None` where it does not hold the motion.
+    pub(crate) fn parameters_in(&self, family: MotionFamily) -> Option<Vec<f64>> {
+        match family {
+            MotionFamily::Picture(model) => model.parameters_of_motion(&self.motion),
+            MotionFamily::Plane => self.plane.map(|plane| plane.parameters()[..PlaneMotion::NAMES.len()].to_vec()),
+        }
+    }
+
+    /// The true parameters in a family of motions where they are the same in all frames.
+    pub(crate) fn constant_parameters_in(&self, family: MotionFamily) -> Option<Vec<f64>> {
+        self.parameters_in(family).filter(|_| self.is_constant || family == MotionFamily::Plane)
+    }
+
     /// Velocity of the point of the object that is at `[x, y]` in the last frame.
     pub(crate) fn velocity_at(&self, point: &Point2<f64>) -> [f64; 2] {
         self.motion.velocity(point).into()
@@ -42,7 +64,7 @@ impl Truth {
 
 impl<M: Into<ProjectiveMotion>> From<M> for Truth {
     fn from(motion: M) -> Self {
-        Self { motion: motion.into(), middle_velocity: None, is_constant: true }
+        Self { motion: motion.into(), middle_velocity: None, is_constant: true, plane: None }
     }
 }
 
@@ -55,7 +77,13 @@ impl SimulatedMotion {
         let middle = (scene.true_pose(last) * scene.shape().centroid()) / scale.value();
         let motion = scene.motion().at(last);
         let middle_velocity = Some(motion.velocity(&middle).into());
-        Self { motion, scale, middle_velocity, time: (!scene.motion().is_constant()).then_some(last) }
+        Self {
+            motion,
+            scale,
+            middle_velocity,
+            time: (!scene.motion().is_constant()).then_some(last),
+            plane: scene.motion().plane(),
+        }
     }
 
     /// The motion in the image, velocities divided by the scale of the one who asks, if any.
@@ -66,6 +94,7 @@ impl SimulatedMotion {
             motion: self.motion.in_image(self.scale).in_space(scale),
             middle_velocity: self.middle_velocity.map(|velocity| velocity.map(|v| v * per_velocity)),
             is_constant: self.time.is_none(),
+            plane: self.plane,
         }
     }
 
@@ -88,7 +117,10 @@ impl SimulatedMotion {
         };
         let scale = CameraScale::new(value("scale")?).ok()?;
         let middle_velocity = value("v1").zip(value("v2")).map(|(x, y)| [x, y]);
-        Some(Self { motion, scale, middle_velocity, time: value("time") })
+        let plane = PLANE.map(&value);
+        let plane =
+            plane.iter().all(Option::is_some).then(|| PlaneMotion::of_parameters(plane.map(Option::unwrap_or_default)));
+        Some(Self { motion, scale, middle_velocity, time: value("time"), plane })
     }
 }
 
@@ -109,7 +141,11 @@ impl fmt::Display for SimulatedMotion {
         if let Some([x, y]) = self.middle_velocity {
             write!(f, " v1={x} v2={y}")?;
         }
-        self.time.map_or(Ok(()), |time| write!(f, " time={time}"))
+        if let Some(time) = self.time {
+            write!(f, " time={time}")?;
+        }
+        let Some(plane) = self.plane else { return Ok(()) };
+        PLANE.into_iter().zip(plane.parameters()).try_for_each(|(name, value)| write!(f, " {name}={value}"))
     }
 }
 
@@ -123,8 +159,13 @@ mod tests {
         let affine = ProjectiveMotion { a1: 0.3, ..rigid };
         let projective = ProjectiveMotion { c1: 0.1 + 0.2, c2: -1e-17, ..rigid };
         let scale = CameraScale::new(0.1).expect("a scale");
-        let known =
-            SimulatedMotion { motion: rigid, scale, middle_velocity: Some([0.1 + 0.7, -1e-9]), time: Some(9.9) };
+        let known = SimulatedMotion {
+            motion: rigid,
+            scale,
+            middle_velocity: Some([0.1 + 0.7, -1e-9]),
+            time: Some(9.9),
+            plane: None,
+        };
         let always = SimulatedMotion { time: None, ..known };
         let affine = SimulatedMotion { motion: affine, middle_velocity: None, ..always };
         for written in [known, always, affine, SimulatedMotion { motion: projective, ..always }] {
@@ -144,10 +185,14 @@ mod tests {
     fn the_scale_of_the_one_who_asks_divides_the_velocity_and_multiplies_the_perspective() {
         let motion = ProjectiveMotion { c1: 0.1, ..RigidMotion { omega: 2.0, b1: -3.0, b2: 4.0 }.into() };
         let half = CameraScale::new(0.5).expect("a scale");
-        let truth = SimulatedMotion { motion, scale: half, middle_velocity: Some([3.0, -1.0]), time: None };
+        let truth =
+            SimulatedMotion { motion, scale: half, middle_velocity: Some([3.0, -1.0]), time: None, plane: None };
         let in_image = truth.seen_at(None);
         assert_eq!(in_image.motion, ProjectiveMotion { b1: -1.5, b2: 2.0, c1: 0.2, ..motion });
         assert_eq!(in_image.middle_velocity, Some([1.5, -0.5]));
-        assert_eq!(truth.seen_at(Some(half)), Truth { motion, middle_velocity: Some([3.0, -1.0]), is_constant: true });
+        assert_eq!(
+            truth.seen_at(Some(half)),
+            Truth { motion, middle_velocity: Some([3.0, -1.0]), is_constant: true, plane: None }
+        );
     }
 }

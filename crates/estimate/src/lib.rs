@@ -6,6 +6,7 @@
 //! - [`smooth`]: a fixed-interval smoother, which estimates every state from all frames of a recording.
 //! - [`ProcessNoise`]: how fast a motion may change.
 //! - [`CramerRaoBound`]: the smallest covariance of any unbiased estimator.
+//! - [`PlaneEstimate`] and [`PlaneBound`]: the same of a plane that moves in space.
 //!
 //! Motions are rigid, similarity, affine or projective (`freeform_riccati::MotionModel`), in the fixed image frame.
 //!
@@ -23,6 +24,8 @@ mod information;
 mod motion_estimate;
 mod motion_state;
 mod observability;
+mod plane_bound;
+mod plane_estimate;
 mod point_velocity;
 mod process_noise;
 mod smoother;
@@ -33,6 +36,8 @@ pub use information::{InverseInformation, invert_information, scaled_inverse, sc
 pub use motion_estimate::{MotionEstimate, ParameterEstimate};
 pub use motion_state::{MotionState, NormalisedState, PoseParameter};
 pub use observability::is_worth;
+pub use plane_bound::PlaneBound;
+pub use plane_estimate::{NormalEstimate, PlaneEstimate};
 pub use point_velocity::{PointVelocity, velocity_at};
 pub use process_noise::ProcessNoise;
 pub use smoother::{SmootherError, smooth};

@@ -58,6 +58,12 @@ pub enum ExperimentError {
         /// What was looked for.
         text: String,
     },
+    /// A method that does not identify the motion of a plane in space.
+    #[error("the method {} identifies no motion in space, the motion filter does", method.name())]
+    NoPlane {
+        /// The method.
+        method: crate::monte_carlo::Method,
+    },
     /// No kind of the stress suite has a class and name that contain this text.
     #[error(
         "no kind of the stress suite contains {text:?}; the classes are {} (--list shows all kinds)",

@@ -17,6 +17,7 @@
 //!     name: "a hidden arc".to_owned(),
 //!     model: MotionModel::Rigid,
 //!     motion: RigidMotion { omega: 1.5, b1: -0.3, b2: 0.4 }.into(),
+//!     plane: None,
 //!     frames: 30,
 //!     fps: 30.0,
 //!     points: 200,

@@ -5,6 +5,7 @@
 //!
 //! | layer | holds |
 //! |---|---|
+//! | `plane` | a plane that moves in space: a least sum of squares over all frames, beside a filter that follows the picture |
 //! | `supervisor` | phases, restarts, hypotheses, changes of the motion: the only state machine |
 //! | `search` | global registration: related points, turns |
 //! | `track` | one object: the steps of a frame; growth and remapping of the map |
@@ -51,6 +52,7 @@ mod dense_filter;
 mod dynamics;
 mod map;
 mod measurement;
+mod plane;
 mod prediction;
 mod search;
 mod supervisor;
@@ -60,6 +62,7 @@ mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
+pub use plane::{PlaneAmbiguity, PlaneFilter, PlaneSolution, PlaneUnknown};
 pub use supervisor::{
     Ambiguity, ExpectedOutline, ExpectedPart, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated,
 };

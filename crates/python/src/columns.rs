@@ -208,7 +208,9 @@ impl Recording {
         smooth: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let tracker = tracker.lock();
-        let (model, scale) = (tracker.settings().motion(), tracker.settings().scale);
+        let scale = tracker.settings().scale;
+        // The picture of a plane in space moves by projective maps.
+        let model = tracker.settings().motion().model().unwrap_or(MotionModel::Projective);
         if smooth {
             self.trajectory.smooth(&tracker).map_err(value_error)?;
         }

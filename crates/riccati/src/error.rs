@@ -9,6 +9,20 @@ pub enum DynamicsError {
         /// The value given.
         scale: f64,
     },
+    /// The focal length of a camera is not a positive number.
+    #[error("the focal length must be positive and finite, not {focal}")]
+    FocalLength {
+        /// The value given.
+        focal: f64,
+    },
+    /// The principal point of a camera is not finite.
+    #[error("the principal point must be finite, not {x},{y}")]
+    PrincipalPoint {
+        /// Its x.
+        x: f64,
+        /// Its y.
+        y: f64,
+    },
     /// The map of the plane has no inverse, or is not finite.
     #[error("the map of the plane is singular or not finite (determinant {determinant:e})")]
     SingularMap {

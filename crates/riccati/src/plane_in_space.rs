@@ -82,19 +82,78 @@ impl PlaneMotion {
     /// Turn R and shift T of space in so many seconds.
     fn displacement(&self, seconds: f64) -> (Rotation3<f64>, Vector3<f64>) {
         let axis = self.angular_velocity * seconds;
-        let square = axis.norm_squared();
-        let angle = square.sqrt();
-        // (1 - cos) / angle^2 and (angle - sin) / angle^3.
-        let (by_cross, by_double) = if angle < SMALL_ANGLE {
-            let series = |[a, b, c]: [f64; 3]| a - square * (b - square * c);
-            (series([1.0 / 2.0, 1.0 / 24.0, 1.0 / 720.0]), series([1.0 / 6.0, 1.0 / 120.0, 1.0 / 5040.0]))
-        } else {
-            let half = (0.5 * angle).sin();
-            (2.0 * half * half / square, (angle - angle.sin()) / (square * angle))
-        };
+        let [by_cross, by_double] = shift_coefficients(axis.norm_squared());
         let way = self.velocity * seconds;
         let cross = axis.cross(&way);
         (Rotation3::from_scaled_axis(axis), way + by_cross * cross + by_double * axis.cross(&cross))
+    }
+
+    /// Derivatives of [`flow`](Self::flow), as the matrix `R + T n'`, by the three parts of w, the three of v, and x and y of the
+    /// normal at the start (equation 6).
+    #[must_use]
+    pub fn flow_sensitivities(&self, seconds: f64) -> [Matrix3<f64>; Self::PARAMETERS] {
+        let axis = self.angular_velocity * seconds;
+        let square = axis.norm_squared();
+        let [by_cross, by_double] = shift_coefficients(square);
+        let [cross_slope, double_slope] = shift_slopes(square);
+        let way = self.velocity * seconds;
+        let (cross, normal) = (axis.cross(&way), self.normal.transpose());
+        let double = axis.cross(&cross);
+        let (turn, shift) = (Rotation3::from_scaled_axis(axis), way + by_cross * cross + by_double * double);
+        // The shift of a way, and the turn that an added axis makes on the left: both by the same series (Barfoot 2017, equation 7.77).
+        let mean_turn = |u: &Vector3<f64>| {
+            let cross = axis.cross(u);
+            u + by_cross * cross + by_double * axis.cross(&cross)
+        };
+        let unit = |i: usize| Vector3::ith(i, 1.0);
+        let by_turning = |i: usize| {
+            let added = unit(i) * seconds;
+            let along = 2.0 * axis.dot(&added);
+            let of_double = added.cross(&cross) + axis.cross(&added.cross(&way));
+            let of_shift = along * (cross_slope * cross + double_slope * double)
+                + by_cross * added.cross(&way)
+                + by_double * of_double;
+            mean_turn(&added).cross_matrix() * turn.matrix() + of_shift * normal
+        };
+        let by_velocity = |i: usize| mean_turn(&(unit(i) * seconds)) * normal;
+        let by_normal = |i: usize| shift * unit(i).transpose();
+        let [w, v] = [[0, 1, 2].map(by_turning), [0, 1, 2].map(by_velocity)];
+        [w[0], w[1], w[2], v[0], v[1], v[2], by_normal(0), by_normal(1)]
+    }
+
+    /// Number of parameters of a plane in motion: w, v, and x and y of the normal at the start.
+    pub const PARAMETERS: usize = 8;
+
+    /// Names of the parameters of the motion, w and v.
+    pub const NAMES: [&'static str; 6] = ["wx", "wy", "wz", "vx", "vy", "vz"];
+
+    /// Their units; lengths are in distances of the plane along the optical axis at the start.
+    pub const UNITS: [&'static str; 6] = ["rad/s", "rad/s", "rad/s", "1/s", "1/s", "1/s"];
+
+    /// The motion with parameters in the order of [`flow_sensitivities`](Self::flow_sensitivities), z of the normal being 1.
+    #[must_use]
+    pub fn of_parameters([wx, wy, wz, vx, vy, vz, nx, ny]: [f64; Self::PARAMETERS]) -> Self {
+        let (angular_velocity, velocity) = (Vector3::new(wx, wy, wz), Vector3::new(vx, vy, vz));
+        Self { angular_velocity, velocity, normal: Vector3::new(nx, ny, 1.0) }
+    }
+
+    /// The inverse of [`of_parameters`](Self::of_parameters), where z of the normal is 1.
+    #[must_use]
+    pub fn parameters(&self) -> [f64; Self::PARAMETERS] {
+        let (w, v, n) = (self.angular_velocity, self.velocity, self.normal);
+        [w.x, w.y, w.z, v.x, v.y, v.z, n.x, n.y]
+    }
+
+    /// The same motion in lengths in which z of the normal is 1: distances of the plane along the optical axis. `None` for a plane that
+    /// is seen edge on along the optical axis.
+    #[must_use]
+    pub fn scaled_to_axis(&self) -> Option<Self> {
+        let depth = self.normal.z;
+        (depth.abs() > EDGE_ON * self.normal.norm()).then(|| Self {
+            velocity: self.velocity * depth,
+            normal: self.normal / depth,
+            ..*self
+        })
     }
 
     /// The motions of planes whose pictures move by a generator of normalised image points, a multiple of the identity being free;
@@ -130,5 +189,33 @@ impl PlaneMotion {
             (Some(only), _) | (None, Some(only)) => PlaneSolutions::One(only),
             (None, None) => PlaneSolutions::Turn { angular_velocity: vorticity(generator) },
         }
+    }
+}
+
+/// `(1 - cos a) / a^2` and `(a - sin a) / a^3` for an angle of this square.
+fn shift_coefficients(square: f64) -> [f64; 2] {
+    let angle = square.sqrt();
+    if angle < SMALL_ANGLE {
+        let series = |[a, b, c]: [f64; 3]| a - square * (b - square * c);
+        [series([1.0 / 2.0, 1.0 / 24.0, 1.0 / 720.0]), series([1.0 / 6.0, 1.0 / 120.0, 1.0 / 5040.0])]
+    } else {
+        let half = (0.5 * angle).sin();
+        [2.0 * half * half / square, (angle - angle.sin()) / (square * angle)]
+    }
+}
+
+/// Derivatives of the [`shift_coefficients`] by the square of the angle.
+fn shift_slopes(square: f64) -> [f64; 2] {
+    let angle = square.sqrt();
+    if angle < SMALL_ANGLE {
+        let series = |[a, b, c]: [f64; 3]| -a + square * (b - square * c);
+        [series([1.0 / 24.0, 1.0 / 360.0, 1.0 / 13440.0]), series([1.0 / 120.0, 1.0 / 2520.0, 1.0 / 120_960.0])]
+    } else {
+        let (sin, half) = (angle.sin(), (0.5 * angle).sin());
+        let versine = 2.0 * half * half;
+        [
+            (0.5 * angle * sin - versine) / (square * square),
+            0.5 * (angle * versine - 3.0 * (angle - sin)) / (square * square * angle),
+        ]
     }
 }

@@ -1,6 +1,8 @@
 use std::{fmt, sync::Arc};
 
-use freeform_riccati::{AffineMotion, DynamicsError, FlowIntegrator, ProjectiveMotion, RigidMotion};
+use freeform_riccati::{
+    AffineMotion, DynamicsError, FlowIntegrator, PinholeCamera, PlaneMotion, ProjectiveMotion, RigidMotion,
+};
 use nalgebra::{Matrix3, Projective2};
 
 use crate::error::SimulationError;
@@ -26,6 +28,7 @@ enum Kind {
     /// Start of each phase in seconds, from 0 and increasing, and its motion.
     Piecewise(Vec<(f64, ProjectiveMotion)>),
     Trajectory(Trajectory),
+    Plane(PlaneMotion, PinholeCamera),
     Varying(Arc<Generator>),
 }
 
@@ -53,10 +56,25 @@ impl Motion {
         Ok(Self { kind: Kind::Piecewise(phases) })
     }
 
+    /// That of a plane in space as a perspective camera sees it, in lengths of the picture. Its generator changes with the normal.
+    #[must_use]
+    pub fn of_plane(motion: PlaneMotion, camera: PinholeCamera) -> Self {
+        Self { kind: Kind::Plane(motion, camera) }
+    }
+
     /// A motion that is a smooth function of the time in seconds. Its flow is integrated by a [`FlowIntegrator`] to 1e-13
     /// in every step, in steps of at most 1/64 s.
     pub fn varying<M: Into<ProjectiveMotion>>(generator: impl Fn(f64) -> M + Send + Sync + 'static) -> Self {
         Self { kind: Kind::Varying(Arc::new(move |time| generator(time).into())) }
+    }
+
+    /// The motion in space of a plane that a perspective camera sees; `None` of a motion of the picture.
+    #[must_use]
+    pub fn plane(&self) -> Option<PlaneMotion> {
+        match self.kind {
+            Kind::Plane(plane, _) => Some(plane),
+            _ => None,
+        }
     }
 
     /// Whether the motion is known to be the same at all times.
@@ -66,7 +84,7 @@ impl Motion {
             Kind::Constant(_) => true,
             Kind::Trajectory(trajectory) => trajectory.dynamics() == Dynamics::Generator,
             Kind::Piecewise(phases) => phases.len() == 1,
-            Kind::Varying(_) => false,
+            Kind::Plane(..) | Kind::Varying(_) => false,
         }
     }
 
@@ -77,6 +95,9 @@ impl Motion {
             Kind::Constant(motion) => *motion,
             Kind::Piecewise(phases) => phases[phases.partition_point(|(start, _)| *start <= time).max(1) - 1].1,
             Kind::Trajectory(trajectory) => trajectory.motion(time).into(),
+            Kind::Plane(plane, camera) => {
+                ProjectiveMotion::of_generator(&camera.in_picture(&plane.after(time).generator()))
+            }
             Kind::Varying(generator) => generator(time),
         }
     }
@@ -106,6 +127,10 @@ impl Motion {
                 Dynamics::Generator => nalgebra::convert(trajectory.motion(0.0).flow(to - from)),
                 _ => nalgebra::convert(trajectory.pose(to) * trajectory.pose(from).inverse()),
             },
+            Kind::Plane(plane, camera) => {
+                let flow = plane.after(from).flow(to - from);
+                Projective2::from_matrix_unchecked(camera.in_picture(flow.matrix()))
+            }
             Kind::Varying(generator) => {
                 let integrator = FlowIntegrator::new(TOLERANCE)?.with_longest_step(LONGEST_STEP)?;
                 integrator.flow(|time| generator(time).generator(), from, to)?.map
@@ -144,6 +169,7 @@ impl fmt::Debug for Motion {
             Kind::Constant(motion) => f.debug_tuple("Constant").field(motion).finish(),
             Kind::Piecewise(phases) => f.debug_tuple("Piecewise").field(phases).finish(),
             Kind::Trajectory(trajectory) => trajectory.fmt(f),
+            Kind::Plane(plane, camera) => f.debug_tuple("Plane").field(plane).field(camera).finish(),
             Kind::Varying(_) => f.write_str("Varying(..)"),
         }
     }

@@ -1,5 +1,5 @@
-use freeform_riccati::ProjectiveMotion;
-use nalgebra::{Affine2, Point2, Projective2};
+use freeform_riccati::{PinholeCamera, PlaneMotion, ProjectiveMotion};
+use nalgebra::{Affine2, Matrix3, Point2, Projective2, Rotation3, Vector3};
 
 use crate::{camera::Camera, motion::Motion, shape::Shape};
 
@@ -16,21 +16,38 @@ pub struct Scene {
     shape: Shape,
     motion: Motion,
     camera: Camera,
-    initial_pose: Affine2<f64>,
+    initial_pose: Projective2<f64>,
 }
 
 impl Scene {
     /// A scene whose object starts as its shape is drawn.
     #[must_use]
     pub fn new(shape: impl Into<Shape>, motion: impl Into<Motion>, camera: Camera) -> Self {
-        Self { shape: shape.into(), motion: motion.into(), camera, initial_pose: Affine2::identity() }
+        Self { shape: shape.into(), motion: motion.into(), camera, initial_pose: Projective2::identity() }
     }
 
     /// This scene with another initial pose: `pose` maps the shape to its place in the first image.
     #[must_use]
     pub fn with_initial_pose(mut self, pose: Affine2<f64>) -> Self {
-        self.initial_pose = pose;
+        self.initial_pose = nalgebra::convert(pose);
         self
+    }
+
+    /// A scene whose object moves in space before a perspective camera. At time 0 the origin of the shape is on the optical axis, where the
+    /// plane is at distance 1, tilted as its normal says; a shape of diameter 1 that faced the camera there would be `size` across in
+    /// the picture. All lengths are those of the picture.
+    #[must_use]
+    pub fn in_space(shape: impl Into<Shape>, motion: PlaneMotion, camera: PinholeCamera, size: f64) -> Self {
+        let scale = size / camera.focal();
+        let tilt = Rotation3::rotation_between(&Vector3::z(), &motion.normal).unwrap_or_default();
+        let [across, along] = [Vector3::x(), Vector3::y()].map(|axis| scale * (tilt * axis));
+        let start = camera.to_picture() * Matrix3::from_columns(&[across, along, Vector3::z()]);
+        Self {
+            shape: shape.into(),
+            motion: Motion::of_plane(motion, camera),
+            camera: Camera::default(),
+            initial_pose: Projective2::from_matrix_unchecked(start),
+        }
     }
 
     /// The shape in the body frame, image lengths.
@@ -60,7 +77,7 @@ impl Scene {
     /// The map from the body frame to the image at a time in seconds, not negative.
     #[must_use]
     pub fn true_pose(&self, time: f64) -> Projective2<f64> {
-        self.image_flow(0.0, time) * nalgebra::convert::<_, Projective2<f64>>(self.initial_pose)
+        self.image_flow(0.0, time) * self.initial_pose
     }
 
     /// The map of the image plane between two times in seconds, the second not before the first.

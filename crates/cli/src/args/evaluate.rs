@@ -90,7 +90,7 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// Methods to evaluate [default: filter,moments,icp; for projective motion, which moments do not have, filter,icp]
+    /// Methods to evaluate [default: filter,moments,icp; for projective motion, which moments do not have, filter,icp; for a plane in space filter]
     #[arg(long, value_parser = methods(), value_delimiter = ',')]
     pub(crate) method: Vec<Method>,
 

@@ -7,11 +7,13 @@ use clap::{Arg, Args, Command, ValueEnum};
 use freeform_motion::curve_fit::{Degree, FitSettings};
 use freeform_motion::outline_filter::{Dynamics, FilterSettings};
 use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion};
-use freeform_motion::tracker::{Method, MethodSettings};
+use freeform_motion::tracker::{Method, MethodSettings, MotionFamily};
 use freeform_motion::{Rectification, TrackerSettings};
 
 use super::pictures::{PictureOptions, picture_inputs};
+use super::space::PerspectiveArgs;
 use super::values::{camera_scale, degree, length, motion, rectification};
+use crate::failure::Failure;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -147,6 +149,9 @@ pub(crate) struct TrackOptions {
     #[arg(long, value_enum, default_value_t = MotionChoice::Rigid)]
     pub(crate) motion: MotionChoice,
 
+    #[command(flatten)]
+    pub(crate) perspective: PerspectiveArgs,
+
     /// How the motion is identified
     #[arg(long, value_parser = MethodParser, default_value = "filter")]
     pub(crate) method: IdentifyMethod,
@@ -186,6 +191,9 @@ pub(crate) struct TrackOptions {
 impl TrackOptions {
     /// The settings of a tracker with these options.
     pub(crate) fn tracker_settings(&self) -> TrackerSettings {
+        if let Some(camera) = self.perspective.camera().filter(|_| self.motion == MotionChoice::Plane) {
+            return TrackerSettings::of_plane(camera);
+        }
         let settings = TrackerSettings::new(self.method.into(), self.motion.model());
         let method = match (settings.method, self.degree) {
             (MethodSettings::Adaptive(mut settings), Some(degree)) => {
@@ -210,6 +218,24 @@ impl TrackOptions {
         Self { edge_uncertainty, ..self.clone() }.tracker_settings()
     }
 
+    /// Refuses options that cannot be combined with the motion.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        let is_plane = self.motion == MotionChoice::Plane;
+        self.perspective.check(is_plane)?;
+        let others = [
+            ("--method adaptive", self.method == IdentifyMethod::Adaptive),
+            ("--scale", self.scale.is_some()),
+            ("--rectify", self.rectify.is_some()),
+            ("--edge-uncertainty", self.edge_uncertainty.is_some()),
+        ];
+        match others.into_iter().find(|(_, is_given)| is_plane && *is_given) {
+            Some((option, _)) => {
+                Err(Failure::unusable(format_args!("{option} cannot be combined with --motion plane")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Degree of the curve that is drawn if the method fits none.
     pub(crate) fn degree_drawn(&self) -> Degree {
         self.degree.unwrap_or(FitSettings::default().degree)
@@ -226,15 +252,26 @@ pub(crate) enum MotionChoice {
     Affine,
     /// a1, a2, a3, a4, b1, b2, c1, c2
     Projective,
+    /// wx, wy, wz, vx, vy, vz: a plane that moves in space, before a camera given by --focal and --principal
+    Plane,
 }
 
 impl MotionChoice {
+    /// The family of motions that is identified.
+    pub(crate) const fn family(self) -> MotionFamily {
+        match self {
+            Self::Plane => MotionFamily::Plane,
+            _ => MotionFamily::Picture(self.model()),
+        }
+    }
+
+    /// The motion model of the picture.
     pub(crate) const fn model(self) -> MotionModel {
         match self {
             Self::Rigid => MotionModel::Rigid,
             Self::Similarity => MotionModel::Similarity,
             Self::Affine => MotionModel::Affine,
-            Self::Projective => MotionModel::Projective,
+            Self::Projective | Self::Plane => MotionModel::Projective,
         }
     }
 }

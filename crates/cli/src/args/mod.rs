@@ -10,6 +10,7 @@ mod rectify;
 mod reproduce;
 mod simulate;
 mod simulated;
+mod space;
 mod values;
 
 use std::path::PathBuf;
@@ -28,6 +29,7 @@ pub(crate) use rectify::RectifyArgs;
 pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
+pub(crate) use space::{PerspectiveArgs, PlaneBefore};
 
 use crate::failure::Failure;
 

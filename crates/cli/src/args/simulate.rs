@@ -14,6 +14,7 @@ Examples:
   freeform simulate --shape glider --omega -1.0472 --b 0,4 --seconds 20 --output glider.csv
   freeform simulate --shape mask.png --affine 0.1,1,-1,-0.1,0.2,0 --scale 1 --noise 0.002
   freeform simulate --motion projective --projective 0,1.6,-1.6,0,-3,4,-0.015,0.02
+  freeform simulate --motion plane --focal 900 --principal 320,240 --plane 0.1,0,0.5,0.1,0,0.1 --normal 0.6,0
   freeform simulate --shape circle --dynamics velocity --omega 2 --velocity 10,0
   freeform simulate --dynamics accelerating --velocity 3,8 --acceleration 0,0,-9.81
   freeform simulate --dynamics oscillating --omega 1 --velocity 2,0 --period 3 --amplitude 0.5

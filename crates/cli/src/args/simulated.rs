@@ -3,6 +3,7 @@ use clap::Args;
 use freeform_motion::riccati::{AffineMotion, MotionModel, ProjectiveMotion, RigidMotion};
 use freeform_motion::sim_camera::{Camera, SimulationError};
 
+use super::space::PlaneArgs;
 use super::values::{affine, finite, fraction, not_negative, pair, positive, projective};
 
 /// The true motion in space and the camera.
@@ -31,7 +32,14 @@ pub(crate) struct TrueMotionArgs {
     /// Camera scale f/Z0: image lengths per space length
     #[arg(long, value_name = "F_OVER_Z0", value_parser = positive, default_value_t = 0.1)]
     scale: f64,
+
+    #[command(flatten)]
+    pub(crate) in_space: PlaneArgs,
 }
+
+/// Noise where none is given: of a unit-size object, and of a plane in pixels.
+const NOISE: f64 = 0.005;
+const NOISE_IN_PIXELS: f64 = 0.3;
 
 impl TrueMotionArgs {
     /// The motion in space.
@@ -57,9 +65,9 @@ impl TrueMotionArgs {
 /// What disturbs the points of an outline.
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct DisturbanceArgs {
-    /// Standard deviation of the noise on each coordinate, in image lengths
-    #[arg(long, value_name = "SIGMA", value_parser = not_negative, default_value_t = 0.005)]
-    pub(crate) noise: f64,
+    /// Standard deviation of the noise on each coordinate, in image lengths [default: 0.005; with --motion plane 0.3 pixels]
+    #[arg(long, value_name = "SIGMA", value_parser = not_negative)]
+    noise: Option<f64>,
 
     /// Share of the outline that is hidden, at a random place in every frame
     #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
@@ -68,4 +76,11 @@ pub(crate) struct DisturbanceArgs {
     /// Share of the points that are outliers
     #[arg(long, value_name = "FRACTION", value_parser = fraction, default_value_t = 0.0)]
     pub(crate) outliers: f64,
+}
+
+impl DisturbanceArgs {
+    /// The noise that is given, or the default, that of pixels for a plane in space.
+    pub(crate) fn noise(&self, is_plane: bool) -> f64 {
+        self.noise.unwrap_or(if is_plane { NOISE_IN_PIXELS } else { NOISE })
+    }
 }

@@ -9,7 +9,7 @@ use freeform_motion::{PipelineSettings, Tracker};
 
 use super::identify::{file_failure, fit_settings, settings};
 use super::simulate::{SequenceError, write_sequence};
-use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, TrackOptions};
+use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, PerspectiveArgs, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::fitted_outline::FittedOutline;
@@ -46,6 +46,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let truth = SimulatedMotion::of(&simulator).seen_at(Some(scale));
     let by_filter = TrackOptions {
         motion: MotionChoice::Rigid,
+        perspective: PerspectiveArgs::default(),
         method: IdentifyMethod::Filter,
         degree: None,
         scale: Some(scale),
@@ -141,7 +142,7 @@ struct Found {
 impl Identification {
     fn new(options: TrackOptions, trace_path: &Path) -> Result<Self, Failure> {
         let tracker = Tracker::new(options.tracker_settings()).map_err(Failure::unusable)?;
-        let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.model())
+        let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.family())
             .map_err(|error| file_failure(trace_path, &error))?;
         let curves = CurveFitter::new(&options)?;
         Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories: Histories::default() })
@@ -158,7 +159,7 @@ impl Identification {
     fn finish(self, figure: &Path, truth: &Truth) -> Result<Found, Failure> {
         let Self { options, tracker, trace, trace_path, histories, .. } = self;
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
-        WholeFile::write(figure, &parameter_figure(&histories.list, options.motion.model(), Some(truth)))?;
+        WholeFile::write(figure, &parameter_figure(&histories.list, options.motion.family(), Some(truth)))?;
         let results = tracker.results();
         for warning in results.iter().flat_map(|result| &result.warnings) {
             warn(&format!("{} method: {warning}", tracker.settings().method()));

@@ -2,12 +2,12 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, Setting, Study, suite};
+use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, PlaneScene, Setting, Study, suite};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{BuiltInShape, SequenceLength, Settings, Shape};
 
 use super::simulate::shape;
-use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluateFormat, MotionChoice};
+use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluateFormat, MotionChoice, PlaneBefore};
 use crate::failure::Failure;
 use crate::output::{
     Evaluated, Sink, write_evaluation_csv, write_evaluation_json, write_evaluation_markdown, write_evaluation_table,
@@ -68,12 +68,17 @@ fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
             let (settings, acquisitions) = suite::containing(text).map_err(Failure::of_experiment)?;
             (settings, acquisitions, suite::ACQUISITION_RUNS.saturating_mul(runs))
         }
+        None if args.acquisition && args.motion == Some(MotionChoice::Plane) => {
+            return Err(Failure::unusable("--acquisition is of a pose in the picture: use --motion projective"));
+        }
         None if args.acquisition => (Vec::new(), vec![acquisition(args)], runs),
         None => (settings(args)?, Vec::new(), runs),
     };
     let is_projective = settings.iter().any(|setting| setting.model == MotionModel::Projective);
+    let is_plane = settings.iter().any(|setting| setting.plane.is_some());
     let methods = match (args.method.is_empty(), is_projective) {
         (false, _) => args.method.clone(),
+        (true, _) if is_plane => vec![Method::Filter],
         (true, false) => vec![Method::Filter, Method::Moments, Method::Icp],
         (true, true) => vec![Method::Filter, Method::Icp],
     };
@@ -92,6 +97,9 @@ fn named_by_file(shape: Shape, path: &str, others: &[Shape]) -> Shape {
 
 /// One setting for each length of sequence that was asked for.
 fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
+    let is_plane = args.motion == Some(MotionChoice::Plane);
+    let plane = args.motion_in_space.in_space.plane(is_plane)?;
+    let plane = plane.map(|PlaneBefore { motion, camera, size }| PlaneScene { motion, camera, size });
     let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
     let motion = camera.image_motion(&args.motion_in_space.motion());
     let family = args.motion_in_space.family();
@@ -111,8 +119,10 @@ fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
     if let Some(short) = lengths.iter().find(|frames| **frames < 2) {
         return Err(Failure::unusable(format_args!("a sequence of {short} frame(s) shows no motion")));
     }
-    let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
+    let DisturbanceArgs { occlusion, outliers, .. } = args.disturbance;
+    let noise = args.disturbance.noise(is_plane);
     let setting = |frames| Setting {
+        plane,
         name: format!("{frames} frames"),
         model,
         motion,
@@ -129,7 +139,8 @@ fn settings(args: &EvaluateArgs) -> Result<Vec<Setting>, Failure> {
 }
 
 fn acquisition(args: &EvaluateArgs) -> AcquisitionSetting {
-    let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
+    let DisturbanceArgs { occlusion, outliers, .. } = args.disturbance;
+    let noise = args.disturbance.noise(false);
     AcquisitionSetting {
         name: "acquisition".to_owned(),
         model: args.motion.unwrap_or(MotionChoice::Rigid).model(),

@@ -4,12 +4,14 @@ use std::path::Path;
 use freeform_motion::curve_fit::{FitSettings, Method};
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
+use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
-use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
+use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
+use crate::handful::handful;
 use crate::history::Histories;
 use crate::input::{Input, Waiting};
 use crate::interrupt;
@@ -40,10 +42,10 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     }
     let of_file = of_file.filter(|_| args.options.rectify.is_none());
     let truth = args.truth.map(Truth::from).or_else(|| of_file.map(|truth| truth.seen_at(args.options.scale)));
-    let model = args.options.motion.model();
-    if !args.quiet && truth.is_some_and(|truth| model.parameters_of_motion(&truth.motion).is_none()) {
+    let family = args.options.motion.family();
+    if !args.quiet && truth.is_some_and(|truth| truth.parameters_in(family).is_none()) {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
-        warn(&format!("{origin} is no {model} motion, so it is not shown"));
+        warn(&format!("{origin} is no {family} motion, so it is not shown"));
     }
     let mut files = Files::create(args)?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
@@ -67,7 +69,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         overlay.finish()?;
     }
     let results = tracker.results();
-    let is_found = results.iter().any(|result| result.estimate.is_some());
+    let is_found = results.iter().any(|result| result.parameters().is_some());
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
     let b = match input.pictures() {
         _ if args.options.rectify.is_some() => MeaningOfB::in_plane(),
@@ -94,10 +96,17 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         reported = file.finish_with(write_report(&report).as_bytes());
     }
     let printed = if is_found {
-        for result in results.iter().filter(|_| !args.quiet) {
-            result.warnings.iter().for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
+        if !args.quiet {
+            handful(&results).iter().for_each(|warning| warn(warning));
         }
-        print(args, &results, truth.as_ref(), &b, &left_out, input.has_pictures() || args.options.rectify.is_some())
+        print(
+            args,
+            &results,
+            truth.as_ref(),
+            &b,
+            &left_out,
+            (input.has_pictures() || args.options.rectify.is_some()) && family.model().is_some(),
+        )
     } else {
         // The failure has the other reasons.
         for result in results.iter().filter(|_| !args.quiet) {
@@ -118,13 +127,17 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     refuse_standard_output(&outputs)?;
+    args.options.check()?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
         return Err(Failure::unusable("--trajectory: the adaptive method gives no poses; use --method filter"));
     }
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
         warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
     }
-    if args.options.dynamics != DynamicsChoice::Auto && args.options.motion == MotionChoice::Projective && !args.quiet {
+    if args.options.dynamics != DynamicsChoice::Auto
+        && args.options.motion.model() == MotionModel::Projective
+        && !args.quiet
+    {
         warn(
             "--dynamics: not used for projective motion, whose generator is taken for constant until it is seen to change",
         );
@@ -146,7 +159,7 @@ struct Files<'a> {
 impl<'a> Files<'a> {
     fn create(args: &'a IdentifyArgs) -> Result<Self, Failure> {
         let trace = args.trace.as_deref().map(|path| {
-            let writer = TraceWriter::new(WholeFile::create(path)?, args.options.motion.model());
+            let writer = TraceWriter::new(WholeFile::create(path)?, args.options.motion.family());
             writer.map(|writer| (path, writer)).map_err(|error| file_failure(path, &error))
         });
         let trajectory = args.trajectory.as_deref();
@@ -209,10 +222,10 @@ impl<'a> Files<'a> {
             written.map_err(|error| file_failure(path, &error))?;
             file.finish()?;
         }
-        if results.iter().all(|result| result.estimate.is_none()) {
+        if results.iter().all(|result| result.parameters().is_none()) {
             not_written(&[("--svg", svg.is_some())], "there is no motion to draw");
         } else if let Some(file) = svg {
-            file.finish_with(parameter_figure(&histories.list, model, truth).as_bytes())?;
+            file.finish_with(parameter_figure(&histories.list, args.options.motion.family(), truth).as_bytes())?;
         }
         Ok(())
     }
@@ -265,18 +278,26 @@ fn nothing_found(name: &str, results: &[ObjectResult]) -> Failure {
 /// Names and values of the settings, for a report.
 pub(crate) fn settings(options: &TrackOptions, input: &str) -> Vec<(&'static str, String)> {
     let scale = options.scale.map_or_else(|| "none: b in the image".to_owned(), |scale| scale.to_string());
-    let mut listed = vec![("Input", input.to_owned()), ("Motion model", options.motion.model().to_string())];
+    let mut listed = vec![("Input", input.to_owned()), ("Motion model", options.motion.family().to_string())];
     let settings = options.tracker_settings();
     listed.push(("Method", settings.method().to_string()));
     match settings.method {
-        MethodSettings::Filter(FilterSettings { smallest_agreement, patience, .. }) => {
+        MethodSettings::Filter(FilterSettings { smallest_agreement, patience, .. })
+        | MethodSettings::Plane(_, FilterSettings { smallest_agreement, patience, .. }) => {
             listed.push(("Agreement needed", format!("{} % of the points of a frame", 100.0 * smallest_agreement)));
             listed.push(("Searched for anew", format!("after {patience} rejected frames")));
             listed.push(("Degree of the curve drawn", options.degree_drawn().to_string()));
         }
         MethodSettings::Adaptive(settings) => listed.extend(fit_settings(&settings.fit)),
     }
-    listed.push(("Camera scale f/Z0", scale));
+    match options.perspective.camera() {
+        Some(camera) => {
+            let principal = camera.principal();
+            listed.push(("Focal length", format!("{} pixels", camera.focal())));
+            listed.push(("Principal point", format!("{},{}", principal.x, principal.y)));
+        }
+        None => listed.push(("Camera scale f/Z0", scale)),
+    }
     if options.rectify.is_some() {
         listed.push(("Coordinates", "of the plane that --rectify leads to".to_owned()));
     }

@@ -6,7 +6,7 @@ use freeform_motion::outline_io::{
 };
 use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator};
 
-use crate::args::{DisturbanceArgs, MotionChoice, SimulateArgs};
+use crate::args::{DisturbanceArgs, MotionChoice, PlaneBefore, SimulateArgs};
 use crate::command_line::command_line;
 use crate::failure::Failure;
 use crate::output::Sink;
@@ -67,17 +67,23 @@ pub(crate) fn write_sequence(
 }
 
 fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
+    let is_plane = args.motion == Some(MotionChoice::Plane);
+    let plane = args.motion_in_space.in_space.plane(is_plane)?;
     let camera = args.motion_in_space.camera().map_err(Failure::unusable)?;
     let given = args.motion_in_space.motion();
-    if let Some(model) = args.motion.map(MotionChoice::model)
+    if let Some(model) = args.motion.filter(|_| !is_plane).map(MotionChoice::model)
         && model.parameters_of_motion(&given).is_none()
     {
         let family = args.motion_in_space.family();
         return Err(Failure::unusable(format_args!("--motion {model} does not contain the motion of --{family}")));
     }
     let motion = args.dynamics.motion(&args.motion_in_space)?;
-    let scene = Scene::new(shape(&args.shape)?, motion, camera);
-    let DisturbanceArgs { noise, occlusion, outliers } = args.disturbance;
+    let scene = match plane {
+        Some(PlaneBefore { motion, camera, size }) => Scene::in_space(shape(&args.shape)?, motion, camera, size),
+        None => Scene::new(shape(&args.shape)?, motion, camera),
+    };
+    let DisturbanceArgs { occlusion, outliers, .. } = args.disturbance;
+    let noise = args.disturbance.noise(is_plane);
     let settings = Settings {
         fps: args.fps,
         length: SequenceLength::Seconds(args.seconds.unwrap_or(SECONDS)),

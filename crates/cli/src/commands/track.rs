@@ -16,6 +16,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = args.overlay.iter().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     refuse_standard_output(&outputs)?;
+    args.options.check()?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None)?;
     if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {

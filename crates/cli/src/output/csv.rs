@@ -1,8 +1,6 @@
 use std::io::{self, Write};
 
-use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::riccati::MotionModel;
-use freeform_motion::tracker::{ObjectPhase, ObjectResult, Observation};
+use freeform_motion::tracker::{MotionFamily, ObjectPhase, ObjectResult, Observation};
 
 /// Writes the trace: one row per frame with the parameters as identified so far.
 pub(crate) struct TraceWriter<W: Write> {
@@ -12,12 +10,12 @@ pub(crate) struct TraceWriter<W: Write> {
 
 impl<W: Write> TraceWriter<W> {
     /// Writes the header.
-    pub(crate) fn new(sink: W, model: MotionModel) -> io::Result<Self> {
+    pub(crate) fn new(sink: W, family: MotionFamily) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(sink);
         let mut header: Vec<String> = ["object", "frame", "time", "phase", "accepted"].map(str::to_owned).into();
-        header.extend(model.parameter_names().iter().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
+        header.extend(family.parameter_names().iter().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
         writer.write_record(&header).map_err(io::Error::from)?;
-        Ok(Self { writer, parameters: model.parameter_count() })
+        Ok(Self { writer, parameters: family.parameter_names().len() })
     }
 
     /// Writes one frame. What is missing stays empty.
@@ -29,8 +27,8 @@ impl<W: Write> TraceWriter<W> {
             observation.phase.map_or("", ObjectPhase::name).to_owned(),
             observation.is_accepted().to_string(),
         ];
-        match &observation.estimate {
-            Some(estimate) => row.extend(values(estimate)),
+        match observation.parameters() {
+            Some(found) => row.extend(found.iter().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])),
             None => row.extend(std::iter::repeat_n(String::new(), 2 * self.parameters)),
         }
         self.writer.write_record(&row).map_err(io::Error::from)
@@ -40,11 +38,6 @@ impl<W: Write> TraceWriter<W> {
     pub(crate) fn into_inner(self) -> io::Result<W> {
         self.writer.into_inner().map_err(csv::IntoInnerError::into_error)
     }
-}
-
-/// Each parameter and its standard deviation.
-fn values(estimate: &MotionEstimate) -> impl Iterator<Item = String> + '_ {
-    estimate.parameters().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])
 }
 
 /// A name as a cell that no spreadsheet takes for a formula: with a `'` before what would begin one. Numbers stay as they are.
@@ -64,7 +57,7 @@ pub(crate) fn write_parameters(sink: &mut impl Write, results: &[ObjectResult]) 
         ["object", "method", "motion", "frames", "frames_rejected", "parameter", "value", "std", "unit", "observable"];
     writer.write_record(header).map_err(io::Error::from)?;
     for result in results {
-        let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
+        let found = result.parameters().unwrap_or_default();
         for (index, (name, unit)) in result.motion.parameter_names().iter().zip(result.motion.units()).enumerate() {
             let value = found.get(index).and_then(|p| p.value);
             let deviation = found.get(index).and_then(|p| p.standard_deviation);

@@ -46,8 +46,7 @@ pub(crate) fn write_evaluation_csv(sink: &mut impl Write, Evaluated { report, ti
                     cells.extend([setting.points.to_string(), result.method.name().to_owned(), shape.to_owned()]);
                     cells
                 };
-                for ((name, p), truth) in setting.model.parameter_names().iter().zip(&statistics.parameters).zip(&truth)
-                {
+                for ((name, p), truth) in setting.parameter_names().iter().zip(&statistics.parameters).zip(&truth) {
                     let mut cells = start();
                     cells.extend([(*name).to_owned(), truth.to_string()]);
                     let values = [p.rmse, p.bound, p.ratio, p.bias, p.bias_standard_error, p.coverage];

@@ -36,7 +36,7 @@ fn evaluation_json(evaluation: &Evaluation, report: &Report, timing: bool) -> Va
     let methods = by_method(methods, report, |statistics| statistics_json(setting, statistics, timing));
     json!({
         "setting": setting.name,
-        "motion": setting.model.to_string(),
+        "motion": setting.family().to_string(),
         "truth": by_name(setting, setting.truth().into_iter().map(Value::from)),
         "frames": setting.frames,
         "fps": setting.fps,
@@ -86,7 +86,7 @@ fn statistics_json(setting: &Setting, statistics: &Statistics, timing: bool) -> 
 }
 
 fn by_name(setting: &Setting, values: impl Iterator<Item = Value>) -> Map<String, Value> {
-    setting.model.parameter_names().iter().map(|name| (*name).to_owned()).zip(values).collect()
+    setting.parameter_names().iter().map(|name| (*name).to_owned()).zip(values).collect()
 }
 
 fn acquisition_json(acquisition: &Acquisition, report: &Report) -> Value {

@@ -65,9 +65,10 @@ pub(crate) fn write_evaluation_table(sink: &mut impl Write, evaluated: &Evaluate
 
 /// A setting in words.
 fn describe(setting: &Setting) -> String {
-    let Setting { model, frames, fps, noise, points, .. } = setting;
+    let Setting { frames, fps, noise, points, .. } = setting;
+    let family = setting.family();
     let corruption = corruption(setting.occlusion, setting.outliers, setting.wrong_frames);
-    format!("{model} motion, {frames} frames at {fps} frames/s, noise {noise}, {points} points{corruption}")
+    format!("{family} motion, {frames} frames at {fps} frames/s, noise {noise}, {points} points{corruption}")
 }
 
 fn corruption(occlusion: f64, outliers: f64, wrong_frames: f64) -> String {
@@ -85,7 +86,7 @@ fn rows(evaluation: &Evaluation, Evaluated { report, timing }: &Evaluated) -> Ve
     for result in &evaluation.methods {
         for (shape, statistics) in result.by_shape(&report.shapes, POOLED) {
             let start = |parameter: &str| [result.method.name(), shape, parameter].map(str::to_owned).to_vec();
-            for (name, p) in evaluation.setting.model.parameter_names().iter().zip(&statistics.parameters) {
+            for (name, p) in evaluation.setting.parameter_names().iter().zip(&statistics.parameters) {
                 let mut row = start(name);
                 row.extend([p.rmse, p.bound].map(|value| number(value, 3)));
                 row.push(decimals(p.ratio, 2));

@@ -1,7 +1,7 @@
 use freeform_experiments::figure::{Curve, Look, Panel};
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
-use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
-use freeform_motion::riccati::MotionModel;
+use freeform_motion::estimate::ParameterEstimate;
+use freeform_motion::tracker::MotionFamily;
 use nalgebra::Point2;
 
 use super::number::short;
@@ -68,11 +68,11 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
 }
 
 /// The parameters of all objects against time, as a file.
-pub(crate) fn parameter_figure(histories: &[History], model: MotionModel, truth: Option<&Truth>) -> String {
+pub(crate) fn parameter_figure(histories: &[History], family: MotionFamily, truth: Option<&Truth>) -> String {
     let several = histories.len() > 1;
     let panels = histories.iter().flat_map(|history| {
         let prefix = if several { format!("Object {}: ", history.object) } else { String::new() };
-        parameter_panels(history, &prefix, model, truth)
+        parameter_panels(history, &prefix, family, truth)
     });
     stacked_svg(&panels.collect::<Vec<_>>(), 720.0, 270.0)
 }
@@ -81,13 +81,12 @@ pub(crate) fn parameter_figure(histories: &[History], model: MotionModel, truth:
 pub(crate) fn parameter_panels(
     history: &History,
     prefix: &str,
-    model: MotionModel,
+    family: MotionFamily,
     truth: Option<&Truth>,
 ) -> Vec<Panel> {
     // A level line would be wrong of a motion that changes.
-    let constant = truth.filter(|truth| truth.is_constant);
-    let truth = constant.and_then(|truth| model.parameters_of_motion(&truth.motion));
-    let names = model.parameter_names().iter().zip(model.units()).enumerate();
+    let truth = truth.and_then(|truth| truth.constant_parameters_in(family));
+    let names = family.parameter_names().iter().zip(family.units()).enumerate();
     names
         .map(|(index, (name, unit))| {
             let mut curves = history.curves(index);
@@ -138,6 +137,8 @@ fn meaning(name: &str) -> String {
         "omega" => "Angular velocity omega".to_owned(),
         "sigma" => "Rate of growth sigma".to_owned(),
         "b1" | "b2" => format!("Velocity {name} at the origin"),
+        "wx" | "wy" | "wz" => format!("Angular velocity {name} in space"),
+        "vx" | "vy" | "vz" => format!("Velocity {name} in space"),
         _ => format!("Parameter {name}"),
     }
 }
@@ -151,7 +152,7 @@ impl History {
 
     /// What was identified of a parameter, with a band where its standard deviation is known; both with gaps where it was not.
     fn curves(&self, parameter: usize) -> Vec<Curve> {
-        let found = |estimate: &MotionEstimate| estimate.parameters().nth(parameter).and_then(|p| p.value.map(|_| p));
+        let found = |list: &Vec<ParameterEstimate>| list.get(parameter).copied().filter(|p| p.value.is_some());
         let estimates = self.estimates.iter().map(|(time, estimate)| (*time, estimate.as_ref().and_then(found)));
         let estimates: Vec<_> = estimates.collect();
         let (mut runs, mut band) = (Vec::new(), Vec::new());
@@ -177,6 +178,9 @@ impl History {
 
 #[cfg(test)]
 mod tests {
+    use freeform_motion::estimate::MotionEstimate;
+    use freeform_motion::riccati::MotionModel;
+
     use super::*;
 
     #[test]
@@ -186,7 +190,7 @@ mod tests {
             let found = if frame == 2 { estimate.with_unobservable(0) } else { estimate };
             // Nothing at all in the first frame of all, and while the object is lost.
             let is_lost = frame == 0 || frame == 5;
-            (f64::from(frame), (!is_lost).then_some(found))
+            (f64::from(frame), (!is_lost).then(|| found.parameters().collect()))
         });
         let mut history = History::of("0".to_owned());
         history.estimates = estimates.collect();

@@ -1,12 +1,13 @@
 use std::io::{self, Write};
 
 use freeform_motion::Warning;
-use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights};
+use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
+use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::tracker::{ObjectPhase, ObjectResult, Observation};
+use freeform_motion::tracker::{MotionFamily, ObjectPhase, ObjectResult, Observation};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
+use super::plane_json::{NormalJson, PlanesJson};
 use super::velocity::VelocityJson;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
@@ -38,10 +39,11 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         time: observation.time,
         phase: observation.phase.map(ObjectPhase::name),
         accepted: observation.is_accepted(),
-        parameters: estimate.map(|estimate| Parameters(estimate, &[])),
+        parameters: observation.parameters().map(|found| Parameters(found, &[])),
         generator: estimate.and_then(generator_rows),
+        normal: observation.plane.as_ref().map(NormalJson::from),
         reason: observation.rejection.as_ref().map(ToString::to_string),
-        ambiguity: observation.ambiguity.as_ref().map(AmbiguityJson::from),
+        ambiguity: ambiguity_json(observation.ambiguity.as_ref(), observation.plane_ambiguity.as_ref()),
     })
 }
 
@@ -54,10 +56,11 @@ pub(crate) fn closing_line(Left { seen, result }: &Left) -> serde_json::Result<S
         time: seen.time,
         phase: Some("closed"),
         accepted: false,
-        parameters: result.estimate.as_ref().map(|estimate| Parameters(estimate, &[])),
+        parameters: result.parameters().map(|found| Parameters(found, &[])),
         generator: result.estimate.as_ref().and_then(generator_rows),
+        normal: result.plane.as_ref().map(NormalJson::from),
         reason: Some("not seen for long, and forgotten".to_owned()),
-        ambiguity: result.ambiguity.as_ref().map(AmbiguityJson::from),
+        ambiguity: ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_ref()),
     })
 }
 
@@ -100,8 +103,24 @@ struct TrackLine<'a> {
     accepted: bool,
     parameters: Option<Parameters<'a>>,
     generator: Option<[[f64; 3]; 3]>,
+    /// Of a plane in space alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    normal: Option<NormalJson>,
     reason: Option<String>,
-    ambiguity: Option<AmbiguityJson<'a>>,
+    ambiguity: Option<EitherAmbiguity<'a>>,
+}
+
+/// Turns of an object of the picture, or motions of a plane in space.
+#[derive(serde::Serialize)]
+#[serde(untagged)]
+enum EitherAmbiguity<'a> {
+    Turns(AmbiguityJson<'a>),
+    Planes(Box<PlanesJson<'a>>),
+}
+
+fn ambiguity_json<'a>(turns: Option<&'a Ambiguity>, planes: Option<&'a PlaneAmbiguity>) -> Option<EitherAmbiguity<'a>> {
+    let turns = turns.map(|turns| EitherAmbiguity::Turns(turns.into()));
+    turns.or_else(|| planes.map(|planes| EitherAmbiguity::Planes(Box::new(planes.into()))))
 }
 
 /// Turns from one frame to the next that the outlines do not decide between, in degrees, positive where omega is.
@@ -124,19 +143,24 @@ struct ObjectJson<'a>(&'a ObjectResult);
 impl Serialize for ObjectJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Self(result) = self;
-        let mut object = serializer.serialize_struct("Object", 11)?;
+        let mut object =
+            serializer.serialize_struct("Object", if result.motion == MotionFamily::Plane { 12 } else { 11 })?;
         object.serialize_field("object", &result.object)?;
         object.serialize_field("method", result.method.name())?;
         object.serialize_field("motion", &result.motion.to_string())?;
         object.serialize_field("frames", &result.frames)?;
         object.serialize_field("frames_rejected", &result.frames_rejected)?;
-        match &result.estimate {
-            Some(estimate) => object.serialize_field("parameters", &Parameters(estimate, &result.aliases))?,
+        match result.parameters() {
+            Some(found) => object.serialize_field("parameters", &Parameters(found, &result.aliases))?,
             None => object.serialize_field("parameters", &NoParameters(result))?,
         }
         object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
+        if result.motion == MotionFamily::Plane {
+            object.serialize_field("normal", &result.plane.as_ref().map(NormalJson::from))?;
+        }
         object.serialize_field("velocity", &result.velocity.as_ref().map(VelocityJson))?;
-        object.serialize_field("ambiguity", &result.ambiguity.as_ref().map(AmbiguityJson::from))?;
+        let ambiguity = ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_ref());
+        object.serialize_field("ambiguity", &ambiguity)?;
         object.serialize_field("dynamics", &result.dynamics.map(DynamicsJson::from))?;
         let warnings: Vec<WarningJson> = result.warnings.iter().map(WarningJson::from).collect();
         object.serialize_field("warnings", &warnings)?;
@@ -191,12 +215,12 @@ struct ParameterJson<'a> {
 }
 
 /// An estimate, and other angular velocities that explain the outlines as well.
-struct Parameters<'a>(&'a MotionEstimate, &'a [f64]);
+struct Parameters<'a>(Vec<ParameterEstimate>, &'a [f64]);
 
 impl Serialize for Parameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        for parameter in self.0.parameters() {
+        for parameter in &self.0 {
             let value = parameter.value;
             let json = ParameterJson {
                 value,
@@ -255,13 +279,15 @@ mod tests {
         let result = ObjectResult {
             object: "left".to_owned(),
             method: Method::Adaptive,
-            motion: MotionModel::Rigid,
+            motion: MotionModel::Rigid.into(),
             frames: 12,
             frames_rejected: 1,
             first_rejection: None,
             estimate: Some(estimate.with_unobservable(0).in_space(CameraScale::new(0.1).expect("a scale"))),
             velocity: None,
             ambiguity: None,
+            plane: None,
+            plane_ambiguity: None,
             aliases: Vec::new(),
             dynamics: None,
             warnings: vec![Warning::AffineBias, Warning::Lost],

@@ -1,9 +1,10 @@
 use std::io::{self, Write};
 
+use freeform_motion::estimate::PlaneEstimate;
 use freeform_motion::outline_io::readable;
-use freeform_motion::riccati::ParameterKind;
+use freeform_motion::riccati::{ParameterKind, PlaneMotion};
 use freeform_motion::significant;
-use freeform_motion::tracker::ObjectResult;
+use freeform_motion::tracker::{MotionFamily, ObjectResult};
 
 use super::aligned::write_aligned;
 use super::number::with_deviation;
@@ -17,9 +18,12 @@ pub(crate) const COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "tru
 /// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
 pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningOfB) -> Vec<Vec<String>> {
     let model = result.motion;
-    let truth = truth.and_then(|truth| Some((truth, model.parameters_of_motion(&truth.motion)?)));
-    let found: Vec<_> = result.estimate.as_ref().map_or_else(Vec::new, |estimate| estimate.parameters().collect());
-    let is_ambiguous = |name| result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name));
+    let truth = truth.and_then(|truth| Some((truth, truth.parameters_in(model)?)));
+    let found = result.parameters().unwrap_or_default();
+    let is_ambiguous = |name| {
+        result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name))
+            || result.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(name))
+    };
     let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
     let names = model.parameter_names().iter().zip(model.units()).zip(model.parameter_kinds());
     let mut rows: Vec<Vec<String>> = names
@@ -36,6 +40,9 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &M
             row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
         })
         .collect();
+    if result.motion == MotionFamily::Plane {
+        rows.extend(normal_rows(result, truth.as_ref().and_then(|(truth, _)| truth.plane)));
+    }
     if let Some(velocity) = &result.velocity {
         let deviations = velocity.standard_deviations();
         // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
@@ -57,6 +64,21 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &M
         }));
     }
     rows
+}
+
+/// The normal of a plane at the first frame, two rows; its z is 1.
+fn normal_rows(result: &ObjectResult, truth: Option<PlaneMotion>) -> [Vec<String>; 2] {
+    let normal = result.plane.as_ref().and_then(PlaneEstimate::normal);
+    let is_ambiguous = result.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&"normal"));
+    let unknown = match &result.plane {
+        Some(_) if is_ambiguous => "ambiguous",
+        Some(_) => "unobservable",
+        None => "-",
+    };
+    [("normal x", 0), ("normal y", 1)].map(|(name, i)| {
+        let known = normal.map(|normal| (normal.value[i], Some(normal.covariance[(i, i)].max(0.0).sqrt())));
+        row([name, unknown, "1"], known, truth.map(|truth| truth.normal[i]))
+    })
 }
 
 /// One row: a value with its standard deviation, or why there is none, and the truth if it is known.
@@ -131,13 +153,15 @@ mod tests {
         let result = |estimate| ObjectResult {
             object: "0".to_owned(),
             method: Method::Filter,
-            motion: MotionModel::Rigid,
+            motion: MotionModel::Rigid.into(),
             frames: 30,
             frames_rejected: 0,
             first_rejection: None,
             estimate: Some(estimate),
             velocity: Some(velocity),
             ambiguity: None,
+            plane: None,
+            plane_ambiguity: None,
             aliases: Vec::new(),
             dynamics: None,
             warnings: Vec::new(),
@@ -162,13 +186,15 @@ mod tests {
         let result = |estimate: Option<MotionEstimate>| ObjectResult {
             object: "0".to_owned(),
             method: Method::Adaptive,
-            motion: MotionModel::Rigid,
+            motion: MotionModel::Rigid.into(),
             frames: 120,
             frames_rejected: 3,
             first_rejection: None,
             estimate,
             velocity: None,
             ambiguity: None,
+            plane: None,
+            plane_ambiguity: None,
             aliases: Vec::new(),
             dynamics: None,
             warnings: Vec::new(),

@@ -15,6 +15,7 @@ mod identify_json;
 mod identify_table;
 mod number;
 mod page;
+mod plane_json;
 mod recognised;
 mod refusal;
 mod stress_json;

@@ -17,6 +17,7 @@ mod identify;
 mod memory;
 mod outline;
 mod pictures;
+mod plane;
 mod projective;
 mod real_pictures;
 mod recognise;

@@ -82,6 +82,7 @@ impl AcquisitionSetting {
     /// Two frames a second apart.
     fn sequence(&self, motion: ProjectiveMotion) -> Setting {
         Setting {
+            plane: None,
             name: self.name.clone(),
             model: self.model,
             motion,

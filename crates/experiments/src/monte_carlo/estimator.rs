@@ -1,8 +1,8 @@
 use freeform_curve_fit::Outline;
-use freeform_estimate::MotionEstimate;
+use freeform_estimate::{MotionEstimate, PlaneEstimate};
 use freeform_motion::{Pipeline, PipelineSettings};
-use freeform_outline_filter::{FilterSettings, MotionFilter};
-use freeform_riccati::MotionModel;
+use freeform_outline_filter::{FilterSettings, MotionFilter, PlaneFilter};
+use freeform_riccati::{MotionModel, PinholeCamera};
 
 use crate::ExperimentError;
 use crate::baseline::{AreaMomentEstimator, RegistrationEstimator};
@@ -55,6 +55,10 @@ pub(super) enum Estimator {
         /// What it held when it last held something: it holds nothing while it looks for the object again.
         last_known: Box<Option<MotionEstimate>>,
     },
+    Plane {
+        filter: Box<PlaneFilter>,
+        last_known: Box<Option<PlaneEstimate>>,
+    },
     Adaptive(Box<Pipeline>),
     Moments(Box<AreaMomentEstimator>),
     Registration(Box<RegistrationEstimator>),
@@ -74,10 +78,24 @@ impl Estimator {
         })
     }
 
+    /// One of a plane in space that has seen nothing yet: the motion filter.
+    pub(super) fn of_plane(method: Method, camera: PinholeCamera) -> Result<Self, ExperimentError> {
+        if method != Method::Filter {
+            return Err(ExperimentError::NoPlane { method });
+        }
+        let filter = PlaneFilter::new(camera, FilterSettings::default())?;
+        Ok(Self::Plane { filter: Box::new(filter), last_known: Box::default() })
+    }
+
     /// Takes the outline seen at a time in seconds; whether it was used.
     pub(super) fn push(&mut self, time: f64, outline: &Outline) -> bool {
         match self {
             Self::Filter { filter, last_known } => {
+                let accepted = filter.step(time, outline).is_ok_and(|step| step.is_accepted());
+                **last_known = filter.estimate().or(**last_known);
+                accepted
+            }
+            Self::Plane { filter, last_known } => {
                 let accepted = filter.step(time, outline).is_ok_and(|step| step.is_accepted());
                 **last_known = filter.estimate().or(**last_known);
                 accepted
@@ -92,9 +110,18 @@ impl Estimator {
     pub(super) fn estimate(&self) -> Option<MotionEstimate> {
         match self {
             Self::Filter { last_known, .. } => **last_known,
+            Self::Plane { .. } => None,
             Self::Adaptive(pipeline) => pipeline.estimate(),
             Self::Moments(estimator) => estimator.estimate(),
             Self::Registration(estimator) => estimator.estimate(),
+        }
+    }
+
+    /// The motion of a plane in space, if any was found.
+    pub(super) fn plane(&self) -> Option<PlaneEstimate> {
+        match self {
+            Self::Plane { last_known, .. } => **last_known,
+            _ => None,
         }
     }
 }

@@ -1,13 +1,14 @@
 use std::time::Instant;
 
-use freeform_estimate::MotionEstimate;
+use freeform_estimate::{MotionEstimate, PlaneEstimate};
 use freeform_sim_camera::Shape;
+use nalgebra::{Point2, Projective2};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::estimator::{Estimator, Method};
-use super::setting::Setting;
+use super::setting::{PlaneScene, Setting};
 use super::statistics::{Cell, Outcome, ParameterError, Statistics};
 use crate::ExperimentError;
 
@@ -103,8 +104,7 @@ fn run(
     seed: u64,
 ) -> Result<Vec<Outcome>, ExperimentError> {
     let simulator = setting.simulator(shape, seed)?;
-    let started: Vec<Estimator> =
-        methods.iter().map(|method| Estimator::new(*method, setting.model)).collect::<Result<_, _>>()?;
+    let started: Vec<Estimator> = methods.iter().map(|method| estimator(setting, *method)).collect::<Result<_, _>>()?;
     let mut at_work: Vec<(Estimator, Outcome)> = started.into_iter().map(|e| (e, Outcome::default())).collect();
     for frame in simulator.frames() {
         for (estimator, outcome) in &mut at_work {
@@ -117,13 +117,47 @@ fn run(
     }
     let finished = at_work.into_iter().map(|(estimator, mut outcome)| {
         let start = Instant::now();
-        let estimate = estimator.estimate();
+        let (estimate, plane) = (estimator.estimate(), estimator.plane());
         outcome.seconds += start.elapsed().as_secs_f64();
-        outcome.errors =
-            estimate.filter(|e| !(observable && is_astray(setting, shape, e))).map(|e| errors(setting, &e));
+        let of_plane = plane.filter(|e| !(observable && is_plane_astray(setting, shape, e)));
+        outcome.errors = estimate
+            .filter(|e| !(observable && is_astray(setting, shape, e)))
+            .map(|e| errors(setting, &e))
+            .or_else(|| of_plane.map(|e| errors_of_plane(setting, &e)));
         outcome
     });
     Ok(finished.collect())
+}
+
+/// A method that has seen nothing yet, for what is to be identified.
+fn estimator(setting: &Setting, method: Method) -> Result<Estimator, ExperimentError> {
+    match &setting.plane {
+        Some(plane) => Estimator::of_plane(method, plane.camera),
+        None => Estimator::new(method, setting.model),
+    }
+}
+
+fn errors_of_plane(setting: &Setting, estimate: &PlaneEstimate) -> Vec<Option<ParameterError>> {
+    let (values, covariance) = (estimate.motion().parameters(), estimate.covariance());
+    let error = |index: usize, truth: f64| ParameterError {
+        error: values[index] - truth,
+        deviation: Some(covariance[(index, index)].max(0.0).sqrt()),
+    };
+    let truth = setting.truth().into_iter().enumerate();
+    truth.map(|(index, truth)| estimate.known()[index].then(|| error(index, truth))).collect()
+}
+
+/// As [`is_astray`], of a plane in space.
+fn is_plane_astray(setting: &Setting, shape: &Shape, estimate: &PlaneEstimate) -> bool {
+    let Some(plane) = setting.plane.as_ref().filter(|_| estimate.known().iter().all(|known| *known)) else {
+        return false;
+    };
+    let found = PlaneScene { motion: *estimate.motion(), ..*plane };
+    let found = Setting { plane: Some(found), ..setting.clone() };
+    let duration = setting.duration();
+    let start = setting.scene(shape).true_pose(0.0);
+    let places: Vec<_> = shape.sample(PLACES, 0.0).iter().map(|p| start * p).collect();
+    leads_astray(&places, &setting.flow(duration), &found.flow(duration))
 }
 
 fn errors(setting: &Setting, estimate: &MotionEstimate) -> Vec<Option<ParameterError>> {
@@ -140,7 +174,11 @@ fn is_astray(setting: &Setting, shape: &Shape, estimate: &MotionEstimate) -> boo
     }
     let duration = setting.duration();
     let (truth, found) = (setting.motion.flow(duration), setting.model.flow(estimate.values(), duration));
-    let places = shape.sample(PLACES, 0.0);
+    leads_astray(&shape.sample(PLACES, 0.0), &truth, &found)
+}
+
+/// Whether a map leads places elsewhere than the true one.
+fn leads_astray(places: &[Point2<f64>], truth: &Projective2<f64>, found: &Projective2<f64>) -> bool {
     let moved: Vec<_> = places.iter().map(|p| truth * p).collect();
     let off: f64 = places.iter().zip(&moved).map(|(p, truth)| (found.transform_point(p) - truth).norm_squared()).sum();
     let centre = moved.iter().map(|p| p.coords / PLACES as f64).sum::<nalgebra::Vector2<f64>>();

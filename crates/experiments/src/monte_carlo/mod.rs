@@ -14,6 +14,6 @@ pub mod suite;
 pub use acquisition::{Acquisition, AcquisitionSetting, Found};
 pub use estimator::Method;
 pub use evaluation::{Evaluation, MethodResult};
-pub use setting::Setting;
+pub use setting::{PlaneScene, Setting};
 pub use statistics::{ParameterStatistics, Statistics};
 pub use study::{Report, Study};

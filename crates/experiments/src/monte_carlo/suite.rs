@@ -41,6 +41,7 @@ fn settings() -> Vec<Setting> {
     let rigid = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -0.3, b2: 0.4 };
     let sheared = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
     let clean = |name: String, frames| Setting {
+        plane: None,
         name,
         model: MotionModel::Rigid,
         motion: rigid.into(),

@@ -5,6 +5,7 @@ mod growth;
 mod nearest_field;
 mod null_space;
 mod outline_map;
+mod redrawing;
 
 pub(crate) use chains::{CellPoint, has_common_places};
 pub(crate) use contour::{Contour, median};

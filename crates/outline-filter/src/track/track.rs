@@ -225,6 +225,14 @@ impl Track {
         (self.reference.origin, self.reference.radius) == (origin, radius)
     }
 
+    pub(crate) fn map(&self) -> &Arc<OutlineMap> {
+        &self.map
+    }
+
+    pub(crate) fn noise(&self) -> &NoiseModel {
+        &self.noise
+    }
+
     pub(crate) fn belief(&self) -> &Belief {
         &self.belief
     }

@@ -1,5 +1,7 @@
 //! A plane in space against the rigid motion of its points, and its Riccati equation against an integrator.
-use freeform_riccati::{FlowIntegrator, PlaneMotion, PlaneSolutions, line_rate, moved_line};
+use freeform_riccati::{
+    DynamicsError, FlowIntegrator, PinholeCamera, PlaneMotion, PlaneSolutions, line_rate, moved_line,
+};
 use nalgebra::{Complex, Matrix3, Matrix4, Point2, Vector3, Vector4};
 use proptest::prelude::*;
 
@@ -129,4 +131,45 @@ fn slow_turns_are_as_exact_as_fast_ones() {
     let slope = (above - below) / 2e-8;
     let expected = (plane(1.1e-2).flow(1.0).into_inner() - plane(0.9e-2).flow(1.0).into_inner()) / 2e-3;
     assert!((slope - expected).amax() < 1e-4, "{slope} {expected}");
+}
+
+proptest! {
+    #[test]
+    fn the_sensitivities_of_the_flow_of_a_plane_are_its_derivatives(plane in any_plane(), seconds in 0.01..2.0_f64, slow in any::<bool>()) {
+        let plane = PlaneMotion { angular_velocity: plane.angular_velocity * if slow { 3e-3 } else { 1.0 }, ..plane };
+        let parameters = plane.parameters();
+        prop_assert_eq!(PlaneMotion::of_parameters(parameters), plane);
+        let step = 1e-5;
+        for (index, found) in plane.flow_sensitivities(seconds).into_iter().enumerate() {
+            let flow = |change: f64| {
+                let mut moved = parameters;
+                moved[index] += change;
+                PlaneMotion::of_parameters(moved).flow(seconds).into_inner()
+            };
+            let difference = (flow(step) - flow(-step)) / (2.0 * step);
+            prop_assert!((found - difference).amax() < 1e-8 * (1.0 + difference.amax()), "{index}: {found} {difference}");
+        }
+    }
+
+    #[test]
+    fn a_plane_in_other_lengths_moves_the_picture_alike(plane in any_plane(), lengths in 0.2..5.0_f64, seconds in 0.0..1.0_f64) {
+        let other = PlaneMotion { velocity: plane.velocity * lengths, normal: plane.normal / lengths, ..plane };
+        let back = other.scaled_to_axis().expect("not edge on");
+        prop_assert!((back.velocity - plane.velocity).norm() + (back.normal - plane.normal).norm() < 1e-14);
+        prop_assert!((other.flow(seconds).into_inner() - plane.flow(seconds).into_inner()).amax() < 1e-13);
+    }
+}
+
+#[test]
+fn a_camera_refuses_lengths_that_no_lens_has_and_its_maps_undo_each_other() {
+    for focal in [0.0, -800.0, f64::NAN, f64::INFINITY] {
+        assert!(
+            matches!(PinholeCamera::new(focal, Point2::origin()), Err(DynamicsError::FocalLength { .. })),
+            "{focal}"
+        );
+    }
+    let nowhere = PinholeCamera::new(800.0, Point2::new(f64::NAN, 0.0));
+    assert!(matches!(nowhere, Err(DynamicsError::PrincipalPoint { .. })));
+    let camera = PinholeCamera::new(800.0, Point2::new(320.0, 240.0)).expect("a camera");
+    assert!((camera.to_picture() * camera.from_picture() - Matrix3::identity()).amax() < 1e-15);
 }

@@ -184,3 +184,38 @@ fn an_object_that_comes_near_the_line_at_infinity_is_refused() {
     // After 4 s a point at x = -0.4 has the depth 1 - 4 * 0.7 * 0.4.
     assert!(matches!(run(0.7), Err(SimulationError::PoseOutOfRange { .. })));
 }
+
+#[test]
+fn a_plane_in_space_is_seen_where_the_rays_of_its_points_meet_the_picture() {
+    use freeform_riccati::{PinholeCamera, PlaneMotion};
+    use nalgebra::{Matrix4, Vector3, Vector4};
+
+    let camera = PinholeCamera::new(800.0, Point2::new(320.0, 240.0)).expect("a camera");
+    let plane = PlaneMotion::of_parameters([0.3, -0.2, 0.5, 0.1, 0.05, 0.12, 0.7, -0.4]);
+    let scene = Scene::in_space(BuiltInShape::Van, plane, camera, 300.0);
+    let unit = plane.normal.normalize();
+    let seen_at = |x: Vector3<f64>| Point2::new(320.0 + 800.0 * x.x / x.z, 240.0 + 800.0 * x.y / x.z);
+    let mut twist = Matrix4::zeros();
+    twist.fixed_view_mut::<3, 3>(0, 0).copy_from(&plane.angular_velocity.cross_matrix());
+    twist.fixed_view_mut::<3, 1>(0, 3).copy_from(&plane.velocity);
+    for time in [0.0, 0.4, 1.3] {
+        for body in scene.shape().sample(20, 0.0) {
+            let start = scene.true_pose(0.0) * body;
+            let ray = Vector3::new((start.x - 320.0) / 800.0, (start.y - 240.0) / 800.0, 1.0);
+            let place = ray / plane.normal.dot(&ray);
+            // The shape is flat on the tilted plane and keeps its lengths there, 300 pixels a unit at distance 1.
+            let from_axis = place - Vector3::z();
+            assert!(unit.dot(&from_axis).abs() < 1e-12);
+            assert!((from_axis.norm() - 300.0 / 800.0 * body.coords.norm()).abs() < 1e-12);
+            let moved = (twist * time).exp() * Vector4::new(place.x, place.y, place.z, 1.0);
+            assert!((scene.true_pose(time) * body - seen_at(moved.xyz())).norm() < 1e-8);
+        }
+    }
+    assert!(!scene.motion().is_constant());
+    assert_eq!(scene.motion().plane(), Some(plane));
+    // The generator that is told is that of the moment.
+    let (h, body) = (1e-6, Point2::new(0.2, 0.1));
+    let at = |time: f64| scene.true_pose(time) * body;
+    let rate = (at(0.5 + h) - at(0.5 - h)) / (2.0 * h);
+    assert!((rate - scene.image_motion(0.5).velocity(&at(0.5))).norm() < 1e-4);
+}

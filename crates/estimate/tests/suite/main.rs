@@ -1,0 +1,3 @@
+//! The bounds of Cramer and Rao.
+mod bound;
+mod plane_bound;

@@ -1,0 +1,90 @@
+//! One object of a plane in space, and what is known of it.
+use freeform_curve_fit::Outline;
+use freeform_estimate::PlaneEstimate;
+use freeform_outline_filter::{Phase, PlaneFilter, PlaneUnknown, Unstated};
+
+use super::identifier::Step;
+use crate::rejection::RejectionCause;
+use crate::warning::{MANY_REJECTED, Warning};
+
+/// Mean square of the innovations, over what is expected, from which on a motion is said not to fit.
+const DOES_NOT_FIT: f64 = 1.2;
+
+/// A filter for a plane, and what it knew when it last knew something.
+#[derive(Debug, Clone)]
+pub(super) struct PlaneObject {
+    pub(super) filter: PlaneFilter,
+    last_known: Option<PlaneEstimate>,
+}
+
+impl PlaneObject {
+    pub(super) const fn new(filter: PlaneFilter) -> Self {
+        Self { filter, last_known: None }
+    }
+
+    pub(super) fn push(&mut self, time: f64, outline: &Outline) -> Step {
+        let step = match self.filter.step(time, outline) {
+            Ok(step) => step,
+            Err(error) => return Step { rejected_because: Some(RejectionCause::Filter(error)), ..Step::default() },
+        };
+        let estimate = self.filter.estimate().filter(|_| self.filter.follower().unstated().is_none());
+        self.last_known = estimate.or(self.last_known);
+        Step {
+            phase: Some(step.phase.into()),
+            plane: estimate,
+            residual: step.measurement.and_then(|measurement| measurement.noise),
+            innovation: step.measurement.map(|measurement| measurement.innovation),
+            state: self.filter.follower().state(),
+            plane_ambiguity: estimate.and_then(|_| self.filter.ambiguity()),
+            rejected_because: step.rejection.map(RejectionCause::NotAccepted),
+            ..Step::default()
+        }
+    }
+
+    /// The motion as it was last known.
+    pub(super) fn estimate(&self) -> Option<PlaneEstimate> {
+        self.last_known.filter(|_| !self.is_unstated())
+    }
+
+    fn is_unstated(&self) -> bool {
+        matches!(self.filter.follower().unstated(), Some(Unstated::ManyRejected { .. }))
+    }
+
+    pub(super) fn warnings(&self) -> Vec<Warning> {
+        let follower = self.filter.follower();
+        let mut warnings = Vec::new();
+        let ambiguity = self.filter.ambiguity();
+        let ambiguous = ambiguity.as_ref().map_or(&[][..], |ambiguity| &ambiguity.parameters);
+        if let Some(estimate) = self.estimate() {
+            let unknown = estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name);
+            let normal = estimate.normal().is_none().then_some("normal");
+            let parameters: Vec<_> = unknown.chain(normal).filter(|name| !ambiguous.contains(name)).collect();
+            match self.filter.unknown() {
+                _ if parameters.is_empty() => {}
+                Some(PlaneUnknown::HardlyMoves) => warnings.push(Warning::PlaneHardlyMoves { parameters }),
+                _ => warnings.push(Warning::NotKnown { parameters }),
+            }
+        }
+        warnings.extend(ambiguity.map(|ambiguity| Warning::TwoPlanes(Box::new(ambiguity))));
+        let misfit = self.filter.misfit();
+        if misfit > DOES_NOT_FIT {
+            warnings.push(Warning::PlaneMisfit { excess: misfit });
+        }
+        if follower.phase() == Phase::Lost {
+            warnings.push(Warning::Lost);
+        }
+        if follower.restarts() > 0 {
+            warnings.push(Warning::Restarted { times: follower.restarts() });
+        }
+        let rejected = follower.frames_rejected();
+        let frames = follower.frames_accepted() + rejected;
+        if rejected as f64 > MANY_REJECTED * frames as f64 {
+            warnings.push(Warning::FramesRejected { rejected, frames });
+        }
+        if let Some(Unstated::ManyRejected { rejected, frames }) = follower.unstated() {
+            warnings.push(Warning::TooManyRejected { rejected, frames });
+        }
+        warnings.sort_by_key(Warning::order);
+        warnings
+    }
+}
