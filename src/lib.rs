@@ -31,17 +31,20 @@
 //! assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+mod adaptive_progress;
 mod followed_pose;
 mod frame_ranges;
 mod number;
 mod pipeline;
 mod pipeline_error;
+mod pipeline_settings;
 mod rectification;
 mod rejection;
 mod settling;
 pub mod tracker;
 mod warning;
 
+pub use adaptive_progress::AdaptiveProgress;
 pub use freeform_curve_fit as curve_fit;
 pub use freeform_decompose as decompose;
 pub use freeform_estimate as estimate;
@@ -52,8 +55,9 @@ pub use freeform_recognise as recognise;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
 pub use number::significant;
-pub use pipeline::{FrameResult, Pipeline, PipelineSettings};
+pub use pipeline::{FrameResult, Pipeline};
 pub use pipeline_error::PipelineError;
+pub use pipeline_settings::PipelineSettings;
 pub use rectification::{Rectification, RectifyError};
 pub use rejection::with_causes;
 pub use tracker::{Tracker, TrackerSettings};

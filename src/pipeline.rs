@@ -1,4 +1,4 @@
-use freeform_curve_fit::{Fit, FitError, FitSettings, Fitter, Method, Normalisation, Normalise, Outline};
+use freeform_curve_fit::{Fit, FitError, Fitter, Normalisation, Normalise, Outline};
 use freeform_decompose::{
     Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
 };
@@ -8,8 +8,10 @@ use freeform_riccati::{MotionModel, moved_line};
 use nalgebra::{Affine2, Matrix3, Point2, Projective2, Translation2};
 
 use crate::{
+    adaptive_progress::AdaptiveProgress,
     followed_pose::{FollowedPose, in_working},
     pipeline_error::PipelineError,
+    pipeline_settings::PipelineSettings,
     settling::Settling,
     warning::{MANY_REJECTED, Warning},
 };
@@ -24,47 +26,6 @@ const MANY_NOT_FOLLOWED: f64 = 0.05;
 /// lines say little of it, as `k` and its noise grow with the distance.
 const FAR: f64 = 3.0;
 
-/// RMS radius of the first outline in the coordinates of the identifier. The gains of the paper belong to objects of
-/// about size 1; a larger radius makes the law settle faster and follow the noise more.
-const RMS_RADIUS: f64 = 0.6;
-
-/// Settings of a [`Pipeline`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct PipelineSettings {
-    /// How a curve is fitted to every outline.
-    pub fit: FitSettings,
-    /// How the motion is identified from its lines.
-    pub identify: AdaptiveSettings,
-}
-
-impl Default for PipelineSettings {
-    /// A bounded quartic, rounder than the one that follows the outline best: a ridge and a large margin keep the lines
-    /// of the leading form away from real ones, whose slopes swing far out as they turn and carry their noise with them.
-    fn default() -> Self {
-        let method = Method::Bounded { margin: 0.5, ridge_weight: 0.03 };
-        let fit = FitSettings { method, offset: 0.15, ..FitSettings::default() };
-        Self { fit, identify: AdaptiveSettings::default() }
-    }
-}
-
-impl PipelineSettings {
-    /// The settings for a family of motions. For affine motion outlines are fitted affine-normalised, since the lines of other fits
-    /// do not follow it, and the law is filtered least squares: over six parameters the structured law takes minutes to
-    /// settle for outlines whose lines excite it little. An outline moved to its circle of inertia needs less of a ridge, and a
-    /// larger margin keeps the lines of slender ones, whose curve is bounded by it alone, apart. Projective motion has the same.
-    #[must_use]
-    pub fn for_model(model: MotionModel) -> Self {
-        let mut settings = Self::default();
-        settings.identify.model = model;
-        if matches!(model, MotionModel::Affine | MotionModel::Projective) {
-            settings.fit.normalise = Normalise::Affine;
-            settings.identify.law = AdaptiveLaw::FilteredLeastSquares;
-            settings.fit.method = Method::Bounded { margin: 0.7, ridge_weight: 0.003 };
-        }
-        settings
-    }
-}
-
 /// What one frame gave.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameResult {
@@ -76,6 +37,8 @@ pub struct FrameResult {
     pub correspondence: Option<Correspondence>,
     /// The motion as identified so far; `None` before the second frame.
     pub estimate: Option<MotionEstimate>,
+    /// What the law is doing; `None` as there.
+    pub progress: Option<AdaptiveProgress>,
 }
 
 /// From outlines to motion, frame by frame: fit, decompose, match, identify.
@@ -127,6 +90,7 @@ impl Pipeline {
     /// # Errors
     /// A setting outside its range.
     pub fn new(settings: PipelineSettings) -> Result<Self, PipelineError> {
+        settings.check()?;
         Ok(Self {
             fitter: Fitter::new(settings.fit)?,
             identifier: AdaptiveIdentifier::new(settings.identify.clone())?,
@@ -173,7 +137,7 @@ impl Pipeline {
             };
             self.matched(there, 1.0)?
         } else {
-            self.matched(working.moved(&(image_from_identifier.inverse() * image_from_working))?, RMS_RADIUS)?
+            self.matched(working.moved(&(image_from_identifier.inverse() * image_from_working))?, self.settings.size)?
         };
         let (mut lines, count) = matched.lines();
         if self.is_projective() {
@@ -192,8 +156,9 @@ impl Pipeline {
         let start_from_identifier = nalgebra::convert(self.identifier_from_start.inverse());
         let at_start = self.identifier.estimate().map(|estimate| estimate.in_coordinates(&start_from_identifier));
         self.settling.take(time, at_start);
+        let progress = self.progress(image_from_identifier);
         self.follow(&normalisation.centre, image_from_identifier);
-        Ok(FrameResult { fit, decomposition, correspondence, estimate: None })
+        Ok(FrameResult { fit, decomposition, correspondence, estimate: None, progress })
     }
 
     /// Fits a curve to an outline. Arcs of one that is followed affinely have no area moments to normalise them by: they are brought
@@ -239,6 +204,14 @@ impl Pipeline {
         Ok(decomposed(&fit)?.moved(&fit.normalisation().image_from_working())?)
     }
 
+    fn progress(&self, image_from_identifier: Affine2<f64>) -> Option<AdaptiveProgress> {
+        Some(AdaptiveProgress {
+            diagnostics: self.identifier.diagnostics()?,
+            estimate: self.identifier.estimate()?,
+            identifier_from_image: image_from_identifier.inverse(),
+        })
+    }
+
     fn is_projective(&self) -> bool {
         self.settings.identify.model == MotionModel::Projective
     }
@@ -267,7 +240,7 @@ impl Pipeline {
     /// Sets up the identifier in coordinates centred on the first outline and, where the motion is affine, moved to its circle of
     /// inertia: the slopes of lines of a slender object swing far out.
     fn start_at(&mut self, first: &Normalisation) -> Result<Affine2<f64>, IdentifyError> {
-        let unit = Normalisation { radius: first.radius / RMS_RADIUS, ..*first };
+        let unit = Normalisation { radius: first.radius / self.settings.size, ..*first };
         let map = match self.settings.identify.model {
             MotionModel::Affine | MotionModel::Projective => unit.image_from_working(),
             _ => Normalisation::similarity(unit.centre, unit.radius).image_from_working(),
@@ -286,7 +259,7 @@ impl Pipeline {
     fn follow(&mut self, centre: &Point2<f64>, image_from_identifier: Affine2<f64>) {
         let origin = (image_from_identifier.inverse() * centre).coords;
         let moved = nalgebra::convert::<_, Affine2<f64>>(Translation2::from(origin));
-        let Some(last) = self.last.as_mut().filter(|_| origin.norm() > FAR * RMS_RADIUS) else { return };
+        let Some(last) = self.last.as_mut().filter(|_| origin.norm() > FAR * self.settings.size) else { return };
         // Those of a projective motion are where the first outline was.
         if self.settings.identify.model != MotionModel::Projective {
             // Lines that cannot be told in the new coordinates stay in the old.
@@ -382,7 +355,7 @@ impl Pipeline {
         {
             warnings.push(Warning::MayNotHaveSettled { seconds });
         }
-        let PipelineSettings { fit, identify } = &self.settings;
+        let PipelineSettings { fit, identify, .. } = &self.settings;
         let is_biased = identify.model == MotionModel::Affine && fit.normalise == Normalise::Similarity;
         if is_biased && self.identifier.intervals_followed() > 0 {
             warnings.push(Warning::AffineBias);

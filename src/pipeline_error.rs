@@ -6,6 +6,12 @@ use freeform_riccati::DynamicsError;
 /// Why a frame gave nothing, or a pipeline could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PipelineError {
+    /// The size of the object in the identifier is not above 0.
+    #[error("size of {size} in the identifier is not a finite number above 0")]
+    Size {
+        /// The RMS radius asked for.
+        size: f64,
+    },
     /// The settings of the fit are refused.
     #[error("fit settings: {0}")]
     FitSettings(#[from] SettingsError),

@@ -8,9 +8,9 @@ use super::{
     plane_object::PlaneObject,
     settings::{MethodSettings, TrackerError},
 };
-use crate::pipeline::{Pipeline, PipelineSettings};
 use crate::rejection::RejectionCause;
 use crate::warning::{MANY_REJECTED, Warning};
+use crate::{AdaptiveProgress, Pipeline, PipelineSettings};
 
 /// What is known of one object.
 #[derive(Debug, Clone)]
@@ -39,6 +39,7 @@ pub(super) struct Step {
     pub(super) plane: Option<PlaneEstimate>,
     pub(super) plane_ambiguity: Option<PlaneAmbiguity>,
     pub(super) fit: Option<Fit>,
+    pub(super) progress: Option<AdaptiveProgress>,
     pub(super) residual: Option<f64>,
     pub(super) innovation: Option<f64>,
     pub(super) state: Option<MotionState>,
@@ -69,8 +70,8 @@ impl Identifier {
                 Ok(result) => {
                     let phase = if result.estimate.is_some() { ObjectPhase::Adapt } else { ObjectPhase::Start };
                     let residual = Some(result.fit.diagnostics().geometric_residual);
-                    let (estimate, fit) = (result.estimate, Some(result.fit));
-                    Step { phase: Some(phase), estimate, fit, residual, ..Step::default() }
+                    let (estimate, fit, progress) = (result.estimate, Some(result.fit), result.progress);
+                    Step { phase: Some(phase), estimate, fit, progress, residual, ..Step::default() }
                 }
                 Err(error) => Step { rejected_because: Some(RejectionCause::Pipeline(error)), ..Step::default() },
             },

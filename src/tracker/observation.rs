@@ -6,8 +6,8 @@ use freeform_outline_filter::{Ambiguity, Phase, PlaneAmbiguity};
 
 use super::result::parameters_of;
 
-use crate::Warning;
 use crate::rejection::FrameRejection;
+use crate::{AdaptiveProgress, Warning};
 
 /// The result of one frame of one object.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,8 @@ pub struct Observation {
     pub state: Option<MotionState>,
     /// The curve fitted to the outline (adaptive method).
     pub fit: Option<Fit>,
+    /// What the adaptive law is doing (adaptive method).
+    pub progress: Option<AdaptiveProgress>,
     /// Adaptive method: root mean square distance of the points from the curve. Motion filter: noise of this frame. In image lengths.
     pub residual: Option<f64>,
     /// Squared innovation of pose and motion in units of its predicted covariance (motion filter).

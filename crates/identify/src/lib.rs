@@ -3,7 +3,7 @@
 //!
 //! The implicit polynomial of a closed curve is a sum of products of such lines (`freeform_decompose`). Under a motion of the plane every
 //! line follows a Riccati equation (`freeform_riccati`) that is linear in the motion parameters. [`AdaptiveIdentifier`] takes the matched
-//! conjugate pairs of lines of each frame and applies one of three laws ([`AdaptiveLaw`]). Motions are rigid, similarity or affine.
+//! conjugate pairs of lines of each frame and applies one of four laws ([`AdaptiveLaw`]). Motions are rigid, similarity or affine.
 //!
 //! ```
 //! use freeform_decompose::Line;
@@ -30,7 +30,8 @@ mod adaptive;
 mod error;
 
 pub use adaptive::{
-    AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice, Regressor, quadratic_terms, solve_lyapunov,
+    AdaptiveDiagnostics, AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice, Regressor, quadratic_terms,
+    solve_lyapunov,
 };
 pub use error::IdentifyError;
 

@@ -10,6 +10,7 @@ use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion};
 use freeform_motion::tracker::{Method, MethodSettings, MotionFamily};
 use freeform_motion::{Rectification, TrackerSettings};
 
+use super::law::LawOptions;
 use super::pictures::{PictureOptions, picture_inputs};
 use super::space::PerspectiveArgs;
 use super::values::{camera_scale, degree, length, motion, rectification};
@@ -94,6 +95,28 @@ pub(crate) struct IdentifyArgs {
 
     #[command(flatten)]
     pub(crate) pictures: PictureOptions,
+
+    #[command(flatten)]
+    pub(crate) law: LawOptions,
+}
+
+impl IdentifyArgs {
+    /// The settings of a tracker with all options, for outlines whose edges are known to a length, if to any.
+    pub(crate) fn tracker_settings(&self, edges: Option<f64>) -> Result<TrackerSettings, Failure> {
+        let mut settings = match edges {
+            Some(length) => self.options.tracker_settings_for_edges(length),
+            None => self.options.tracker_settings(),
+        };
+        match (&mut settings.method, &self.law.given()[..]) {
+            (MethodSettings::Adaptive(adaptive), _) => self.law.apply(adaptive, self.options.scale)?,
+            (_, []) => {}
+            (_, given) => {
+                let options = given.join(", ");
+                return Err(Failure::unusable(format_args!("{options}: only for --method adaptive")));
+            }
+        }
+        Ok(settings)
+    }
 }
 
 const TRACK_EXAMPLES: &str = "\

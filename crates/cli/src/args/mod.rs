@@ -3,6 +3,7 @@ mod dynamics;
 mod evaluate;
 mod fit;
 mod identify;
+mod law;
 mod outline;
 mod pictures;
 mod recognise;

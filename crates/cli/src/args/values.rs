@@ -56,7 +56,7 @@ pub(crate) fn frame_count(text: &str) -> Result<usize, String> {
 }
 
 /// Numbers between commas.
-fn list(text: &str) -> Result<Vec<f64>, String> {
+pub(super) fn list(text: &str) -> Result<Vec<f64>, String> {
     text.split(',').map(finite).collect()
 }
 

@@ -142,7 +142,7 @@ struct Found {
 impl Identification {
     fn new(options: TrackOptions, trace_path: &Path) -> Result<Self, Failure> {
         let tracker = Tracker::new(options.tracker_settings()).map_err(Failure::unusable)?;
-        let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.family())
+        let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.family(), None)
             .map_err(|error| file_failure(trace_path, &error))?;
         let curves = CurveFitter::new(&options)?;
         Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories: Histories::default() })

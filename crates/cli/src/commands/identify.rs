@@ -2,6 +2,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use freeform_motion::curve_fit::{FitSettings, Method};
+use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::MotionModel;
@@ -18,8 +19,9 @@ use crate::interrupt;
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::{
-    Findings, Report, Sink, TraceWriter, WholeFile, parameter_figure, refuse_overwriting, refuse_standard_output,
-    write_identify_json, write_identify_table, write_parameters, write_report, write_trajectory,
+    Findings, Report, Sink, Study, TraceWriter, WholeFile, parameter_figure, refuse_overwriting,
+    refuse_standard_output, write_identify_json, write_identify_table, write_parameters, write_report,
+    write_trajectory,
 };
 use crate::overlay::{CurveFitter, ObservedOverlay};
 use crate::picture_input::PictureInput;
@@ -29,11 +31,10 @@ use crate::truth::Truth;
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
-    let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
+    let mut tracker = Tracker::new(args.tracker_settings(None)?).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
-        let settings = args.options.tracker_settings_for_edges(length);
-        tracker = Tracker::new(settings).map_err(Failure::unusable)?;
+        tracker = Tracker::new(args.tracker_settings(Some(length))?).map_err(Failure::unusable)?;
     }
     let name = input.name.clone();
     let of_file = input.truth().filter(|_| args.truth.is_none());
@@ -47,7 +48,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         let origin = if args.truth.is_some() { "--truth" } else { "the truth in the file" };
         warn(&format!("{origin} is no {family} motion, so it is not shown"));
     }
-    let mut files = Files::create(args)?;
+    let mut files = Files::create(args, truth.as_ref())?;
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
     let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
@@ -157,9 +158,10 @@ struct Files<'a> {
 }
 
 impl<'a> Files<'a> {
-    fn create(args: &'a IdentifyArgs) -> Result<Self, Failure> {
+    fn create(args: &'a IdentifyArgs, truth: Option<&Truth>) -> Result<Self, Failure> {
+        let study = (args.options.method == IdentifyMethod::Adaptive).then(|| study(args, truth));
         let trace = args.trace.as_deref().map(|path| {
-            let writer = TraceWriter::new(WholeFile::create(path)?, args.options.motion.family());
+            let writer = TraceWriter::new(WholeFile::create(path)?, args.options.motion.family(), study);
             writer.map(|writer| (path, writer)).map_err(|error| file_failure(path, &error))
         });
         let trajectory = args.trajectory.as_deref();
@@ -229,6 +231,17 @@ impl<'a> Files<'a> {
         }
         Ok(())
     }
+}
+
+/// What the Lyapunov function of the adaptive law needs to know of the truth.
+fn study(args: &IdentifyArgs, truth: Option<&Truth>) -> Study {
+    let model = args.options.motion.model();
+    let constant = truth.filter(|truth| truth.constant_parameters_in(model.into()).is_some());
+    let truth = constant.map(|truth| {
+        let in_image = args.options.scale.unwrap_or_default().generator_in_image(&truth.motion.generator());
+        MotionEstimate::new(model, &model.parameters_of(&in_image)[..model.parameter_count()], None)
+    });
+    Study { truth }
 }
 
 fn print(

@@ -1,21 +1,44 @@
 use std::io::{self, Write};
 
+use freeform_motion::AdaptiveProgress;
+use freeform_motion::estimate::MotionEstimate;
+use freeform_motion::identify::AdaptiveDiagnostics;
 use freeform_motion::tracker::{MotionFamily, ObjectPhase, ObjectResult, Observation};
 
 /// Writes the trace: one row per frame with the parameters as identified so far.
 pub(crate) struct TraceWriter<W: Write> {
     writer: csv::Writer<W>,
     parameters: usize,
+    study: Option<Study>,
+}
+
+/// What is written of the adaptive law besides its parameters.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Study {
+    /// The true motion in the image, where it is known and constant.
+    pub(crate) truth: Option<MotionEstimate>,
+}
+
+impl Study {
+    const NAMES: [&str; 4] = ["error", "energy", "lyapunov", "excitation"];
+
+    fn cells(&self, progress: Option<&AdaptiveProgress>) -> [String; 4] {
+        let Some(progress) = progress else { return [const { String::new() }; 4] };
+        let AdaptiveDiagnostics { error, energy, excitation } = progress.diagnostics;
+        let lyapunov = self.truth.as_ref().map(|truth| progress.lyapunov_function(truth));
+        [Some(error), Some(energy), lyapunov, Some(excitation)].map(optional)
+    }
 }
 
 impl<W: Write> TraceWriter<W> {
-    /// Writes the header.
-    pub(crate) fn new(sink: W, family: MotionFamily) -> io::Result<Self> {
+    /// Writes the header, with columns for what the adaptive law is doing, if that is asked for.
+    pub(crate) fn new(sink: W, family: MotionFamily, study: Option<Study>) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(sink);
         let mut header: Vec<String> = ["object", "frame", "time", "phase", "accepted"].map(str::to_owned).into();
         header.extend(family.parameter_names().iter().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
+        header.extend(study.iter().flat_map(|_| Study::NAMES.map(str::to_owned)));
         writer.write_record(&header).map_err(io::Error::from)?;
-        Ok(Self { writer, parameters: family.parameter_names().len() })
+        Ok(Self { writer, parameters: family.parameter_names().len(), study })
     }
 
     /// Writes one frame. What is missing stays empty.
@@ -31,6 +54,7 @@ impl<W: Write> TraceWriter<W> {
             Some(found) => row.extend(found.iter().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])),
             None => row.extend(std::iter::repeat_n(String::new(), 2 * self.parameters)),
         }
+        row.extend(self.study.iter().flat_map(|study| study.cells(observation.progress.as_ref())));
         self.writer.write_record(&row).map_err(io::Error::from)
     }
 

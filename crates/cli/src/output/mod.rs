@@ -24,7 +24,7 @@ mod trajectory_csv;
 mod velocity;
 
 pub(crate) use aligned::table_text;
-pub(crate) use csv::{TraceWriter, write_parameters};
+pub(crate) use csv::{Study, TraceWriter, write_parameters};
 pub(crate) use evaluate_csv::write_evaluation_csv;
 pub(crate) use evaluate_json::write_evaluation_json;
 pub(crate) use evaluate_markdown::write_evaluation_markdown;

@@ -1,4 +1,5 @@
 //! The contract of the command line, tested on the binary itself.
+mod adaptive_study;
 mod bad_input;
 mod browser;
 mod evaluate;

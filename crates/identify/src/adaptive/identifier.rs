@@ -8,7 +8,7 @@ use super::{
     origin_shift::OriginShift,
     pair_quality::PairQuality,
     running_law::{Frame, Last, RunningLaw},
-    settings::{AdaptiveLaw, AdaptiveSettings, PairChoice},
+    settings::{AdaptiveDiagnostics, AdaptiveLaw, AdaptiveSettings, PairChoice},
 };
 use crate::error::IdentifyError;
 
@@ -212,6 +212,17 @@ impl AdaptiveIdentifier {
             let count = model.parameter_count();
             let estimate = MotionEstimate::new(model, &parameters.as_slice()[..count], None);
             if self.is_observable() { estimate } else { (0..count).fold(estimate, MotionEstimate::with_unobservable) }
+        })
+    }
+
+    /// Error, Lyapunov function and excitation of the law that the [estimate](Self::estimate) comes from; `None` as there.
+    #[must_use]
+    pub fn diagnostics(&self) -> Option<AdaptiveDiagnostics> {
+        (self.followed > 0).then(|| match &self.laws {
+            Laws::Three(laws) => laws[self.chosen_law(laws.len())].diagnostics(),
+            Laws::Four(laws) => laws[self.chosen_law(laws.len())].diagnostics(),
+            Laws::Six(laws) => laws[self.chosen_law(laws.len())].diagnostics(),
+            Laws::Eight(laws) => laws[self.chosen_law(laws.len())].diagnostics(),
         })
     }
 

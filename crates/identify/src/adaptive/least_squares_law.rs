@@ -1,4 +1,4 @@
-use nalgebra::{SMatrix, SVector, Vector4};
+use nalgebra::{Const, DimMin, SMatrix, SVector, Vector4};
 
 use super::{origin_shift::OriginShift, regressor::Regressor};
 
@@ -29,6 +29,11 @@ pub(crate) struct FilteredPair<const N: usize> {
 impl<const N: usize> FilteredPair<N> {
     pub(crate) fn starting_at(state: &Vector4<f64>) -> Self {
         Self { state: Vector4::zeros(), regressor: SMatrix::zeros(), transient: *state }
+    }
+
+    /// How far the regression is off at X with these parameters.
+    pub(crate) fn error(&self, x: &Vector4<f64>, parameters: &SVector<f64, N>) -> Vector4<f64> {
+        self.regressor * parameters - (x - FILTER_RATE * self.state - self.transient)
     }
 
     /// Goes on in other coordinates; `old_from_new` takes the parameters back.
@@ -82,6 +87,16 @@ impl<const N: usize> LeastSquaresLaw<N> {
         let precision = noise_precision(x) * (weight * seconds);
         self.information += precision * filtered.regressor.tr_mul(&filtered.regressor);
         self.projection += precision * filtered.regressor.tr_mul(&right);
+    }
+
+    /// How evenly all parameters are excited: the determinant of the information over that of a multiple of the identity with its trace,
+    /// from 0 to 1.
+    pub(crate) fn excitation(&self) -> f64
+    where
+        Const<N>: DimMin<Const<N>, Output = Const<N>>,
+    {
+        let mean = self.information.trace() / N as f64;
+        if mean > 0.0 { (self.information / mean).determinant().clamp(0.0, 1.0) } else { 0.0 }
     }
 
     pub(crate) fn parameters(&self) -> SVector<f64, N> {

@@ -1,4 +1,5 @@
 //! The paper's adaptive identifier (equations 19 to 22).
+mod drem_law;
 mod identifier;
 mod least_squares_law;
 mod line_path;
@@ -14,4 +15,4 @@ mod structured_law;
 pub use identifier::AdaptiveIdentifier;
 pub use lyapunov::solve_lyapunov;
 pub use regressor::{Regressor, quadratic_terms};
-pub use settings::{AdaptiveLaw, AdaptiveSettings, PairChoice};
+pub use settings::{AdaptiveDiagnostics, AdaptiveLaw, AdaptiveSettings, PairChoice};

@@ -1,14 +1,15 @@
 use freeform_decompose::{Line, MAX_PAIRS};
 use freeform_riccati::{AffineMotion, MAX_PARAMETERS, MotionModel, RealVariables};
-use nalgebra::{Const, DimMin, Matrix3, Matrix4, SVector, Vector4};
+use nalgebra::{Const, DMatrix, DimMin, Matrix3, Matrix4, SMatrix, SVector, Vector4};
 
 use super::{
+    drem_law::DremLaw,
     least_squares_law::{FilteredPair, LeastSquaresLaw},
     line_path::LinePath,
     origin_shift::OriginShift,
     printed_law::PrintedLaw,
     regressor::Regressor,
-    settings::{AdaptiveLaw, AdaptiveSettings, PairChoice},
+    settings::{AdaptiveDiagnostics, AdaptiveLaw, AdaptiveSettings, PairChoice},
     structured_law::{PairInput, StructuredLaw},
 };
 
@@ -17,6 +18,8 @@ const LARGEST_TURN: f64 = 0.5;
 /// X changes by at most about this fraction of itself in one step of the integration.
 const STEP_CHANGE: f64 = 0.1;
 const MAX_STEPS: usize = 64;
+/// Seconds over which the excitation is averaged: about a turn of the paper's objects.
+const EXCITATION_MEMORY: f64 = 4.0;
 
 /// One frame as the laws see it.
 pub(super) struct Frame {
@@ -44,6 +47,21 @@ pub(super) struct RunningLaw<const N: usize> {
     pair: Option<usize>,
     states: [Vector4<f64>; MAX_PAIRS],
     filters: [FilteredPair<N>; MAX_PAIRS],
+    regressor: Regressor<N>,
+    lyapunov: Matrix4<f64>,
+    /// Mean of `sum W' W` over the last seconds.
+    excitation: SMatrix<f64, N, N>,
+    /// Of the last frame.
+    errors: PairErrors,
+}
+
+/// How far the estimator is off over the pairs of a frame.
+#[derive(Debug, Clone, Copy, Default)]
+struct PairErrors {
+    /// `sum |e|^2` over the pairs, weighted.
+    square: f64,
+    /// `sum e' P e`, weighted.
+    energy: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -55,6 +73,7 @@ enum Law<const N: usize> {
     Structured(StructuredLaw<N>),
     Printed(PrintedLaw),
     LeastSquares(LeastSquaresLaw<N>),
+    Drem(DremLaw<N>),
 }
 
 impl<const N: usize> RunningLaw<N>
@@ -80,6 +99,7 @@ where
                 Law::Printed(PrintedLaw::new(settings.stability, lyapunov, &affine_motion(&generator)))
             }
             AdaptiveLaw::FilteredLeastSquares => Law::LeastSquares(LeastSquaresLaw::new(regressor, initial)),
+            AdaptiveLaw::RegressorMixing => Law::Drem(DremLaw::new(regressor, initial)),
         };
         let running = |&pair: &Option<usize>| Self {
             law: law.clone(),
@@ -87,6 +107,10 @@ where
             pair,
             states: [Vector4::zeros(); MAX_PAIRS],
             filters: [FilteredPair::starting_at(&Vector4::zeros()); MAX_PAIRS],
+            regressor,
+            lyapunov,
+            excitation: SMatrix::zeros(),
+            errors: PairErrors::default(),
         };
         pairs.iter().map(running).collect()
     }
@@ -97,6 +121,7 @@ where
         match &self.law {
             Law::Structured(law) => fill(law.parameters().as_slice()),
             Law::LeastSquares(law) => fill(law.parameters().as_slice()),
+            Law::Drem(law) => fill(law.parameters().as_slice()),
             Law::Printed(law) => parameters = law.parameters(self.model),
         }
         parameters
@@ -123,13 +148,49 @@ where
         // A pair that is used alone has nothing to be weighed against.
         let weights = if self.pair.is_some() { [1.0; MAX_PAIRS] } else { frame.weights };
         self.advance(seconds, &paths[..lines.len()], &weights);
-        if let Law::LeastSquares(law) = &mut self.law {
-            law.forget(seconds);
-            for (slot, line) in lines.iter().enumerate() {
-                law.take(seconds, &self.filters[slot], &RealVariables::from(*line).state(), weights[slot]);
+        let of_pairs =
+            self.filters.iter().zip(lines.iter().map(|line| RealVariables::from(*line).state())).zip(weights);
+        match &mut self.law {
+            Law::LeastSquares(law) => {
+                law.forget(seconds);
+                of_pairs.for_each(|((filter, state), weight)| law.take(seconds, filter, &state, weight));
             }
+            Law::Drem(law) => {
+                law.forget(seconds);
+                of_pairs.for_each(|((filter, state), weight)| law.take(seconds, filter, &state, weight));
+                law.adapt(seconds);
+            }
+            Law::Structured(_) | Law::Printed(_) => {}
         }
+        self.take_excitation(seconds, lines, &weights);
         true
+    }
+
+    /// Error of the estimator, its Lyapunov function and the excitation, after the last frame.
+    pub(super) fn diagnostics(&self) -> AdaptiveDiagnostics {
+        let least = DMatrix::from_column_slice(N, N, self.excitation.as_slice()).symmetric_eigenvalues().min();
+        let PairErrors { square, energy } = self.errors;
+        AdaptiveDiagnostics { error: square.sqrt(), energy, excitation: least.max(0.0) }
+    }
+
+    /// Takes how far the estimator is off at the lines of a frame, and how they excite the parameters.
+    fn take_excitation(&mut self, seconds: f64, lines: &[Line], weights: &[f64]) {
+        let keep = (-seconds / EXCITATION_MEMORY).exp();
+        self.excitation *= keep;
+        self.errors = PairErrors::default();
+        let parameters = self.parameters();
+        let parameters = parameters.fixed_rows::<N>(0);
+        for (slot, (line, weight)) in lines.iter().zip(weights).enumerate() {
+            let x = RealVariables::from(*line).state();
+            let w = self.regressor.at(&x);
+            self.excitation += (1.0 - keep) * *weight * w.tr_mul(&w);
+            let error = match &self.law {
+                Law::Structured(_) | Law::Printed(_) => self.states[slot] - x,
+                Law::LeastSquares(_) | Law::Drem(_) => self.filters[slot].error(&x, &parameters.into_owned()),
+            };
+            self.errors.square += weight * error.norm_squared();
+            self.errors.energy += weight * error.dot(&(self.lyapunov * error));
+        }
     }
 
     pub(super) fn shift_origin(&mut self, shift: &OriginShift, by_slopes: bool) {
@@ -138,6 +199,11 @@ where
             Law::Structured(law) => law.shift_origin(shift, by_slopes),
             Law::Printed(law) => law.shift_origin(shift),
             Law::LeastSquares(law) => {
+                let old_from_new = shift.inverse().of_parameters(self.model);
+                law.shift_origin(shift, &old_from_new);
+                self.filters.iter_mut().for_each(|filter| filter.shift_origin(shift, &old_from_new));
+            }
+            Law::Drem(law) => {
                 let old_from_new = shift.inverse().of_parameters(self.model);
                 law.shift_origin(shift, &old_from_new);
                 self.filters.iter_mut().for_each(|filter| filter.shift_origin(shift, &old_from_new));
@@ -174,9 +240,9 @@ where
                         law.step(step, state, input);
                     }
                 }
-                Law::LeastSquares(law) => {
+                Law::LeastSquares(_) | Law::Drem(_) => {
                     for (filter, input) in self.filters.iter_mut().zip(inputs) {
-                        filter.advance(step, &input.state, &law.regressor().at(&input.state));
+                        filter.advance(step, &input.state, &self.regressor.at(&input.state));
                     }
                 }
             }

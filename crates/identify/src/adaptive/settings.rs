@@ -13,6 +13,10 @@ pub enum AdaptiveLaw {
     /// Least squares on the filtered regression `X' = W theta` with exponential forgetting: settles in a fraction of a
     /// second (Slotine, Li, Applied Nonlinear Control, 1991, section 8.7).
     FilteredLeastSquares,
+    /// Dynamic regressor extension and mixing on the same regression: a law for each parameter by itself, whose error never grows of
+    /// exact lines (Aranovskiy, Bobtsov, Ortega, Pyrkin, Performance enhancement of parameter estimators via dynamic regressor
+    /// extension and mixing, 2017).
+    RegressorMixing,
 }
 
 /// Which conjugate pairs drive the identification.
@@ -24,6 +28,19 @@ pub enum PairChoice {
     Given(usize),
     /// All pairs, each weighted by its noise relative to that of the best.
     All,
+}
+
+/// What an adaptive law is doing, for those who study it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AdaptiveDiagnostics {
+    /// Norm of the error e = Xh - X of the estimator over all pairs in use, weighted as they are; of the laws on the filtered regression, of
+    /// the error of that.
+    pub error: f64,
+    /// `sum e' P e`: the part of the Lyapunov function `sum e' P e + |theta - theta_true|^2` that is known without the truth.
+    pub energy: f64,
+    /// Smallest eigenvalue of the mean of `sum W' W` over the last four seconds, forgotten exponentially: how much the parameters that are
+    /// excited least are excited. 0 where something is not excited at all.
+    pub excitation: f64,
 }
 
 /// Settings of an [`AdaptiveIdentifier`](crate::AdaptiveIdentifier).
