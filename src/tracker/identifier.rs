@@ -1,8 +1,13 @@
 //! The identifier of one object, whichever method it is.
+#[cfg(feature = "serde")]
+use std::sync::Arc;
+
 use freeform_curve_fit::{Fit, Outline};
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
 use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, Unstated};
 
+#[cfg(feature = "serde")]
+use super::resting::{RestingError, RestingFilter, StateFile};
 use super::{
     observation::ObjectPhase,
     settings::{MethodSettings, TrackerError},
@@ -11,13 +16,17 @@ use crate::pipeline::{Pipeline, PipelineSettings};
 use crate::rejection::RejectionCause;
 use crate::warning::{MANY_REJECTED, Warning};
 
-/// What is known of one object.
+/// What is known of one object. While it rests in a file it takes no frames, and only how often it was begun anew and whether its motion
+/// changed can be asked for.
 #[derive(Debug, Clone)]
 pub(super) enum Identifier {
     /// The paper's identifier on the lines of fitted curves.
     Adaptive(Box<Pipeline>),
     /// The motion filter on the points of the outlines.
     Filter(Box<FilteredObject>),
+    /// A motion filter whose state is in a file.
+    #[cfg(feature = "serde")]
+    Resting(Arc<RestingFilter>),
 }
 
 /// A filter, and what it knew before it began to look for the object again.
@@ -67,6 +76,26 @@ impl Identifier {
                 Err(error) => Step { rejected_because: Some(RejectionCause::Pipeline(error)), ..Step::default() },
             },
             Self::Filter(object) => object.push(time, outline),
+            #[cfg(feature = "serde")]
+            Self::Resting(_) => Step::default(),
+        }
+    }
+
+    /// Puts a motion filter to rest in a file; other methods stay as they are.
+    #[cfg(feature = "serde")]
+    pub(super) fn rest(&mut self, file: &Arc<StateFile>) -> Result<(), RestingError> {
+        if let Self::Filter(object) = self {
+            *self = Self::Resting(Arc::new(RestingFilter::of(object, file)?));
+        }
+        Ok(())
+    }
+
+    /// As it is when it is awake, if it rests.
+    #[cfg(feature = "serde")]
+    pub(super) fn awake(&self) -> Result<Option<Self>, RestingError> {
+        match self {
+            Self::Resting(state) => Ok(Some(Self::Filter(Box::new(state.read()?)))),
+            _ => Ok(None),
         }
     }
 
@@ -75,6 +104,8 @@ impl Identifier {
         match self {
             Self::Adaptive(pipeline) => pipeline.estimate(),
             Self::Filter(object) => object.last_known.map(|(_, estimate)| estimate),
+            #[cfg(feature = "serde")]
+            Self::Resting(_) => None,
         }
     }
 
@@ -82,7 +113,7 @@ impl Identifier {
     pub(super) fn velocity(&self) -> Option<PointVelocity> {
         match self {
             Self::Filter(object) => object.filter.velocity(),
-            Self::Adaptive(_) => None,
+            _ => None,
         }
     }
 
@@ -90,7 +121,7 @@ impl Identifier {
     pub(super) fn ambiguity(&self) -> Option<Ambiguity> {
         match self {
             Self::Filter(object) => object.filter.ambiguity(),
-            Self::Adaptive(_) => None,
+            _ => None,
         }
     }
 
@@ -98,7 +129,7 @@ impl Identifier {
     pub(super) fn aliases(&self) -> Vec<f64> {
         match self {
             Self::Filter(object) => object.filter.aliases(),
-            Self::Adaptive(_) => Vec::new(),
+            _ => Vec::new(),
         }
     }
 
@@ -106,7 +137,7 @@ impl Identifier {
     pub(super) fn dynamics(&self) -> Option<DynamicsWeights> {
         match self {
             Self::Filter(object) => object.filter.dynamics(),
-            Self::Adaptive(_) => None,
+            _ => None,
         }
     }
 
@@ -114,13 +145,20 @@ impl Identifier {
     pub(super) fn restarts(&self) -> usize {
         match self {
             Self::Filter(object) => object.filter.restarts(),
+            #[cfg(feature = "serde")]
+            Self::Resting(state) => state.restarts,
             Self::Adaptive(_) => 0,
         }
     }
 
     /// Whether the motion was seen to change, which a smoother that takes it for constant does not know.
     pub(super) fn motion_changed(&self) -> bool {
-        matches!(self, Self::Filter(object) if object.filter.motion_changed())
+        match self {
+            Self::Filter(object) => object.filter.motion_changed(),
+            #[cfg(feature = "serde")]
+            Self::Resting(state) => state.motion_changed,
+            Self::Adaptive(_) => false,
+        }
     }
 
     /// What a user should know of the result.
@@ -128,6 +166,8 @@ impl Identifier {
         match self {
             Self::Adaptive(pipeline) => pipeline.warnings(),
             Self::Filter(object) => object.warnings(),
+            #[cfg(feature = "serde")]
+            Self::Resting(_) => Vec::new(),
         }
     }
 }
