@@ -58,7 +58,10 @@ impl fmt::Display for RejectionCause {
 }
 
 pub(crate) fn write_state_lost(f: &mut fmt::Formatter<'_>, reason: &str) -> fmt::Result {
-    write!(f, "what was known of the object could not be read back from the temporary file that it was kept in: {reason}")
+    write!(
+        f,
+        "what was known of the object could not be read back from the temporary file that it was kept in: {reason}"
+    )
 }
 
 /// An error and what caused it, in one line, without what its own text already says.

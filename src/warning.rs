@@ -3,7 +3,11 @@ use std::fmt;
 use freeform_outline_filter::{Ambiguity, WrongFamily};
 use freeform_riccati::MotionModel;
 
-use crate::{frame_ranges::FrameRanges, number::significant, rejection::{FrameRejection, write_state_lost}};
+use crate::{
+    frame_ranges::FrameRanges,
+    number::significant,
+    rejection::{FrameRejection, write_state_lost},
+};
 
 /// Share of rejected frames from which on there is a warning.
 pub(crate) const MANY_REJECTED: f64 = 0.05;

@@ -55,7 +55,8 @@ impl Histories {
     /// What is to be said of so many objects, if they are not all drawn.
     pub(crate) fn left_out(&self, objects: usize) -> Option<String> {
         let drawn = self.list.len();
-        (drawn == MOST_DRAWN && objects > drawn).then(|| format!("figures are drawn of the first {drawn} of {objects} objects"))
+        (drawn == MOST_DRAWN && objects > drawn)
+            .then(|| format!("figures are drawn of the first {drawn} of {objects} objects"))
     }
 
     /// Adds a frame to the history of its object.

@@ -2,6 +2,8 @@
 mod bad_input;
 mod browser;
 mod evaluate;
+#[cfg(target_os = "linux")]
+mod fault_injection;
 mod files;
 mod filter;
 mod fit;
