@@ -25,7 +25,7 @@ use crate::reader::{Event, follow};
 use crate::truth::Truth;
 
 /// Objects whose states are kept in memory: 25 kB each where outlines are small, up to half a megabyte.
-const STATES_IN_MEMORY: usize = 4096;
+const STATES_IN_MEMORY: usize = 1024;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
