@@ -127,8 +127,7 @@ fn body(
     let track = track_id.or(instance_id).or(attributes.and_then(|attributes| attributes.track_id));
     let track = track.filter(|track| !track.is_null());
     let category = text(&category_id);
-    let object = track
-        .map_or_else(|| names.get(&category).unwrap_or(&category).clone(), |track| text(&track));
+    let object = track.map_or_else(|| names.get(&category).unwrap_or(&category).clone(), |track| text(&track));
     Ok(Body { object, frame, time: None, height, contours })
 }
 
