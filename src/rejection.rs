@@ -28,6 +28,8 @@ pub enum RejectionCause {
     Filter(FilterError),
     /// Error of the pipeline.
     Pipeline(PipelineError),
+    /// What was known of the object cannot be had back from the file that it rested in, for this reason.
+    StateLost(String),
     /// What was told of a frame rejected before the state of the tracker was saved.
     Saved(String),
 }
@@ -46,12 +48,20 @@ impl fmt::Display for RejectionCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoOutline(reason) | Self::Saved(reason) => f.write_str(reason),
+            Self::StateLost(reason) => write_state_lost(f, reason),
             Self::NotRectified(error) => error.fmt(f),
             Self::NotAccepted(rejection) => rejection.fmt(f),
             Self::Filter(error) => f.write_str(&with_causes(error)),
             Self::Pipeline(error) => f.write_str(&with_causes(error)),
         }
     }
+}
+
+pub(crate) fn write_state_lost(f: &mut fmt::Formatter<'_>, reason: &str) -> fmt::Result {
+    write!(
+        f,
+        "what was known of the object could not be read back from the temporary file that it was kept in: {reason}"
+    )
 }
 
 /// An error and what caused it, in one line, without what its own text already says.

@@ -3,7 +3,11 @@ use std::fmt;
 use freeform_outline_filter::{Ambiguity, Dynamics, PlaneAmbiguity, WrongFamily};
 use freeform_riccati::MotionModel;
 
-use crate::{frame_ranges::FrameRanges, number::significant, rejection::FrameRejection};
+use crate::{
+    frame_ranges::FrameRanges,
+    number::significant,
+    rejection::{FrameRejection, write_state_lost},
+};
 
 /// Share of rejected frames from which on there is a warning.
 pub(crate) const MANY_REJECTED: f64 = 0.05;
@@ -95,6 +99,11 @@ pub enum Warning {
     },
     /// The method diverged, and its numbers are not finite.
     Diverged,
+    /// What was known of the object cannot be had back from the file that it rested in.
+    StateLost {
+        /// Why.
+        reason: String,
+    },
     /// One of the first frames that were not used.
     FrameRejected(FrameRejection),
     /// Further frames that were not used, beyond those reported with their reasons.
@@ -131,7 +140,7 @@ impl Warning {
     /// Rank by importance: what makes a result worthless first, single frames last.
     pub(crate) const fn order(&self) -> u8 {
         match self {
-            Self::PointsOutOfOrder { .. } | Self::Diverged => 0,
+            Self::PointsOutOfOrder { .. } | Self::Diverged | Self::StateLost { .. } => 0,
             Self::TooManyRejected { .. } | Self::Lost | Self::Reacquiring { .. } => 1,
             Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
             Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias => 3,
@@ -173,6 +182,7 @@ impl Warning {
             Self::WrongFamily { family: WrongFamily::Shape, .. } => "wrong_family_shape",
             Self::Aliases { .. } => "aliases",
             Self::Diverged => "diverged",
+            Self::StateLost { .. } => "state_lost",
             Self::FrameRejected(_) => "frame_rejected",
             Self::MoreFramesRejected { .. } => "more_frames_rejected",
             Self::AmbiguousCorrespondence { .. } => "ambiguous_correspondence",
@@ -247,6 +257,7 @@ impl fmt::Display for Warning {
                 )
             }
             Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
+            Self::StateLost { reason } => write_state_lost(f, reason),
             Self::FrameRejected(rejection) => write!(f, "rejected: {rejection}"),
             Self::MoreFramesRejected { count, frames } => write!(f, "rejected: {count} more frame(s), {frames}"),
             Self::AmbiguousCorrespondence { ambiguous, matched } => write!(

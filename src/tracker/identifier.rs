@@ -1,8 +1,13 @@
 //! The identifier of one object, whichever method it is.
+#[cfg(feature = "serde")]
+use std::sync::Arc;
+
 use freeform_curve_fit::{Fit, Outline};
 use freeform_estimate::{MotionEstimate, MotionState, PlaneEstimate, PointVelocity};
 use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, PlaneAmbiguity, PlaneFilter, Unstated};
 
+#[cfg(feature = "serde")]
+use super::resting::{RestingError, RestingFilter, StateFile};
 use super::{
     observation::ObjectPhase,
     plane_object::PlaneObject,
@@ -12,7 +17,8 @@ use crate::rejection::RejectionCause;
 use crate::warning::{MANY_REJECTED, Warning};
 use crate::{AdaptiveProgress, Pipeline, PipelineSettings};
 
-/// What is known of one object.
+/// What is known of one object. While it rests in a file it takes no frames, and only how often it was begun anew and whether its motion
+/// changed can be asked for.
 #[derive(Debug, Clone)]
 pub(super) enum Identifier {
     /// The paper's identifier on the lines of fitted curves.
@@ -21,6 +27,9 @@ pub(super) enum Identifier {
     Filter(Box<FilteredObject>),
     /// The motion filter, and all frames together for the motion in space.
     Plane(Box<PlaneObject>),
+    /// A motion filter whose state is in a file.
+    #[cfg(feature = "serde")]
+    Resting(Arc<RestingFilter>),
 }
 
 /// A filter, and what it knew before it began to look for the object again.
@@ -77,6 +86,26 @@ impl Identifier {
             },
             Self::Filter(object) => object.push(time, outline),
             Self::Plane(object) => object.push(time, outline),
+            #[cfg(feature = "serde")]
+            Self::Resting(_) => Step::default(),
+        }
+    }
+
+    /// Puts a motion filter to rest in a file; other methods stay as they are.
+    #[cfg(feature = "serde")]
+    pub(super) fn rest(&mut self, file: &Arc<StateFile>) -> Result<(), RestingError> {
+        if let Self::Filter(object) = self {
+            *self = Self::Resting(Arc::new(RestingFilter::of(object, file)?));
+        }
+        Ok(())
+    }
+
+    /// As it is when it is awake, if it rests.
+    #[cfg(feature = "serde")]
+    pub(super) fn awake(&self) -> Result<Option<Self>, RestingError> {
+        match self {
+            Self::Resting(state) => Ok(Some(Self::Filter(Box::new(state.read()?)))),
+            _ => Ok(None),
         }
     }
 
@@ -86,6 +115,8 @@ impl Identifier {
             Self::Adaptive(pipeline) => pipeline.estimate(),
             Self::Filter(object) => object.last_known.map(|(_, estimate)| estimate),
             Self::Plane(_) => None,
+            #[cfg(feature = "serde")]
+            Self::Resting(_) => None,
         }
     }
 
@@ -93,7 +124,7 @@ impl Identifier {
     pub(super) fn plane(&self) -> Option<PlaneEstimate> {
         match self {
             Self::Plane(object) => object.estimate(),
-            Self::Adaptive(_) | Self::Filter(_) => None,
+            _ => None,
         }
     }
 
@@ -101,7 +132,7 @@ impl Identifier {
     pub(super) fn plane_ambiguity(&self) -> Option<PlaneAmbiguity> {
         match self {
             Self::Plane(object) => object.estimate().and_then(|_| object.filter.ambiguity()),
-            Self::Adaptive(_) | Self::Filter(_) => None,
+            _ => None,
         }
     }
 
@@ -109,7 +140,7 @@ impl Identifier {
     pub(super) fn velocity(&self) -> Option<PointVelocity> {
         match self {
             Self::Filter(object) => object.filter.velocity(),
-            Self::Adaptive(_) | Self::Plane(_) => None,
+            _ => None,
         }
     }
 
@@ -117,7 +148,7 @@ impl Identifier {
     pub(super) fn ambiguity(&self) -> Option<Ambiguity> {
         match self {
             Self::Filter(object) => object.filter.ambiguity(),
-            Self::Adaptive(_) | Self::Plane(_) => None,
+            _ => None,
         }
     }
 
@@ -125,7 +156,7 @@ impl Identifier {
     pub(super) fn aliases(&self) -> Vec<f64> {
         match self {
             Self::Filter(object) => object.filter.aliases(),
-            Self::Adaptive(_) | Self::Plane(_) => Vec::new(),
+            _ => Vec::new(),
         }
     }
 
@@ -133,7 +164,7 @@ impl Identifier {
     pub(super) fn dynamics(&self) -> Option<DynamicsWeights> {
         match self {
             Self::Filter(object) => object.filter.dynamics(),
-            Self::Adaptive(_) | Self::Plane(_) => None,
+            _ => None,
         }
     }
 
@@ -142,6 +173,8 @@ impl Identifier {
         match self {
             Self::Filter(object) => object.filter.restarts(),
             Self::Plane(object) => object.filter.follower().restarts(),
+            #[cfg(feature = "serde")]
+            Self::Resting(state) => state.restarts,
             Self::Adaptive(_) => 0,
         }
     }
@@ -152,6 +185,8 @@ impl Identifier {
             Self::Filter(object) => object.filter.motion_changed(),
             // The generator of a plane changes with its normal.
             Self::Plane(_) => true,
+            #[cfg(feature = "serde")]
+            Self::Resting(state) => state.motion_changed,
             Self::Adaptive(_) => false,
         }
     }
@@ -162,6 +197,8 @@ impl Identifier {
             Self::Adaptive(pipeline) => pipeline.warnings(),
             Self::Filter(object) => object.warnings(),
             Self::Plane(object) => object.warnings(),
+            #[cfg(feature = "serde")]
+            Self::Resting(_) => Vec::new(),
         }
     }
 }

@@ -13,6 +13,8 @@ mod observation;
 mod plane_object;
 mod queues;
 mod recording;
+#[cfg(feature = "serde")]
+mod resting;
 mod result;
 mod seeking;
 mod settings;
@@ -76,6 +78,8 @@ pub struct Tracker {
     /// One that has seen nothing yet.
     unused: Identifier,
     objects: Objects,
+    #[cfg(feature = "serde")]
+    rest: Option<resting::Rest>,
 }
 
 /// Objects in the order in which they first appeared.
@@ -93,7 +97,25 @@ impl Tracker {
     /// A setting outside its range.
     pub fn new(settings: TrackerSettings) -> Result<Self, TrackerError> {
         let unused = Identifier::new(&settings.method)?;
-        Ok(Self { settings, unused, objects: Objects::default() })
+        Ok(Self {
+            settings,
+            unused,
+            objects: Objects::default(),
+            #[cfg(feature = "serde")]
+            rest: None,
+        })
+    }
+
+    /// While a recording is followed, keeps the states of no more than about so many objects of the motion filter in memory, and those of
+    /// the others in `file`, which should be temporary and empty, open for reading and writing. Results are the same to the last bit. Which
+    /// objects are put there is left to chance, as any rule would put many of them there just before they are needed again.
+    ///
+    /// Where the file cannot be written, what is not in it stays in memory. What cannot be read back is lost, with a rejection of each
+    /// further frame and a [`Warning`](crate::Warning) that say so.
+    #[cfg(feature = "serde")]
+    pub fn keep_states_in(&mut self, file: std::fs::File, most_in_memory: usize) {
+        let file = std::sync::Arc::new(resting::StateFile::new(file));
+        self.rest = Some(resting::Rest { file, most_awake: most_in_memory });
     }
 
     /// Its settings.

@@ -54,6 +54,10 @@ impl TrackedObject {
 
     /// Takes its next outline.
     pub(super) fn push(&mut self, frame: &OutlineFrame) -> Observation {
+        if let Err(lost) = self.wake() {
+            let unusable = self.unusable(frame.frame, lost);
+            return Observation { time: Some(frame.time), ..unusable };
+        }
         let in_plane = match self.rectification.map(|plane| plane.outline(&frame.outline)).transpose() {
             Ok(in_plane) => in_plane,
             Err(error) => {
@@ -81,6 +85,24 @@ impl TrackedObject {
             segment: self.identifier.restarts(),
             warning: self.contour_order.look_at(frame).cloned(),
         }
+    }
+
+    /// Reads what is known of it from the file that it rests in, if it does.
+    #[cfg(feature = "serde")]
+    fn wake(&mut self) -> Result<(), RejectionCause> {
+        match self.identifier.awake() {
+            Ok(awake) => {
+                awake.into_iter().for_each(|awake| self.identifier = awake);
+                Ok(())
+            }
+            Err(error) => Err(RejectionCause::StateLost(error.to_string())),
+        }
+    }
+
+    #[cfg(not(feature = "serde"))]
+    #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "objects rest only where they can be saved")]
+    fn wake(&mut self) -> Result<(), RejectionCause> {
+        Ok(())
     }
 
     /// Takes note of a frame whose points are no outline.
@@ -137,11 +159,25 @@ impl TrackedObject {
 
     /// What is known of it now.
     pub(super) fn result(&self, settings: &TrackerSettings) -> ObjectResult {
-        let raw = self.identifier.estimate();
+        #[cfg(feature = "serde")]
+        match self.identifier.awake() {
+            Ok(Some(awake)) => return self.result_of(&awake, settings),
+            Ok(None) => {}
+            Err(error) => {
+                let mut result = self.result_of(&self.identifier, settings);
+                result.warnings.insert(0, Warning::StateLost { reason: error.to_string() });
+                return result;
+            }
+        }
+        self.result_of(&self.identifier, settings)
+    }
+
+    fn result_of(&self, identifier: &Identifier, settings: &TrackerSettings) -> ObjectResult {
+        let raw = identifier.estimate();
         let estimate = raw.and_then(|estimate| self.reported(estimate));
         // First, as it is the reason for others.
         let out_of_order = self.contour_order.warning().cloned();
-        let mut warnings: Vec<Warning> = out_of_order.into_iter().chain(self.identifier.warnings()).collect();
+        let mut warnings: Vec<Warning> = out_of_order.into_iter().chain(identifier.warnings()).collect();
         if raw.is_some() && estimate.is_none() {
             warnings.push(Warning::Diverged);
         }
@@ -150,7 +186,7 @@ impl TrackedObject {
             let count = self.rejected - self.rejections.len();
             warnings.push(Warning::MoreFramesRejected { count, frames: self.rejected_later.clone() });
         }
-        let velocity = self.identifier.velocity();
+        let velocity = identifier.velocity();
         let velocity = velocity.map(|velocity| self.scale.map_or(velocity, |scale| velocity.in_space(scale)));
         ObjectResult {
             object: self.name.clone(),
@@ -160,12 +196,12 @@ impl TrackedObject {
             frames_rejected: self.rejected,
             first_rejection: self.rejections.first().cloned(),
             estimate,
-            plane: self.identifier.plane(),
+            plane: identifier.plane(),
             velocity: velocity.filter(freeform_estimate::PointVelocity::is_finite),
-            ambiguity: self.identifier.ambiguity(),
-            plane_ambiguity: self.identifier.plane_ambiguity(),
-            aliases: self.identifier.aliases(),
-            dynamics: self.identifier.dynamics(),
+            ambiguity: identifier.ambiguity(),
+            plane_ambiguity: identifier.plane_ambiguity(),
+            aliases: identifier.aliases(),
+            dynamics: identifier.dynamics(),
             warnings,
         }
     }

@@ -12,10 +12,16 @@ use std::{
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use freeform_outline_io::OutlineFrame;
 
+#[cfg(feature = "serde")]
+use super::resting::Rest;
 use super::{object::TrackedObject, observation::Observation};
 
 /// Frames of an object that are sent together: many times the work of sending them, and few beside those read ahead.
 const FRAMES_AT_ONCE: usize = 16;
+
+/// Objects that are looked at when one is to be put to rest.
+#[cfg(feature = "serde")]
+const TRIES: usize = 16;
 
 /// The next frame of an object.
 #[derive(Debug)]
@@ -52,6 +58,19 @@ pub(super) struct Queues {
     jobs_to_take: Receiver<Job>,
     done: Receiver<Done>,
     done_by_others: Sender<Done>,
+    #[cfg(feature = "serde")]
+    resting: Resting,
+}
+
+/// Which objects are put to rest.
+#[cfg(feature = "serde")]
+struct Resting {
+    /// `None` where nobody is, or no more.
+    rest: Option<Rest>,
+    /// Objects that do not rest, each once.
+    awake: Vec<usize>,
+    /// Of the pseudo-random numbers.
+    state: u64,
 }
 
 #[derive(Default)]
@@ -61,14 +80,26 @@ struct Queue {
     waiting: VecDeque<NextFrame>,
     followed: VecDeque<FollowedFrame>,
     is_ready: bool,
+    /// Whether it is among those awake.
+    #[cfg(feature = "serde")]
+    is_awake: bool,
 }
 
 impl Queues {
     /// With objects that have no frames yet.
     pub(super) fn new(objects: Vec<TrackedObject>) -> Self {
         let ((jobs, jobs_to_take), (done_by_others, done)) = (unbounded(), unbounded());
-        let mut queues =
-            Self { queues: Vec::new(), ready: VecDeque::new(), away: 0, jobs, jobs_to_take, done, done_by_others };
+        let mut queues = Self {
+            queues: Vec::new(),
+            ready: VecDeque::new(),
+            away: 0,
+            jobs,
+            jobs_to_take,
+            done,
+            done_by_others,
+            #[cfg(feature = "serde")]
+            resting: Resting { rest: None, awake: Vec::new(), state: 1 },
+        };
         objects.into_iter().for_each(|object| queues.add(object));
         queues
     }
@@ -104,7 +135,13 @@ impl Queues {
 
     /// Gives away the next frame of an object with what came of it, if it has been followed.
     pub(super) fn pop(&mut self, position: usize) -> Option<FollowedFrame> {
-        self.queues[position].followed.pop_front()
+        let queue = &mut self.queues[position];
+        let first = queue.followed.pop_front();
+        if queue.followed.is_empty() {
+            // Room for many frames, for each of many objects, is more than what is known of them.
+            queue.followed = VecDeque::new();
+        }
+        first
     }
 
     /// Follows what waits longest, or waits for another thread to do so. Nothing is done where nothing waits.
@@ -171,6 +208,51 @@ impl Queues {
         queue.followed.extend(followed);
         self.away -= 1;
         self.make_ready(position);
+        #[cfg(feature = "serde")]
+        self.put_to_rest(position);
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Queues {
+    /// Has objects beyond a number rest in a file.
+    pub(super) fn let_rest(&mut self, rest: Option<Rest>) {
+        self.resting.rest = rest;
+        (0..self.queues.len()).for_each(|position| self.count_awake(position));
+    }
+
+    fn count_awake(&mut self, position: usize) {
+        if self.resting.rest.is_some() && !std::mem::replace(&mut self.queues[position].is_awake, true) {
+            self.resting.awake.push(position);
+        }
+    }
+
+    /// Puts objects at home for which nothing waits to rest, until few enough are awake; one that has come home is awake.
+    fn put_to_rest(&mut self, home: usize) {
+        self.count_awake(home);
+        let Some(Rest { file, most_awake }) = self.resting.rest.clone() else { return };
+        // Those that are at work are passed over.
+        for _ in 0..TRIES {
+            let Resting { awake, state, .. } = &mut self.resting;
+            if awake.len() <= most_awake {
+                return;
+            }
+            // Xorshift (G. Marsaglia, 2003): any order will do.
+            *state ^= *state << 13;
+            *state ^= *state >> 7;
+            *state ^= *state << 17;
+            let place = (*state % awake.len() as u64) as usize;
+            let queue = &mut self.queues[awake[place]];
+            let Some(object) = queue.object.as_mut().filter(|_| queue.waiting.is_empty()) else { continue };
+            if object.identifier.rest(&file).is_err() {
+                // Nor will the others find room.
+                self.resting.rest = None;
+                return;
+            }
+            queue.waiting = VecDeque::new();
+            queue.is_awake = false;
+            awake.swap_remove(place);
+        }
     }
 }
 

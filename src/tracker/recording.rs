@@ -123,6 +123,8 @@ impl Tracker {
         let Objects { list, mut positions } = std::mem::take(&mut self.objects);
         let (list, result) = thread::scope(|scope| {
             let mut queues = Queues::new(list);
+            #[cfg(feature = "serde")]
+            queues.let_rest(self.rest.clone());
             let mut window = Window::new(ahead);
             let mut threads = 1;
             let result = loop {

@@ -154,7 +154,9 @@ impl Tracker {
 }
 
 fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
-    let Identifier::Filter(filtered) = &object.identifier else {
+    let lost = |_| StateError::Inconsistent { part: "what an object left in a file" };
+    let awake = object.identifier.awake().map_err(lost)?;
+    let Identifier::Filter(filtered) = awake.as_ref().unwrap_or(&object.identifier) else {
         return Err(TrackerStateError::Method { method: Method::Adaptive });
     };
     let rejections = object.rejections.iter().map(|rejection| {

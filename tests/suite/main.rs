@@ -8,6 +8,8 @@ mod observability;
 mod paper_experiments;
 mod projective;
 mod rectification;
+#[cfg(feature = "serde")]
+mod resting;
 mod robustness;
 mod seeking;
 mod soak;

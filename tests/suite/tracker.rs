@@ -261,6 +261,7 @@ fn every_warning_has_a_code_of_its_own_in_snake_case_and_a_message_on_one_line()
         Warning::Ambiguous(Ambiguity { turn: -0.5, rival_turns: vec![0.25, 1.0], parameters: parameters() }),
         Warning::MotionChanged { dynamics: None },
         Warning::Diverged,
+        Warning::StateLost { reason: "torn".to_owned() },
         Warning::FrameRejected(rejection),
         Warning::MoreFramesRejected { count: 1, frames: FrameRanges::from_iter([3]) },
         Warning::AmbiguousCorrespondence { ambiguous: 1, matched: 2 },

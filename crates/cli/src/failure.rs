@@ -73,7 +73,9 @@ pub(crate) fn plain(error: &impl Display) -> String {
 /// would act upon.
 pub(crate) fn say(message: &str) {
     let lines: Vec<&str> = message.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-    let _ = writeln!(io::stderr(), "freeform: {}", readable(&lines.join(" ")));
+    // At once: what is written there is not buffered.
+    let line = format!("freeform: {}\n", readable(&lines.join(" ")));
+    let _ = io::stderr().write_all(line.as_bytes());
 }
 
 /// Prints what a user may want to know on standard error.

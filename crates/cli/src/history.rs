@@ -35,7 +35,10 @@ impl History {
     }
 }
 
-/// The histories of all objects, in the order in which they first appeared.
+/// Objects that figures are drawn of: as many as anybody will look at.
+const MOST_DRAWN: usize = 200;
+
+/// The histories of the objects that figures are drawn of: the first, in the order in which they appeared.
 #[derive(Debug, Default)]
 pub(crate) struct Histories {
     pub(crate) list: Vec<History>,
@@ -49,13 +52,24 @@ impl Histories {
         self.positions.get(object).map(|&position| &self.list[position])
     }
 
+    /// What is to be said of so many objects, if they are not all drawn.
+    pub(crate) fn left_out(&self, objects: usize) -> Option<String> {
+        let drawn = self.list.len();
+        (drawn == MOST_DRAWN && objects > drawn)
+            .then(|| format!("figures are drawn of the first {drawn} of {objects} objects"))
+    }
+
     /// Adds a frame to the history of its object.
     pub(crate) fn take(&mut self, observation: &Observation, frame: Option<&OutlineFrame>, curves: &mut CurveFitter) {
-        let position = self.positions.get(&observation.object).copied().unwrap_or_else(|| {
-            self.positions.insert(observation.object.clone(), self.list.len());
-            self.list.push(History::of(observation.object.clone()));
-            self.list.len() - 1
-        });
+        let position = match self.positions.get(&observation.object) {
+            Some(position) => *position,
+            None if self.list.len() == MOST_DRAWN => return,
+            None => {
+                self.positions.insert(observation.object.clone(), self.list.len());
+                self.list.push(History::of(observation.object.clone()));
+                self.list.len() - 1
+            }
+        };
         let history = &mut self.list[position];
         history.start = history.start.or(observation.time);
         history.estimates.extend(observation.time.map(|time| (time, observation.parameters())));

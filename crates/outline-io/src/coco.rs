@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::natural_order::natural_order;
 use crate::polygon_error::PolygonError;
-use crate::polygons::{Bodies, Body, points_of};
+use crate::polygons::{Bodies, Body, checked_name, points_of};
 
 /// What tells annotations of one category apart.
 const REMEDY: &str = "give annotations a track_id, or one body a picture and category";
@@ -101,8 +101,8 @@ pub(crate) fn coco_bodies(file: CocoFile) -> Result<Bodies, PolygonError> {
             (text(&image.id), (frame, image.height))
         })
         .collect();
-    let names: HashMap<String, &str> =
-        categories.iter().map(|category| (text(&category.id), category.name.trim())).collect();
+    let named = |category: &'_ Category| Ok((text(&category.id), checked_name(category.name.trim())?.to_owned()));
+    let names: HashMap<String, String> = categories.iter().map(named).collect::<Result<_, PolygonError>>()?;
     let list = annotations.into_iter().map(|annotation| body(annotation, &frames, &names)).collect::<Result<_, _>>()?;
     Ok(Bodies { list, remedy: REMEDY })
 }
@@ -110,7 +110,7 @@ pub(crate) fn coco_bodies(file: CocoFile) -> Result<Bodies, PolygonError> {
 fn body(
     annotation: Annotation,
     frames: &HashMap<String, (u64, f64)>,
-    names: &HashMap<String, &str>,
+    names: &HashMap<String, String>,
 ) -> Result<Body, PolygonError> {
     let Annotation { id, image_id, category_id, segmentation, track_id, instance_id, attributes } = annotation;
     let item = || format!("annotation {}", text(&id));
@@ -127,8 +127,7 @@ fn body(
     let track = track_id.or(instance_id).or(attributes.and_then(|attributes| attributes.track_id));
     let track = track.filter(|track| !track.is_null());
     let category = text(&category_id);
-    let object = track
-        .map_or_else(|| names.get(&category).map_or(category.clone(), |name| (*name).to_owned()), |track| text(&track));
+    let object = track.map_or_else(|| names.get(&category).unwrap_or(&category).clone(), |track| text(&track));
     Ok(Body { object, frame, time: None, height, contours })
 }
 

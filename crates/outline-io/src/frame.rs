@@ -3,6 +3,9 @@ use freeform_curve_fit::Outline;
 /// Name of the object where a file has no `object` column.
 pub const DEFAULT_OBJECT: &str = "0";
 
+/// Longest name of an object that a file gives once for many outlines, in bytes: each outline has its own copy.
+pub(crate) const NAME_LIMIT: usize = 1 << 12;
+
 /// What one frame of a sequence shows of one object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutlineFrame {

@@ -4,12 +4,9 @@ use std::sync::Arc;
 use crate::column::Column;
 use crate::csv_field::{NUMBER_LIMIT, quoted_start};
 use crate::error::ReadErrorKind;
-use crate::frame::DEFAULT_OBJECT;
+use crate::frame::{DEFAULT_OBJECT, NAME_LIMIT};
 use crate::parquet_columns::{Arity, Found};
 use crate::parquet_leaf::{Cells, Values};
-
-/// Longest name of an object, in bytes.
-const NAME_LIMIT: usize = 1 << 20;
 
 /// Largest whole number up to which floats have them all.
 const EXACT: f64 = 9_007_199_254_740_992.0;

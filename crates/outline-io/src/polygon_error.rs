@@ -74,6 +74,14 @@ pub enum PolygonError {
         /// What would tell them apart.
         remedy: &'static str,
     },
+    /// A name that every outline of a track or category would have a copy of.
+    #[error("a name of {length} bytes, up to {limit} are read")]
+    LongName {
+        /// Its length.
+        length: usize,
+        /// The longest that is read.
+        limit: usize,
+    },
     /// Something that should be there.
     #[error("{element} lacks {attribute}")]
     Missing {

@@ -5,7 +5,7 @@ use nalgebra::Point2;
 
 use crate::coco::{CocoFile, coco_bodies};
 use crate::error::{Place, ReadError, ReadErrorKind};
-use crate::frame::OutlineFrame;
+use crate::frame::{NAME_LIMIT, OutlineFrame};
 use crate::labelme::{LabelmeFile, labelme_bodies};
 use crate::natural_order::natural_order;
 use crate::outline_rows::closed_outline;
@@ -154,6 +154,14 @@ fn place(name: &str) -> Place {
 
 pub(crate) fn failed(name: &str, error: PolygonError) -> ReadError {
     ReadError { place: place(name), kind: ReadErrorKind::Polygons(error) }
+}
+
+/// A name that many outlines will have.
+pub(crate) fn checked_name(name: &str) -> Result<&str, PolygonError> {
+    match name.len() {
+        length if length > NAME_LIMIT => Err(PolygonError::LongName { length, limit: NAME_LIMIT }),
+        _ => Ok(name),
+    }
 }
 
 /// Points of a flat list of coordinates.

@@ -71,8 +71,8 @@ pub fn trace_mask(picture: &GrayImage, settings: &TraceSettings) -> Result<Trace
 }
 
 /// Like [`trace_mask`], for up to `limit` objects, the largest first; those in rings, the clearest first. Of objects that lie
-/// within each other in a picture of more than a million pixels there may be fewer: the smallest are left out where the
-/// rectangles around all have more than 2^29 pixels together. So they are where their outlines have more than 2^19 points
+/// within each other in a picture of more than half a million pixels there may be fewer: the smallest are left out where the
+/// rectangles around all have more than 2^27 pixels together. So they are where their outlines have more than 2^19 points
 /// together.
 ///
 /// # Errors

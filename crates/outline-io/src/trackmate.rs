@@ -7,7 +7,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use crate::csv_field::quoted_start;
 use crate::polygon_error::PolygonError;
-use crate::polygons::{Bodies, Body, points_of};
+use crate::polygons::{Bodies, Body, checked_name, points_of};
 
 /// What is wrong where two spots have a name; branches have names of their own.
 const REMEDY: &str = "two tracks have this name";
@@ -148,6 +148,7 @@ impl Model {
                 let id = attribute(start, "TRACK_ID").ok_or(missing("Track", "TRACK_ID"))?;
                 let name = attribute(start, "name").filter(|name| !name.trim().is_empty());
                 let name = name.map_or_else(|| format!("Track_{id}"), |name| name.trim().to_owned());
+                checked_name(&name)?;
                 self.tracks.push(Track { name, id, edges: Vec::new() });
             }
             "Edge" => {

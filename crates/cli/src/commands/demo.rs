@@ -99,7 +99,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         read_error: None,
         left_out: &LeftOut::default(),
     };
-    WholeFile::write(&folder.join(REPORT), &write_report(&report))?;
+    WholeFile::create(&folder.join(REPORT))?.finish_by(|file| write_report(file, &report))?;
 
     let mut sink = Sink::stdout();
     let printed = print(&mut sink, [&filter, &adaptive], &truth, &b, folder);

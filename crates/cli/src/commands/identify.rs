@@ -28,6 +28,9 @@ use crate::picture_input::PictureInput;
 use crate::reader::{Event, follow};
 use crate::truth::Truth;
 
+/// Objects whose states are kept in memory: 25 kB each where outlines are small, up to half a megabyte.
+const STATES_IN_MEMORY: usize = 1024;
+
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
@@ -52,6 +55,9 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let report_file = args.report.as_deref().map(WholeFile::create).transpose()?;
     let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
+    if let Ok(file) = tempfile::tempfile() {
+        tracker.keep_states_in(file, STATES_IN_MEMORY);
+    }
     let mut left_out = LeftOut::default();
     let failure = follow(&mut tracker, &mut input, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
@@ -70,6 +76,9 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         overlay.finish()?;
     }
     let results = tracker.results();
+    if let Some(left_out) = files.histories.left_out(results.len()).filter(|_| !args.quiet) {
+        warn(&left_out);
+    }
     let is_found = results.iter().any(|result| result.parameters().is_some());
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
     let b = match input.pictures() {
@@ -94,7 +103,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
             read_error: reason.filter(|_| is_found),
             left_out: &left_out,
         };
-        reported = file.finish_with(write_report(&report).as_bytes());
+        reported = file.finish_by(|file| write_report(file, &report));
     }
     let printed = if is_found {
         if !args.quiet {

@@ -63,12 +63,17 @@ impl WholeFile {
         Self::create(path)?.finish_with(content)
     }
 
-    /// Writes the content of a file that was started, and puts it in its place.
-    pub(crate) fn finish_with(mut self, content: &[u8]) -> Result<(), Failure> {
-        match self.write_all(content) {
+    /// Has a file that was started written, and puts it in its place.
+    pub(crate) fn finish_by(mut self, write: impl FnOnce(&mut Self) -> io::Result<()>) -> Result<(), Failure> {
+        match write(&mut self) {
             Ok(()) => self.finish(),
             Err(error) => Err(self.failure(&error)),
         }
+    }
+
+    /// Writes the content of a file that was started, and puts it in its place.
+    pub(crate) fn finish_with(self, content: &[u8]) -> Result<(), Failure> {
+        self.finish_by(|file| file.write_all(content))
     }
 }
 

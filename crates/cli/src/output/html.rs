@@ -1,4 +1,5 @@
 use std::fmt::Write as _;
+use std::io;
 
 use freeform_motion::tracker::{FrameRanges, ObjectResult};
 
@@ -42,12 +43,17 @@ pub(crate) struct Findings<'a> {
     pub(crate) histories: &'a Histories,
 }
 
-/// A page that needs nothing but itself.
-pub(crate) fn write_report(report: &Report<'_>) -> String {
+/// Writes a page that needs nothing but itself, one object after the other.
+pub(crate) fn write_report(sink: &mut impl io::Write, report: &Report<'_>) -> io::Result<()> {
     let title = escape(&report.title);
+    let [before, after] = around_body(&title);
+    sink.write_all(before.as_bytes())?;
     let mut body = format!("<h1>{title}</h1>\n");
     if let Some(first) = report.findings.first() {
         let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(&summary(first.results)));
+        if let Some(left_out) = first.histories.left_out(first.results.len()) {
+            let _ = writeln!(body, "<p class=\"soft\">Of many: {left_out}.</p>");
+        }
     }
     if let Some(reason) = report.no_motion {
         let _ = writeln!(body, "<p class=\"alert\">No motion was identified. {}</p>", escape(reason));
@@ -60,11 +66,14 @@ pub(crate) fn write_report(report: &Report<'_>) -> String {
         for result in *results {
             let history = histories.of(&result.object);
             write_object(&mut body, result, history, report);
+            sink.write_all(body.as_bytes())?;
+            body.clear();
         }
     }
     write_left_out(&mut body, report.left_out);
     write_settings(&mut body, &report.settings, &report.command);
-    document(&title, &body)
+    sink.write_all(body.as_bytes())?;
+    sink.write_all(after.as_bytes())
 }
 
 /// Pictures without an outline.
@@ -96,11 +105,18 @@ pub(super) fn write_settings(body: &mut String, settings: &[(&'static str, Strin
 
 /// A whole document of an escaped title and a body.
 pub(super) fn document(title: &str, body: &str) -> String {
-    format!(
+    let [before, after] = around_body(title);
+    before + body + &after
+}
+
+/// What stands before the body of a document, and after it.
+fn around_body(title: &str) -> [String; 2] {
+    let before = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
-    )
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n"
+    );
+    [before, "</body>\n</html>\n".to_owned()]
 }
 
 fn summary(results: &[ObjectResult]) -> String {

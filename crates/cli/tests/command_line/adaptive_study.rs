@@ -51,13 +51,23 @@ fn every_law_pair_fit_and_start_is_there_and_least_squares_and_mixing_find_the_t
     }
     let usual = omega("", &outlines);
     for given in [
-        "--pairs best", "--pairs 1", "--am -1,-1,-2,-2", "--q 1,1,1,1", "--initial 0.5,0,0", "--initial random",
-        "--initial random:7", "--fit 3l", "--fit gs3l", "--size 1.5",
+        "--pairs best",
+        "--pairs 1",
+        "--am -1,-1,-2,-2",
+        "--q 1,1,1,1",
+        "--initial 0.5,0,0",
+        "--initial random",
+        "--initial random:7",
+        "--fit 3l",
+        "--fit gs3l",
+        "--size 1.5",
     ] {
         let found = omega(given, &outlines);
         assert!(found.is_finite() && found != usual, "{given}: {found}");
     }
-    for same in ["--law structured", "--pairs all", "--am -0.5,-0.5,-1,-1", "--q 0.5,1,2,3", "--initial 0,0,0", "--size 0.6"] {
+    for same in
+        ["--law structured", "--pairs all", "--am -0.5,-0.5,-1,-1", "--q 0.5,1,2,3", "--initial 0,0,0", "--size 0.6"]
+    {
         assert_eq!(omega(same, &outlines), usual, "{same}");
     }
 }

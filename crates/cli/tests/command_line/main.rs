@@ -3,6 +3,8 @@ mod adaptive_study;
 mod bad_input;
 mod browser;
 mod evaluate;
+#[cfg(target_os = "linux")]
+mod fault_injection;
 mod files;
 mod filter;
 mod fit;

@@ -82,6 +82,76 @@ fn frames_that_show_nothing_new_cost_next_to_nothing() {
 }
 
 #[test]
+fn objects_within_each_other_take_no_more_than_the_picture_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let nested = picture(folder.path(), "nested.png", |x, y| {
+        let depth = x.min(y).min(8191 - x).min(8191 - y);
+        depth / 64 % 2 == 1
+    });
+    let (status, peak) = peak(&["track", &nested, "--objects", "all"]);
+    assert_eq!(status, Some(0));
+    assert!(peak < LIMIT, "{peak} kB");
+}
+
+#[test]
+fn an_ordinary_picture_takes_no_more_than_60_bytes_a_pixel() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (width, height) = (2000, 1500);
+    let inside = |x: u32, y: u32| (300..1500 + x / 9 % 5).contains(&y) && (400 + y / 7..1500).contains(&x);
+    let shade = |x, y| (if inside(x, y) { 200 } else { 40 }) + (7 * x + 13 * y) as u8 % 16;
+    let grey = image::DynamicImage::ImageLuma8(GrayImage::from_fn(width, height, |x, y| Luma([shade(x, y)])));
+    let pictures = [
+        ("grey.png", grey.clone()),
+        ("colour.jpg", grey.to_rgb8().into()),
+        ("deep.png", grey.to_rgba16().into()),
+        ("deep.tif", grey.to_rgb16().into()),
+        ("colour.webp", grey.to_rgb8().into()),
+        ("colour.bmp", grey.to_rgb8().into()),
+        ("palette.gif", grey.to_rgb8().into()),
+    ];
+    for (name, picture) in pictures {
+        let path = folder.path().join(name).display().to_string();
+        picture.save(&path).expect("a picture");
+        for arguments in [&["outline", &path][..], &["identify", &path], &["track", &path, "--objects", "all"]] {
+            let (status, peak) = peak(arguments);
+            assert!(status.is_some_and(|status| status < 2), "{arguments:?}: {status:?}");
+            let most = u64::from(width * height) * 60 / 1024 + 50 * 1024;
+            assert!(peak < most, "{arguments:?}: {peak} kB of {most}");
+        }
+    }
+}
+
+/// Outlines of so many objects, each in two frames.
+fn many_objects(count: usize, in_order_of: fn((usize, usize)) -> (usize, usize)) -> String {
+    let mut seen: Vec<(usize, usize)> = (0..2 * count).map(|index| (index / count, index % count)).collect();
+    seen.sort_by_key(|seen| in_order_of(*seen));
+    let points = [(0, 0), (2, 0), (4, 1), (5, 3), (4, 5), (3, 6), (1, 5), (0, 4), (-1, 2)];
+    let rows = seen.into_iter().flat_map(|(frame, object)| {
+        points.map(|(x, y)| format!("{frame},{frame},{},{y},{object}\n", x + frame as i32))
+    });
+    std::iter::once("frame,time,x,y,object\n".to_owned()).chain(rows).collect()
+}
+
+#[test]
+fn identify_keeps_little_of_each_of_very_many_objects() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frame_by_frame = file(folder.path(), "frames.csv", many_objects(12_000, |(frame, object)| (frame, object)));
+    let one_by_one = file(folder.path(), "objects.csv", many_objects(12_000, |(frame, object)| (object, frame)));
+    let report = folder.path().join("report.html").display().to_string();
+    for (input, more) in [(&frame_by_frame, vec![]), (&one_by_one, vec!["--report", &report])] {
+        let arguments = [vec!["identify", input, "--json", "--quiet"], more].concat();
+        let (status, peak) = peak(&arguments);
+        assert_eq!(status, Some(0), "{arguments:?}");
+        // They would be 280 megabytes and more if all were kept.
+        assert!(peak < 200_000, "{arguments:?}: {peak} kB");
+    }
+    let page = fs::read_to_string(&report).expect("the report");
+    assert!(page.contains("figures are drawn of the first 200 of 12000 objects"));
+    assert_eq!(page.matches("<h2>Object ").count(), 12_000);
+    assert!((200..2000).contains(&page.matches("<svg").count()), "{} figures", page.matches("<svg").count());
+}
+
+#[test]
 fn memory_does_not_grow_with_the_number_of_objects_that_come_and_go() {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin("freeform"));
     command.args(["track", "--quiet"]).stdin(Stdio::piped()).stdout(Stdio::piped());

@@ -224,41 +224,71 @@ impl Contour {
     /// are not outliers.
     fn local_fit(&self, i: usize, half_window: usize) -> Option<LocalFit> {
         let w = half_window as isize;
-        let mut gram = Matrix3::zeros();
-        let (mut x, mut y) = (Vector3::zeros(), Vector3::zeros());
-        let origin = self.points[i];
-        let mut take = |offset: isize, j: usize| {
-            let u = offset as f64 / w as f64;
-            let row = Vector3::new(1.0, u, u * u);
-            let p = self.points[j] - origin;
-            gram += row * row.transpose();
-            x += row * p.x;
-            y += row * p.y;
-        };
-        let mut count = 0;
+        let (origin, width) = (self.points[i], w as f64);
+        let mut sums = Sums::default();
         if !self.outlier[i] {
-            take(0, i);
-            count += 1;
+            sums.add(0.0, Vector2::zeros());
         }
         for side in [-1, 1] {
-            let farther = (1..=w.max((self.points.len() / tuning::PARTS) as isize)).map(|distance| side * distance);
-            let kept = farther.filter_map(|offset| Some((offset, self.neighbour(i, offset)?)));
-            for (offset, j) in kept.filter(|(_, j)| !self.outlier[*j]).take(half_window) {
-                take(offset, j);
-                count += 1;
+            let farthest = w.max((self.points.len() / tuning::PARTS) as isize);
+            let mut left = half_window;
+            for distance in 1..=farthest {
+                if left == 0 {
+                    break;
+                }
+                let offset = side * distance;
+                let Some(j) = self.neighbour(i, offset) else { break };
+                if !self.outlier[j] {
+                    sums.add(offset as f64 / width, self.points[j] - origin);
+                    left -= 1;
+                }
             }
         }
-        if count < 4 {
+        if sums.count < 4 {
             return None;
         }
-        let inverse = gram.try_inverse()?;
-        let (x, y) = (inverse * x, inverse * y);
+        let inverse = sums.gram().try_inverse()?;
+        let (x, y) = (inverse * sums.x, inverse * sums.y);
         Some(LocalFit {
             position: origin + Vector2::new(x[0], y[0]),
             tangent: Vector2::new(x[1], y[1]),
             // An outlier stays one unless it lies within the noise of its neighbours' line as if that were exact.
             residual_variance: if self.outlier[i] { 1.0 } else { 1.0 - inverse[(0, 0)] },
         })
+    }
+}
+
+/// Sums over the points of a local regression.
+#[derive(Debug, Default)]
+struct Sums {
+    count: usize,
+    /// Of the first four powers of the number of the point.
+    powers: [f64; 4],
+    /// Of the coordinates times its powers from 0 on.
+    x: Vector3<f64>,
+    y: Vector3<f64>,
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, u: f64, p: Vector2<f64>) {
+        let square = u * u;
+        self.count += 1;
+        self.powers[0] += u;
+        self.powers[1] += square;
+        self.powers[2] += u * square;
+        self.powers[3] += square * square;
+        self.x.x += p.x;
+        self.x.y += u * p.x;
+        self.x.z += square * p.x;
+        self.y.x += p.y;
+        self.y.y += u * p.y;
+        self.y.z += square * p.y;
+    }
+
+    fn gram(&self) -> Matrix3<f64> {
+        let [first, second, third, fourth] = self.powers;
+        Matrix3::new(self.count as f64, first, second, first, second, third, second, third, fourth)
     }
 }
 

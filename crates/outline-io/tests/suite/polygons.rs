@@ -153,3 +153,32 @@ fn no_cut_or_changed_byte_brings_the_readers_down() {
         }
     }
 }
+
+#[test]
+fn a_name_that_every_outline_would_copy_may_not_be_long() {
+    let coco = |name: &str| {
+        let annotations: Vec<String> = (0..2)
+            .map(|image| format!(r#"{{"image_id":{image},"category_id":1,"segmentation":[[0,0,4,0,4,3]]}}"#))
+            .collect();
+        format!(
+            r#"{{"images":[{{"id":0}},{{"id":1}}],"categories":[{{"id":1,"name":"{name}"}}],"annotations":[{}]}}"#,
+            annotations.join(",")
+        )
+    };
+    let trackmate = |name: &str| {
+        let spot = |id: u8| {
+            format!(
+                r#"<Spot ID="{id}" FRAME="{id}" POSITION_X="1" POSITION_Y="1" POSITION_T="{id}">0 0 4 0 4 3</Spot>"#
+            )
+        };
+        let edge = r#"<Edge SPOT_SOURCE_ID="0" SPOT_TARGET_ID="1"/>"#;
+        format!(r#"<TrackMate>{}{}<Track TRACK_ID="1" name="{name}">{edge}</Track></TrackMate>"#, spot(0), spot(1))
+    };
+    let (longest, longer) = ("n".repeat(4096), "n".repeat(4097));
+    for (whole, refused) in [(coco(&longest), coco(&longer)), (trackmate(&longest), trackmate(&longer))] {
+        let frames = read_text(&whole).expect("outlines");
+        assert!(frames.len() == 2 && frames.iter().all(|frame| frame.object == longest));
+        let message = read_text(&refused).expect_err("a long name").to_string();
+        assert_eq!(message, "test: a name of 4097 bytes, up to 4096 are read");
+    }
+}
