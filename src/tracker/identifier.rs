@@ -1,7 +1,7 @@
 //! The identifier of one object, whichever method it is.
 use freeform_curve_fit::{Fit, Outline};
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, Unstated};
+use freeform_outline_filter::{Ambiguity, DynamicsWeights, KnownOutline, MotionFilter, Phase, Unstated};
 
 use super::{
     observation::ObjectPhase,
@@ -115,6 +115,14 @@ impl Identifier {
         match self {
             Self::Filter(object) => object.filter.restarts(),
             Self::Adaptive(_) => 0,
+        }
+    }
+
+    /// The outline as far as it is known.
+    pub(super) fn known_outline(&self) -> Option<KnownOutline> {
+        match self {
+            Self::Filter(object) => object.filter.known_outline(),
+            Self::Adaptive(_) => None,
         }
     }
 

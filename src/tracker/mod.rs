@@ -21,7 +21,10 @@ use std::collections::HashMap;
 
 use freeform_outline_io::OutlineFrame;
 
-use self::{identifier::Identifier, object::TrackedObject};
+use self::{
+    identifier::Identifier,
+    object::{KnownOutlines, TrackedObject},
+};
 
 #[cfg(feature = "serde")]
 pub use self::state_bytes::TrackerStateError;
@@ -69,6 +72,8 @@ pub struct Tracker {
     settings: TrackerSettings,
     /// One that has seen nothing yet.
     unused: Identifier,
+    /// Objects whose observations hold what is known of the outline.
+    known_outlines_of: usize,
     objects: Objects,
 }
 
@@ -87,7 +92,14 @@ impl Tracker {
     /// A setting outside its range.
     pub fn new(settings: TrackerSettings) -> Result<Self, TrackerError> {
         let unused = Identifier::new(&settings.method)?;
-        Ok(Self { settings, unused, objects: Objects::default() })
+        Ok(Self { settings, unused, known_outlines_of: 0, objects: Objects::default() })
+    }
+
+    /// This tracker, whose observations hold what is known of the outline ([`Observation::known_outline`]), for the first so many of the
+    /// objects that are new from now on. It takes memory and time for every frame, so that it is for drawings.
+    #[must_use]
+    pub fn with_known_outlines(self, objects: usize) -> Self {
+        Self { known_outlines_of: objects, ..self }
     }
 
     /// Its settings.
@@ -136,13 +148,15 @@ impl Tracker {
         let position = self.objects.positions.get(name).copied().unwrap_or_else(|| {
             let position = self.objects.list.len();
             self.objects.positions.insert(name.to_owned(), position);
-            self.objects.list.push(self.new_object(name));
+            self.objects.list.push(self.new_object(name, position));
             position
         });
         &mut self.objects.list[position]
     }
 
-    fn new_object(&self, name: &str) -> TrackedObject {
-        TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings)
+    fn new_object(&self, name: &str, position: usize) -> TrackedObject {
+        let known_outline =
+            if position < self.known_outlines_of { KnownOutlines::Given } else { KnownOutlines::LeftOut };
+        TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings, known_outline)
     }
 }

@@ -2,7 +2,7 @@ use std::fmt;
 
 use freeform_curve_fit::Fit;
 use freeform_estimate::{MotionEstimate, MotionState};
-use freeform_outline_filter::{Ambiguity, Phase};
+use freeform_outline_filter::{Ambiguity, KnownOutline, Phase};
 
 use crate::Warning;
 use crate::rejection::FrameRejection;
@@ -31,6 +31,9 @@ pub struct Observation {
     pub innovation: Option<f64>,
     /// Turns between which the outlines so far do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
+    /// The outline as far as it is known, in the image, for the objects of [`Tracker::with_known_outlines`](super::Tracker::with_known_outlines)
+    /// (motion filter).
+    pub known_outline: Option<Box<KnownOutline>>,
     /// Why the frame was not used; `None` where it was.
     pub rejection: Option<FrameRejection>,
     /// How often the object had been given up and begun anew.

@@ -1,6 +1,8 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
 mod awaited;
+mod bound_found;
+mod candidate_sheet;
 mod command_line;
 mod commands;
 mod failure;
@@ -13,10 +15,13 @@ mod meaning_of_b;
 mod output;
 mod overlay;
 mod picture_input;
+mod playback;
 mod plot;
+mod pose_history;
 mod progress;
 mod reader;
 mod seen;
+mod thinned;
 mod tracing_choice;
 mod truth;
 

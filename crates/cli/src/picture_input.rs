@@ -13,6 +13,7 @@ use freeform_motion::outline_io::{
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
+use crate::candidate_sheet::write_candidates;
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::input::Waiting;
@@ -96,6 +97,7 @@ impl PictureInput {
         let base = picture_settings(options, sequence.pixel_aspect(), None)?;
         base.check().map_err(Failure::unusable)?;
         let (options, chosen) = choose(&preview, &base, options);
+        draw_candidates(&preview, &base, &options, chosen.as_ref())?;
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
         }
@@ -131,6 +133,7 @@ impl PictureInput {
         let preview = Preview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
         let (options, chosen) = choose(&preview, &settings, options);
+        draw_candidates(&preview, &settings, &options, chosen.as_ref())?;
         let stream = Cursor::new(beginning).chain(source);
         let sequence = PictureSequence::from_stream(stream, name, sequence_settings(&options))
             .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
@@ -198,7 +201,10 @@ impl PictureInput {
 
     /// Why the way of tracing is not to be trusted.
     pub(crate) fn doubts(&self) -> Vec<String> {
-        self.chosen.iter().filter_map(Chosen::warning).collect()
+        let drawn = self.options.candidates.as_deref();
+        let undrawn = drawn.filter(|_| self.chosen.is_none());
+        let undrawn = undrawn.map(|path| format!("{}: not written, as no way of tracing was chosen", path.display()));
+        self.chosen.iter().filter_map(|chosen| chosen.warning(drawn)).chain(undrawn).collect()
     }
 
     /// What may be wrong with how they are read and traced.
@@ -280,7 +286,7 @@ impl PictureInput {
                 }
                 self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
                 let PictureFrame { frame, time, file, picture } = traced.frame;
-                let seen_in = Rc::new(SeenIn { frame, grid: self.trace.pixel_grid(picture.height()), picture });
+                let seen_in = Rc::new(SeenIn { frame, time, grid: self.trace.pixel_grid(picture.height()), picture });
                 match traced.objects {
                     Err(error) => {
                         let reason = format!("{file}: frame {frame}: {error}");
@@ -308,6 +314,19 @@ impl Iterator for PictureInput {
             self.read_picture()?;
         }
         self.waiting.pop_front()
+    }
+}
+
+/// Draws the ways of tracing where that is asked for and there was a choice.
+fn draw_candidates(
+    preview: &Preview,
+    base: &PictureSettings,
+    options: &PictureOptions,
+    chosen: Option<&Chosen>,
+) -> Result<(), Failure> {
+    match (&options.candidates, chosen) {
+        (Some(path), Some(chosen)) => write_candidates(path, preview, base, &chosen.choice),
+        _ => Ok(()),
     }
 }
 

@@ -13,6 +13,8 @@ use crate::failure::Failure;
 #[derive(Debug)]
 pub(crate) struct SeenIn {
     pub(crate) frame: u64,
+    /// In seconds.
+    pub(crate) time: f64,
     pub(crate) picture: Arc<GrayImage>,
     pub(crate) grid: PixelGrid,
 }

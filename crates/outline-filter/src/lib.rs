@@ -63,6 +63,7 @@ pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
 pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated};
 #[cfg(feature = "serde")]
 pub use supervisor::{StateError, with_header, without_header};
+pub use track::{KnownOutline, KnownPiece};
 pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]

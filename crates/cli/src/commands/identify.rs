@@ -10,7 +10,7 @@ use freeform_motion::{Tracker, Warning};
 use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
-use crate::history::Histories;
+use crate::history::{Histories, OBJECTS_PLAYED, Purpose};
 use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::LeftOut;
@@ -32,6 +32,9 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
         let settings = args.options.tracker_settings_for_edges(length);
         tracker = Tracker::new(settings).map_err(Failure::unusable)?;
+    }
+    if args.report.is_some() {
+        tracker = tracker.with_known_outlines(OBJECTS_PLAYED);
     }
     let name = input.name.clone();
     let of_file = input.truth().filter(|_| args.truth.is_none());
@@ -66,6 +69,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if let Some(overlay) = overlay {
         overlay.finish()?;
     }
+    files.histories.close();
     let results = tracker.results();
     let is_found = results.iter().any(|result| result.estimate.is_some());
     let failure = if is_found { failure } else { Some(failure.unwrap_or_else(|| nothing_found(&name, &results))) };
@@ -114,7 +118,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 
 /// Refuses options that cannot be combined.
 fn check(args: &IdentifyArgs) -> Result<(), Failure> {
-    let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay];
+    let candidates = &args.pictures.candidates;
+    let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay, candidates];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     refuse_standard_output(&outputs)?;
@@ -159,7 +164,10 @@ impl<'a> Files<'a> {
             trajectory,
             svg,
             curves: CurveFitter::new(&args.options)?,
-            histories: Histories::default(),
+            histories: Histories::new(match args.report {
+                Some(_) => Purpose::Report(args.options.rectify),
+                None => Purpose::Figures,
+            }),
         })
     }
 

@@ -15,6 +15,8 @@ mod identify_json;
 mod identify_table;
 mod number;
 mod page;
+mod player;
+mod pose_figures;
 mod recognised;
 mod refusal;
 mod stress_json;

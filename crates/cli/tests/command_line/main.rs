@@ -1,6 +1,7 @@
 //! The contract of the command line, tested on the binary itself.
 mod bad_input;
 mod browser;
+mod drawings;
 mod evaluate;
 mod files;
 mod filter;
@@ -21,6 +22,7 @@ mod projective;
 mod real_pictures;
 mod recognise;
 mod rectify;
+mod report;
 mod reproduce;
 mod simulate;
 mod support;

@@ -71,7 +71,7 @@ impl OutlineMap {
     }
 
     /// The cells in their order along the outline, one list for each connected part, and whether it is closed.
-    fn chains(&self) -> Vec<(Vec<usize>, bool)> {
+    pub(crate) fn chains(&self) -> Vec<(Vec<usize>, bool)> {
         let mut seen = vec![false; self.cells.len()];
         let mut chains = Vec::new();
         let is_end = |i: usize| self.cells[i].neighbours.contains(&i);

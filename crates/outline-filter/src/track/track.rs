@@ -5,7 +5,10 @@ use freeform_estimate::ProcessNoise;
 use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Point2, Projective2};
 
-use super::first_pose::FirstPose;
+use super::{
+    first_pose::FirstPose,
+    known_outline::{KnownOutline, KnownPiece},
+};
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
@@ -275,6 +278,18 @@ impl Track {
         let to_image = self.reference.to_image() * self.belief.pose;
         let cells = self.map.cells().iter().zip(&self.belief.offsets);
         cells.map(move |(cell, offset)| freeform_riccati::map_point(&to_image, &(cell.centre + *offset * cell.normal)))
+    }
+
+    /// The outline as it is known now, in its order, where it was in the first frame.
+    pub(crate) fn known_outline(&self) -> KnownOutline {
+        let to_image = self.reference.to_image();
+        let place = |number: &usize| {
+            let (cell, offset) = (&self.map.cells()[*number], self.belief.offsets[*number]);
+            freeform_riccati::map_point(&to_image, &(cell.centre + offset * cell.normal))
+        };
+        let piece =
+            |(chain, closed): (Vec<usize>, bool)| KnownPiece { points: chain.iter().map(place).collect(), closed };
+        KnownOutline { pieces: self.map.chains().into_iter().map(piece).collect(), pose: self.pose() }
     }
 
     /// Whether neither the outline nor the frames show the turn.
