@@ -122,3 +122,31 @@ fn the_pose_in_a_plane_is_that_of_the_plane() {
     // The known outline lies where the points do: what it does not show would be hidden.
     assert_eq!(frame["hidden"].as_array().map(Vec::len), Some(0), "{}", frame["hidden"]);
 }
+
+#[test]
+fn angle_and_position_have_gaps_where_nothing_is_stated_and_where_the_object_is_begun_anew() {
+    let csv = sequence("--seconds 1");
+    let other = sequence("--shape van --seconds 3");
+    // Something else in another place, for long enough that it is taken for the object.
+    let later = other.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())).map(|line| {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().expect("a number")).collect();
+        format!("{},{},{},{}\n", fields[0] + 30.0, fields[1] + 1.0, fields[2] + 9.0, fields[3])
+    });
+    let page = report(&(csv + &later.collect::<String>()), "");
+    let segments: Vec<u64> = played(&page)[0]["frames"]
+        .as_array()
+        .expect("frames")
+        .iter()
+        .map(|frame| frame["segment"].as_u64().expect("a number"))
+        .collect();
+    assert!(segments.is_sorted() && segments.first() == Some(&0) && segments.last() > Some(&0), "{segments:?}");
+    for title in ["Angle since the first frame", "Position x of the middle"] {
+        let (_, panel) = page.split_once(&format!("aria-label=\"{title}\"")).expect("a panel");
+        let panel = panel.split_once("</svg>").expect("its end").0;
+        let of = |class: &str| {
+            let (_, path) = panel.rsplit_once(&format!("class=\"{class}\" d=\"")).expect("a line");
+            path.split_once('"').expect("its end").0.matches('M').count()
+        };
+        assert_eq!((of("line"), of("band")), (2, 2), "{title}");
+    }
+}
