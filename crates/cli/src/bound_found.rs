@@ -14,8 +14,6 @@ pub(crate) type BoundAt = (f64, Vec<Option<f64>>);
 /// Why there is no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NoBound {
-    /// The method keeps no outline.
-    NoOutline,
     /// A parameter is not stated.
     NotStated,
     /// The motion is no constant one.
@@ -28,7 +26,6 @@ impl NoBound {
     /// The reason as a clause.
     pub(crate) const fn reason(self) -> &'static str {
         match self {
-            Self::NoOutline => "this method keeps no outline to compute it for",
             Self::NotStated => "not all parameters of the motion are stated",
             Self::MotionChanges => "it is that of a constant motion, and this one changes",
             Self::TooFewFrames => "too few frames show the outline",
@@ -51,14 +48,10 @@ pub(crate) fn bound_found(
     let in_image = scale.unwrap_or_default().generator_in_image(&generator);
     let values = model.parameters_of(&in_image);
     let values = &values[..model.parameter_count()];
-    let frames = || playback.frames().iter().map(|kept| &kept.value);
-    if frames().all(|frame| frame.known.is_none()) {
-        return Err(NoBound::NoOutline);
-    }
     let mut list = Vec::new();
     // With its segment and the time that it begins at.
     let mut bound: Option<(usize, f64, CramerRaoBound)> = None;
-    for frame in frames() {
+    for frame in playback.frames().iter().map(|kept| &kept.value) {
         let Some(Usable { time, noise, known }) = usable(frame) else { continue };
         let begun = bound.take().filter(|(segment, ..)| *segment == frame.segment);
         let new = || CramerRaoBound::new(model, values).ok().map(|bound| (frame.segment, time, bound));

@@ -133,7 +133,7 @@ pub(crate) fn residual_panels(history: &History) -> Vec<Panel> {
 }
 
 /// What a parameter is, in words.
-pub(super) fn meaning(name: &str) -> String {
+fn meaning(name: &str) -> String {
     match name {
         "omega" => "Angular velocity omega".to_owned(),
         "sigma" => "Rate of growth sigma".to_owned(),

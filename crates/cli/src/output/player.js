@@ -43,7 +43,7 @@
   const start = (player) => {
     const data = JSON.parse(player.querySelector('script[type="application/json"]').textContent);
     const { frames, known, size } = data;
-    const [stage, marks] = player.querySelectorAll(":scope > svg");
+    const [stage, marks] = [".stage", ".marks"].map((name) => player.querySelector(name));
     const path = (name) => stage.querySelector("." + name);
     const [play, slider, zoom] = [".play", "input", ".zoom"].map((name) => player.querySelector(name));
     const now = player.querySelector(".now");
@@ -167,7 +167,7 @@
 
     path("way").setAttribute("d", way(frames.length - 1));
     const rejected = frames.flatMap((frame, k) => (frame.rejected === undefined ? [] : [k]));
-    marks.querySelector("path").setAttribute("d", rejected.map((k) => `M${k + 0.5} 0v1`).join(""));
+    marks.querySelector("path").setAttribute("d", rejected.map((k) => `M${k} 0v1`).join(""));
     player.classList.add("ready");
     show(0);
   };

@@ -130,11 +130,10 @@ impl Player<'_> {
              <path class=\"way\"/><path class=\"travelled\"/><path class=\"hidden\"/><path class=\"known\"/>\
              <path class=\"points\"/><path class=\"middle\"/></svg>\n\
              <div class=\"controls\"><button type=\"button\" class=\"play\">Play</button>\
-             <input type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" step=\"1\" aria-label=\"Frame\">\
+             <div class=\"track\"><input type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" step=\"1\" aria-label=\"Frame\">\
+             <svg class=\"marks\" viewBox=\"0 0 {last} 1\" preserveAspectRatio=\"none\" aria-hidden=\"true\"><path/></svg></div>\
              <button type=\"button\" class=\"zoom\" aria-pressed=\"false\">Follow closely</button></div>\n\
-             <svg class=\"marks\" viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" aria-hidden=\"true\"><path/></svg>\n\
-             <p class=\"now\"></p>\n<noscript><p class=\"alert\">The player needs JavaScript.</p></noscript>\n",
-            frames.len()
+             <p class=\"now\"></p>\n<noscript><p class=\"alert\">The player needs JavaScript.</p></noscript>\n"
         );
         self.write_values(body);
         body.push_str(LEGEND);

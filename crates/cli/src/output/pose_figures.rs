@@ -3,7 +3,7 @@ use freeform_experiments::figure::{Curve, Look, Panel};
 use freeform_motion::riccati::{CameraScale, MotionModel};
 use freeform_motion::tracker::Trajectory;
 
-use super::figures::{BAND, meaning};
+use super::figures::BAND;
 use crate::bound_found::BoundAt;
 use crate::history::History;
 use crate::meaning_of_b::MeaningOfB;
@@ -87,9 +87,9 @@ pub(crate) fn deviation_panels(history: &History, model: MotionModel, bound: &[B
             curves.push(Curve { name: "least possible (bound)".to_owned(), look: Look::Truth, runs: runs(of_bound) });
         }
         Panel {
-            title: format!("{}: standard deviation", meaning(name)),
+            title: format!("Standard deviation of {name}"),
             x_label: "time (s)".to_owned(),
-            y_label: format!("std of {name} ({unit})"),
+            y_label: format!("{name}, std ({unit})"),
             curves,
             x_from: history.start,
             y_logarithmic: true,

@@ -74,8 +74,9 @@ fn the_ways_of_tracing_are_drawn_where_they_are_asked_for() {
     succeed(&format!("outline {pictures} --output {base}/o.csv --candidates {base}/ways.png"), "");
     let sheet = image::open(folder.path().join("ways.png")).expect("a picture").into_rgb8();
     assert!(sheet.width() > 4 * 160 && sheet.height() > 120, "{:?}", sheet.dimensions());
-    let count = |colour: [u8; 3]| sheet.pixels().filter(|pixel| pixel.0 == colour).count();
-    assert!(count([255, 230, 60]) > 100 && count([235; 3]) > 500, "outlines and their options");
+    let count = |is_wanted: fn([u8; 3]) -> bool| sheet.pixels().filter(|pixel| is_wanted(pixel.0)).count();
+    assert!(count(|[red, _, blue]| red > 200 && blue < 120) > 100, "outlines");
+    assert!(count(|colour| colour == [235; 3]) > 500, "options");
     let given = run(&format!("outline {pictures} --light --candidates {base}/none.png"), "");
     assert!(stderr(&given).contains("none.png: not written, as no way of tracing was chosen"), "{}", stderr(&given));
     assert!(!folder.path().join("none.png").exists());

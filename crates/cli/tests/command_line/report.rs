@@ -76,12 +76,16 @@ fn what_a_frame_does_not_show_of_the_known_outline_is_told_apart() {
 }
 
 #[test]
-fn no_bound_is_drawn_of_a_motion_that_is_not_stated_or_by_a_method_without_an_outline() {
-    let disc = report(&sequence("--shape circle"), "");
-    assert!(disc.contains("not all parameters of the motion are stated") && !disc.contains("least possible (bound)"));
-    let adaptive = report(&sequence(""), "--method adaptive");
-    assert!(adaptive.contains("this method keeps no outline") && !adaptive.contains("least possible (bound)"));
-    assert_eq!(played(&adaptive).len(), 1, "its outlines are played");
+fn no_bound_is_drawn_of_a_motion_that_changes_and_no_deviations_where_there_are_none() {
+    let bound = "least possible (bound)";
+    let changing = report(&sequence("--seconds 2 --dynamics oscillating --period 1"), "");
+    assert!(changing.contains("is not drawn: it is that of a constant motion") && !changing.contains(bound));
+    assert!(changing.contains("How well that is known"));
+    for (simulated, options) in [("--shape circle", ""), ("", "--method adaptive")] {
+        let page = report(&sequence(simulated), options);
+        assert!(!page.contains("How well that is known") && !page.contains(bound), "{simulated}{options}");
+        assert_eq!(played(&page).len(), 1, "the outlines are played");
+    }
 }
 
 #[test]
@@ -144,7 +148,8 @@ fn angle_and_position_have_gaps_where_nothing_is_stated_and_where_the_object_is_
         let (_, panel) = page.split_once(&format!("aria-label=\"{title}\"")).expect("a panel");
         let panel = panel.split_once("</svg>").expect("its end").0;
         let of = |class: &str| {
-            let (_, path) = panel.rsplit_once(&format!("class=\"{class}\" d=\"")).expect("a line");
+            // The legend comes after the data.
+            let (_, path) = panel.split_once(&format!("class=\"{class}\" d=\"")).expect("a line");
             path.split_once('"').expect("its end").0.matches('M').count()
         };
         assert_eq!((of("line"), of("band")), (2, 2), "{title}");
