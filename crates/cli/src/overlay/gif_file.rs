@@ -9,7 +9,7 @@ use crate::failure::{Failure, plain};
 use crate::output::WholeFile;
 
 /// Levels of grey that a pixel may be off before it is drawn anew: noise of a camera that nobody sees is most of an animation otherwise.
-const TOLERANCE: u8 = 3;
+const TOLERANCE: u8 = 2;
 
 /// Hundredths of a second that a picture stands where the input does not tell.
 const USUAL_DELAY: u16 = 7;

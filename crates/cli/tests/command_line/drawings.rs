@@ -48,7 +48,7 @@ fn an_animation_is_no_larger_than_the_pictures_that_it_was_made_of_and_shows_the
         let pairs = whole.pixels().zip(frame.buffer().pixels());
         let grey = pairs.filter(|(pixel, _)| pixel.0[0] == pixel.0[1] && pixel.0[1] == pixel.0[2]);
         let off = grey.map(|(pixel, shown)| pixel.0[0].abs_diff(shown.0[0])).max();
-        assert!(off.is_some_and(|off| off <= 12), "frame {number} is off by {off:?}");
+        assert!(off.is_some_and(|off| off <= 8), "frame {number} is off by {off:?}");
     }
 }
 
