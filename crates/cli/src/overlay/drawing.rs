@@ -25,12 +25,15 @@ pub(super) const COLOURS: [Rgb<u8>; 5] = [OUTLINE, REJECTED, CURVE, RELATED, MOT
 /// Most arrows of the motion field around an outline.
 const ARROWS: usize = 24;
 
-/// Pixels along the outline for each arrow, at least: fewer arrows stand around a small object.
+/// Pixels along the outline for each arrow, at least.
 const PIXELS_PER_ARROW: f64 = 14.0;
 
 /// Length of the longest arrow as a share of the size of the object, and at most, in pixels.
 const LONGEST_ARROW: f64 = 0.35;
 const MOST_PIXELS: f64 = 60.0;
+
+/// An object of fewer pixels has one arrow alone, that of its middle, as long as the object is.
+const SMALL_OBJECT: f64 = 32.0;
 
 /// Half the size of the crosses at related points in pixels, and at most as a share of the size of the object.
 const CROSS: f64 = 4.0;
@@ -146,24 +149,26 @@ fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &
     let motion = ProjectiveMotion::of_generator(generator);
     let velocity = |p: &Point2<f64>| motion.velocity(p);
     let size = size_in_pixels([area.low, area.high].map(|corner| grid.to_pixels(&corner)));
-    let chosen = arrow_places(outline, size);
-    let fastest = chosen.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);
-    let longest = LONGEST_ARROW.min(MOST_PIXELS / size);
+    let places = arrow_places(outline, size);
+    let fastest = places.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);
+    let longest = if size < SMALL_OBJECT { 1.0 } else { LONGEST_ARROW.min(MOST_PIXELS / size) };
     let seconds = longest * area.size().max() / fastest;
     if seconds.is_finite() {
-        for p in chosen {
-            canvas.arrow(grid.to_pixels(p), grid.to_pixels(&(p + seconds * velocity(p))), MOTION);
+        for p in places {
+            canvas.arrow(grid.to_pixels(&p), grid.to_pixels(&(p + seconds * velocity(&p))), MOTION);
         }
     }
 }
 
-/// Points of an outline of some size in pixels that arrows begin at, evenly spread.
-fn arrow_places(outline: &Outline, size: f64) -> Vec<&Point2<f64>> {
-    let count = outline.points().count();
-    // About that of a square.
-    let length = 4.0 * size;
-    let arrows = ((length / PIXELS_PER_ARROW) as usize).clamp(3, ARROWS);
-    (0..arrows.min(count)).filter_map(|k| outline.points().nth(k * count / arrows.min(count))).collect()
+/// Where arrows begin on an outline of some size in pixels: at points evenly spread along it, or in its middle.
+fn arrow_places(outline: &Outline, size: f64) -> Vec<Point2<f64>> {
+    if size < SMALL_OBJECT {
+        return vec![outline.centroid()];
+    }
+    let points: Vec<Point2<f64>> = outline.points().copied().collect();
+    // The length is about that of a square.
+    let arrows = ((4.0 * size / PIXELS_PER_ARROW) as usize).min(ARROWS).min(points.len());
+    (0..arrows).map(|k| points[k * points.len() / arrows]).collect()
 }
 
 #[cfg(test)]
@@ -177,8 +182,8 @@ mod tests {
             Point2::new(cos, sin)
         };
         let outline = Outline::closed((0..200).map(circle).collect()).expect("an outline");
-        let counts = [5.0, 20.0, 60.0, 1000.0].map(|size| arrow_places(&outline, size).len());
-        assert_eq!(counts, [3, 5, 17, 24]);
+        let counts = [5.0, 31.0, 40.0, 60.0, 1000.0].map(|size| arrow_places(&outline, size).len());
+        assert_eq!(counts, [1, 1, 11, 17, 24]);
         let few = Outline::closed(vec![Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)]);
         assert_eq!(arrow_places(&few.expect("an outline"), 1000.0).len(), 3);
     }
