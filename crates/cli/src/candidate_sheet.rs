@@ -2,8 +2,7 @@
 use std::path::Path;
 
 use freeform_motion::outline_io::{
-    Channel, GrayImage, PictureFrame, PictureOutlines, PictureSettings, Selection, TracingChoice, TracingEvidence,
-    TracingWay,
+    Channel, GrayImage, PictureFrame, PictureOutlines, PictureSettings, Selection, TracingEvidence, TracingWay,
 };
 use image::imageops::{FilterType, overlay, resize};
 use image::{ImageFormat, RgbImage};
@@ -11,7 +10,7 @@ use image::{ImageFormat, RgbImage};
 use crate::failure::Failure;
 use crate::output::{WholeFile, short};
 use crate::overlay::{Canvas, Label};
-use crate::tracing_choice::{Preview, options_of};
+use crate::tracing_choice::{Chosen, Preview, options_of};
 
 /// Ways drawn: the best ones.
 const WAYS: usize = 6;
@@ -28,13 +27,15 @@ const WIDTH: u32 = 320;
 /// Height of the line of text above a row, in pixels.
 const TEXT_HEIGHT: u32 = 24;
 
-/// Draws the best ways of a choice, one row each: its options, its score, and the outlines that it finds in pictures of the sequence.
-pub(crate) fn write_candidates(
-    path: &Path,
+/// Draws the best ways of a choice where that is asked for and there was one: a row for each with its options, its score, and the
+/// outlines that it finds in pictures of the sequence.
+pub(crate) fn draw_candidates(
+    path: Option<&Path>,
     preview: &Preview,
     base: &PictureSettings,
-    choice: &TracingChoice,
+    chosen: Option<&Chosen>,
 ) -> Result<(), Failure> {
+    let Some((path, Chosen { choice, .. })) = path.zip(chosen) else { return Ok(()) };
     let rows: Vec<(String, Vec<RgbImage>)> = choice
         .candidates
         .iter()

@@ -19,7 +19,7 @@ pub(crate) const OBJECTS_WITH_POSES: usize = 12;
 pub(crate) const OBJECTS_PLAYED: usize = 3;
 
 /// Points of all objects that are played together, so that a page stays below a few megabytes.
-const POINTS_PLAYED: usize = 180_000;
+const POINTS_PLAYED: usize = 220_000;
 
 /// What was found of one object over time, kept for figures.
 #[derive(Debug)]

@@ -13,7 +13,7 @@ use freeform_motion::outline_io::{
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
-use crate::candidate_sheet::write_candidates;
+use crate::candidate_sheet::draw_candidates;
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::input::Waiting;
@@ -97,7 +97,7 @@ impl PictureInput {
         let base = picture_settings(options, sequence.pixel_aspect(), None)?;
         base.check().map_err(Failure::unusable)?;
         let (options, chosen) = choose(&preview, &base, options);
-        draw_candidates(&preview, &base, &options, chosen.as_ref())?;
+        draw_candidates(options.candidates.as_deref(), &preview, &base, chosen.as_ref())?;
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
         }
@@ -133,7 +133,7 @@ impl PictureInput {
         let preview = Preview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
         let (options, chosen) = choose(&preview, &settings, options);
-        draw_candidates(&preview, &settings, &options, chosen.as_ref())?;
+        draw_candidates(options.candidates.as_deref(), &preview, &settings, chosen.as_ref())?;
         let stream = Cursor::new(beginning).chain(source);
         let sequence = PictureSequence::from_stream(stream, name, sequence_settings(&options))
             .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
@@ -314,19 +314,6 @@ impl Iterator for PictureInput {
             self.read_picture()?;
         }
         self.waiting.pop_front()
-    }
-}
-
-/// Draws the ways of tracing where that is asked for and there was a choice.
-fn draw_candidates(
-    preview: &Preview,
-    base: &PictureSettings,
-    options: &PictureOptions,
-    chosen: Option<&Chosen>,
-) -> Result<(), Failure> {
-    match (&options.candidates, chosen) {
-        (Some(path), Some(chosen)) => write_candidates(path, preview, base, &chosen.choice),
-        _ => Ok(()),
     }
 }
 

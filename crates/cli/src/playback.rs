@@ -14,6 +14,9 @@ use crate::thinned::{Kept, Thinned};
 /// Most points of an outline in one frame.
 const POINTS_OF_OUTLINE: usize = 160;
 
+/// What a frame takes room for besides the points of its outline, in points: its values, and why it was not used.
+const ROOM_OF_FRAME: usize = 40;
+
 /// A known outline is that of the frame before as long as no point of it has moved by more than this share of its size.
 const SAME: f64 = 0.003;
 
@@ -178,7 +181,7 @@ fn points_of(frame: &PlayedFrame, before: Option<&PlayedFrame>) -> usize {
         let is_old = latest.is_some_and(|latest| Rc::ptr_eq(&latest.pieces, &known.pieces));
         if is_old { 0 } else { known.seen.len() }
     };
-    1 + outline + frame.known.as_ref().map_or(0, of_known)
+    ROOM_OF_FRAME + outline + frame.known.as_ref().map_or(0, of_known)
 }
 
 /// Pieces of so many points together with fewer of them, evenly spread.

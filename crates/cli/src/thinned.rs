@@ -92,9 +92,9 @@ mod tests {
         let mut thinned = Thinned::default();
         for value in 0..1000_usize {
             if value == 333 {
-                thinned.skip()
+                thinned.skip();
             } else {
-                thinned.push(value)
+                thinned.push(value);
             }
             while thinned.kept().len() > 60 {
                 thinned.halve();

@@ -17,7 +17,8 @@ fn the_known_outline_runs_along_the_body_and_its_pose_takes_it_to_its_present_pl
     let mut placed: Vec<Point2<f64>> = piece.points.iter().map(|p| known.pose * p).collect();
     let mut present: Vec<Point2<f64>> = filter.outline_points().collect();
     let by_place = |a: &Point2<f64>, b: &Point2<f64>| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
-    [&mut placed, &mut present].map(|list| list.sort_by(by_place));
+    placed.sort_by(by_place);
+    present.sort_by(by_place);
     assert_eq!(placed.len(), present.len());
     assert!(placed.iter().zip(&present).all(|(a, b)| (a - b).norm() < 1e-9));
     // Where the body was at first, and once round it.
