@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use freeform_curve_fit::{Fit, Outline};
 use freeform_estimate::{MotionEstimate, MotionState, PlaneEstimate, PointVelocity};
-use freeform_outline_filter::{Ambiguity, DynamicsWeights, MotionFilter, Phase, PlaneAmbiguity, PlaneFilter, Unstated};
+use freeform_outline_filter::{
+    Ambiguity, DynamicsWeights, KnownOutline, MotionFilter, Phase, PlaneAmbiguity, PlaneFilter, Unstated,
+};
 
 #[cfg(feature = "serde")]
 use super::resting::{RestingError, RestingFilter, StateFile};
@@ -176,6 +178,14 @@ impl Identifier {
             #[cfg(feature = "serde")]
             Self::Resting(state) => state.restarts,
             Self::Adaptive(_) => 0,
+        }
+    }
+
+    /// The outline as far as it is known.
+    pub(super) fn known_outline(&self) -> Option<KnownOutline> {
+        match self {
+            Self::Filter(object) => object.filter.known_outline(),
+            _ => None,
         }
     }
 

@@ -26,11 +26,14 @@ use std::collections::HashMap;
 
 use freeform_outline_io::OutlineFrame;
 
-use self::{identifier::Identifier, object::TrackedObject};
+use self::{
+    identifier::Identifier,
+    object::{KnownOutlines, TrackedObject},
+};
 
 #[cfg(feature = "serde")]
 pub use self::state_bytes::TrackerStateError;
-pub use freeform_outline_filter::{ExpectedOutline, ExpectedPart};
+pub use freeform_outline_filter::ExpectedOutline;
 
 pub use self::{
     attendance::{Attendance, Sighting},
@@ -77,6 +80,8 @@ pub struct Tracker {
     settings: TrackerSettings,
     /// One that has seen nothing yet.
     unused: Identifier,
+    /// Objects whose observations hold what is known of the outline.
+    known_outlines_of: usize,
     objects: Objects,
     #[cfg(feature = "serde")]
     rest: Option<resting::Rest>,
@@ -100,6 +105,7 @@ impl Tracker {
         Ok(Self {
             settings,
             unused,
+            known_outlines_of: 0,
             objects: Objects::default(),
             #[cfg(feature = "serde")]
             rest: None,
@@ -116,6 +122,13 @@ impl Tracker {
     pub fn keep_states_in(&mut self, file: std::fs::File, most_in_memory: usize) {
         let file = std::sync::Arc::new(resting::StateFile::new(file));
         self.rest = Some(resting::Rest { file, most_awake: most_in_memory });
+    }
+
+    /// This tracker, whose observations hold what is known of the outline ([`Observation::known_outline`]), for the first so many of the
+    /// objects that are new from now on. It takes memory and time for every frame, so that it is for drawings.
+    #[must_use]
+    pub fn with_known_outlines(self, objects: usize) -> Self {
+        Self { known_outlines_of: objects, ..self }
     }
 
     /// Its settings.
@@ -164,13 +177,15 @@ impl Tracker {
         let position = self.objects.positions.get(name).copied().unwrap_or_else(|| {
             let position = self.objects.list.len();
             self.objects.positions.insert(name.to_owned(), position);
-            self.objects.list.push(self.new_object(name));
+            self.objects.list.push(self.new_object(name, position));
             position
         });
         &mut self.objects.list[position]
     }
 
-    fn new_object(&self, name: &str) -> TrackedObject {
-        TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings)
+    fn new_object(&self, name: &str, position: usize) -> TrackedObject {
+        let known_outline =
+            if position < self.known_outlines_of { KnownOutlines::Given } else { KnownOutlines::LeftOut };
+        TrackedObject::new(name.to_owned(), self.unused.clone(), &self.settings, known_outline)
     }
 }

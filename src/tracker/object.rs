@@ -23,6 +23,7 @@ pub(super) struct TrackedObject {
     pub(super) scale: Option<CameraScale>,
     pub(super) rectification: Option<Rectification>,
     pub(super) contour_order: ContourOrder,
+    pub(super) known_outline: KnownOutlines,
     pub(super) frames: usize,
     pub(super) rejected: usize,
     /// The first of them.
@@ -31,15 +32,28 @@ pub(super) struct TrackedObject {
     pub(super) rejected_later: FrameRanges,
 }
 
+/// Whether observations hold what is known of the outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum KnownOutlines {
+    Given,
+    LeftOut,
+}
+
 impl TrackedObject {
     /// A new object without frames.
-    pub(super) fn new(name: String, identifier: Identifier, settings: &TrackerSettings) -> Self {
+    pub(super) fn new(
+        name: String,
+        identifier: Identifier,
+        settings: &TrackerSettings,
+        known_outline: KnownOutlines,
+    ) -> Self {
         Self {
             name,
             identifier,
             scale: settings.scale,
             rectification: settings.rectification,
             contour_order: ContourOrder::default(),
+            known_outline,
             frames: 0,
             rejected: 0,
             rejections: Vec::new(),
@@ -81,6 +95,10 @@ impl TrackedObject {
             innovation: step.innovation,
             ambiguity: step.ambiguity,
             plane_ambiguity: step.plane_ambiguity,
+            known_outline: match self.known_outline {
+                KnownOutlines::Given => self.identifier.known_outline().map(Box::new),
+                KnownOutlines::LeftOut => None,
+            },
             rejection,
             segment: self.identifier.restarts(),
             warning: self.contour_order.look_at(frame).cloned(),
@@ -127,6 +145,7 @@ impl TrackedObject {
             innovation: None,
             ambiguity: None,
             plane_ambiguity: None,
+            known_outline: None,
             rejection,
             segment: self.identifier.restarts(),
             warning: None,

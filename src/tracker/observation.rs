@@ -2,7 +2,7 @@ use std::fmt;
 
 use freeform_curve_fit::Fit;
 use freeform_estimate::{MotionEstimate, MotionState, ParameterEstimate, PlaneEstimate};
-use freeform_outline_filter::{Ambiguity, Phase, PlaneAmbiguity};
+use freeform_outline_filter::{Ambiguity, KnownOutline, Phase, PlaneAmbiguity};
 
 use super::result::parameters_of;
 
@@ -39,6 +39,9 @@ pub struct Observation {
     pub ambiguity: Option<Ambiguity>,
     /// Two motions of a plane in space that the outlines so far do not decide between.
     pub plane_ambiguity: Option<PlaneAmbiguity>,
+    /// The outline as far as it is known, in the image, for the objects of [`Tracker::with_known_outlines`](super::Tracker::with_known_outlines)
+    /// (motion filter).
+    pub known_outline: Option<Box<KnownOutline>>,
     /// Why the frame was not used; `None` where it was.
     pub rejection: Option<FrameRejection>,
     /// How often the object had been given up and begun anew.

@@ -285,7 +285,7 @@ mod tests {
         let tracker = Tracker::new(TrackerSettings::default()).expect("default settings");
         let broken = panic::catch_unwind(|| {
             thread::scope(|scope| {
-                let mut queues = Queues::new(vec![tracker.new_object("0")]);
+                let mut queues = Queues::new(vec![tracker.new_object("0", 0)]);
                 queues.push(0, NextFrame::NoOutline { frame: 0, reason: "torn".to_owned() });
                 // In place of a thread that takes the object and breaks off.
                 queues.send(0);

@@ -163,7 +163,7 @@ impl Tracker {
             let position = positions.get(object).copied().unwrap_or_else(|| {
                 let position = queues.len();
                 positions.insert(object.to_owned(), position);
-                queues.add(self.new_object(object));
+                queues.add(self.new_object(object, position));
                 position
             });
             queues.push(position, frame);

@@ -9,7 +9,7 @@ use super::{
     Objects, Tracker,
     contour_order::{ContourOrder, FRAMES},
     identifier::{FilteredObject, Identifier},
-    object::{REJECTIONS_KEPT, TrackedObject},
+    object::{KnownOutlines, REJECTIONS_KEPT, TrackedObject},
     settings::{Method, MethodSettings, TrackerSettings},
 };
 use crate::frame_ranges::FrameRanges;
@@ -214,6 +214,7 @@ fn restored(
         scale: settings.scale,
         rectification: settings.rectification,
         contour_order: ContourOrder { seen: frames_looked_at, warning },
+        known_outline: KnownOutlines::LeftOut,
         frames,
         rejected,
         rejections: rejections.collect(),

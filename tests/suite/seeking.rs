@@ -53,7 +53,7 @@ fn tracker() -> Tracker {
 fn farthest(expected: &ExpectedOutline, time: f64) -> f64 {
     let egg: Vec<_> = angles(0.0, std::f64::consts::TAU).map(|t| egg(time, t)).collect();
     let distance = |p: &Point2<f64>| egg.iter().map(|q| (p - q).norm()).fold(f64::MAX, f64::min);
-    expected.parts.iter().flat_map(|part| &part.points).map(distance).fold(0.0, f64::max)
+    expected.pieces.iter().flat_map(|piece| &piece.points).map(distance).fold(0.0, f64::max)
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn an_outline_is_expected_where_the_motion_has_led_it_less_and_less_certainly() 
     let later = tracker.expected_outline("egg", time_of(24)).expect("a tracked egg");
     assert!(farthest(&now, time_of(9)) < 0.03 && farthest(&later, time_of(24)) < 0.05);
     assert!(0.0 < now.deviation && 2.0 * now.deviation < later.deviation, "{} {}", now.deviation, later.deviation);
-    assert!(later.parts.len() == 1 && later.parts[0].is_closed);
+    assert!(later.pieces.len() == 1 && later.pieces[0].closed);
     assert_eq!(tracker.expected_outline("another", time_of(24)), None);
     assert_eq!(tracker.expected_outline("egg", f64::NAN), None);
 }

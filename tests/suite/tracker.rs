@@ -353,3 +353,22 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_is_known_of_outlines_is_told_of_as_many_objects_as_are_asked_for() {
+    let of_two: Vec<_> = ["first", "second"].map(|name| seen(BuiltInShape::Bird, name, 80, 6)).concat();
+    for (objects, told) in [(0, vec![]), (1, vec!["first"]), (9, vec!["first", "second"])] {
+        let mut tracker = tracker(Method::Filter).with_known_outlines(objects);
+        let mut seen = BTreeSet::new();
+        tracker.follow(of_two.clone(), |observation| {
+            if let Some(known) = &observation.known_outline {
+                let pose = observation.state.as_ref().map(freeform_motion::estimate::MotionState::pose);
+                assert!(pose.is_none_or(|pose| (pose.matrix() - known.pose.matrix()).norm() < 1e-6));
+                seen.insert(observation.object);
+            }
+        });
+        assert_eq!(seen.into_iter().collect::<Vec<_>>(), told);
+    }
+    let mut adaptive = tracker(Method::Adaptive).with_known_outlines(9);
+    assert!(of_two.iter().all(|frame| adaptive.push(frame).known_outline.is_none()));
+}

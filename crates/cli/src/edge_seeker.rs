@@ -53,7 +53,7 @@ impl Known {
 }
 
 fn pieces(expected: &ExpectedOutline) -> impl Iterator<Item = Piece<'_>> {
-    expected.parts.iter().map(|part| Piece { points: &part.points, closed: part.is_closed })
+    expected.pieces.iter().map(|piece| Piece { points: &piece.points, closed: piece.closed })
 }
 
 impl EdgeSeeker {

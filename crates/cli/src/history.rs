@@ -1,6 +1,7 @@
 //! What was found of every object over time.
 use std::collections::HashMap;
 
+use freeform_motion::Rectification;
 use freeform_motion::curve_fit::Outline;
 use freeform_motion::estimate::ParameterEstimate;
 use freeform_motion::outline_io::OutlineFrame;
@@ -8,6 +9,17 @@ use freeform_motion::tracker::Observation;
 
 use crate::fitted_outline::FittedOutline;
 use crate::overlay::CurveFitter;
+use crate::playback::Playback;
+use crate::pose_history::PoseHistory;
+
+/// Objects whose poses are kept: the first so many.
+pub(crate) const OBJECTS_WITH_POSES: usize = 12;
+
+/// Objects that are played: the first so many.
+pub(crate) const OBJECTS_PLAYED: usize = 3;
+
+/// Points of all objects that are played together, so that a page stays below a few megabytes.
+const POINTS_PLAYED: usize = 220_000;
 
 /// What was found of one object over time, kept for figures.
 #[derive(Debug)]
@@ -25,13 +37,37 @@ pub(crate) struct History {
     pub(crate) rejected: Vec<(u64, Option<f64>)>,
     /// The latest outline that was not rejected, with its curve; `None` where the method fits none.
     pub(crate) latest: Option<(FittedOutline, Outline)>,
+    /// Where it was, for a report.
+    pub(crate) poses: Option<PoseHistory>,
+    /// Its frames, for a report.
+    pub(crate) playback: Option<Playback>,
+}
+
+/// What the histories are kept for.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) enum Purpose {
+    /// Figures of the parameters.
+    #[default]
+    Figures,
+    /// A report, with poses and players; of outlines that are mapped to a plane, if there is one.
+    Report(Option<Rectification>),
 }
 
 impl History {
     /// An empty history.
     pub(crate) fn of(object: String) -> Self {
         let (estimates, residuals, innovations, rejected) = Default::default();
-        Self { object, start: None, estimates, residuals, innovations, rejected, latest: None }
+        Self {
+            object,
+            start: None,
+            estimates,
+            residuals,
+            innovations,
+            rejected,
+            latest: None,
+            poses: None,
+            playback: None,
+        }
     }
 }
 
@@ -42,11 +78,17 @@ const MOST_DRAWN: usize = 200;
 #[derive(Debug, Default)]
 pub(crate) struct Histories {
     pub(crate) list: Vec<History>,
+    purpose: Purpose,
     /// By their names.
     positions: HashMap<String, usize>,
 }
 
 impl Histories {
+    /// Empty histories for a purpose.
+    pub(crate) fn new(purpose: Purpose) -> Self {
+        Self { purpose, ..Self::default() }
+    }
+
     /// The history of an object, if it has one.
     pub(crate) fn of(&self, object: &str) -> Option<&History> {
         self.positions.get(object).map(|&position| &self.list[position])
@@ -66,12 +108,22 @@ impl Histories {
             None if self.list.len() == MOST_DRAWN => return,
             None => {
                 self.positions.insert(observation.object.clone(), self.list.len());
-                self.list.push(History::of(observation.object.clone()));
+                self.list.push(self.new_history(observation.object.clone()));
                 self.list.len() - 1
             }
         };
+        let played = self.list.len().min(OBJECTS_PLAYED);
         let history = &mut self.list[position];
         history.start = history.start.or(observation.time);
+        if let Some(poses) = &mut history.poses {
+            poses.take(observation);
+        }
+        if let (Some(playback), Purpose::Report(plane)) = (&mut history.playback, &self.purpose) {
+            let outline = frame.map(|frame| &frame.outline);
+            let in_plane = plane.as_ref().and_then(|plane| plane.outline(outline?).ok());
+            playback.take(observation, if plane.is_some() { in_plane.as_ref() } else { outline });
+            playback.keep_points(POINTS_PLAYED / played);
+        }
         history.estimates.extend(observation.time.map(|time| (time, observation.parameters())));
         if !observation.is_accepted() {
             history.rejected.push((observation.frame, observation.time));
@@ -84,5 +136,23 @@ impl Histories {
         if let Some((frame, fit)) = frame.and_then(|frame| Some((frame, curves.of(observation, frame)?))) {
             history.latest = Some((FittedOutline::new(frame, fit), frame.outline.clone()));
         }
+    }
+
+    fn new_history(&self, object: String) -> History {
+        let mut history = History::of(object);
+        if let Purpose::Report(_) = self.purpose {
+            history.poses = (self.list.len() < OBJECTS_WITH_POSES).then(PoseHistory::default);
+            history.playback = (self.list.len() < OBJECTS_PLAYED).then(Playback::default);
+        }
+        history
+    }
+
+    /// Keeps no more of the objects that are played than there is room for in a page.
+    pub(crate) fn close(&mut self) {
+        let most = POINTS_PLAYED / self.list.len().clamp(1, OBJECTS_PLAYED);
+        self.list
+            .iter_mut()
+            .filter_map(|history| history.playback.as_mut())
+            .for_each(|playback| playback.keep_points(most));
     }
 }

@@ -1,6 +1,8 @@
 //! Command line of freeform: how a flat free-form object moves, from nothing but its outlines.
 mod args;
 mod awaited;
+mod bound_found;
+mod candidate_sheet;
 mod command_line;
 mod commands;
 mod edge_seeker;
@@ -15,10 +17,13 @@ mod meaning_of_b;
 mod output;
 mod overlay;
 mod picture_input;
+mod playback;
 mod plot;
+mod pose_history;
 mod progress;
 mod reader;
 mod seen;
+mod thinned;
 mod tracing_choice;
 mod truth;
 

@@ -43,6 +43,13 @@ impl MeaningOfB {
         Self { point, unit, short_unit, scale }
     }
 
+    /// Unit of a position, and what it was divided by.
+    pub(crate) fn of_length(&self) -> String {
+        let unit = self.unit.split_once("/s").map_or(self.unit.as_str(), |(length, _)| length);
+        let scale = self.scale.map_or_else(String::new, |scale| format!(", over f/Z0 = {scale}"));
+        format!("{unit}{scale}")
+    }
+
     /// Unit of a velocity, and what it was divided by.
     pub(crate) fn of_velocity(&self) -> String {
         let scale = self.scale.map_or_else(String::new, |scale| format!(", over f/Z0 = {scale}"));

@@ -13,6 +13,7 @@ use freeform_motion::outline_io::{
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
+use crate::candidate_sheet::draw_candidates;
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::input::Waiting;
@@ -96,6 +97,7 @@ impl PictureInput {
         let base = picture_settings(options, sequence.pixel_aspect(), None)?;
         base.check().map_err(Failure::unusable)?;
         let (options, chosen) = choose(&preview, &base, options);
+        draw_candidates(options.candidates.as_deref(), &preview, &base, chosen.as_ref())?;
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
         }
@@ -131,6 +133,7 @@ impl PictureInput {
         let preview = Preview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
         let (options, chosen) = choose(&preview, &settings, options);
+        draw_candidates(options.candidates.as_deref(), &preview, &settings, chosen.as_ref())?;
         let stream = Cursor::new(beginning).chain(source);
         let sequence = PictureSequence::from_stream(stream, name, sequence_settings(&options))
             .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
@@ -198,7 +201,10 @@ impl PictureInput {
 
     /// Why the way of tracing is not to be trusted.
     pub(crate) fn doubts(&self) -> Vec<String> {
-        self.chosen.iter().filter_map(Chosen::warning).collect()
+        let drawn = self.options.candidates.as_deref();
+        let undrawn = drawn.filter(|_| self.chosen.is_none());
+        let undrawn = undrawn.map(|path| format!("{}: not written, as no way of tracing was chosen", path.display()));
+        self.chosen.iter().filter_map(|chosen| chosen.warning(drawn)).chain(undrawn).collect()
     }
 
     /// What may be wrong with how they are read and traced.

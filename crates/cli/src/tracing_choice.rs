@@ -1,6 +1,6 @@
 //! What is looked at of pictures before they are traced, to choose how.
 use std::io::Cursor;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use freeform_motion::outline_io::{
@@ -50,7 +50,7 @@ impl Preview {
     }
 
     /// The pictures of a sample, in one channel.
-    fn pictures(&self, channel: Channel) -> Option<Previewed> {
+    pub(crate) fn pictures(&self, channel: Channel) -> Option<Previewed> {
         let settings = SequenceSettings { frames_per_second: None, channel };
         let frames = self.plan().frames();
         let sequence = match self {
@@ -134,7 +134,7 @@ impl Chosen {
     }
 
     /// What is said where nothing stands out.
-    pub(crate) fn warning(&self) -> Option<String> {
+    pub(crate) fn warning(&self, drawn: Option<&Path>) -> Option<String> {
         if self.choice.is_convincing() {
             return None;
         }
@@ -142,7 +142,10 @@ impl Chosen {
         let others: Vec<String> = others.collect();
         let next = if others.is_empty() { String::new() } else { format!("; next best: {}", others.join(", or ")) };
         let doubt = "no way of tracing tells an object from the ground beyond doubt";
-        Some(format!("{doubt}; look at the outlines with --overlay and choose one{next}"))
+        Some(match drawn {
+            Some(path) => format!("{doubt}; choose one by {}, where they are drawn{next}", path.display()),
+            None => format!("{doubt}; draw them with --candidates FILE.png and choose one{next}"),
+        })
     }
 }
 
@@ -206,7 +209,7 @@ fn take(options: &mut PictureOptions, tracing: &Tracing) {
 }
 
 /// A way as options.
-fn options_of(tracing: &Tracing) -> Vec<String> {
+pub(crate) fn options_of(tracing: &Tracing) -> Vec<String> {
     let background = |name: &str, difference| {
         let side = match difference {
             Difference::Either => "",

@@ -64,10 +64,11 @@ pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
 pub use plane::{PlaneAmbiguity, PlaneFilter, PlaneSolution, PlaneUnknown};
 pub use supervisor::{
-    Ambiguity, ExpectedOutline, ExpectedPart, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated,
+    Ambiguity, ExpectedOutline, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated,
 };
 #[cfg(feature = "serde")]
 pub use supervisor::{StateError, with_header, without_header};
+pub use track::{KnownOutline, KnownPiece};
 pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]

@@ -82,11 +82,12 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
+    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m
+    /// (uncompressed video, which ffmpeg and others read)
     ///
     /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
     /// drawings that freeform did not draw.
-    #[arg(long, value_name = "DIR|FILE.gif")]
+    #[arg(long, value_name = "DIR|FILE.gif|FILE.y4m")]
     pub(crate) overlay: Option<PathBuf>,
 
     /// Print only the result and errors
@@ -150,11 +151,12 @@ pub(crate) struct TrackArgs {
     #[command(flatten)]
     pub(crate) options: TrackOptions,
 
-    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, or FILE.gif
+    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m
+    /// (uncompressed video, which ffmpeg and others read)
     ///
     /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
     /// drawings that freeform did not draw.
-    #[arg(long, value_name = "DIR|FILE.gif")]
+    #[arg(long, value_name = "DIR|FILE.gif|FILE.y4m")]
     pub(crate) overlay: Option<PathBuf>,
 
     /// Print only results and errors

@@ -27,11 +27,12 @@ pub(crate) struct OutlineArgs {
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     pub(crate) output: PathBuf,
 
-    /// Draw the outlines on every picture: a folder for PNG files, or FILE.gif
+    /// Draw the outlines on every picture: a folder for PNG files, FILE.gif, or FILE.y4m (uncompressed video, which ffmpeg
+    /// and others read)
     ///
     /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
     /// drawings that freeform did not draw.
-    #[arg(long, value_name = "DIR|FILE.gif")]
+    #[arg(long, value_name = "DIR|FILE.gif|FILE.y4m")]
     pub(crate) overlay: Option<PathBuf>,
 
     /// Print only results and errors

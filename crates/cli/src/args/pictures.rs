@@ -75,6 +75,10 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_enum)]
     pub(crate) contours: Option<ContoursChoice>,
 
+    /// Draw the ways of tracing that were tried, the best first: what each finds in pictures of the input
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) candidates: Option<PathBuf>,
+
     /// Area of the smallest object, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = SMALLEST_OBJECT)]
     pub(crate) min_area: u64,
@@ -115,6 +119,7 @@ impl PictureOptions {
             ("--ring-width", self.ring_width.is_some()),
             ("--smoothing", self.smoothing.is_some()),
             ("--contours", self.contours.is_some()),
+            ("--candidates", self.candidates.is_some()),
             ("--min-area", self.min_area != SMALLEST_OBJECT),
             ("--objects", self.objects.is_some()),
             ("--pixel-size", self.pixel_size != 1.0),

@@ -13,7 +13,7 @@ use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, Perspe
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::fitted_outline::FittedOutline;
-use crate::history::Histories;
+use crate::history::{Histories, OBJECTS_PLAYED, Purpose};
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::output::{
@@ -142,10 +142,12 @@ struct Found {
 impl Identification {
     fn new(options: TrackOptions, trace_path: &Path) -> Result<Self, Failure> {
         let tracker = Tracker::new(options.tracker_settings()).map_err(Failure::unusable)?;
+        let tracker = tracker.with_known_outlines(OBJECTS_PLAYED);
         let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.family(), None)
             .map_err(|error| file_failure(trace_path, &error))?;
         let curves = CurveFitter::new(&options)?;
-        Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories: Histories::default() })
+        let histories = Histories::new(Purpose::Report(None));
+        Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories })
     }
 
     fn take(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
@@ -157,7 +159,8 @@ impl Identification {
 
     /// Writes the trace and the figure, and prints the warnings.
     fn finish(self, figure: &Path, truth: &Truth) -> Result<Found, Failure> {
-        let Self { options, tracker, trace, trace_path, histories, .. } = self;
+        let Self { options, tracker, trace, trace_path, mut histories, .. } = self;
+        histories.close();
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
         WholeFile::write(figure, &parameter_figure(&histories.list, options.motion.family(), Some(truth)))?;
         let results = tracker.results();

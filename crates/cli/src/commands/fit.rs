@@ -17,10 +17,9 @@ use crate::seen::{Item, Missing};
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let mut fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
-    if let Some(svg) = &args.svg {
-        refuse_overwriting(&args.inputs, &[svg])?;
-        refuse_standard_output(&[svg])?;
-    }
+    let outputs: Vec<_> = args.svg.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
+    refuse_overwriting(&args.inputs, &outputs)?;
+    refuse_standard_output(&outputs)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;

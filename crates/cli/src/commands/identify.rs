@@ -13,7 +13,7 @@ use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, 
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::handful::handful;
-use crate::history::Histories;
+use crate::history::{Histories, OBJECTS_PLAYED, Purpose};
 use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::LeftOut;
@@ -38,6 +38,9 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     let mut input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
         tracker = Tracker::new(args.tracker_settings(Some(length))?).map_err(Failure::unusable)?;
+    }
+    if args.report.is_some() {
+        tracker = tracker.with_known_outlines(OBJECTS_PLAYED);
     }
     let name = input.name.clone();
     let of_file = input.truth().filter(|_| args.truth.is_none());
@@ -75,6 +78,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     if let Some(overlay) = overlay {
         overlay.finish()?;
     }
+    files.histories.close();
     let results = tracker.results();
     if let Some(left_out) = files.histories.left_out(results.len()).filter(|_| !args.quiet) {
         warn(&left_out);
@@ -133,7 +137,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 
 /// Refuses options that cannot be combined.
 fn check(args: &IdentifyArgs) -> Result<(), Failure> {
-    let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay];
+    let candidates = &args.pictures.candidates;
+    let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay, candidates];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     refuse_standard_output(&outputs)?;
@@ -183,7 +188,10 @@ impl<'a> Files<'a> {
             trajectory,
             svg,
             curves: CurveFitter::new(&args.options)?,
-            histories: Histories::default(),
+            histories: Histories::new(match args.report {
+                Some(_) => Purpose::Report(args.options.rectify),
+                None => Purpose::Figures,
+            }),
         })
     }
 

@@ -12,7 +12,11 @@ use crate::seen::{Item, Missing};
 
 /// Traces the outlines of pictures, or takes those of a file, and writes them.
 pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
-    let outputs: Vec<_> = std::iter::once(&args.output).chain(&args.overlay).map(AsRef::as_ref).collect();
+    let outputs: Vec<_> = std::iter::once(&args.output)
+        .chain(&args.overlay)
+        .chain(&args.pictures.candidates)
+        .map(AsRef::as_ref)
+        .collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     if !input.has_pictures() && args.overlay.is_some() {

@@ -7,7 +7,7 @@ use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::failure::{Failure, warn};
 use crate::input::{Input, Waiting};
 use crate::left_out::MissingWarnings;
-use crate::output::{Sink, write_recognised_json, write_recognised_table};
+use crate::output::{Sink, refuse_overwriting, refuse_standard_output, write_recognised_json, write_recognised_table};
 use crate::progress::Progress;
 use crate::seen::Item;
 
@@ -22,6 +22,9 @@ pub(crate) struct RecognisedObject {
 
 /// Names every object of the input.
 pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
+    let candidates: Vec<_> = args.pictures.candidates.iter().map(AsRef::as_ref).collect();
+    refuse_overwriting(&args.inputs, &candidates)?;
+    refuse_standard_output(&candidates)?;
     let mut recogniser = learnt(args)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();

@@ -13,8 +13,8 @@ use crate::truth::Truth;
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
 
-/// Standard deviations on each side that a band shows.
-const BAND: f64 = 2.0;
+/// Standard deviations on each side of a band that 95 of 100 true values lie in.
+pub(super) const BAND: f64 = 1.96;
 
 /// Outlines with their fitted curves and related points, as a file.
 pub(crate) fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
@@ -170,7 +170,7 @@ impl History {
         runs.retain(is_drawn);
         band.retain(is_drawn);
         vec![
-            Curve { name: "2 std".to_owned(), look: Look::Band, runs: band },
+            Curve { name: "95 % band".to_owned(), look: Look::Band, runs: band },
             Curve { name: "identified".to_owned(), look: Look::Line, runs },
         ]
     }
@@ -195,7 +195,7 @@ mod tests {
         let mut history = History::of("0".to_owned());
         history.estimates = estimates.collect();
         let curves = history.curves(0);
-        assert_eq!(curves[0].runs[1], [[3.0, 0.8], [4.0, 0.8], [4.0, 1.2], [3.0, 1.2]]);
+        assert_eq!(curves[0].runs[1], [[3.0, 0.804], [4.0, 0.804], [4.0, 1.196], [3.0, 1.196]]);
         let lengths = |curve: &Curve| curve.runs.iter().map(Vec::len).collect::<Vec<_>>();
         assert_eq!((lengths(&curves[0]), lengths(&curves[1])), (vec![2, 4, 6], vec![1, 2, 3]));
         assert_eq!(lengths(&history.curves(1)[1]), [4, 3]);

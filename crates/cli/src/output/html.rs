@@ -1,12 +1,16 @@
 use std::fmt::Write as _;
 use std::io;
 
+use freeform_experiments::figure::Panel;
 use freeform_motion::tracker::{FrameRanges, ObjectResult};
 
 use super::figures::{fit_panel, parameter_panels, residual_panels};
 use super::identify_table::{COLUMNS, parameter_rows};
+use super::player::{Player, write_script};
+use super::pose_figures::{deviation_panels, pose_panels};
 use super::velocity::meaning_of_v;
-use crate::history::{Histories, History};
+use crate::bound_found::{NoBound, bound_found};
+use crate::history::{Histories, History, OBJECTS_PLAYED, OBJECTS_WITH_POSES};
 use crate::left_out::LeftOut;
 use crate::meaning_of_b::MeaningOfB;
 use crate::plot::{escape, panel_svg};
@@ -14,6 +18,18 @@ use crate::truth::Truth;
 
 /// Number of left-out pictures that are listed with their reasons.
 const PICTURES_TOLD: usize = 10;
+
+/// What a reader should know of the figures of a pose, of the parameters, of their standard deviations, and of the bound.
+const POSES: &str = "The turn since the first frame, and the place of the middle of the first outline. The true values lie within the \
+                     bands in 95 of 100 cases. There is no line where nothing is stated.";
+const PARAMETERS: &str =
+    "The parameters of the motion as they were known from the frames up to each time, with 95 % bands.";
+const DEVIATIONS: &str = "How far the parameters are likely to be off, from the frames up to each time: the true value is within 1.96 \
+                          standard deviations in 95 of 100 cases.";
+const BOUND: &str = "The dashed line is the Cramer-Rao bound: the least standard deviation that any unbiased method can have, if the outline \
+                     is known, the motion is constant and the errors of the points are independent of each other. It is computed for what was \
+                     found here: this motion, this outline in these places, the points that were seen, and their noise in every frame. A line well \
+                     above it has errors that depend on each other, an outline that had to be learnt, or doubts whether the motion is constant.";
 
 const STYLE: &str = include_str!("report.css");
 
@@ -62,16 +78,28 @@ pub(crate) fn write_report(sink: &mut impl io::Write, report: &Report<'_>) -> io
         let error = escape(error);
         let _ = writeln!(body, "<p class=\"alert\">The input could not be read to its end: {error}</p>");
     }
+    let mut players = 0;
     for Findings { results, histories } in &report.findings {
         for result in *results {
             let history = histories.of(&result.object);
-            write_object(&mut body, result, history, report);
+            write_object(&mut body, result, history, report, &mut players);
             sink.write_all(body.as_bytes())?;
             body.clear();
+        }
+        if results.len() > OBJECTS_PLAYED {
+            let _ = writeln!(
+                body,
+                "<p class=\"soft\">The first {OBJECTS_PLAYED} objects are shown frame by frame, the first {OBJECTS_WITH_POSES} with \
+                 positions and standard deviations over time. --trajectory writes those of all {}.</p>",
+                results.len()
+            );
         }
     }
     write_left_out(&mut body, report.left_out);
     write_settings(&mut body, &report.settings, &report.command);
+    if players > 0 {
+        write_script(&mut body);
+    }
     sink.write_all(body.as_bytes())?;
     sink.write_all(after.as_bytes())
 }
@@ -125,7 +153,13 @@ fn summary(results: &[ObjectResult]) -> String {
     format!("{} object(s), {frames} frames, {rejected} rejected", results.len())
 }
 
-fn write_object(body: &mut String, result: &ObjectResult, history: Option<&History>, report: &Report<'_>) {
+fn write_object(
+    body: &mut String,
+    result: &ObjectResult,
+    history: Option<&History>,
+    report: &Report<'_>,
+    players: &mut usize,
+) {
     let truth = report.truth;
     let object = escape(&result.object);
     let _ = writeln!(body, "<h2>Object {object}: {} motion, {} method</h2>", result.motion, result.method.name());
@@ -147,23 +181,64 @@ fn write_object(body: &mut String, result: &ObjectResult, history: Option<&Histo
         body.push_str("</ul>\n");
     }
     let Some(history) = history else { return };
-    body.push_str("<div class=\"panels\">\n");
-    for panel in parameter_panels(history, "", result.motion, truth) {
-        let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 300.0));
+    let scale = report.meaning_of_b.scale;
+    if let Some(playback) = &history.playback {
+        let player = Player {
+            number: *players,
+            object: &result.object,
+            playback,
+            frames: result.frames,
+            model: result.motion,
+            b: &report.meaning_of_b,
+        };
+        *players += usize::from(player.write(body));
     }
-    for panel in residual_panels(history) {
-        let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 300.0));
+    if let Some(poses) = &history.poses {
+        let panels = pose_panels(poses, history.start, result.motion, &report.meaning_of_b);
+        write_panels(body, "Where it was", POSES, &panels);
     }
+    write_panels(body, "How it moved", PARAMETERS, &parameter_panels(history, "", result.motion, truth));
+    if history.poses.is_some() {
+        let bound = match &history.playback {
+            Some(playback) => bound_found(result, playback, scale).map_err(NoBound::reason),
+            None => Err("it is computed for the first objects of a page"),
+        };
+        let text = match &bound {
+            Ok(_) => format!("{DEVIATIONS} {BOUND}"),
+            Err(reason) => {
+                format!("{DEVIATIONS} The least possible standard deviation (Cramer-Rao bound) is not drawn: {reason}.")
+            }
+        };
+        let panels = deviation_panels(history, result.motion, bound.as_deref().unwrap_or_default());
+        write_panels(body, "How well that is known", &text, &panels);
+    }
+    let mut panels = residual_panels(history);
     if let Some(latest) = &history.latest {
         let title = format!("Frame {}, the last one used", latest.0.frame);
-        let panel = fit_panel(title, std::slice::from_ref(latest));
-        let _ = writeln!(body, "<div>{}</div>", panel_svg(&panel, 400.0, 400.0));
+        panels.push(fit_panel(title, std::slice::from_ref(latest)));
     }
-    body.push_str("</div>\n");
+    write_panels(body, "How well the frames fit", "", &panels);
     if !history.rejected.is_empty() {
         let frames: FrameRanges = history.rejected.iter().map(|(frame, _)| *frame).collect();
         let _ = writeln!(body, "<p>Rejected frames: {frames}</p>");
     }
+}
+
+/// Panels below a heading, with what a reader should know of them.
+fn write_panels(body: &mut String, heading: &str, text: &str, panels: &[Panel]) {
+    if panels.is_empty() {
+        return;
+    }
+    let _ = writeln!(body, "<h3>{heading}</h3>");
+    if !text.is_empty() {
+        let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(text));
+    }
+    body.push_str("<div class=\"panels\">\n");
+    for panel in panels {
+        let height = if panel.view.is_some() { 400.0 } else { 300.0 };
+        let _ = writeln!(body, "<div>{}</div>", panel_svg(panel, 400.0, height));
+    }
+    body.push_str("</div>\n");
 }
 
 fn write_row<'a>(body: &mut String, tag: &str, cells: impl Iterator<Item = &'a str>) {

@@ -16,6 +16,8 @@ mod identify_table;
 mod number;
 mod page;
 mod plane_json;
+mod player;
+mod pose_figures;
 mod recognised;
 mod refusal;
 mod stress_json;

@@ -1,5 +1,7 @@
 use image::{GrayImage, Rgb, RgbImage};
 
+use super::drawing::OUTLINE;
+
 /// A picture to draw on. Positions are in columns and rows, pixel centres at half numbers.
 #[derive(Debug)]
 pub(crate) struct Canvas {
@@ -98,6 +100,11 @@ impl Canvas {
         }
     }
 
+    /// A line along an outline.
+    pub(crate) fn outline(&mut self, points: impl Iterator<Item = [f64; 2]>) {
+        self.polyline(points, OUTLINE);
+    }
+
     /// A cross about a position.
     pub(crate) fn cross(&mut self, [x, y]: [f64; 2], size: f64, colour: Rgb<u8>) {
         for offset in [-0.5, 0.5] {
@@ -112,7 +119,7 @@ impl Canvas {
         let length = dx.hypot(dy);
         self.line(from, to, colour);
         if length >= 3.0 {
-            let head = 4.0_f64.min(0.5 * length) / length;
+            let head = 4.0_f64.min(0.4 * length) / length;
             for side in [-0.6, 0.6] {
                 self.line(to, [to[0] - head * (dx - side * dy), to[1] - head * (dy + side * dx)], colour);
             }

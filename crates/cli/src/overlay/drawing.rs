@@ -13,20 +13,31 @@ use crate::fitted_outline::Parts;
 use crate::output::refuse_drawing_beside;
 use crate::seen::SeenIn;
 
-const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
+pub(super) const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
 const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);
 const CURVE: Rgb<u8> = Rgb([86, 180, 233]);
 const RELATED: Rgb<u8> = Rgb([240, 120, 220]);
 const MOTION: Rgb<u8> = Rgb([0, 220, 150]);
 
-/// Arrows of the motion field around an outline.
+/// All colours of drawings.
+pub(super) const COLOURS: [Rgb<u8>; 5] = [OUTLINE, REJECTED, CURVE, RELATED, MOTION];
+
+/// Most arrows of the motion field around an outline.
 const ARROWS: usize = 24;
 
-/// Length of the longest arrow in the first field drawn of a frame, as a share of the size of the object.
-const LONGEST_ARROW: f64 = 0.35;
+/// Pixels along the outline for each arrow, at least.
+const PIXELS_PER_ARROW: f64 = 14.0;
 
-/// Half the size of the crosses at related points, in pixels.
+/// Length of the longest arrow as a share of the size of the object, and at most, in pixels.
+const LONGEST_ARROW: f64 = 0.35;
+const MOST_PIXELS: f64 = 60.0;
+
+/// An object of fewer pixels has one arrow alone, that of its middle, as long as the object is.
+const SMALL_OBJECT: f64 = 32.0;
+
+/// Half the size of the crosses at related points in pixels, and at most as a share of the size of the object.
 const CROSS: f64 = 4.0;
+const CROSS_SHARE: f64 = 0.06;
 
 /// What is drawn of one object in one frame.
 pub(crate) struct Drawn<'a> {
@@ -43,14 +54,24 @@ pub(crate) struct Drawn<'a> {
 /// Draws frame after frame and writes each when the next one begins.
 pub(crate) struct Overlay {
     target: Target,
-    present: Option<(u64, Canvas)>,
+    present: Option<Present>,
+    /// Seconds from the last picture to the one before it.
+    interval: Option<f64>,
+}
+
+/// The picture that is drawn on.
+struct Present {
+    frame: u64,
+    /// In seconds.
+    time: f64,
+    canvas: Canvas,
 }
 
 impl Overlay {
-    /// Drawings for a folder or a GIF. A folder that pictures of the input stand in is refused.
+    /// Drawings for a folder, a GIF or a video. A folder that pictures of the input stand in is refused.
     pub(crate) fn open(path: &Path, inputs: &[PathBuf]) -> Result<Self, Failure> {
         refuse_drawing_beside(inputs, path)?;
-        Ok(Self { target: Target::open(path)?, present: None })
+        Ok(Self { target: Target::open(path)?, present: None, interval: None })
     }
 
     /// Draws an object on the picture that it was seen in.
@@ -67,23 +88,25 @@ impl Overlay {
 
     /// The picture to draw on; the one before it is written when a new one begins.
     fn canvas(&mut self, seen_in: &SeenIn) -> Result<&mut Canvas, Failure> {
-        if self.present.as_ref().is_some_and(|(frame, _)| *frame != seen_in.frame) {
-            self.write_present()?;
+        if let Some(before) = self.present.take_if(|present| present.frame != seen_in.frame) {
+            let seconds = seen_in.time - before.time;
+            self.interval = (seconds > 0.0 && seconds.is_finite()).then_some(seconds);
+            self.write(before)?;
         }
-        Ok(&mut self.present.get_or_insert_with(|| (seen_in.frame, Canvas::of(&seen_in.picture))).1)
+        let begin = || Present { frame: seen_in.frame, time: seen_in.time, canvas: Canvas::of(&seen_in.picture) };
+        Ok(&mut self.present.get_or_insert_with(begin).canvas)
     }
 
     /// Writes what has not been written.
     pub(crate) fn finish(mut self) -> Result<(), Failure> {
-        self.write_present()?;
+        if let Some(last) = self.present.take() {
+            self.write(last)?;
+        }
         self.target.finish()
     }
 
-    fn write_present(&mut self) -> Result<(), Failure> {
-        match self.present.take() {
-            Some((frame, canvas)) => self.target.write(frame, canvas.into_picture()),
-            None => Ok(()),
-        }
+    fn write(&mut self, Present { frame, canvas, .. }: Present) -> Result<(), Failure> {
+        self.target.write(frame, &canvas.into_picture(), self.interval)
     }
 }
 
@@ -108,24 +131,60 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
     write_words(canvas, upper_left, &words.join(" "), colour);
     if let Some((_, Some(parts))) = drawn.fit {
         let related = parts.related_points.as_slice().iter().map(|related| related.point);
-        related.filter(|point| area.widened(1.0).contains(point)).for_each(|p| canvas.cross(pixel(&p), CROSS, RELATED));
+        let size = CROSS.min(CROSS_SHARE * size_in_pixels(corners)).max(1.0);
+        related.filter(|point| area.widened(1.0).contains(point)).for_each(|p| canvas.cross(pixel(&p), size, RELATED));
     }
     if let Some(generator) = drawn.generator {
         draw_motion(canvas, grid, drawn.outline, &area, &generator);
     }
 }
 
-/// The velocity at points around the outline, the longest arrow a fixed share of the object.
+/// The longer side of a box, of which two opposite corners are given.
+fn size_in_pixels([a, b]: [[f64; 2]; 2]) -> f64 {
+    (a[0] - b[0]).abs().max((a[1] - b[1]).abs())
+}
+
+/// The velocity at points around the outline. The longest arrow is a share of the object, no longer than [`MOST_PIXELS`].
 fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &Rectangle, generator: &Matrix3<f64>) {
     let motion = ProjectiveMotion::of_generator(generator);
     let velocity = |p: &Point2<f64>| motion.velocity(p);
-    let count = outline.points().count();
-    let chosen: Vec<&Point2<f64>> = outline.points().step_by((count / ARROWS).max(1)).collect();
-    let fastest = chosen.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);
-    let seconds = LONGEST_ARROW * area.size().max() / fastest;
+    let size = size_in_pixels([area.low, area.high].map(|corner| grid.to_pixels(&corner)));
+    let places = arrow_places(outline, size);
+    let fastest = places.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);
+    let longest = if size < SMALL_OBJECT { 1.0 } else { LONGEST_ARROW.min(MOST_PIXELS / size) };
+    let seconds = longest * area.size().max() / fastest;
     if seconds.is_finite() {
-        for p in chosen {
-            canvas.arrow(grid.to_pixels(p), grid.to_pixels(&(p + seconds * velocity(p))), MOTION);
+        for p in places {
+            canvas.arrow(grid.to_pixels(&p), grid.to_pixels(&(p + seconds * velocity(&p))), MOTION);
         }
+    }
+}
+
+/// Where arrows begin on an outline of some size in pixels: at points evenly spread along it, or in its middle.
+fn arrow_places(outline: &Outline, size: f64) -> Vec<Point2<f64>> {
+    if size < SMALL_OBJECT {
+        return vec![outline.centroid()];
+    }
+    let points: Vec<Point2<f64>> = outline.points().copied().collect();
+    // The length is about that of a square.
+    let arrows = ((4.0 * size / PIXELS_PER_ARROW) as usize).min(ARROWS).min(points.len());
+    (0..arrows).map(|k| points[k * points.len() / arrows]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_object_has_few_arrows_and_a_large_one_no_more_than_can_be_told_apart() {
+        let circle = |t: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * t as f64 / 200.0).sin_cos();
+            Point2::new(cos, sin)
+        };
+        let outline = Outline::closed((0..200).map(circle).collect()).expect("an outline");
+        let counts = [5.0, 31.0, 40.0, 60.0, 1000.0].map(|size| arrow_places(&outline, size).len());
+        assert_eq!(counts, [1, 1, 11, 17, 24]);
+        let few = Outline::closed(vec![Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)]);
+        assert_eq!(arrow_places(&few.expect("an outline"), 1000.0).len(), 3);
     }
 }

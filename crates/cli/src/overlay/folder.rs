@@ -31,7 +31,10 @@ impl DrawingFolder {
         }
         let within = path.ancestors().find(|place| place.exists());
         if within.is_some_and(|place| !place.is_dir()) || (is_named_as_file(path) && !path.is_dir()) {
-            let reason = format_args!("{}: drawings go into a folder, or into one animation FILE.gif", path.display());
+            let reason = format_args!(
+                "{}: drawings go into a folder, or into one animation FILE.gif or FILE.y4m",
+                path.display()
+            );
             return Err(Failure::unusable(reason));
         }
         let earlier = numbered(path).map_err(|error| failure(path, &error))?;

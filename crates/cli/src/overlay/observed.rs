@@ -25,7 +25,7 @@ pub(crate) struct ObservedOverlay {
 }
 
 impl ObservedOverlay {
-    /// Drawings for a folder or a GIF, if they are asked for. Refused where there is nothing to draw on.
+    /// Drawings for a folder, a GIF or a video, if they are asked for. Refused where there is nothing to draw on.
     pub(crate) fn open(
         path: Option<&Path>,
         inputs: &[PathBuf],

@@ -224,7 +224,11 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
                     connected(&thinned(&pixels), "")
                 }
             }
-            Look::Band => connected(&pixels, "Z"),
+            // Its lower edge, then its upper one backwards.
+            Look::Band => {
+                let (lower, upper) = pixels.split_at(pixels.len() / 2);
+                connected(&[thinned(lower), thinned(upper)].concat(), "Z")
+            }
             Look::Dots | Look::FineDots => dots(&pixels),
             Look::Crosses => crosses(&pixels),
             Look::Marks => marks(&pixels, y.from, y.to),

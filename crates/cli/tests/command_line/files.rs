@@ -37,7 +37,7 @@ fn figures_and_report_hold_what_they_should_and_nothing_from_elsewhere() {
     let (svg, report) = (path("p.svg"), path("r.html"));
     succeed(&format!("identify - --svg {svg} --report {report} --scale 0.1"), &sequence(""));
     let svg = fs::read_to_string(svg).expect("the figure");
-    for text in ["omega (rad/s)", "time (s)", "true value", "identified", "2 std"] {
+    for text in ["omega (rad/s)", "time (s)", "true value", "identified", "95 % band"] {
         assert!(svg.contains(text), "{text}");
     }
     let report = fs::read_to_string(report).expect("the report");

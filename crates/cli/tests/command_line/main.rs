@@ -2,6 +2,7 @@
 mod adaptive_study;
 mod bad_input;
 mod browser;
+mod drawings;
 mod evaluate;
 #[cfg(target_os = "linux")]
 mod fault_injection;
@@ -25,6 +26,7 @@ mod projective;
 mod real_pictures;
 mod recognise;
 mod rectify;
+mod report;
 mod reproduce;
 mod simulate;
 mod sought_edges;

@@ -178,7 +178,7 @@ fn drawings_go_into_a_folder_or_a_gif_and_nothing_is_left_where_there_are_none()
         }
         let output = run(&format!("{command} {frames} --overlay {base}/x.png"), "");
         assert!(
-            stderr(&output).contains("x.png: drawings go into a folder, or into one animation FILE.gif"),
+            stderr(&output).contains("x.png: drawings go into a folder, or into one animation FILE.gif or FILE.y4m"),
             "{}",
             stderr(&output)
         );

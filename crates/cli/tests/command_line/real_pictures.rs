@@ -114,8 +114,15 @@ fn the_turn_of_the_robot_in_raw_frames_is_that_of_its_own_tracker() {
     }
 }
 
+/// The numbers in `5` or `7-9`.
+fn frames_of(text: &str) -> std::ops::RangeInclusive<u64> {
+    let (first, last) = text.split_once('-').unwrap_or((text, text));
+    let number = |text: &str| text.parse().expect("a number");
+    number(first)..=number(last)
+}
+
 #[test]
-fn broken_masks_of_the_robot_are_rejected_and_named() {
+fn broken_masks_of_the_robot_are_found_by_their_edges_or_rejected_and_named() {
     let Some(masks) = data("sequences/microrobot_h/masks") else { return };
     let output = run(&format!("track {masks} --fps 15.07 --pixel-aspect 1.14"), "");
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -132,11 +139,18 @@ fn broken_masks_of_the_robot_are_rejected_and_named() {
         })
         .collect();
     println!("rejected: {rejected:?}");
+    let told = stderr(&output);
+    let found = told
+        .lines()
+        .find_map(|line| line.split_once("by their edges where it was expected, in frames "))
+        .map(|(_, f)| f);
+    let found: Vec<u64> = found.into_iter().flat_map(|frames| frames.split(", ")).flat_map(frames_of).collect();
+    println!("found by their edges: {found:?}");
     // Open rings in place of a filled H, by eye.
     for broken in [40, 41, 42, 43, 44, 45, 53, 58, 62, 66, 67, 68] {
-        assert!(rejected.contains(&broken), "frame {broken}");
+        assert!(rejected.contains(&broken) || found.contains(&broken), "frame {broken}");
     }
-    assert!(rejected.len() <= 25, "{rejected:?}");
+    assert!(rejected.len() <= 10 && found.len() >= 4, "{rejected:?} {found:?}");
 }
 
 #[test]

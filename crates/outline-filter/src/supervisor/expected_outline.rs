@@ -1,27 +1,17 @@
 //! Where the outline is expected at a time to come.
-use nalgebra::Point2;
-
 use super::{
     motion_filter::{MotionFilter, Phase},
     tracking::predict,
 };
+use crate::track::KnownPiece;
 
 /// The outline of an object as it is known, where it is expected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectedOutline {
-    /// Its connected parts.
-    pub parts: Vec<ExpectedPart>,
+    /// Its connected parts. All run the same way around the object, as far as the frames have shown it.
+    pub pieces: Vec<KnownPiece>,
     /// Standard deviation of its place along its normals, image lengths: that of the point whose place is known least.
     pub deviation: f64,
-}
-
-/// A connected part of an expected outline.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExpectedPart {
-    /// In their order along it, image coordinates. All parts run the same way around the object, as far as the frames have shown it.
-    pub points: Vec<Point2<f64>>,
-    /// Whether the last point is followed by the first.
-    pub is_closed: bool,
 }
 
 impl MotionFilter {
@@ -44,9 +34,9 @@ impl MotionFilter {
     ///     filter.step(time, &Outline::closed(ellipse.collect())?)?;
     /// }
     /// let expected = filter.expected_outline(1.0).expect("ten good frames");
-    /// let part = &expected.parts[0];
-    /// let rightmost = part.points.iter().map(|p| p.x).fold(f64::MIN, f64::max);
-    /// assert!(part.is_closed && (rightmost - 1.3).abs() < 0.02, "{rightmost}");
+    /// let piece = &expected.pieces[0];
+    /// let rightmost = piece.points.iter().map(|p| p.x).fold(f64::MIN, f64::max);
+    /// assert!(piece.closed && (rightmost - 1.3).abs() < 0.02, "{rightmost}");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
@@ -60,7 +50,6 @@ impl MotionFilter {
             predict(&self.settings, &mut track, &mut self.history.clone(), seconds);
         }
         let deviation = track.deviation_along_normals()? * track.reference().radius;
-        let parts = track.outline_parts().map(|(points, is_closed)| ExpectedPart { points, is_closed }).collect();
-        deviation.is_finite().then_some(ExpectedOutline { parts, deviation })
+        deviation.is_finite().then(|| ExpectedOutline { pieces: track.pieces(), deviation })
     }
 }

@@ -16,7 +16,7 @@ mod window;
 
 pub use ambiguity::Ambiguity;
 pub use error::FilterError;
-pub use expected_outline::{ExpectedOutline, ExpectedPart};
+pub use expected_outline::ExpectedOutline;
 pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use settings::FilterSettings;
 #[cfg(feature = "serde")]

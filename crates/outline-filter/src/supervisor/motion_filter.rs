@@ -17,7 +17,7 @@ use crate::{
     dynamics::{DynamicsFilter, DynamicsWeights},
     measurement::Frame,
     search::Landmarks,
-    track::{Outcome, Track},
+    track::{KnownOutline, Outcome, Track},
     tuning::{map::FEWEST_POINTS, supervisor as tuning},
     update::{FrameMeasurement, Rejection},
 };
@@ -314,6 +314,12 @@ impl MotionFilter {
     /// Empty before the first frame.
     pub fn outline_points(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.track.iter().flat_map(Track::outline_points)
+    }
+
+    /// The same in its order along the outline, where it was in the first frame, with its present pose. `None` before the first frame.
+    #[must_use]
+    pub fn known_outline(&self) -> Option<KnownOutline> {
+        self.track.as_ref().map(Track::known_outline)
     }
 
     /// Standard deviation of the noise on the points, image lengths; `None` before the first frame.

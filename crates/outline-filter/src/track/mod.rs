@@ -6,6 +6,7 @@ mod first_pose;
 mod growth;
 #[cfg(test)]
 mod jacobians;
+mod known_outline;
 mod left_out;
 mod outline;
 mod remapping;
@@ -15,6 +16,7 @@ mod sides;
 mod track;
 mod turn;
 
+pub use known_outline::{KnownOutline, KnownPiece};
 pub(crate) use remapping::PlacedFrame;
 pub(crate) use track::{Comparison, Outcome, Track};
 pub(crate) use turn::{turn_between, wrapped};

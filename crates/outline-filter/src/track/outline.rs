@@ -1,8 +1,11 @@
 //! The outline of a track as it is known, in the image.
 use freeform_riccati::{map_point, pull_back};
-use nalgebra::Point2;
+use nalgebra::{Matrix3, Point2};
 
-use super::Track;
+use super::{
+    Track,
+    known_outline::{KnownOutline, KnownPiece},
+};
 use crate::{
     map::Cell,
     update::{hold, with_hold},
@@ -16,17 +19,26 @@ impl Track {
         cells.map(move |(cell, offset)| map_point(&to_image, &(cell.centre + *offset * cell.normal)))
     }
 
-    /// Its connected parts, each in order with its normals on the right, image coordinates, and whether they are closed.
-    pub(crate) fn outline_parts(&self) -> impl Iterator<Item = (Vec<Point2<f64>>, bool)> + '_ {
-        let to_image = self.reference.to_image() * self.belief.pose;
+    /// The outline as it is known now, in its order, where it was in the first frame.
+    pub(crate) fn known_outline(&self) -> KnownOutline {
+        KnownOutline { pieces: self.pieces_by(&self.reference.to_image()), pose: self.pose() }
+    }
+
+    /// Its connected parts where it is now, image coordinates, each in order with its normals on the right.
+    pub(crate) fn pieces(&self) -> Vec<KnownPiece> {
+        self.pieces_by(&(self.reference.to_image() * self.belief.pose))
+    }
+
+    fn pieces_by(&self, to_image: &Matrix3<f64>) -> Vec<KnownPiece> {
         let offsets = &self.belief.offsets;
-        self.map.chains().into_iter().map(move |(mut chain, is_closed)| {
+        let at = |cell: usize| map_point(to_image, &self.map.outline_at(cell, offsets));
+        let piece = |(mut chain, closed): (Vec<usize>, bool)| {
             if !self.map.runs_with_normals(&chain) {
                 chain.reverse();
             }
-            let at = |cell: usize| map_point(&to_image, &self.map.outline_at(cell, offsets));
-            (chain.into_iter().map(at).collect(), is_closed)
-        })
+            KnownPiece { points: chain.into_iter().map(at).collect(), closed }
+        };
+        self.map.chains().into_iter().map(piece).collect()
     }
 
     /// Standard deviation of the place of the outline along its normals, normalised, where it is known least; `None` where the covariance

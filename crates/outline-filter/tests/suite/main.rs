@@ -3,6 +3,7 @@ mod filter_changes;
 mod filter_motion;
 mod filter_observability;
 mod filter_support;
+mod known_outline;
 mod plane;
 mod recorded;
 mod recording;
