@@ -39,10 +39,11 @@ pub(crate) fn bound_found(
     playback: &Playback,
     scale: Option<CameraScale>,
 ) -> Result<Vec<BoundAt>, NoBound> {
-    let model = result.motion;
+    // Of a plane in space the bound is another, and is not drawn.
+    let model = result.motion.model().ok_or(NoBound::NotStated)?;
     let generator = result.estimate.and_then(|estimate| estimate.known_generator()).ok_or(NoBound::NotStated)?;
     let is_constant = result.dynamics.is_none_or(|weights| weights.most_probable() == Dynamics::Generator);
-    if !is_constant || result.warnings.iter().any(|warning| matches!(warning, Warning::MotionChanged)) {
+    if !is_constant || result.warnings.iter().any(|warning| matches!(warning, Warning::MotionChanged { .. })) {
         return Err(NoBound::MotionChanges);
     }
     let in_image = scale.unwrap_or_default().generator_in_image(&generator);

@@ -62,7 +62,7 @@ pub(crate) enum Command {
     Demo(DemoArgs),
     Simulate(SimulateArgs),
     Fit(FitArgs),
-    Identify(IdentifyArgs),
+    Identify(Box<IdentifyArgs>),
     Track(TrackArgs),
     Outline(OutlineArgs),
     Recognise(RecogniseArgs),

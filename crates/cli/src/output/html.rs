@@ -182,19 +182,20 @@ fn write_object(
     }
     let Some(history) = history else { return };
     let scale = report.meaning_of_b.scale;
-    if let Some(playback) = &history.playback {
+    let model = result.motion.model();
+    if let Some((playback, model)) = history.playback.as_ref().zip(model) {
         let player = Player {
             number: *players,
             object: &result.object,
             playback,
             frames: result.frames,
-            model: result.motion,
+            model,
             b: &report.meaning_of_b,
         };
         *players += usize::from(player.write(body));
     }
-    if let Some(poses) = &history.poses {
-        let panels = pose_panels(poses, history.start, result.motion, &report.meaning_of_b);
+    if let Some((poses, model)) = history.poses.as_ref().zip(model) {
+        let panels = pose_panels(poses, history.start, model, &report.meaning_of_b);
         write_panels(body, "Where it was", POSES, &panels);
     }
     write_panels(body, "How it moved", PARAMETERS, &parameter_panels(history, "", result.motion, truth));

@@ -1,7 +1,7 @@
 //! Figures of where an object was and how well its motion is known.
 use freeform_experiments::figure::{Curve, Look, Panel};
 use freeform_motion::riccati::{CameraScale, MotionModel};
-use freeform_motion::tracker::Trajectory;
+use freeform_motion::tracker::{MotionFamily, Trajectory};
 
 use super::figures::BAND;
 use crate::bound_found::BoundAt;
@@ -65,13 +65,13 @@ fn axis(name: &str, b: &MeaningOfB) -> (String, String, f64) {
 
 /// The standard deviations of the parameters of an object against time on logarithmic axes, one panel each, beside the bound where
 /// there is one.
-pub(crate) fn deviation_panels(history: &History, model: MotionModel, bound: &[BoundAt]) -> Vec<Panel> {
-    let names = model.parameter_names().iter().zip(model.units()).enumerate();
+pub(crate) fn deviation_panels(history: &History, family: MotionFamily, bound: &[BoundAt]) -> Vec<Panel> {
+    let names = family.parameter_names().iter().zip(family.units()).enumerate();
     let panels = names.map(|(index, (name, unit))| {
         let of_bound = bound.iter().map(|(time, list)| (*time, list.get(index).copied().flatten()));
         let of = |random: bool| {
             let estimates = history.estimates.iter().map(move |(time, estimate)| {
-                let parameter = estimate.as_ref().and_then(|estimate| estimate.parameters().nth(index));
+                let parameter = estimate.as_ref().and_then(|parameters| parameters.get(index));
                 let parameter = parameter.filter(|p| p.value.is_some());
                 (*time, parameter.and_then(|p| if random { p.random_deviation } else { p.standard_deviation }))
             });
