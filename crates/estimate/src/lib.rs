@@ -6,6 +6,7 @@
 //! - [`smooth`]: a fixed-interval smoother, which estimates every state from all frames of a recording.
 //! - [`ProcessNoise`]: how fast a motion may change.
 //! - [`CramerRaoBound`]: the smallest covariance of any unbiased estimator.
+//! - `StateFormat` and `StateError` (feature `serde`): what stands before a saved state, and why bytes are none.
 //!
 //! Motions are rigid, similarity, affine or projective (`freeform_riccati::MotionModel`), in the fixed image frame.
 //!
@@ -26,6 +27,8 @@ mod observability;
 mod point_velocity;
 mod process_noise;
 mod smoother;
+#[cfg(feature = "serde")]
+mod state_format;
 mod time;
 
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
@@ -36,6 +39,8 @@ pub use observability::is_worth;
 pub use point_velocity::{PointVelocity, velocity_at};
 pub use process_noise::ProcessNoise;
 pub use smoother::{SmootherError, smooth};
+#[cfg(feature = "serde")]
+pub use state_format::{StateError, StateFormat};
 pub use time::TimeNotIncreasing;
 
 #[cfg(doctest)]

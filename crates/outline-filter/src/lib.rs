@@ -60,9 +60,11 @@ mod update;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};
+#[cfg(feature = "serde")]
+pub use freeform_estimate::StateError;
 pub use supervisor::{Ambiguity, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated};
 #[cfg(feature = "serde")]
-pub use supervisor::{StateError, with_header, without_header};
+pub use supervisor::{with_header, without_header};
 pub use update::{FrameMeasurement, Rejection};
 
 #[cfg(doctest)]

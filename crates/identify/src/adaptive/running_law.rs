@@ -29,6 +29,7 @@ pub(super) struct Frame {
 
 /// The frame before.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Last {
     pub(super) time: f64,
     pub(super) lines: [Line; MAX_PAIRS],
@@ -142,6 +143,30 @@ where
                 law.shift_origin(shift, &old_from_new);
                 self.filters.iter_mut().for_each(|filter| filter.shift_origin(shift, &old_from_new));
             }
+        }
+    }
+
+    /// What changes with the frames. The filters run with least squares alone.
+    #[cfg(feature = "serde")]
+    pub(super) fn numbers_mut(&mut self) -> Vec<&mut f64> {
+        let mut numbers: Vec<&mut f64> = self.states.iter_mut().flat_map(|state| state.iter_mut()).collect();
+        match &mut self.law {
+            Law::Structured(law) => numbers.extend(law.numbers_mut()),
+            Law::Printed(law) => numbers.extend(law.numbers_mut()),
+            Law::LeastSquares(law) => {
+                numbers.extend(law.numbers_mut());
+                numbers.extend(self.filters.iter_mut().flat_map(FilteredPair::numbers_mut));
+            }
+        }
+        numbers
+    }
+
+    /// Whether the linear part of the motion follows the slopes alone, where the law knows such a thing.
+    #[cfg(feature = "serde")]
+    pub(super) fn by_slopes_mut(&mut self) -> Option<&mut bool> {
+        match &mut self.law {
+            Law::Structured(law) => Some(law.by_slopes_mut()),
+            Law::Printed(_) | Law::LeastSquares(_) => None,
         }
     }
 

@@ -8,6 +8,7 @@ mod csv_round_trip;
 mod edges;
 mod identities;
 mod labels;
+mod lists;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod pictures_as_people_have_them;
