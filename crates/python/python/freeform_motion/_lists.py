@@ -82,7 +82,7 @@ def _chunks(column: Any, name: str, *, null_lists: bool) -> list[Lists]:
             return [_of_sequence(column.array, name, null_lists)]
         import pyarrow
 
-        column, library = pyarrow.chunked_array(column.array), "pyarrow"
+        column, library = pyarrow.array(column.array), "pyarrow"
     if library == "pyarrow":
         chunks = []
         first = 0
@@ -107,11 +107,10 @@ def _of_arrow(array: Any, name: str, first: int, null_lists: bool) -> Lists:
     import pyarrow
     import pyarrow.compute
 
-    if not (pyarrow.types.is_list(array.type) or pyarrow.types.is_large_list(array.type)):
-        array = array.cast(pyarrow.large_list(array.type.value_type))
-    if array.null_count:
-        if not null_lists:
-            raise _missing(name, first + int(np.argmax(array.is_null().to_numpy(zero_copy_only=False))), "the list")
+    if array.null_count and not null_lists:
+        raise _missing(name, first + int(np.argmax(array.is_null().to_numpy(zero_copy_only=False))), "the list")
+    in_order = pyarrow.types.is_list(array.type) or pyarrow.types.is_large_list(array.type)
+    if array.null_count or not in_order:
         lengths = pyarrow.compute.list_value_length(array).fill_null(0)
         offsets, values = _offsets(lengths.to_numpy(zero_copy_only=False).astype(np.int64)), array.flatten()
     else:
@@ -141,7 +140,7 @@ def _of_polars(series: Any, name: str, null_lists: bool) -> Lists:
 def _of_sequence(rows: Any, name: str, null_lists: bool) -> Lists:
     """Of arrays or lists, one for each row."""
     if null_lists:
-        rows = [() if row is None or row is not row else row for row in rows]
+        rows = [row if hasattr(row, "__len__") else () for row in rows]
     try:
         lengths = np.fromiter(map(len, rows), dtype=np.int64, count=len(rows))
         values = np.concatenate(rows) if len(rows) else np.empty(0)
