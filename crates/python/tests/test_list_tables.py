@@ -130,13 +130,15 @@ def test_values_that_are_floats_already_are_not_copied(outlines):
 
 
 def test_whole_numbers_and_single_precision_are_lists_of_numbers_too():
-    square = {"frame": [0], "time": [0.0]}
-    for kind in (pyarrow.int32(), pyarrow.float32(), pyarrow.uint8()):
-        lists = {name: pyarrow.array([v], pyarrow.list_(kind)) for name, v in (("x", [0, 4, 4, 0]), ("y", [0, 0, 4, 4]))}
-        assert ff.identify(pyarrow.table({**square, **lists}))[0].frames_rejected == 0
-    fixed = {name: pyarrow.array([v], pyarrow.list_(pyarrow.float64(), 4)) for name, v in (("x", [0, 4, 4, 0]), ("y", [0, 0, 4, 4]))}
-    for table in (pyarrow.table({**square, **fixed}), polars.DataFrame(pyarrow.table({**square, **fixed}))):
-        assert ff.identify(table)[0].frames_rejected == 0
+    points = np.round(100 + 90 * ff.simulate("bird", points=200)[0].outline.points)
+    expected = ff.identify({"frame": [0], "time": [0.0], "x": [points[:, 0]], "y": [points[:, 1]]})[0]
+    assert expected.frames_rejected == 0
+    kinds = [pyarrow.list_(kind) for kind in (pyarrow.int32(), pyarrow.float32(), pyarrow.uint8())]
+    for kind in [*kinds, pyarrow.list_(pyarrow.float64(), 200), pyarrow.list_view(pyarrow.float64())]:
+        lists = {name: pyarrow.array([points[:, axis].tolist()], kind) for axis, name in enumerate("xy")}
+        table = pyarrow.table({"frame": [0], "time": [0.0], **lists})
+        for data in (table, table.to_pandas(), *([] if "view" in str(kind) else [polars.DataFrame(table)])):
+            assert repr(ff.identify(data)[0]) == repr(expected)
 
 
 def spoiled(rows, name, row, value):
