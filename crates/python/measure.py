@@ -1,11 +1,13 @@
-"""Times of the Python package, the least of many, and of Rust for the same input in the same run.
+"""Times of the Python package, the least of many, and of Rust for the same input in the same run. Steps are wall time, since they are so
+short that nothing else runs in some of them; recordings are processor time.
 
     cargo build --release --example filter_speed
     python crates/python/measure.py target/release/examples/filter_speed
 
-On one core, `taskset -c 0` before the second line, ratios hardly depend on what else the machine does.
+On one core, with `taskset -c 0` before the second line, ratios hardly depend on what else the machine does.
 """
 
+import resource
 import subprocess
 import sys
 import time
@@ -18,7 +20,7 @@ import pyarrow
 import freeform_motion as ff
 from freeform_motion._tables import native_table
 
-OBJECTS, FRAMES, REPEATS, ROUNDS = 10, 300, 20, 3
+OBJECTS, FRAMES, REPEATS, ROUNDS = 10, 300, 20, 5
 
 
 def least(times):
@@ -43,10 +45,21 @@ def of_steps(frames, as_given):
 def of_calls(call, repeats):
     times = []
     for _ in range(repeats):
-        began = time.perf_counter()
+        began = time.process_time()
         call()
-        times.append(time.perf_counter() - began)
+        times.append(time.process_time() - began)
     return 1e3 * least(times)
+
+
+def of_program(program, few=1, many=6):
+    """Processor time of a round of a program, by runs that differ in their number."""
+    taken = []
+    for rounds in few, many:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([program, str(rounds)], check=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        taken.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return 1e3 * (taken[1] - taken[0]) / (many - few)
 
 
 def of_lists(outlines):
@@ -74,9 +87,9 @@ def main():
             times[f"identify({kind})"] = of_calls(lambda data=data: ff.identify(data, progress=False), REPEATS // 4)
             times[f"columns({kind})"] = of_calls(lambda data=data: native_table(data, None, None), REPEATS)
         for program in sys.argv[1:]:
-            for line in subprocess.run([program], capture_output=True, check=True, text=True).stdout.splitlines():
-                name, _, value = line.rpartition(": ")
-                times[f"Rust, {name}"] = float(value.split()[0])
+            told = subprocess.run([program], capture_output=True, check=True, text=True).stdout.splitlines()
+            times["Rust, outline and step"] = float(told[0].rpartition(": ")[2].split()[0])
+            times["Rust, outlines and Tracker::follow"] = of_program(program)
         for name, value in times.items():
             found[name] = min(value, found.get(name, value))
     print(f"Steps in us, {OBJECTS} objects in {FRAMES} frames of 400 points in ms:")

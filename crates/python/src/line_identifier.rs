@@ -100,7 +100,7 @@ impl PyAdaptiveIdentifier {
         self.lock().is_observable()
     }
 
-    /// Everything that the identifier knows, as bytes: 0.4 to 4 kB. Pickling uses them too.
+    /// Everything that the identifier knows, as bytes: 0.5 to 3 kB. Pickling uses them too.
     ///
     /// Returns
     /// -------

@@ -31,7 +31,7 @@ struct SavedIdentifier {
 }
 
 impl AdaptiveIdentifier {
-    /// Everything that the identifier knows, as bytes: 0.4 to 4 kB. An identifier [made from them](Self::from_bytes) goes on as this one
+    /// Everything that the identifier knows, as bytes: 0.5 to 9 kB. An identifier [made from them](Self::from_bytes) goes on as this one
     /// would, to the last bit. The first four bytes are the version of the format, little-endian.
     ///
     /// # Errors
