@@ -1,7 +1,8 @@
 //! Time of a frame of the motion filter and of the tracker, the least of many: what `crates/python/measure.py` is compared with.
 //!
 //! ```text
-//! cargo run --release --example filter_speed
+//! cargo run --release --example filter_speed            least wall times
+//! cargo run --release --example filter_speed ROUNDS     follows the recording so often and prints nothing, for processor time
 //! ```
 use std::error::Error;
 use std::time::Instant;
@@ -25,8 +26,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frames: Vec<(f64, Vec<Point2<f64>>)> =
         simulator.frames().map(|frame| (frame.time, frame.outline.points().copied().collect())).collect();
 
+    let rounds = std::env::args().nth(1).map(|rounds| rounds.parse::<usize>()).transpose()?;
     let mut least = f64::INFINITY;
-    for _ in 0..REPEATS {
+    for _ in 0..if rounds.is_some() { 0 } else { REPEATS } {
         let mut filter = MotionFilter::new(FilterSettings::default())?;
         let (first, rest) = frames.split_at(FRAMES / 3);
         for (time, points) in first {
@@ -40,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             least = least.min(start.elapsed().as_secs_f64() / chunk.len() as f64);
         }
     }
-    println!("outline of 400 points and step: {:.1} us", 1e6 * least);
+    let seconds_of_steps = least;
 
     let recording = || -> Result<Vec<OutlineFrame>, OutlineError> {
         let all =
@@ -56,13 +58,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect()
     };
     let mut least = f64::INFINITY;
-    for _ in 0..REPEATS / 4 {
+    for _ in 0..rounds.unwrap_or(REPEATS / 4) {
         let outlines = recording()?;
         let mut tracker = Tracker::new(TrackerSettings::default())?;
         let start = Instant::now();
         tracker.follow(outlines, |_| {});
         least = least.min(start.elapsed().as_secs_f64());
     }
-    println!("{OBJECTS} objects in {FRAMES} frames: {:.1} ms", 1e3 * least);
+    if rounds.is_none() {
+        println!("outline of 400 points and step: {:.1} us", 1e6 * seconds_of_steps);
+        println!("{OBJECTS} objects in {FRAMES} frames: {:.1} ms", 1e3 * least);
+    }
     Ok(())
 }

@@ -16,24 +16,11 @@ import os
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.parquet as pq
 from dask.distributed import Client, as_completed
 
 import freeform_motion as ff
 import record
-
-# ## From outlines to points
-#
-# `ff.identify` takes tables with one row for each point. Rows of outlines become that by arrays alone, without a loop in Python.
-
-
-def points_of(outlines: pa.Table) -> pa.Table:
-    """One row for each point, of a table with one row for each outline."""
-    row = pc.list_parent_indices(outlines["x"])
-    points = outlines.drop_columns(["x", "y"]).take(row)
-    return points.append_column("x", pc.list_flatten(outlines["x"])).append_column("y", pc.list_flatten(outlines["y"]))
-
 
 # ## One task
 #
@@ -45,7 +32,7 @@ def points_of(outlines: pa.Table) -> pa.Table:
 def identify_bucket(bucket: str, motions: str) -> int:
     """Writes the motions of the objects of a bucket; returns how many there are."""
     outlines = pq.read_table(bucket, partitioning=None).sort_by([("object", "ascending"), ("frame", "ascending")])
-    found = pa.table(ff.identify(points_of(outlines), progress=False).table())
+    found = pa.table(ff.identify(outlines, progress=False).table())
     path = Path(motions) / f"{Path(bucket).name}.parquet"
     unfinished = path.with_name(f".{path.name}.{os.getpid()}")
     pq.write_table(found, unfinished)

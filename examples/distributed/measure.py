@@ -93,7 +93,7 @@ def settings():
 
 def identify(recording):
     table = pq.read_table(recording, partitioning=None).sort_by([("object", "ascending"), ("frame", "ascending")])
-    ff.identify(dask_batch.points_of(table), progress=False)
+    ff.identify(table, progress=False)
 
 
 def state(size):

@@ -16,23 +16,10 @@ import sys
 from pathlib import Path
 
 import pyarrow as pa
-import pyarrow.compute as pc
 from pyspark.sql import DataFrame, SparkSession
 
 import freeform_motion as ff
 import record
-
-# ## From outlines to points
-#
-# `ff.identify` takes tables with one row for each point. Rows of outlines become that by arrays alone, without a loop in Python.
-
-
-def points_of(outlines: pa.Table) -> pa.Table:
-    """One row for each point, of a table with one row for each outline."""
-    row = pc.list_parent_indices(outlines["x"])
-    points = outlines.drop_columns(["x", "y"]).take(row)
-    return points.append_column("x", pc.list_flatten(outlines["x"])).append_column("y", pc.list_flatten(outlines["y"]))
-
 
 # ## One object
 #
@@ -47,7 +34,7 @@ RESULT = {"object": "string", "frames": "long", "frames_rejected": "long"} | {
 
 def identify_object(outlines: pa.Table) -> pa.Table:
     """The motion of one object, from all of its outlines."""
-    found = ff.identify(points_of(outlines.sort_by("frame")), progress=False)
+    found = ff.identify(outlines.sort_by("frame"), progress=False)
     return pa.table(found.table()).select(list(RESULT))
 
 

@@ -4,6 +4,7 @@ use nalgebra::{Affine2, Complex, Point2, Vector3};
 ///
 /// `l` is a pure number, `k` a length in the unit of the outline. A line of a closed and bounded curve has a complex `l`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Line {
     /// Coefficient of y.
     pub l: Complex<f64>,

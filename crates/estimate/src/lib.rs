@@ -7,6 +7,7 @@
 //! - [`ProcessNoise`]: how fast a motion may change.
 //! - [`CramerRaoBound`]: the smallest covariance of any unbiased estimator.
 //! - [`PlaneEstimate`] and [`PlaneBound`]: the same of a plane that moves in space.
+//! - `StateFormat` and `StateError` (feature `serde`): what stands before a saved state, and why bytes are none.
 //!
 //! Motions are rigid, similarity, affine or projective (`freeform_riccati::MotionModel`), in the fixed image frame.
 //!
@@ -29,6 +30,8 @@ mod plane_estimate;
 mod point_velocity;
 mod process_noise;
 mod smoother;
+#[cfg(feature = "serde")]
+mod state_format;
 mod time;
 
 pub use bound::{BoundCovariance, BoundError, BoundaryPoint, CramerRaoBound};
@@ -41,6 +44,8 @@ pub use plane_estimate::{NormalEstimate, PlaneEstimate};
 pub use point_velocity::{PointVelocity, velocity_at};
 pub use process_noise::ProcessNoise;
 pub use smoother::{SmootherError, smooth};
+#[cfg(feature = "serde")]
+pub use state_format::{StateError, StateFormat};
 pub use time::TimeNotIncreasing;
 
 #[cfg(doctest)]

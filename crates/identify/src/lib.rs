@@ -5,6 +5,8 @@
 //! line follows a Riccati equation (`freeform_riccati`) that is linear in the motion parameters. [`AdaptiveIdentifier`] takes the matched
 //! conjugate pairs of lines of each frame and applies one of four laws ([`AdaptiveLaw`]). Motions are rigid, similarity or affine.
 //!
+//! With the feature `serde` an identifier can be saved and restored: `AdaptiveIdentifier::to_bytes` and `AdaptiveIdentifier::from_bytes`.
+//!
 //! ```
 //! use freeform_decompose::Line;
 //! use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings};
@@ -34,6 +36,8 @@ pub use adaptive::{
     solve_lyapunov,
 };
 pub use error::IdentifyError;
+#[cfg(feature = "serde")]
+pub use freeform_estimate::StateError;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

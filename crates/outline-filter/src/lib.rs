@@ -66,10 +66,13 @@ pub use plane::{PlaneAmbiguity, PlaneFilter, PlaneSolution, PlaneUnknown};
 pub use supervisor::{
     Ambiguity, ExpectedOutline, FilterError, FilterSettings, FilterStep, MotionFilter, Phase, Unstated,
 };
-#[cfg(feature = "serde")]
-pub use supervisor::{StateError, with_header, without_header};
 pub use track::{KnownOutline, KnownPiece};
 pub use update::{FrameMeasurement, Rejection};
+#[cfg(feature = "serde")]
+pub use {
+    freeform_estimate::StateError,
+    supervisor::{with_header, without_header},
+};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

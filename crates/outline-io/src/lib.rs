@@ -21,7 +21,7 @@
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
 //! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
-//! - [`OutlineColumns`] are outlines as columns of a table in memory.
+//! - [`OutlineColumns`] are outlines as columns of a table in memory with one row per point, [`OutlineLists`] with one row per outline.
 //! - [`read_shape`] reads one closed outline from either.
 mod affine_moment_invariants;
 mod assignment;
@@ -59,6 +59,7 @@ mod not_csv;
 mod object_mask;
 mod outline_columns;
 mod outline_file;
+mod outline_lists;
 mod outline_rows;
 #[cfg(feature = "parquet")]
 mod parquet_batch;
@@ -89,6 +90,7 @@ mod ring;
 mod rounding;
 mod segment;
 mod shape;
+mod table_keys;
 mod threshold;
 mod tiff_pages;
 mod trace;
@@ -112,8 +114,9 @@ pub use frame::{DEFAULT_OBJECT, OutlineFrame};
 pub use identity::{Identities, Selection};
 pub use image::GrayImage;
 pub use labels::LabelMask;
-pub use outline_columns::{ColumnOutlines, ColumnsError, OutlineColumns};
+pub use outline_columns::{ColumnOutlines, OutlineColumns};
 pub use outline_file::{OutlineFile, TableFormat, TableWriter};
+pub use outline_lists::{ListChunk, ListOutlines, Lists, Marks, OutlineLists};
 #[cfg(feature = "parquet")]
 pub use parquet_reader::ParquetReader;
 #[cfg(feature = "parquet")]
@@ -127,6 +130,7 @@ pub use polygon_error::PolygonError;
 pub use polygons::{PolygonSettings, VerticalAxis};
 pub use ring::Ring;
 pub use shape::read_shape;
+pub use table_keys::ColumnsError;
 pub use threshold::Threshold;
 pub use trace::{TracedOutline, trace_mask, trace_objects};
 pub use trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};

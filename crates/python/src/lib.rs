@@ -5,7 +5,6 @@
 //! interpreter.
 mod arrays;
 mod bound;
-mod columns;
 mod decomposition;
 mod errors;
 mod estimate;
@@ -19,7 +18,9 @@ mod pipeline;
 mod plane;
 mod polynomial;
 mod recogniser;
+mod recording;
 mod simulation;
+mod table_arrays;
 mod tracker;
 
 use pyo3::prelude::*;
@@ -29,8 +30,6 @@ use pyo3::prelude::*;
 mod _native {
     #[pymodule_export]
     use crate::bound::PyCramerRaoBound;
-    #[pymodule_export]
-    use crate::columns::{PyRecorder, identify_columns, outlines_of_columns, track_columns};
     #[pymodule_export]
     use crate::decomposition::{PyCorrespondence, PyDecomposition};
     #[pymodule_export]
@@ -53,6 +52,8 @@ mod _native {
     use crate::polynomial::PyImplicitPolynomial;
     #[pymodule_export]
     use crate::recogniser::{PyEvidence, PyRecogniser, PyRecognition};
+    #[pymodule_export]
+    use crate::recording::{PyRecorder, identify_table, outlines_of_table, track_table};
     #[pymodule_export]
     use crate::simulation::{PySimulatedFrame, PySimulation, simulate};
     #[pymodule_export]

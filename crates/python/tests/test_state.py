@@ -1,5 +1,6 @@
 """Filters and trackers saved in the middle of a recording go on as before, to the last bit."""
 
+import copy
 import pickle
 import random
 from concurrent.futures import ProcessPoolExecutor
@@ -102,3 +103,42 @@ def test_the_adaptive_method_cannot_be_saved():
     tracker = ff.Tracker(method="adaptive")
     with pytest.raises(ValueError, match="method adaptive cannot be saved"):
         tracker.to_bytes()
+
+
+def moving_lines(time):
+    """Two lines of a body that turns, as rows (l, k)."""
+    w = 0.4 * np.exp(1j * (np.array([0.4, -2.2]) + 3.0 * time))
+    return np.column_stack([1j * (1 + w) / (1 - w), [0.1 - 0.2j, 0.1j]])
+
+
+@pytest.mark.parametrize("law", ["structured", "filtered", "printed"])
+@pytest.mark.parametrize("motion", ["rigid", "affine"])
+def test_an_adaptive_identifier_goes_on_where_it_was(motion, law):
+    straight, interrupted = (ff.AdaptiveIdentifier(motion, law=law) for _ in range(2))
+    saves = [lambda i: ff.AdaptiveIdentifier.from_bytes(i.to_bytes()), lambda i: pickle.loads(pickle.dumps(i)), copy.copy, copy.deepcopy]
+    for frame in range(40):
+        interrupted = saves[frame % len(saves)](interrupted)
+        for identifier in straight, interrupted:
+            identifier.step(frame / 30, moving_lines(frame / 30))
+        assert interrupted.to_bytes() == straight.to_bytes()
+    assert interrupted.frames == 40 and interrupted.is_observable
+    assert interrupted.estimate.values.tobytes() == straight.estimate.values.tobytes()
+
+
+def test_bytes_that_are_no_identifier_are_refused(bird):
+    identifier = ff.AdaptiveIdentifier()
+    identifier.step(0.0, moving_lines(0.0))
+    data = identifier.to_bytes()
+    for bad, message in [
+        (b"", r"0 byte\(s\) are no saved state"),
+        (data[:200], "damaged"),
+        (data + b"x", "damaged"),
+        (bytes([data[0] + 1]) + data[1:], "has the format version 2, this library reads version 1"),
+        (ff.MotionFilter().to_bytes(), "this library reads version 1"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            ff.AdaptiveIdentifier.from_bytes(bad)
+    with pytest.raises(TypeError):
+        ff.AdaptiveIdentifier.from_bytes(None)
+    with pytest.raises(ValueError):
+        ff.MotionFilter.from_bytes(data)

@@ -105,6 +105,8 @@ pub(crate) fn adaptive_identifier(bytes: &[u8]) {
             Err(_) => assert_eq!(pipeline.identifier().estimate(), before, "a rejected frame changed the motion"),
         }
     }
+    #[cfg(feature = "serde")]
+    super::states::assert_adaptive_restorable(pipeline.identifier());
 }
 
 /// Any sequence of outlines through the motion filter.

@@ -1,9 +1,13 @@
 //! Saved states of filters.
 use std::sync::LazyLock;
 
+use freeform_motion::decompose::Line;
+use freeform_motion::estimate::StateFormat;
+use freeform_motion::identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice};
 use freeform_motion::outline_filter::{FilterSettings, MotionFilter, with_header};
-use freeform_motion::riccati::RigidMotion;
+use freeform_motion::riccati::{MotionModel, RigidMotion};
 use freeform_motion::sim_camera::{BuiltInShape, Camera, Frame, Scene, SequenceLength, Settings, Simulator};
+use nalgebra::Complex;
 
 /// Bytes before the state proper.
 const HEADER: usize = 16;
@@ -24,6 +28,45 @@ static STATE: LazyLock<Vec<u8>> = LazyLock::new(|| {
     filter.to_bytes().expect("memory takes it").split_off(HEADER)
 });
 
+/// The header of an adaptive identifier.
+const ADAPTIVE: StateFormat = StateFormat { version: 1, kind: *b"adap", name: "adaptive identifier" };
+
+/// States of adaptive identifiers after some frames, without their header: one for every law and for one and all pairs.
+static ADAPTIVE_STATES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
+    let laws = [AdaptiveLaw::Structured, AdaptiveLaw::Printed, AdaptiveLaw::FilteredLeastSquares];
+    let all = laws.into_iter().flat_map(|law| [PairChoice::All, PairChoice::Best].map(|pairs| (law, pairs)));
+    let state = |(law, pairs)| {
+        let settings = AdaptiveSettings { model: MotionModel::Affine, law, pairs, ..AdaptiveSettings::default() };
+        let mut identifier = AdaptiveIdentifier::new(settings).expect("settings");
+        for frame in 0..6 {
+            identifier.step(f64::from(frame) / 30.0, &lines_at(frame)).expect("increasing times");
+        }
+        identifier.to_bytes().expect("memory takes it").split_off(HEADER)
+    };
+    all.map(state).collect()
+});
+
+/// Lines that turn and drift.
+fn lines_at(frame: i32) -> [Line; 2] {
+    let time = f64::from(frame) / 30.0;
+    let line = |phase: f64| {
+        let w = Complex::from_polar(0.4, phase + 2.0 * time);
+        Line {
+            l: Complex::new(0.0, 1.0) * (Complex::from(1.0) + w) / (Complex::from(1.0) - w),
+            k: Complex::new(0.1 * time, 0.2),
+        }
+    };
+    [line(0.4), line(-2.2)]
+}
+
+/// An identifier goes through bytes and comes out as it was.
+pub(super) fn assert_adaptive_restorable(identifier: &AdaptiveIdentifier) {
+    let bytes = identifier.to_bytes().expect("memory takes it");
+    let restored = AdaptiveIdentifier::from_bytes(&bytes).expect("a state that was saved");
+    assert_eq!(restored.to_bytes().expect("memory takes it"), bytes);
+    assert_eq!(restored.estimate(), identifier.estimate());
+}
+
 /// A filter goes through bytes and comes out as it was.
 pub(super) fn assert_restorable(filter: &MotionFilter) {
     let bytes = filter.to_bytes().expect("memory takes it");
@@ -33,16 +76,34 @@ pub(super) fn assert_restorable(filter: &MotionFilter) {
 
 /// Any bytes, and any changes of a good state: an error, or a filter that takes frames.
 pub(crate) fn saved_state(bytes: &[u8]) {
-    assert!(MotionFilter::from_bytes(bytes).is_err());
+    assert!(MotionFilter::from_bytes(bytes).is_err() && AdaptiveIdentifier::from_bytes(bytes).is_err());
     take_frames(&with_header(*b"filt", bytes));
-    // Three bytes are a place and what is put there.
-    let mut state = STATE.clone();
+    take_lines(&ADAPTIVE.with_header(bytes));
+    take_frames(&with_header(*b"filt", &changed(&STATE, bytes)));
+    let choice = usize::from(bytes.first().copied().unwrap_or(0));
+    take_lines(&ADAPTIVE.with_header(&changed(&ADAPTIVE_STATES[choice % ADAPTIVE_STATES.len()], bytes)));
+}
+
+/// A state with some of its bytes changed: three bytes are a place and what is put there.
+fn changed(state: &[u8], bytes: &[u8]) -> Vec<u8> {
+    let mut state = state.to_vec();
     for change in bytes.chunks_exact(3) {
         let place = usize::from(change[0]) << 8 | usize::from(change[1]);
         let length = state.len();
         state[place % length] = change[2];
     }
-    take_frames(&with_header(*b"filt", &state));
+    state
+}
+
+fn take_lines(bytes: &[u8]) {
+    let Ok(mut identifier) = AdaptiveIdentifier::from_bytes(bytes) else { return };
+    for frame in 6..12 {
+        // Any answer will do that is a number.
+        let _ = identifier.step(f64::from(frame) / 30.0, &lines_at(frame));
+        assert!(identifier.estimate().is_none_or(|estimate| estimate.is_finite()));
+        let _ = (identifier.is_observable(), identifier.chosen_pair(), identifier.rotation_content(0));
+    }
+    assert_adaptive_restorable(&identifier);
 }
 
 fn take_frames(bytes: &[u8]) {

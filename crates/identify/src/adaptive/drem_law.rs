@@ -50,6 +50,11 @@ where
         self.parameters = shift.of_parameters(self.regressor().model()) * self.parameters;
     }
 
+    #[cfg(feature = "serde")]
+    pub(crate) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.extended.numbers_mut().chain(self.parameters.iter_mut())
+    }
+
     pub(crate) fn forget(&mut self, seconds: f64) {
         self.extended.forget(seconds);
     }

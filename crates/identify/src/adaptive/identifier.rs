@@ -24,22 +24,22 @@ const ALIKE: f64 = 1.0 + 1e-6;
 /// Cost and memory per frame are constant; nothing is allocated.
 #[derive(Debug, Clone)]
 pub struct AdaptiveIdentifier {
-    settings: AdaptiveSettings,
-    laws: Laws,
+    pub(super) settings: AdaptiveSettings,
+    pub(super) laws: Laws,
     /// The laws before the present frame, to go back to.
-    laws_before: Laws,
-    qualities: [PairQuality; MAX_PAIRS],
-    last: Option<Last>,
+    pub(super) laws_before: Laws,
+    pub(super) qualities: [PairQuality; MAX_PAIRS],
+    pub(super) last: Option<Last>,
     /// Time of the last frame before the origin moved, or of the first frame.
-    origin_since: f64,
-    frames: usize,
+    pub(super) origin_since: f64,
+    pub(super) frames: usize,
     /// Intervals between frames over which the law ran, one pair at least being followed.
-    followed: usize,
+    pub(super) followed: usize,
 }
 
 /// The laws that run side by side: one per candidate pair until the best pair is known, then one.
 #[derive(Debug, Clone)]
-enum Laws {
+pub(super) enum Laws {
     Three(Vec<RunningLaw<3>>),
     Four(Vec<RunningLaw<4>>),
     Six(Vec<RunningLaw<6>>),
@@ -67,6 +67,39 @@ impl Laws {
             (Self::Six(laws), Self::Six(other)) => laws.clone_from_slice(other),
             (Self::Eight(laws), Self::Eight(other)) => laws.clone_from_slice(other),
             (laws, other) => *laws = other.clone(),
+        }
+    }
+
+    /// What changes with the frames, law by law.
+    #[cfg(feature = "serde")]
+    pub(super) fn numbers_mut(&mut self) -> Vec<&mut f64> {
+        match self {
+            Self::Three(laws) => laws.iter_mut().flat_map(RunningLaw::numbers_mut).collect(),
+            Self::Four(laws) => laws.iter_mut().flat_map(RunningLaw::numbers_mut).collect(),
+            Self::Six(laws) => laws.iter_mut().flat_map(RunningLaw::numbers_mut).collect(),
+            Self::Eight(laws) => laws.iter_mut().flat_map(RunningLaw::numbers_mut).collect(),
+        }
+    }
+
+    /// Whether the linear part of the motion follows the slopes alone, for each law that knows such a thing.
+    #[cfg(feature = "serde")]
+    pub(super) fn by_slopes_mut(&mut self) -> Vec<&mut bool> {
+        match self {
+            Self::Three(laws) => laws.iter_mut().filter_map(RunningLaw::by_slopes_mut).collect(),
+            Self::Four(laws) => laws.iter_mut().filter_map(RunningLaw::by_slopes_mut).collect(),
+            Self::Six(laws) => laws.iter_mut().filter_map(RunningLaw::by_slopes_mut).collect(),
+            Self::Eight(laws) => laws.iter_mut().filter_map(RunningLaw::by_slopes_mut).collect(),
+        }
+    }
+
+    /// Whether every law can go on from its numbers.
+    #[cfg(feature = "serde")]
+    pub(super) fn is_finite(&self) -> bool {
+        match self {
+            Self::Three(laws) => laws.iter().all(RunningLaw::is_finite),
+            Self::Four(laws) => laws.iter().all(RunningLaw::is_finite),
+            Self::Six(laws) => laws.iter().all(RunningLaw::is_finite),
+            Self::Eight(laws) => laws.iter().all(RunningLaw::is_finite),
         }
     }
 
@@ -248,7 +281,7 @@ impl AdaptiveIdentifier {
     pub fn is_observable(&self) -> bool {
         let count = self.pair_count();
         let used = match self.settings.pairs {
-            PairChoice::Given(index) => index..index + 1,
+            PairChoice::Given(index) => index..index.saturating_add(1),
             PairChoice::Best | PairChoice::All => 0..count,
         };
         count == 0 || self.qualities[used].iter().any(|quality| quality.tells_of_rotation(count))

@@ -45,6 +45,11 @@ impl<const N: usize> FilteredPair<N> {
         self.regressor = shift.of_rates() * self.regressor * old_from_new;
     }
 
+    #[cfg(feature = "serde")]
+    pub(crate) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.state.iter_mut().chain(self.regressor.iter_mut()).chain(self.transient.iter_mut())
+    }
+
     /// Passes constant signals through the filters for `seconds`.
     pub(crate) fn advance(&mut self, seconds: f64, state: &Vector4<f64>, regressor: &SMatrix<f64, 4, N>) {
         let decay = (-FILTER_RATE * seconds).exp();
@@ -71,6 +76,11 @@ impl<const N: usize> LeastSquaresLaw<N> {
         self.information = old_from_new.tr_mul(&self.information) * old_from_new;
         self.projection = old_from_new.tr_mul(&self.projection);
         self.initial = shift.of_parameters(self.regressor.model()) * self.initial;
+    }
+
+    #[cfg(feature = "serde")]
+    pub(crate) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.information.iter_mut().chain(self.projection.iter_mut()).chain(self.initial.iter_mut())
     }
 
     /// Forgets old data for `seconds`.

@@ -10,6 +10,8 @@ mod printed_law;
 mod regressor;
 mod running_law;
 mod settings;
+#[cfg(feature = "serde")]
+mod state_bytes;
 mod structured_law;
 
 pub use identifier::AdaptiveIdentifier;

@@ -15,6 +15,7 @@ const FEW_FRAMES: f64 = 20.0;
 /// in every orientation, and `l = j (1 + w) / (1 - w)`. The noise is measured by second differences of |w| over time,
 /// which a smooth change under affine motion leaves alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairQuality {
     recent: [f64; 2],
     frames: usize,
@@ -31,6 +32,14 @@ impl PairQuality {
         self.recent = [self.recent[1], magnitude];
         self.frames += 1;
         self.sum += magnitude;
+    }
+
+    /// Whether it can be what so many frames left behind.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_of(&self, frames: usize) -> bool {
+        let numbers = [self.recent[0], self.recent[1], self.sum, self.squared_differences];
+        // A line of slope -j has an infinite w.
+        self.frames == frames && !numbers.iter().any(|number| *number < 0.0)
     }
 
     /// Mean of |w|.

@@ -32,6 +32,11 @@ impl PrintedLaw {
         self.matrices += change;
     }
 
+    #[cfg(feature = "serde")]
+    pub(crate) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.matrices.iter_mut()
+    }
+
     /// Goes on in other coordinates. The states of the estimator, which the caller holds, move as X does.
     pub(crate) fn shift_origin(&mut self, shift: &OriginShift) {
         self.matrices = shift.of_rates() * self.matrices * shift.inverse().of_signals();

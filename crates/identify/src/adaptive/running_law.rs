@@ -32,6 +32,7 @@ pub(super) struct Frame {
 
 /// The frame before.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Last {
     pub(super) time: f64,
     pub(super) lines: [Line; MAX_PAIRS],
@@ -211,9 +212,42 @@ where
         }
     }
 
+    /// What changes with the frames. The filters run with the laws on the filtered regression alone.
+    #[cfg(feature = "serde")]
+    pub(super) fn numbers_mut(&mut self) -> Vec<&mut f64> {
+        let mut numbers: Vec<&mut f64> = self.states.iter_mut().flat_map(|state| state.iter_mut()).collect();
+        match &mut self.law {
+            Law::Structured(law) => numbers.extend(law.numbers_mut()),
+            Law::Printed(law) => numbers.extend(law.numbers_mut()),
+            Law::LeastSquares(law) => {
+                numbers.extend(law.numbers_mut());
+                numbers.extend(self.filters.iter_mut().flat_map(FilteredPair::numbers_mut));
+            }
+            Law::Drem(law) => {
+                numbers.extend(law.numbers_mut());
+                numbers.extend(self.filters.iter_mut().flat_map(FilteredPair::numbers_mut));
+            }
+        }
+        numbers.extend(self.excitation.iter_mut());
+        numbers.extend([&mut self.errors.square, &mut self.errors.energy]);
+        numbers
+    }
+
+    /// Whether the linear part of the motion follows the slopes alone, where the law knows such a thing.
+    #[cfg(feature = "serde")]
+    pub(super) fn by_slopes_mut(&mut self) -> Option<&mut bool> {
+        match &mut self.law {
+            Law::Structured(law) => Some(law.by_slopes_mut()),
+            Law::Printed(_) | Law::LeastSquares(_) | Law::Drem(_) => None,
+        }
+    }
+
     pub(super) fn is_finite(&self) -> bool {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        finite(self.parameters().as_slice()) && self.states.iter().all(|state| finite(state.as_slice()))
+        finite(self.parameters().as_slice())
+            && finite(self.excitation.as_slice())
+            && finite(&[self.errors.square, self.errors.energy])
+            && self.states.iter().all(|state| finite(state.as_slice()))
     }
 
     /// Runs the law from one frame to the next, in steps small enough for X to change little in each.

@@ -3,6 +3,7 @@ use nalgebra::{Matrix4, Vector4};
 
 /// How the parameters are adapted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AdaptiveLaw {
     /// Equation 21 as printed: all entries of A, B and C, 36 numbers, of which the motion is read off. One line pair excites
     /// some of them so little that they take many minutes, of exact lines; it is here for comparison. At most affine motion.
@@ -21,6 +22,7 @@ pub enum AdaptiveLaw {
 
 /// Which conjugate pairs drive the identification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PairChoice {
     /// The pair with the best signal against its noise, judged from all frames so far.
     Best,
@@ -45,6 +47,7 @@ pub struct AdaptiveDiagnostics {
 
 /// Settings of an [`AdaptiveIdentifier`](crate::AdaptiveIdentifier).
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveSettings {
     /// Motion model; the printed law is for rigid, similarity and affine motion.
     pub model: MotionModel,

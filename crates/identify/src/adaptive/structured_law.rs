@@ -46,6 +46,16 @@ where
         &self.parameters
     }
 
+    #[cfg(feature = "serde")]
+    pub(crate) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        self.parameters.iter_mut()
+    }
+
+    #[cfg(feature = "serde")]
+    pub(crate) fn by_slopes_mut(&mut self) -> &mut bool {
+        &mut self.by_slopes
+    }
+
     /// Goes on in other coordinates. The states of the estimator, which the caller holds, move as X does.
     ///
     /// With every shift the error of b takes in that of the linear part. Were it to act back on it, through k, a fast object

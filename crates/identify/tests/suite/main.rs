@@ -2,3 +2,5 @@
 mod adaptive_convergence;
 mod adaptive_input;
 mod adaptive_support;
+#[cfg(feature = "serde")]
+mod saved_state;

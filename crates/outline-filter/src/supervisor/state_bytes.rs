@@ -1,4 +1,6 @@
 //! A filter as bytes and back.
+use freeform_estimate::{StateError, StateFormat};
+
 use super::motion_filter::{MotionFilter, Phase};
 use crate::track::Track;
 use crate::tuning::{saved_state::MOST_COUNTED, symmetry::LARGEST_ORDER};
@@ -8,45 +10,6 @@ const VERSION: u32 = 5;
 
 /// What the bytes hold, behind the version.
 const KIND: [u8; 4] = *b"filt";
-
-/// Version, kind and checksum.
-const HEADER: usize = 16;
-
-/// Why bytes are no saved state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum StateError {
-    /// Fewer bytes than the header has.
-    #[error("{found} byte(s) are no saved state: at least {needed} are needed")]
-    TooShort {
-        /// Bytes given.
-        found: usize,
-        /// Bytes of the header.
-        needed: usize,
-    },
-    /// Saved by another version of this library.
-    #[error("the state has the format version {found}, this library reads version {supported}")]
-    Version {
-        /// Version of the bytes.
-        found: u32,
-        /// The version that can be read.
-        supported: u32,
-    },
-    /// Bytes of something else.
-    #[error("the bytes are not the state of a {expected}")]
-    Kind {
-        /// What was to be restored.
-        expected: &'static str,
-    },
-    /// Bytes were cut off, added or changed.
-    #[error("the state is damaged: its bytes do not agree with their checksum")]
-    Damaged,
-    /// The bytes are well-formed and describe no state.
-    #[error("the state is not consistent: {part}")]
-    Inconsistent {
-        /// What of it.
-        part: &'static str,
-    },
-}
 
 impl MotionFilter {
     /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points. A filter [made from them](Self::from_bytes)
@@ -133,8 +96,7 @@ impl MotionFilter {
 #[doc(hidden)]
 #[must_use]
 pub fn with_header(kind: [u8; 4], state: &[u8]) -> Vec<u8> {
-    let header = VERSION.to_le_bytes().into_iter().chain(kind).chain(checksum(state).to_le_bytes());
-    header.chain(state.iter().copied()).collect()
+    StateFormat { version: VERSION, kind, name: "" }.with_header(state)
 }
 
 /// The state behind version, kind and checksum. `expected` names the kind.
@@ -143,23 +105,5 @@ pub fn with_header(kind: [u8; 4], state: &[u8]) -> Vec<u8> {
 /// Bytes of another version or kind, and damaged ones.
 #[doc(hidden)]
 pub fn without_header<'a>(kind: [u8; 4], expected: &'static str, bytes: &'a [u8]) -> Result<&'a [u8], StateError> {
-    let Some((header, state)) = bytes.split_first_chunk::<HEADER>() else {
-        return Err(StateError::TooShort { found: bytes.len(), needed: HEADER });
-    };
-    let [a, b, c, d, rest @ ..] = *header;
-    let [e, f, g, h, sum @ ..] = rest;
-    let found = u32::from_le_bytes([a, b, c, d]);
-    if found != VERSION {
-        return Err(StateError::Version { found, supported: VERSION });
-    }
-    if [e, f, g, h] != kind {
-        return Err(StateError::Kind { expected });
-    }
-    if u64::from_le_bytes(sum) != checksum(state) { Err(StateError::Damaged) } else { Ok(state) }
-}
-
-/// FNV-1a of 64 bits (G. Fowler, L. C. Noll, K.-P. Vo): enough against accidents, and none against malice, which the checks of the
-/// state itself are for.
-fn checksum(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+    StateFormat { version: VERSION, kind, name: expected }.without_header(bytes)
 }

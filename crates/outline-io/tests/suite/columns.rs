@@ -1,5 +1,5 @@
 //! Outlines as columns of a table: the same as from a file, and the same mistakes found.
-use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline};
 use freeform_outline_io::{
     ColumnsError, OutlineColumns, OutlineFrame, OutlineReader, OutlineWriter, ReadError, ReadErrorKind, Span,
     WriterOptions,
@@ -17,6 +17,7 @@ struct Table {
     x: Vec<f64>,
     y: Vec<f64>,
     arc: Vec<i64>,
+    contour: Vec<i64>,
 }
 
 impl Table {
@@ -27,14 +28,15 @@ impl Table {
                 table.names.push(frame.object.clone());
                 table.names.len() - 1
             });
-            for (arc, piece) in frame.outline.pieces().enumerate() {
+            for (number, piece) in (0..).zip(frame.outline.pieces()) {
                 for p in piece.points {
                     table.object.push(object as u32);
                     table.frame.push(frame.frame);
                     table.time.push(frame.time);
                     table.x.push(p.x);
                     table.y.push(p.y);
-                    table.arc.push(if piece.closed { -1 } else { arc as i64 });
+                    table.arc.push(if piece.closed { -1 } else { number });
+                    table.contour.push(if piece.closed { number } else { -1 });
                 }
             }
         }
@@ -42,8 +44,8 @@ impl Table {
     }
 
     fn columns(&self) -> OutlineColumns<'_> {
-        let Self { names, object, frame, time, x, y, arc } = self;
-        OutlineColumns { names, object: Some(object), frame, time, x, y, arc: Some(arc) }
+        let Self { names, object, frame, time, x, y, arc, contour } = self;
+        OutlineColumns { names, object: Some(object), frame, time, x, y, arc: Some(arc), contour: Some(contour) }
     }
 
     fn read(&self) -> Vec<Result<OutlineFrame, ReadError>> {
@@ -64,6 +66,14 @@ fn two_arcs(shift: f64) -> Outline {
     OpenOutline::new(arcs).expect("two arcs").into()
 }
 
+fn with_hole(shift: f64) -> Outline {
+    let square = |half: f64| {
+        [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Point2::new(x + shift, y)).to_vec()
+    };
+    let boundary = ClosedOutline::new(square(2.0)).expect("a square");
+    boundary.with_inner(vec![square(1.0)]).expect("a hole inside").into()
+}
+
 fn frame(frame: u64, object: &str, outline: Outline) -> OutlineFrame {
     OutlineFrame { frame, time: frame as f64 / 30.0, object: object.to_owned(), outline }
 }
@@ -78,8 +88,10 @@ fn recording() -> Vec<OutlineFrame> {
 
 #[test]
 fn columns_give_the_outlines_that_the_same_rows_of_a_file_give() {
-    let frames = recording();
-    let options = WriterOptions { arc_column: true, object_column: true, ..WriterOptions::default() };
+    let mut frames = recording();
+    frames.extend((0..3).map(|k| frame(k, "hollow", with_hole(0.1 * k as f64))));
+    let options =
+        WriterOptions { arc_column: true, contour_column: true, object_column: true, ..WriterOptions::default() };
     let mut writer = OutlineWriter::new(Vec::new(), options).expect("memory");
     frames.iter().for_each(|frame| writer.write(frame).expect("memory"));
     let file = writer.finish().expect("memory");
@@ -93,7 +105,7 @@ fn columns_give_the_outlines_that_the_same_rows_of_a_file_give() {
 #[test]
 fn without_objects_and_arcs_there_is_one_object_with_closed_outlines() {
     let table = Table::of(&[frame(3, "0", triangle(0.0)), frame(5, "0", triangle(1.0))]);
-    let columns = OutlineColumns { object: None, arc: None, names: &[], ..table.columns() };
+    let columns = OutlineColumns { object: None, arc: None, contour: None, names: &[], ..table.columns() };
     let read: Vec<_> = columns.outlines().expect("columns").collect::<Result<_, _>>().expect("good");
     assert_eq!(read, [frame(3, "0", triangle(0.0)), frame(5, "0", triangle(1.0))]);
 }
@@ -109,6 +121,7 @@ fn a_last_point_that_repeats_the_first_is_dropped() {
     table.frame.push(0);
     table.time.push(0.0);
     table.arc.push(-1);
+    table.contour.push(0);
     assert_eq!(table.read().remove(0).expect("a triangle").outline, triangle(0.0));
 }
 
@@ -147,6 +160,7 @@ fn mistakes_are_told_with_their_row() {
     assert!(matches!(spoiled(&|t| t.time[5] = f64::INFINITY), (5, ReadErrorKind::NotFinite { .. })));
     assert!(matches!(spoiled(&|t| t.arc[4] = -1), (4, ReadErrorKind::MixedArcs { .. })));
     assert!(matches!(spoiled(&|t| t.arc[8] = 0), (8, ReadErrorKind::SecondArc { .. })));
+    assert!(matches!(spoiled(&|t| t.contour[1] = 1), (2, ReadErrorKind::SecondContour { .. })));
     let later = |t: &mut Table, frame: u64, time: f64| {
         t.frame[12..15].fill(frame);
         t.time[12..15].fill(time);
@@ -186,6 +200,7 @@ proptest! {
             table.x.push(x);
             table.y.push(y);
             table.arc.push(arc);
+            table.contour.push(arc - 1);
         }
         let count = table.frame.len();
         prop_assert!(table.columns().outlines().expect("columns").count() <= count);

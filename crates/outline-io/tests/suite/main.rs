@@ -9,6 +9,7 @@ mod edge_profiles;
 mod edges;
 mod identities;
 mod labels;
+mod lists;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod pictures_as_people_have_them;

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._masks import check_masks, split_tracing, times_of, traced
-from ._native import ObjectResult, Observation, Recorder, Tracker, identify_columns, track_columns
+from ._native import ObjectResult, Observation, Recorder, Tracker, identify_table, track_table
 from ._progress import progress_bar
-from ._tables import kind_of, native_columns, table_like, with_names
+from ._tables import kind_of, native_table, table_like, with_names
 
 class Identification(Sequence[ObjectResult]):
     """The results of all objects: a sequence, also indexed by the names of the objects."""
@@ -94,9 +94,10 @@ def identify(
     ----------
     data : masks or table
         Masks: an array of shape (frames, height, width), bool or integer labels with 0 for the ground, or any iterable of arrays of shape
-        (height, width). Table: a pandas or polars DataFrame, a pyarrow Table, or a mapping of arrays, with one row per point and the
-        columns `frame`, `time`, `x`, `y` and optionally `object` and `arc` (the open piece of a partly hidden outline). The rows of one
-        outline follow each other in the order of the contour.
+        (height, width). Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
+        `frame`, `time`, `x`, `y` and optionally `object`, `arc` (the open piece of a partly hidden outline) and `contour` (boundary, holes
+        and marks of one body). Either one row per point, the rows of one outline following each other in the order of the contour; or
+        one row per outline, with lists of numbers in `x` and `y`, as in Parquet.
     fps : float, optional
         Frames per second; needed for masks, and for tables without a column `time`.
     times : array_like, shape (frames,), optional
@@ -136,7 +137,7 @@ def identify(
     if kind_of(data) is not None:
         only_for_masks(tracing, times)
         with progress_bar(progress, None) as advance:
-            identify_columns(tracker, native_columns(data, columns, fps), advance)
+            identify_table(tracker, native_table(data, columns, fps), advance)
     else:
         for _ in _follow_masks(tracker, data, fps, times, tracing, progress):
             pass
@@ -184,7 +185,7 @@ def track(
     if kind is not None:
         only_for_masks(tracing, times)
         with progress_bar(progress, None) as advance:
-            found = track_columns(tracker, native_columns(data, columns, fps), smooth, advance)
+            found = track_table(tracker, native_table(data, columns, fps), smooth, advance)
     else:
         recorder = Recorder()
         for observation in _follow_masks(tracker, data, fps, times, tracing, progress):

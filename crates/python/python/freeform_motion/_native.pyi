@@ -4,7 +4,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._tables import NativeColumns
+from ._tables import NativeTable
 
 __all__ = [
     "AdaptiveIdentifier",
@@ -34,10 +34,10 @@ __all__ = [
     "Tracker",
     "fit",
     "homography",
-    "identify_columns",
-    "outlines_of_columns",
+    "identify_table",
+    "outlines_of_table",
     "simulate",
-    "track_columns",
+    "track_table",
 ]
 
 _Floats = NDArray[np.float64]
@@ -407,6 +407,12 @@ class AdaptiveIdentifier:
     def frames(self) -> int: ...
     @property
     def is_observable(self) -> bool: ...
+    def to_bytes(self) -> bytes: ...
+    @staticmethod
+    def from_bytes(data: bytes) -> AdaptiveIdentifier: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    def __copy__(self) -> AdaptiveIdentifier: ...
+    def __deepcopy__(self, _memo: object) -> AdaptiveIdentifier: ...
 
 def simulate(
     shape: str | ArrayLike | None = None,
@@ -514,13 +520,13 @@ class Recorder:
     def take(self, observation: Observation) -> None: ...
     def columns(self, tracker: Tracker, smooth: bool) -> dict[str, Any]: ...
 
-def outlines_of_columns(columns: NativeColumns) -> list[tuple[str, Outline]]: ...
-def identify_columns(
-    tracker: Tracker, columns: NativeColumns, progress: Callable[[int], object] | None = None
+def outlines_of_table(table: NativeTable) -> list[tuple[str, Outline]]: ...
+def identify_table(
+    tracker: Tracker, table: NativeTable, progress: Callable[[int], object] | None = None
 ) -> None: ...
-def track_columns(
+def track_table(
     tracker: Tracker,
-    columns: NativeColumns,
+    table: NativeTable,
     smooth: bool = False,
     progress: Callable[[int], object] | None = None,
 ) -> dict[str, Any]: ...

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from ._identify import only_for_masks
 from ._masks import check_masks, split_tracing, traced
-from ._native import Evidence, Outline, Recogniser, Recognition, outlines_of_columns
-from ._tables import kind_of, native_columns
+from ._native import Evidence, Outline, Recogniser, Recognition, outlines_of_table
+from ._tables import kind_of, native_table
 
 
 def recognise(
@@ -74,7 +74,7 @@ def _outlines(
     if kind_of(data) is not None:
         only_for_masks(tracing)
         # Times do not matter.
-        yield from outlines_of_columns(native_columns(data, columns, 1.0))
+        yield from outlines_of_table(native_table(data, columns, 1.0))
         return
     check_masks(data)
     for found, _ in traced(data, tracing, progress):

@@ -8,25 +8,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._lists import Lists, are_lists, library_of, mark_lists, merged, number_lists, rows_of
 from ._native import Outline, Simulation
 
 REQUIRED = ("frame", "x", "y")
+ALL = ("object", "frame", "time", "x", "y", "arc", "contour")
 
-#: What the native part takes: names, then object, frame, time, x, y and arc.
-NativeColumns = tuple[
+#: Arcs or contours of outlines of a chunk: None, one per row, or a list per row.
+Marks = NDArray[np.int64] | Lists | None
+
+#: x, y, arc and contour of each row.
+Points = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64] | None, NDArray[np.int64] | None]
+
+#: What the native part takes: names, then object, frame and time of each row, then its point, or lists of them in chunks of rows.
+NativeTable = tuple[
     list[str],
     NDArray[np.uint32] | None,
     NDArray[np.uint64],
     NDArray[np.float64],
-    NDArray[np.float64],
-    NDArray[np.float64],
-    NDArray[np.int64] | None,
+    Points | list[tuple[Lists, Lists, Marks, Marks]],
 ]
 
 
 def kind_of(data: object) -> str | None:
     """The library that a table is of, `mapping`, or None for what is no table."""
-    library = type(data).__module__.partition(".")[0]
+    library = library_of(data)
     if library in ("pandas", "polars", "pyarrow") and hasattr(data, "columns"):
         return library
     if isinstance(data, Mapping):
@@ -34,14 +40,15 @@ def kind_of(data: object) -> str | None:
     return "arrow" if hasattr(data, "__arrow_c_stream__") else None
 
 
-def native_columns(table: Any, columns: Mapping[str, str] | None, fps: float | None) -> NativeColumns:
+def native_table(table: Any, columns: Mapping[str, str] | None, fps: float | None) -> NativeTable:
     """The columns of a table of outlines, checked and as arrays.
 
     Parameters
     ----------
     table : pandas.DataFrame, polars.DataFrame, pyarrow.Table or mapping of arrays
+        One row per point, or one row per outline with lists.
     columns : mapping of str to str, optional
-        Names of the columns where they are not `object`, `frame`, `time`, `x`, `y` and `arc`.
+        Names of the columns where they are not `object`, `frame`, `time`, `x`, `y`, `arc` and `contour`.
     fps : float, optional
         Frames per second, where there is no column `time`.
     """
@@ -50,9 +57,9 @@ def native_columns(table: Any, columns: Mapping[str, str] | None, fps: float | N
 
         table = pyarrow.table(table)
     renamed = dict(columns or {})
-    unknown = set(renamed) - {"object", "frame", "time", "x", "y", "arc"}
+    unknown = set(renamed) - set(ALL)
     if unknown:
-        raise ValueError(f"columns: {', '.join(sorted(unknown))} is none of object, frame, time, x, y, arc")
+        raise ValueError(f"columns: {', '.join(sorted(unknown))} is none of {', '.join(ALL)}")
     present = _names(table)
 
     def find(name: str) -> Any | None:
@@ -81,14 +88,44 @@ def native_columns(table: Any, columns: Mapping[str, str] | None, fps: float | N
         if absent.size:
             raise ValueError(f"row {absent[0]}, column object: the name is missing")
         names, codes = [str(value) for value in values], found.astype(np.uint32)
-    arcs = find("arc")
-    arc = None
-    if arcs is not None:
-        arc, values = factorise(arcs)
-        # A column of whole numbers has no other way to say that an outline is closed.
-        empty = [number for number, value in enumerate(values) if value == "" or _is_negative(value)]
-        arc = np.where(np.isin(arc, empty), -1, arc).astype(np.int64)
-    return names, codes, frame, times, _reals(find("x"), "x"), _reals(find("y"), "y"), arc
+    x, y, arc, contour = (find(name) for name in ("x", "y", "arc", "contour"))
+    if are_lists(x) and are_lists(y):
+        return names, codes, frame, times, _list_chunks(x, y, arc, contour)
+    for name, column in (("x", x), ("y", y), ("arc", arc), ("contour", contour)):
+        if column is not None and are_lists(column):
+            raise ValueError(f"column {name} has lists, but column {'y' if name == 'x' else 'x'} has none")
+    points = _reals(x, "x"), _reals(y, "y"), _marks(arc), _marks(contour)
+    return names, codes, frame, times, points
+
+
+def _list_chunks(x: Any, y: Any, arc: Any, contour: Any) -> list[tuple[Lists, Lists, Marks, Marks]]:
+    """Lists of points in chunks of rows, those of the columns where they agree."""
+    lists = [number_lists(x, "x"), number_lists(y, "y")]
+    marks: list[Any] = [None, None]
+    for position, (name, column) in enumerate((("arc", arc), ("contour", contour))):
+        if column is not None and are_lists(column):
+            marks[position] = mark_lists(column, name)
+    of_lists = [chunks for chunks in (*lists, *marks) if chunks is not None]
+    if any(rows_of(chunks) != rows_of(lists[0]) for chunks in of_lists):
+        lists = [merged(chunks) for chunks in lists]
+        marks = [None if chunks is None else merged(chunks) for chunks in marks]
+    ends = np.cumsum(rows_of(lists[0]))
+    for position, column in enumerate((arc, contour)):
+        if marks[position] is None:
+            of_rows = _marks(column)
+            marks[position] = [None] * len(ends) if of_rows is None else np.split(of_rows, ends)[: len(ends)]
+    return list(zip(*lists, *marks, strict=True))
+
+
+def _marks(column: Any) -> NDArray[np.int64] | None:
+    """Arcs or contours of rows by number, negative for none; None where there are none at all."""
+    if column is None:
+        return None
+    codes, values = factorise(column)
+    # A column of whole numbers has no other way to say that an outline is closed.
+    empty = [number for number, value in enumerate(values) if value == "" or _is_negative(value)]
+    marks = np.where(np.isin(codes, empty), -1, codes).astype(np.int64)
+    return marks if (marks >= 0).any() else None
 
 
 def _is_negative(value: Any) -> bool:
@@ -103,7 +140,7 @@ def _names(table: Any) -> list[Any]:
 
 def _array(column: Any) -> NDArray[Any]:
     """A column as a numpy array; missing numbers are NaN."""
-    if type(column).__module__.partition(".")[0] == "pyarrow":
+    if library_of(column) == "pyarrow":
         return np.asarray(column.to_numpy())
     return np.asarray(column.to_numpy() if hasattr(column, "to_numpy") else column)
 
@@ -124,7 +161,7 @@ def _numbers(column: Any, name: str) -> NDArray[Any]:
 
 
 def _reals(column: Any, name: str) -> NDArray[np.float64]:
-    return np.ascontiguousarray(_numbers(column, name), dtype=np.float64)
+    return np.require(_numbers(column, name), np.float64, ["C", "A"])
 
 
 def _frame_numbers(array: NDArray[Any]) -> NDArray[np.uint64]:
@@ -138,7 +175,7 @@ def _frame_numbers(array: NDArray[Any]) -> NDArray[np.uint64]:
 
 def factorise(column: Any) -> tuple[NDArray[np.int64], list[Any]]:
     """Numbers of the values in the order of their first appearance, -1 for missing ones, and the values."""
-    library = type(column).__module__.partition(".")[0]
+    library = library_of(column)
     if library == "pandas":
         import pandas
 
@@ -215,8 +252,8 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
     Returns
     -------
     dict of ndarray
-        Columns `object`, `frame`, `time`, `x`, `y`; also `arc` if there are open outlines, -1 for closed ones. What
-        `pandas.DataFrame`, `polars.DataFrame` and `pyarrow.table` take.
+        Columns `object`, `frame`, `time`, `x`, `y`; also `arc` if there are open outlines, -1 for closed ones, and `contour` if there are
+        outlines with several contours, -1 for the others. What `pandas.DataFrame`, `polars.DataFrame` and `pyarrow.table` take.
     """
     if isinstance(outlines, Simulation):
         outlines = (("0", frame.index, frame.time, frame.outline) for frame in outlines)
@@ -224,13 +261,16 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
     frames: list[int] = []
     times: list[float] = []
     arcs: list[int] = []
+    contours: list[int] = []
     pieces: list[NDArray[np.float64]] = []
     for name, frame, time, outline in outlines:
-        for number, piece in enumerate(outline.pieces):
+        found = outline.pieces
+        for number, piece in enumerate(found):
             names.append(str(name))
             frames.append(frame)
             times.append(time)
             arcs.append(-1 if outline.is_closed else number)
+            contours.append(number if outline.is_closed and len(found) > 1 else -1)
             pieces.append(piece)
     lengths = [len(piece) for piece in pieces]
     points = np.concatenate(pieces) if pieces else np.empty((0, 2))
@@ -241,6 +281,7 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
         "x": np.ascontiguousarray(points[:, 0]),
         "y": np.ascontiguousarray(points[:, 1]),
     }
-    if any(arc >= 0 for arc in arcs):
-        table["arc"] = np.repeat(np.array(arcs, dtype=np.int64), lengths)
+    for column, marks in (("arc", arcs), ("contour", contours)):
+        if any(mark >= 0 for mark in marks):
+            table[column] = np.repeat(np.array(marks, dtype=np.int64), lengths)
     return table

@@ -1,12 +1,12 @@
-//! Whole recordings from the columns of a table, and what becomes of every frame as columns again.
+//! Whole recordings from a table, and what becomes of every frame as columns again.
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::outline_io::{OutlineColumns, OutlineFrame, ReadError, ReadErrorKind, Span};
+use freeform_motion::outline_io::{OutlineFrame, ReadError, ReadErrorKind, Span};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{Followed, Method, Observation, ReadAhead, Recorded, Trajectory};
-use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
+use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -14,6 +14,7 @@ use pyo3::types::PyDict;
 use crate::errors::value_error;
 use crate::estimate::or_nan;
 use crate::outline::PyOutline;
+use crate::table_arrays::{TableArrays, TableOutlines};
 use crate::tracker::{PyObservation, PyTracker};
 
 /// Frames after which Python is asked whether to go on.
@@ -22,51 +23,22 @@ const FRAMES_BETWEEN_SIGNALS: usize = 64;
 /// An item of a recording that is no frame: why its reading ended.
 type Gap = Result<std::convert::Infallible, ReadError>;
 
-/// The columns of a table of outlines, as arrays: names of the objects, and per row the position of the object among them (None for one
-/// object), the frame, time, x, y, and the arc (None for closed outlines).
-#[derive(FromPyObject)]
-pub(crate) struct Columns<'py>(
-    Vec<String>,
-    Option<PyReadonlyArray1<'py, u32>>,
-    PyReadonlyArray1<'py, u64>,
-    PyReadonlyArray1<'py, f64>,
-    PyReadonlyArray1<'py, f64>,
-    PyReadonlyArray1<'py, f64>,
-    Option<PyReadonlyArray1<'py, i64>>,
-);
-
-impl Columns<'_> {
-    fn view(&self) -> PyResult<OutlineColumns<'_>> {
-        let Self(names, object, frame, time, x, y, arc) = self;
-        Ok(OutlineColumns {
-            names,
-            object: object.as_ref().map(PyReadonlyArray1::as_slice).transpose()?,
-            frame: frame.as_slice()?,
-            time: time.as_slice()?,
-            x: x.as_slice()?,
-            y: y.as_slice()?,
-            arc: arc.as_ref().map(PyReadonlyArray1::as_slice).transpose()?,
-        })
-    }
-}
-
-/// Lets a tracker follow a recording from columns. `progress` is called with the number of frames done since it was called last.
+/// Lets a tracker follow a recording from a table. `progress` is called with the number of frames done since it was called last.
 #[pyfunction]
-#[pyo3(signature = (tracker, columns, progress = None))]
-pub(crate) fn identify_columns(
+#[pyo3(signature = (tracker, table, progress = None))]
+pub(crate) fn identify_table(
     py: Python<'_>,
     tracker: &PyTracker,
-    columns: Columns<'_>,
+    table: TableArrays<'_>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    follow(py, tracker, &columns.view()?, progress.as_ref(), |_| {})
+    follow(py, tracker, table.outlines()?, progress.as_ref(), |_| {})
 }
 
-/// The outlines of columns, each with the name of its object; frames whose points are no outline are left out.
+/// The outlines of a table, each with the name of its object; frames whose points are no outline are left out.
 #[pyfunction]
-pub(crate) fn outlines_of_columns(py: Python<'_>, columns: Columns<'_>) -> PyResult<Vec<(String, PyOutline)>> {
-    let columns = columns.view()?;
-    let outlines = columns.outlines().map_err(value_error)?;
+pub(crate) fn outlines_of_table(py: Python<'_>, table: TableArrays<'_>) -> PyResult<Vec<(String, PyOutline)>> {
+    let outlines = table.outlines()?;
     py.detach(|| {
         let mut found = Vec::new();
         for outline in outlines {
@@ -80,18 +52,18 @@ pub(crate) fn outlines_of_columns(py: Python<'_>, columns: Columns<'_>) -> PyRes
     })
 }
 
-/// Lets a tracker follow a recording from columns. Returns columns with one row per object and frame.
+/// Lets a tracker follow a recording from a table. Returns columns with one row per object and frame.
 #[pyfunction]
-#[pyo3(signature = (tracker, columns, smooth = false, progress = None))]
-pub(crate) fn track_columns<'py>(
+#[pyo3(signature = (tracker, table, smooth = false, progress = None))]
+pub(crate) fn track_table<'py>(
     py: Python<'py>,
     tracker: &PyTracker,
-    columns: Columns<'py>,
+    table: TableArrays<'py>,
     smooth: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mut recording = Recording::default();
-    follow(py, tracker, &columns.view()?, progress.as_ref(), |observation| recording.take(observation))?;
+    follow(py, tracker, table.outlines()?, progress.as_ref(), |observation| recording.take(observation))?;
     recording.columns(py, tracker, smooth)
 }
 
@@ -121,15 +93,14 @@ impl PyRecorder {
     }
 }
 
-/// Follows all outlines of the columns, several objects on several threads, without the interpreter.
+/// Follows all outlines of a table, several objects on several threads, without the interpreter.
 fn follow(
     py: Python<'_>,
     tracker: &PyTracker,
-    columns: &OutlineColumns<'_>,
+    outlines: TableOutlines<'_>,
     progress: Option<&Py<PyAny>>,
     mut observe: impl FnMut(&Observation) + Send,
 ) -> PyResult<()> {
-    let outlines = columns.outlines().map_err(value_error)?;
     py.detach(|| {
         let mut frames = 0_usize;
         let recording = outlines.map(recorded);

@@ -1,0 +1,87 @@
+//! What stands before a saved state: version, kind and checksum.
+
+/// Bytes before the state: version, kind and checksum.
+const HEADER: usize = 16;
+
+/// Why bytes are no saved state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum StateError {
+    /// Fewer bytes than the header has.
+    #[error("{found} byte(s) are no saved state: at least {needed} are needed")]
+    TooShort {
+        /// Bytes given.
+        found: usize,
+        /// Bytes of the header.
+        needed: usize,
+    },
+    /// Saved by another version of this library.
+    #[error("the state has the format version {found}, this library reads version {supported}")]
+    Version {
+        /// Version of the bytes.
+        found: u32,
+        /// The version that can be read.
+        supported: u32,
+    },
+    /// Bytes of something else.
+    #[error("the bytes are not the state of a {expected}")]
+    Kind {
+        /// What was to be restored.
+        expected: &'static str,
+    },
+    /// Bytes were cut off, added or changed.
+    #[error("the state is damaged: its bytes do not agree with their checksum")]
+    Damaged,
+    /// The bytes are well-formed and describe no state.
+    #[error("the state is not consistent: {part}")]
+    Inconsistent {
+        /// What of it.
+        part: &'static str,
+    },
+}
+
+/// The format of the saved states of one type. Version (4 bytes, little-endian), kind (4 bytes) and a checksum (8 bytes) stand before
+/// each state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StateFormat {
+    /// Another one for every change of what is saved.
+    pub version: u32,
+    /// What the bytes hold.
+    pub kind: [u8; 4],
+    /// The same in words, for messages.
+    pub name: &'static str,
+}
+
+impl StateFormat {
+    /// Puts the header before a state.
+    #[must_use]
+    pub fn with_header(&self, state: &[u8]) -> Vec<u8> {
+        let header = self.version.to_le_bytes().into_iter().chain(self.kind).chain(checksum(state).to_le_bytes());
+        header.chain(state.iter().copied()).collect()
+    }
+
+    /// The state behind the header.
+    ///
+    /// # Errors
+    /// Bytes of another version or kind, and damaged ones.
+    pub fn without_header<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], StateError> {
+        let Some((header, state)) = bytes.split_first_chunk::<HEADER>() else {
+            return Err(StateError::TooShort { found: bytes.len(), needed: HEADER });
+        };
+        let [a, b, c, d, rest @ ..] = *header;
+        let [e, f, g, h, sum @ ..] = rest;
+        let found = u32::from_le_bytes([a, b, c, d]);
+        if found != self.version {
+            return Err(StateError::Version { found, supported: self.version });
+        }
+        if [e, f, g, h] != self.kind {
+            return Err(StateError::Kind { expected: self.name });
+        }
+        if u64::from_le_bytes(sum) != checksum(state) { Err(StateError::Damaged) } else { Ok(state) }
+    }
+}
+
+/// FNV-1a of 64 bits (G. Fowler, L. C. Noll, K.-P. Vo): enough against accidents, and none against malice, which the checks of the
+/// state itself are for.
+fn checksum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+}
