@@ -25,7 +25,8 @@ pub(crate) fn adaptive_law(name: &str) -> PyResult<AdaptiveLaw> {
         "structured" => Ok(AdaptiveLaw::Structured),
         "filtered" => Ok(AdaptiveLaw::FilteredLeastSquares),
         "printed" => Ok(AdaptiveLaw::Printed),
-        _ => Err(unknown_name("law", name, &["structured", "filtered", "printed"])),
+        "drem" => Ok(AdaptiveLaw::RegressorMixing),
+        _ => Err(unknown_name("law", name, &["structured", "filtered", "printed", "drem"])),
     }
 }
 

@@ -111,7 +111,7 @@ def moving_lines(time):
     return np.column_stack([1j * (1 + w) / (1 - w), [0.1 - 0.2j, 0.1j]])
 
 
-@pytest.mark.parametrize("law", ["structured", "filtered", "printed"])
+@pytest.mark.parametrize("law", ["structured", "filtered", "printed", "drem"])
 @pytest.mark.parametrize("motion", ["rigid", "affine"])
 def test_an_adaptive_identifier_goes_on_where_it_was(motion, law):
     straight, interrupted = (ff.AdaptiveIdentifier(motion, law=law) for _ in range(2))
