@@ -1,4 +1,5 @@
-//! How deep the schema of a Parquet file goes, found before the library builds it by recursion.
+//! How deep the schema of a Parquet file goes and how long its lists are, found before the library builds the one by recursion and goes
+//! through the others.
 
 /// Groups within each other that are read; an outline has three.
 const DEEPEST: usize = 32;
@@ -7,7 +8,7 @@ const DEEPEST: usize = 32;
 const DEEPEST_STRUCT: usize = 16;
 
 /// Refuses a table of contents (`FileMetaData` in the compact protocol of Thrift) whose schema has groups within each other without
-/// end. What else is wrong with it the library tells.
+/// end, or that has lists of more elements than there are bytes. What else is wrong with it the library tells.
 ///
 /// # Errors
 /// What is wrong.
@@ -16,10 +17,11 @@ pub(crate) fn check_depth(footer: &[u8]) -> Result<(), &'static str> {
     let mut walk = Walk { rest: footer };
     let mut id = 0;
     while let Some((field, kind)) = walk.field(&mut id).ok_or(CUT)? {
-        if (field, kind) == (2, LIST) {
-            return if walk.schema().ok_or(CUT)? { Ok(()) } else { Err("the schema goes too deep") };
+        if (field, kind) != (2, LIST) {
+            walk.skip(kind, DEEPEST_STRUCT).ok_or(CUT)?;
+        } else if !walk.schema().ok_or(CUT)? {
+            return Err("the schema goes too deep");
         }
-        walk.skip(kind, DEEPEST_STRUCT).ok_or(CUT)?;
     }
     Ok(())
 }
@@ -82,8 +84,11 @@ impl Walk<'_> {
             15 => self.varint()?,
             count => u64::from(count),
         };
-        // An element has a byte at least.
-        (count <= self.rest.len() as u64).then_some((count, head & 0x0f))
+        let kind = head & 0x0f;
+        // An element has a byte at least. Lists of truth values are in no table of contents, and the library counts through those that it
+        // does not know without reading a byte: a few bytes could keep it busy for minutes.
+        let is_there = count <= self.rest.len() as u64 && !matches!(kind, TRUE | FALSE);
+        is_there.then_some((count, kind))
     }
 
     fn skip(&mut self, kind: u8, depth: usize) -> Option<()> {
@@ -100,10 +105,7 @@ impl Walk<'_> {
             LIST | SET => {
                 let (count, kind) = self.list()?;
                 for _ in 0..count {
-                    match kind {
-                        TRUE | FALSE => drop(self.byte()?),
-                        kind => self.skip(kind, depth)?,
-                    }
+                    self.skip(kind, depth)?;
                 }
             }
             STRUCT => {
@@ -151,4 +153,25 @@ impl Walk<'_> {
 /// A signed number.
 fn zigzag(value: u64) -> i64 {
     (value >> 1) as i64 ^ -((value & 1) as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Version 1, a schema of one element without a field, and what follows.
+    fn footer(rest: &[u8]) -> Vec<u8> {
+        [&[0x15, 0x02, 0x19, 0x1c, 0x00], rest].concat()
+    }
+
+    #[test]
+    fn lists_with_more_elements_than_bytes_are_refused_wherever_they_stand() {
+        assert_eq!(check_depth(&footer(&[0x00])), Ok(()));
+        // An unknown list of two bytes, then the end.
+        assert_eq!(check_depth(&footer(&[0xc9, 0x23, 7, 8, 0x00])), Ok(()));
+        // Of two billion bytes, and of two billion truth values, which take none.
+        for kind in [0xf3, 0xf1, 0xf2] {
+            assert!(check_depth(&footer(&[0xc9, kind, 0xff, 0xff, 0xff, 0xff, 0x07, 0x00])).is_err(), "{kind:x}");
+        }
+    }
 }

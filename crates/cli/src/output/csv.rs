@@ -24,9 +24,9 @@ impl Study {
 
     fn cells(&self, progress: Option<&AdaptiveProgress>) -> [String; 4] {
         let Some(progress) = progress else { return [const { String::new() }; 4] };
-        let AdaptiveDiagnostics { error, energy, excitation } = progress.diagnostics;
+        let AdaptiveDiagnostics { error, energy, .. } = progress.diagnostics;
         let lyapunov = self.truth.as_ref().map(|truth| progress.lyapunov_function(truth));
-        [Some(error), Some(energy), lyapunov, Some(excitation)].map(optional)
+        [Some(error), Some(energy), lyapunov, Some(progress.diagnostics.excitation())].map(optional)
     }
 }
 

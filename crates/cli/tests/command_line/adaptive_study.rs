@@ -22,8 +22,8 @@ fn omega(arguments: &str, outlines: &str) -> f64 {
 }
 
 #[test]
-fn the_trace_tells_error_lyapunov_function_and_excitation_and_the_function_never_grows_without_noise() {
-    let outlines = sequence("--shape bird --omega 1.2 --b 0.3,0.1 --noise 0 --seconds 12 --fps 30");
+fn the_trace_tells_error_lyapunov_function_and_excitation_and_the_function_hardly_ever_grows_without_noise() {
+    let outlines = sequence("--shape bird --omega 1.2 --b 0.3,0.1 --noise 0 --points 400 --seconds 12 --fps 30");
     for law in ["structured", "printed", "least-squares", "drem"] {
         let rows = trace(&format!("--law {law}"), &outlines);
         assert!(rows.len() > 300, "{law}: {}", rows.len());
@@ -34,10 +34,11 @@ fn the_trace_tells_error_lyapunov_function_and_excitation_and_the_function_never
         }
         if law == "structured" {
             let values: Vec<f64> = rows.iter().map(|row| row["lyapunov"]).collect();
-            // The curves of the outlines move a little other than their lines are taken to between two frames.
-            let grows = values.windows(2).find(|pair| pair[1] > pair[0] + 2e-3 * values[0]);
+            // Each frame shows other points of the outline, of which the curve is a little different. Of exact lines it never grows, which a
+            // property of the law tests.
+            let grows = values.windows(2).find(|pair| pair[1] > pair[0] + 5e-3 * values[0]);
             assert_eq!(grows, None);
-            assert!(values[values.len() - 1] < 0.2 * values[0], "{values:?}");
+            assert!(values[values.len() - 1] < 0.01 * values[0], "{values:?}");
         }
     }
 }

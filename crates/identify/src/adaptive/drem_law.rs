@@ -33,7 +33,7 @@ where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
     pub(crate) fn new(regressor: Regressor<N>, initial: SVector<f64, N>) -> Self {
-        Self { extended: LeastSquaresLaw::new(regressor, initial), parameters: initial }
+        Self { extended: LeastSquaresLaw::without_prior(regressor, initial), parameters: initial }
     }
 
     pub(crate) fn regressor(&self) -> &Regressor<N> {
@@ -65,7 +65,9 @@ where
 
     /// Runs the laws of the parameters for `seconds`, the sums being what they are at its end.
     pub(crate) fn adapt(&mut self, seconds: f64) {
-        let towards = self.extended.parameters();
+        let Some(towards) = self.extended.solution().filter(|found| found.iter().all(|value| value.is_finite())) else {
+            return;
+        };
         let share = 1.0 - (-GAIN * self.extended.excitation() * seconds).exp();
         self.parameters += share * (towards - self.parameters);
     }

@@ -67,6 +67,11 @@ impl<const N: usize> LeastSquaresLaw<N> {
         Self { regressor, information: SMatrix::identity() * prior, projection: initial * prior, initial }
     }
 
+    /// One that nothing is known of beforehand: without an estimate until all parameters have been excited.
+    pub(crate) fn without_prior(regressor: Regressor<N>, initial: SVector<f64, N>) -> Self {
+        Self { regressor, information: SMatrix::zeros(), projection: SVector::zeros(), initial }
+    }
+
     pub(crate) fn regressor(&self) -> &Regressor<N> {
         &self.regressor
     }
@@ -110,7 +115,12 @@ impl<const N: usize> LeastSquaresLaw<N> {
     }
 
     pub(crate) fn parameters(&self) -> SVector<f64, N> {
-        self.information.cholesky().map_or(self.initial, |factor| factor.solve(&self.projection))
+        self.solution().unwrap_or(self.initial)
+    }
+
+    /// The solution of the normal equations; `None` where they have none.
+    pub(crate) fn solution(&self) -> Option<SVector<f64, N>> {
+        self.information.cholesky().map(|factor| factor.solve(&self.projection))
     }
 }
 

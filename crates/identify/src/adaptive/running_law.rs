@@ -1,6 +1,6 @@
 use freeform_decompose::{Line, MAX_PAIRS};
 use freeform_riccati::{AffineMotion, MAX_PARAMETERS, MotionModel, RealVariables};
-use nalgebra::{Const, DMatrix, DimMin, Matrix3, Matrix4, SMatrix, SVector, Vector4};
+use nalgebra::{Const, DimMin, Matrix3, Matrix4, SMatrix, SVector, Vector4};
 
 use super::{
     drem_law::DremLaw,
@@ -169,9 +169,12 @@ where
 
     /// Error of the estimator, its Lyapunov function and the excitation, after the last frame.
     pub(super) fn diagnostics(&self) -> AdaptiveDiagnostics {
-        let least = DMatrix::from_column_slice(N, N, self.excitation.as_slice()).symmetric_eigenvalues().min();
         let PairErrors { square, energy } = self.errors;
-        AdaptiveDiagnostics { error: square.sqrt(), energy, excitation: least.max(0.0) }
+        let mut regressor_square = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+        for (i, row) in regressor_square.iter_mut().enumerate().take(N) {
+            row.iter_mut().enumerate().take(N).for_each(|(j, entry)| *entry = self.excitation[(i, j)]);
+        }
+        AdaptiveDiagnostics { error: square.sqrt(), energy, regressor_square, parameters: N }
     }
 
     /// Takes how far the estimator is off at the lines of a frame, and how they excite the parameters.

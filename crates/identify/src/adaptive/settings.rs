@@ -1,5 +1,5 @@
-use freeform_riccati::MotionModel;
-use nalgebra::{Matrix4, Vector4};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+use nalgebra::{DMatrix, Matrix4, Vector4};
 
 /// How the parameters are adapted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,9 +40,20 @@ pub struct AdaptiveDiagnostics {
     pub error: f64,
     /// `sum e' P e`: the part of the Lyapunov function `sum e' P e + |theta - theta_true|^2` that is known without the truth.
     pub energy: f64,
+    /// Mean of `sum W' W` over the last four seconds, forgotten exponentially, row by row; zero beyond the parameters of the model.
+    pub(crate) regressor_square: [[f64; MAX_PARAMETERS]; MAX_PARAMETERS],
+    pub(crate) parameters: usize,
+}
+
+impl AdaptiveDiagnostics {
     /// Smallest eigenvalue of the mean of `sum W' W` over the last four seconds, forgotten exponentially: how much the parameters that are
     /// excited least are excited. 0 where something is not excited at all.
-    pub excitation: f64,
+    #[must_use]
+    pub fn excitation(&self) -> f64 {
+        let n = self.parameters;
+        let square = DMatrix::from_fn(n, n, |i, j| self.regressor_square[i][j]);
+        square.symmetric_eigenvalues().iter().copied().fold(f64::INFINITY, f64::min).max(0.0)
+    }
 }
 
 /// Settings of an [`AdaptiveIdentifier`](crate::AdaptiveIdentifier).

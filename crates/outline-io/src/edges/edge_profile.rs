@@ -59,8 +59,8 @@ const FARTHEST: f64 = 16.0;
 /// seen near the outline that is expected: where the grey values across it change as they did before.
 ///
 /// ```
+/// use freeform_curve_fit::{Piece, PixelGrid};
 /// use freeform_outline_io::{EdgeProfile, GrayImage};
-/// use freeform_outline_io::curve_fit::{Piece, PixelGrid};
 /// use nalgebra::{Point2, Vector2};
 ///
 /// // A disc of radius 20 pixels at (x, 32).
