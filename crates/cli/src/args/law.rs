@@ -19,7 +19,7 @@ pub(crate) struct LawOptions {
     #[arg(long, value_enum)]
     law: Option<LawChoice>,
 
-    /// Which pairs of lines drive the law: the best, all, or one by its number, from 0 [default: all]
+    /// Which pairs of lines drive the law: the best, all, or one by its number, 0 to 3 [default: all]
     #[arg(long, value_name = "best|all|N", value_parser = pairs)]
     pairs: Option<PairChoice>,
 
@@ -98,7 +98,7 @@ fn initial(text: &str) -> Result<Initial, String> {
     match text.split_once(':') {
         None if text == "random" => Ok(Initial::Random { seed: 0 }),
         Some(("random", seed)) => {
-            let seed = seed.parse().map_err(|_| format!("{seed:?} is not a whole number"))?;
+            let seed = seed.parse().map_err(|_| format!("{seed:?} is not a whole number from 0 on"))?;
             Ok(Initial::Random { seed })
         }
         _ => Ok(Initial::Values(text.split(',').map(finite).collect::<Result<_, _>>()?)),

@@ -41,8 +41,8 @@ impl Track {
         self.map.chains().into_iter().map(piece).collect()
     }
 
-    /// Standard deviation of the place of the outline along its normals, normalised, where it is known least; `None` where the covariance
-    /// cannot be computed.
+    /// Standard deviation of the place of the outline along its normals, normalised, where it is known least, by the pose
+    /// alone; `None` where the covariance cannot be computed.
     pub(crate) fn deviation_along_normals(&self) -> Option<f64> {
         let (belief, null) = (&self.belief, self.null_directions());
         let held = with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref());
@@ -56,6 +56,8 @@ impl Track {
             let term = |i: usize, j: usize| along[i] * covariance[(i, j)] * along[j];
             (0..k).flat_map(|i| (0..k).map(move |j| (i, j))).map(|(i, j)| term(i, j)).sum::<f64>()
         };
-        Some(self.map.cells().iter().map(variance).fold(0.0, f64::max).sqrt())
+        let variances = self.map.cells().iter().map(variance);
+        let finite = variances.map(|variance| variance.is_finite().then_some(variance));
+        finite.reduce(|a, b| Some(f64::max(a?, b?))).flatten().map(|variance| variance.max(0.0).sqrt())
     }
 }

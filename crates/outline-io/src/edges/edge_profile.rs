@@ -53,6 +53,18 @@ const SMALLEST_SHARE: f64 = 0.3;
 /// Farthest that edges are looked for, in pixels: beyond it there are others.
 const FARTHEST: f64 = 16.0;
 
+/// Samples to either side within which the correlation has to fall by so much for its top to be a place: along a shading it is as high
+/// everywhere, and a linear one correlates with a step by 0.88.
+const NEAR_TOP: usize = 6;
+const FALLS_BY: f64 = 0.1;
+
+/// Another place farther off that is less worse than this leaves open which of them is the edge, as stripes do.
+const RIVAL: f64 = 0.05;
+
+/// Least share of what changes across the outline, in the mean square, that is alike everywhere along it. Where a grey object lies on black and
+/// on white, the mean is what is left of both.
+const ALIKE: f64 = 0.25;
+
 /// The mean of the grey values along the normals of the outline of an object, as pictures have shown them so far.
 ///
 /// Where an object cannot be told from its surroundings as a whole, as it touches another one or its contrast is low, its edges may still be
@@ -87,6 +99,8 @@ const FARTHEST: f64 = 16.0;
 pub struct EdgeProfile {
     /// Less their own mean; empty at first.
     mean: Vec<f64>,
+    /// Mean square of the single profiles, less their own means, summed over the samples.
+    square: f64,
     pictures: f64,
 }
 
@@ -116,23 +130,26 @@ struct Found {
 }
 
 impl EdgeProfile {
-    /// Whether enough pictures have been taken for edges to be looked for.
+    /// Whether enough pictures have been taken for edges to be looked for, and the object looks alike along its outline.
     #[must_use]
     pub fn is_known(&self) -> bool {
-        self.pictures >= FEWEST_PICTURES && self.height() > 0.0
+        let height = self.height();
+        self.pictures >= FEWEST_PICTURES && height > 0.0 && height * height >= ALIKE * self.square
     }
 
     /// Takes a picture in which the outline was found there; `grid` leads from the picture to the coordinates of the outline.
     pub fn take<'a>(&mut self, picture: &GrayImage, grid: &PixelGrid, outline: impl IntoIterator<Item = Piece<'a>>) {
         let mut sum = vec![0.0; 2 * REACH + 1];
-        let (mut count, mut values) = (0.0, Vec::new());
-        for (station, _) in outline.into_iter().flat_map(|piece| stations(&piece, grid)) {
+        let (mut count, mut square, mut values) = (0.0, 0.0, Vec::new());
+        for station in stations_of(outline, grid).into_iter().flat_map(|(stations, _)| stations) {
             if !station.sample(picture, REACH, &mut values) {
                 continue;
             }
             let fit = self.is_known().then(|| self.compare(&values));
             if fit.is_none_or(|(correlation, _)| correlation > LEARNT_FROM) {
                 sum.iter_mut().zip(&values).for_each(|(sum, value)| *sum += value);
+                let level = values.iter().sum::<f64>() / values.len() as f64;
+                square += values.iter().map(|value| (value - level).powi(2)).sum::<f64>();
                 count += 1.0;
             }
         }
@@ -142,14 +159,15 @@ impl EdgeProfile {
         let level = sum.iter().sum::<f64>() / sum.len() as f64;
         self.mean.resize(sum.len(), 0.0);
         self.pictures = (self.pictures + 1.0).min(MOST_PICTURES);
+        self.square += (square / count - self.square) / self.pictures;
         for (mean, sum) in self.mean.iter_mut().zip(&sum) {
             *mean += ((sum - level) / count - *mean) / self.pictures;
         }
     }
 
-    /// The edges within `reach`, in the unit of the outline and taken as 1 to 16 pixels, of an outline that is expected in a picture, as far as
-    /// they are seen. `None` where less than three tenths of them are, the reach is no number, or the profile is not
-    /// [known](Self::is_known).
+    /// The edges within `reach`, in the unit of the outline and of a pixel at least, of an outline that is expected in a picture, as far as they
+    /// are seen. `None` where less than three tenths of them are, where the reach is no number or more than 16 pixels, so that the object
+    /// may well be elsewhere, and before the profile is [known](Self::is_known).
     #[must_use]
     pub fn seek<'a>(
         &self,
@@ -158,21 +176,21 @@ impl EdgeProfile {
         expected: impl IntoIterator<Item = Piece<'a>>,
         reach: f64,
     ) -> Option<SoughtEdges> {
-        if !self.is_known() || reach.is_nan() {
+        let pixel = (grid.to_plane(1.0, 1.0) - grid.to_plane(0.0, 0.0)).abs().min();
+        let pixels = reach / pixel;
+        if !self.is_known() || pixels.is_nan() || pixels > FARTHEST {
             return None;
         }
-        let pixel = (grid.to_plane(1.0, 1.0) - grid.to_plane(0.0, 0.0)).abs().min();
-        let shifts = ((reach / pixel).clamp(1.0, FARTHEST) / SPACING).ceil() as usize;
-        let pieces: Vec<(Vec<(Station, bool)>, bool)> =
-            expected.into_iter().map(|piece| (stations(&piece, grid).collect(), piece.closed)).collect();
+        let shifts = (pixels.max(1.0) / SPACING).ceil() as usize;
+        let pieces = stations_of(expected, grid);
         let mut values = Vec::new();
         let mut looked = |station: &Station, gains: [f64; 2]| {
-            let is_within = station.sample(picture, REACH + shifts, &mut values);
+            let is_within = station.sample(picture, REACH + shifts + NEAR_TOP, &mut values);
             if is_within { self.best(&values, gains) } else { None }
         };
         let mut look = |gains: [f64; 2]| -> Vec<Vec<Option<Found>>> {
             let all = pieces.iter();
-            all.map(|(stations, _)| stations.iter().map(|(station, _)| looked(station, gains)).collect()).collect()
+            all.map(|(stations, _)| stations.iter().map(|station| looked(station, gains)).collect()).collect()
         };
         let first = look([LOWEST, f64::INFINITY]);
         let typical = median(first.iter().flatten().flatten().map(|found| found.gain))?;
@@ -186,7 +204,7 @@ impl EdgeProfile {
                 let is_whole = *closed && run.len() == found.len();
                 let again = is_whole.then(|| run[0]);
                 let points = run.into_iter().chain(again).filter_map(|i| {
-                    let place = stations[i].0.place + found[i]?.shift * stations[i].0.normal;
+                    let place = stations[i].place + found[i]?.shift * stations[i].normal;
                     Some(grid.to_plane(place.x, place.y))
                 });
                 arcs.push(OpenArc::new(points.collect()).ok()?);
@@ -213,16 +231,20 @@ impl EdgeProfile {
         (if squares > 0.0 { along / (height * squares.sqrt()) } else { 0.0 }, along / (height * height))
     }
 
-    /// Where in a longer profile the mean is seen best, of a height within limits; not at its ends, beyond which it may be seen better.
+    /// Where in a longer profile the mean is seen best, of a height within limits; not near its ends, where it is not seen how the correlation
+    /// falls.
     fn best(&self, values: &[f64], [lowest, highest]: [f64; 2]) -> Option<Found> {
         let fits: Vec<(f64, f64)> = values.windows(self.mean.len()).map(|window| self.compare(window)).collect();
-        let inner = 1..fits.len() - 1;
+        let inner = NEAR_TOP..fits.len() - NEAR_TOP;
         let is_allowed = |k: &usize| fits[*k].0 >= IS_EDGE && (lowest..=highest).contains(&fits[*k].1);
         let k = inner.filter(is_allowed).max_by(|a, b| fits[*a].0.total_cmp(&fits[*b].0))?;
         let [before, here, after] = [fits[k - 1].0, fits[k].0, fits[k + 1].0];
         let bend = before - 2.0 * here + after;
-        // The top of the parabola through the three; no top where the next is as good.
-        if bend >= 0.0 || before > here || after > here {
+        // The top of the parabola through the three; no top where the next is as good, or where it is as good all around.
+        let falls = |mut side: std::ops::Range<usize>| side.any(|j| fits[j].0 <= here - FALLS_BY);
+        let is_top = falls(k - NEAR_TOP..k) && falls(k + 1..k + 1 + NEAR_TOP);
+        let is_rival = |j: &usize| j.abs_diff(k) > NEAR_TOP && fits[*j].0 >= here - RIVAL && is_allowed(j);
+        if bend >= 0.0 || before > here || after > here || !is_top || (0..fits.len()).any(|j| is_rival(&j)) {
             return None;
         }
         let shift = k as f64 - (fits.len() / 2) as f64 + 0.5 * (before - after) / bend;
@@ -268,30 +290,63 @@ fn grey(picture: &GrayImage, place: Point2<f64>) -> f64 {
     upper + v * (lower - upper)
 }
 
-/// Places at even distances along a piece of an outline, with the normal on its right; and whether it is closed.
-fn stations(piece: &Piece<'_>, grid: &PixelGrid) -> impl Iterator<Item = (Station, bool)> + use<> {
-    let mut points: Vec<Point2<f64>> = piece.points.iter().map(|p| Point2::from(grid.to_pixels(p))).collect();
-    if piece.closed {
-        points.extend(points.first().copied());
+/// Places at even distances along the pieces of an outline, with the normal on their right, piece by piece; and whether that is closed. Pieces that
+/// are too short to have a direction have none.
+fn stations_of<'a>(outline: impl IntoIterator<Item = Piece<'a>>, grid: &PixelGrid) -> Vec<(Vec<Station>, bool)> {
+    let lines: Vec<Line> = outline.into_iter().map(|piece| Line::of(&piece, grid)).collect();
+    let total: f64 = lines.iter().map(Line::length).sum();
+    let step = STEP.min(total / FEWEST_PROFILES).max(total / MOST_PROFILES);
+    lines.iter().map(|line| (line.stations(step), line.closed)).collect()
+}
+
+/// A line in a picture, in pixels.
+struct Line {
+    points: Vec<Point2<f64>>,
+    /// From the first point to each.
+    lengths: Vec<f64>,
+    closed: bool,
+}
+
+impl Line {
+    fn of(piece: &Piece<'_>, grid: &PixelGrid) -> Self {
+        let mut points: Vec<Point2<f64>> = piece.points.iter().map(|p| Point2::from(grid.to_pixels(p))).collect();
+        if piece.closed {
+            points.extend(points.first().copied());
+        }
+        let mut lengths = vec![0.0];
+        for pair in points.windows(2) {
+            lengths.push(lengths[lengths.len() - 1] + (pair[1] - pair[0]).norm());
+        }
+        Self { points, lengths, closed: piece.closed }
     }
-    let mut lengths = vec![0.0];
-    for pair in points.windows(2) {
-        lengths.push(lengths[lengths.len() - 1] + (pair[1] - pair[0]).norm());
+
+    fn length(&self) -> f64 {
+        self.lengths[self.lengths.len() - 1]
     }
-    let (length, closed) = (lengths[lengths.len() - 1], piece.closed);
-    let at = move |s: f64| {
-        let s = if closed { s.rem_euclid(length) } else { s.clamp(0.0, length) };
+
+    /// The place so far along it; it goes on where it is closed.
+    fn at(&self, s: f64) -> Point2<f64> {
+        let Self { points, lengths, closed } = self;
+        let length = self.length();
+        let s = if *closed { s.rem_euclid(length) } else { s.clamp(0.0, length) };
         let i = lengths.partition_point(|l| *l <= s).clamp(1, points.len() - 1);
         let share = ((s - lengths[i - 1]) / (lengths[i] - lengths[i - 1])).clamp(0.0, 1.0);
         points[i - 1] + if share.is_finite() { share } else { 0.0 } * (points[i] - points[i - 1])
-    };
-    let is_line = length.is_finite() && piece.points.len() > 1;
-    let count = if is_line { (length / STEP).clamp(FEWEST_PROFILES, MOST_PROFILES) as usize } else { 0 };
-    (0..count).filter_map(move |i| {
-        let s = length * (i as f64 + 0.5) / count as f64;
-        let chord = (at(s + CHORD) - at(s - CHORD)).try_normalize(1e-9)?;
-        Some((Station { place: at(s), normal: Vector2::new(chord.y, -chord.x) }, closed))
-    })
+    }
+
+    fn stations(&self, step: f64) -> Vec<Station> {
+        let length = self.length();
+        if !length.is_finite() || length <= 2.0 * CHORD || self.points.len() < 2 {
+            return Vec::new();
+        }
+        let count = (length / step) as usize;
+        let station = |i: usize| {
+            let s = length * (i as f64 + 0.5) / count as f64;
+            let chord = (self.at(s + CHORD) - self.at(s - CHORD)).try_normalize(1e-9)?;
+            Some(Station { place: self.at(s), normal: Vector2::new(chord.y, -chord.x) })
+        };
+        (0..count).filter_map(station).collect()
+    }
 }
 
 /// What was found, without what lies elsewhere than that around it, or has none around it.
