@@ -17,6 +17,8 @@ impl AdaptiveProgress {
     /// The Lyapunov function `sum e' P e + |theta - theta_true|^2` of the structured law, given the true motion in the image, in the
     /// coordinates of the identifier. Of exact lines it never grows; it jumps where the origin of the coordinates is moved.
     ///
+    /// For the other laws it is a sum of the same terms, of which that is not claimed. The truth has to be of the same motion model.
+    ///
     /// # Panics
     /// If the truth has standard deviations.
     #[must_use]
