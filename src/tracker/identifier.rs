@@ -256,23 +256,11 @@ impl FilteredObject {
                 warnings.push(Warning::NotKnown { parameters: others });
             }
         }
-        match (filter.phase(), last_known) {
-            (Phase::Lost, _) => warnings.push(Warning::Lost),
-            (Phase::Acquiring, Some((time, _))) => warnings.push(Warning::Reacquiring { last_known: *time }),
-            _ => {}
+        if let (Phase::Acquiring, Some((time, _))) = (filter.phase(), last_known) {
+            warnings.push(Warning::Reacquiring { last_known: *time });
         }
-        if filter.restarts() > 0 {
-            warnings.push(Warning::Restarted { times: filter.restarts() });
-        }
-        let rejected = filter.frames_rejected();
-        let frames = filter.frames_accepted() + rejected;
-        if rejected as f64 > MANY_REJECTED * frames as f64 {
-            warnings.push(Warning::FramesRejected { rejected, frames });
-        }
+        warnings.extend(of_following(filter));
         warnings.extend(ambiguity.map(Warning::Ambiguous));
-        if let Some(Unstated::ManyRejected { rejected, frames }) = filter.unstated() {
-            warnings.push(Warning::TooManyRejected { rejected, frames });
-        }
         if let Some(family) = filter.wrong_family() {
             warnings.push(Warning::WrongFamily { family, motion: filter.settings().model });
         }
@@ -287,4 +275,23 @@ impl FilteredObject {
         warnings.sort_by_key(Warning::order);
         warnings
     }
+}
+
+/// What is to be said of how an object was followed: it is lost, it was begun anew, or many of its frames do not fit.
+pub(super) fn of_following(filter: &MotionFilter) -> Vec<Warning> {
+    let rejected = filter.frames_rejected();
+    let frames = filter.frames_accepted() + rejected;
+    let restarts = filter.restarts();
+    let are_many = rejected as f64 > MANY_REJECTED * frames as f64;
+    let unstated = match filter.unstated() {
+        Some(Unstated::ManyRejected { rejected, frames }) => Some(Warning::TooManyRejected { rejected, frames }),
+        _ => None,
+    };
+    let warnings = [
+        (filter.phase() == Phase::Lost).then_some(Warning::Lost),
+        unstated,
+        (restarts > 0).then_some(Warning::Restarted { times: restarts }),
+        are_many.then_some(Warning::FramesRejected { rejected, frames }),
+    ];
+    warnings.into_iter().flatten().collect()
 }

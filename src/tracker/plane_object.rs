@@ -1,11 +1,11 @@
 //! One object of a plane in space, and what is known of it.
 use freeform_curve_fit::Outline;
 use freeform_estimate::PlaneEstimate;
-use freeform_outline_filter::{Phase, PlaneFilter, PlaneUnknown, Unstated};
+use freeform_outline_filter::{PlaneFilter, PlaneUnknown, Unstated};
 
-use super::identifier::Step;
+use super::identifier::{Step, of_following};
 use crate::rejection::RejectionCause;
-use crate::warning::{MANY_REJECTED, Warning};
+use crate::warning::Warning;
 
 /// Mean square of the innovations, over what is expected, from which on a motion is said not to fit.
 const DOES_NOT_FIT: f64 = 1.2;
@@ -70,20 +70,7 @@ impl PlaneObject {
         if misfit > DOES_NOT_FIT {
             warnings.push(Warning::PlaneMisfit { excess: misfit });
         }
-        if follower.phase() == Phase::Lost {
-            warnings.push(Warning::Lost);
-        }
-        if follower.restarts() > 0 {
-            warnings.push(Warning::Restarted { times: follower.restarts() });
-        }
-        let rejected = follower.frames_rejected();
-        let frames = follower.frames_accepted() + rejected;
-        if rejected as f64 > MANY_REJECTED * frames as f64 {
-            warnings.push(Warning::FramesRejected { rejected, frames });
-        }
-        if let Some(Unstated::ManyRejected { rejected, frames }) = follower.unstated() {
-            warnings.push(Warning::TooManyRejected { rejected, frames });
-        }
+        warnings.extend(of_following(follower));
         warnings.sort_by_key(Warning::order);
         warnings
     }

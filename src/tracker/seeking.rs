@@ -23,13 +23,14 @@ impl Tracker {
     ) -> (Observation, Option<OutlineFrame>) {
         let object = self.object(&frame.object);
         // Copied only where it may be needed: what follows pictures, which take far longer to be traced.
-        let before = object.expected_outline(frame.time).map(|expected| (object.clone(), expected));
+        let before = object.may_be_sought().then(|| object.clone());
         let observation = object.push(frame);
         if !observation.rejection.as_ref().is_some_and(|rejection| is_of_another_shape(&rejection.cause)) {
             return (observation, None);
         }
-        let found = before.and_then(|(mut before, expected)| {
-            let sought = before.seek(frame.frame, frame.time, seek(&expected)?)?;
+        let found = before.and_then(|mut before| {
+            let arcs = seek(&before.expected_outline(frame.time)?)?;
+            let sought = before.seek(frame.frame, frame.time, arcs)?;
             Some((before, sought))
         });
         match found {
@@ -61,9 +62,13 @@ impl Tracker {
 }
 
 impl TrackedObject {
+    fn may_be_sought(&self) -> bool {
+        matches!(self.identifier, Identifier::Filter(_)) && self.rectification.is_none()
+    }
+
     fn expected_outline(&self, time: f64) -> Option<ExpectedOutline> {
         match &self.identifier {
-            Identifier::Filter(object) if self.rectification.is_none() => object.filter.expected_outline(time),
+            Identifier::Filter(object) if self.may_be_sought() => object.filter.expected_outline(time),
             _ => None,
         }
     }

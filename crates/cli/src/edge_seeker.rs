@@ -61,7 +61,7 @@ impl Known {
         if frame.saturating_sub(self.traced) > MOST_IN_A_ROW {
             return None;
         }
-        let pixel = (grid.to_plane(1.0, 1.0) - grid.to_plane(0.0, 0.0)).abs().max();
+        let pixel = grid.pixel_size().max();
         let reach = DEVIATIONS * expected.deviation + PIXELS * pixel;
         let found = self.profile.seek(picture, grid, pieces(expected), reach)?.outline;
         let others = || taken.iter().filter(|(other, _)| other != name).flat_map(|(_, outline)| outline.points());

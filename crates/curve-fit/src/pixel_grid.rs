@@ -34,6 +34,12 @@ impl PixelGrid {
         Point2::new(x, self.point.y + self.pitch.y * (row - self.place[1]))
     }
 
+    /// Width and height of a pixel, in units of the plane; positive.
+    #[must_use]
+    pub fn pixel_size(&self) -> Vector2<f64> {
+        self.pitch.abs()
+    }
+
     /// From the plane to `[column, row]` of the picture.
     #[must_use]
     pub fn to_pixels(&self, point: &Point2<f64>) -> [f64; 2] {
@@ -56,6 +62,8 @@ mod tests {
                 let [c, r] = grid.to_pixels(&grid.to_plane(column, row));
                 prop_assert!((c - column).abs() < 1e-6 && (r - row).abs() < 1e-6);
                 prop_assert!(grid.to_plane(column + 1.0, row).x > grid.to_plane(column, row).x);
+                let [right, lower] = grid.to_pixels(&(grid.to_plane(column, row) + grid.pixel_size()));
+                prop_assert!((right - column - 1.0).abs() < 1e-6 && ((lower - row).abs() - 1.0).abs() < 1e-6);
                 prop_assert_eq!(grid.to_plane(column, row + 1.0).y > grid.to_plane(column, row).y, pitch.y > 0.0);
             }
         }

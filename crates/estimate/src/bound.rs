@@ -131,12 +131,7 @@ impl CramerRaoBound {
         noise: f64,
         weight: f64,
     ) -> Result<(), BoundError> {
-        if !(noise.is_finite() && noise > 0.0) {
-            return Err(BoundError::Noise { value: noise });
-        }
-        if !(time.is_finite() && weight.is_finite() && weight >= 0.0) {
-            return Err(BoundError::Frame { time, weight });
-        }
+        check_frame(time, noise, weight)?;
         let (model, k) = (self.model, self.parameters.len());
         let flow = model.flow(&self.parameters, time).into_inner();
         let inverse = flow.try_inverse().ok_or(BoundError::Frame { time, weight })?;
@@ -167,18 +162,33 @@ impl CramerRaoBound {
     /// # Errors
     /// The information is not finite.
     pub fn covariance(&self) -> Result<BoundCovariance, BoundError> {
-        let k = self.parameters.len();
-        if self.information.iter().any(|e| !e.is_finite()) {
-            return Err(BoundError::InformationNotFinite);
-        }
-        let InverseInformation { covariance, observable, rank } = invert_information(&self.information);
-        let covariance = covariance.view((k, k), (k, k)).into_owned();
-        let observable = observable[k..].to_vec();
-        Ok(BoundCovariance { covariance, observable, rank })
+        BoundCovariance::of_motion(&self.information, self.parameters.len())
     }
 }
 
+/// Refuses what a frame cannot have.
+pub(crate) fn check_frame(time: f64, noise: f64, weight: f64) -> Result<(), BoundError> {
+    if !(noise.is_finite() && noise > 0.0) {
+        return Err(BoundError::Noise { value: noise });
+    }
+    if !(time.is_finite() && weight.is_finite() && weight >= 0.0) {
+        return Err(BoundError::Frame { time, weight });
+    }
+    Ok(())
+}
+
 impl BoundCovariance {
+    /// That of the motion, from the information of the initial pose, which has so many parameters, and the motion.
+    pub(crate) fn of_motion(information: &DMatrix<f64>, pose: usize) -> Result<Self, BoundError> {
+        if information.iter().any(|e| !e.is_finite()) {
+            return Err(BoundError::InformationNotFinite);
+        }
+        let InverseInformation { covariance, observable, rank } = invert_information(information);
+        let size = information.nrows() - pose;
+        let covariance = covariance.view((pose, pose), (size, size)).into_owned();
+        Ok(Self { covariance, observable: observable[pose..].to_vec(), rank })
+    }
+
     /// Smallest standard deviation of each parameter, `None` where it is not observable.
     pub fn standard_deviations(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         let diagonal = self.covariance.diagonal();

@@ -1,8 +1,7 @@
 use freeform_riccati::{MotionModel, PinholeCamera, PlaneMotion, map_point};
 use nalgebra::{DMatrix, DVector};
 
-use crate::bound::{BoundCovariance, BoundError, BoundaryPoint};
-use crate::information::{InverseInformation, invert_information};
+use crate::bound::{BoundCovariance, BoundError, BoundaryPoint, check_frame};
 
 /// Parameters of a pose of the picture.
 const POSE: usize = MotionModel::Projective.parameter_count();
@@ -74,12 +73,7 @@ impl PlaneBound {
         noise: f64,
         weight: f64,
     ) -> Result<(), BoundError> {
-        if !(noise.is_finite() && noise > 0.0) {
-            return Err(BoundError::Noise { value: noise });
-        }
-        if !(time.is_finite() && weight.is_finite() && weight >= 0.0) {
-            return Err(BoundError::Frame { time, weight });
-        }
+        check_frame(time, noise, weight)?;
         let model = MotionModel::Projective;
         // In normalised image points, whose lengths are those of the camera: normal displacements are shorter by the focal length.
         let from_picture = self.camera.from_picture();
@@ -108,12 +102,6 @@ impl PlaneBound {
     /// # Errors
     /// The information is not finite.
     pub fn covariance(&self) -> Result<BoundCovariance, BoundError> {
-        if self.information.iter().any(|e| !e.is_finite()) {
-            return Err(BoundError::InformationNotFinite);
-        }
-        let InverseInformation { covariance, observable, rank } = invert_information(&self.information);
-        let size = PlaneMotion::PARAMETERS;
-        let covariance = covariance.view((POSE, POSE), (size, size)).into_owned();
-        Ok(BoundCovariance { covariance, observable: observable[POSE..].to_vec(), rank })
+        BoundCovariance::of_motion(&self.information, POSE)
     }
 }

@@ -1,10 +1,6 @@
-use nalgebra::{Const, DimMin, SMatrix, SVector, Vector4};
+use nalgebra::{Const, DimMin, SMatrix, SVector};
 
-use super::{
-    least_squares_law::{FilteredPair, LeastSquaresLaw},
-    origin_shift::OriginShift,
-    regressor::Regressor,
-};
+use super::{least_squares_law::LeastSquaresLaw, origin_shift::OriginShift, regressor::Regressor};
 
 /// Rate at which a parameter goes to its value where all are excited alike, per second: that of the paper's slower errors doubled, so that the
 /// law settles within some seconds.
@@ -28,16 +24,19 @@ pub(crate) struct DremLaw<const N: usize> {
     parameters: SVector<f64, N>,
 }
 
+impl<const N: usize> DremLaw<N> {
+    /// The sums that are extended by each frame.
+    pub(crate) fn sums_mut(&mut self) -> &mut LeastSquaresLaw<N> {
+        &mut self.extended
+    }
+}
+
 impl<const N: usize> DremLaw<N>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
     pub(crate) fn new(regressor: Regressor<N>, initial: SVector<f64, N>) -> Self {
         Self { extended: LeastSquaresLaw::without_prior(regressor, initial), parameters: initial }
-    }
-
-    pub(crate) fn regressor(&self) -> &Regressor<N> {
-        self.extended.regressor()
     }
 
     pub(crate) fn parameters(&self) -> &SVector<f64, N> {
@@ -47,20 +46,12 @@ where
     /// Goes on in other coordinates; `old_from_new` takes the parameters back. The filters move by themselves.
     pub(crate) fn shift_origin(&mut self, shift: &OriginShift, old_from_new: &SMatrix<f64, N, N>) {
         self.extended.shift_origin(shift, old_from_new);
-        self.parameters = shift.of_parameters(self.regressor().model()) * self.parameters;
+        self.parameters = shift.of_parameters(self.extended.regressor().model()) * self.parameters;
     }
 
     #[cfg(feature = "serde")]
     pub(crate) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut f64> {
         self.extended.numbers_mut().chain(self.parameters.iter_mut())
-    }
-
-    pub(crate) fn forget(&mut self, seconds: f64) {
-        self.extended.forget(seconds);
-    }
-
-    pub(crate) fn take(&mut self, seconds: f64, filtered: &FilteredPair<N>, x: &Vector4<f64>, weight: f64) {
-        self.extended.take(seconds, filtered, x, weight);
     }
 
     /// Runs the laws of the parameters for `seconds`, the sums being what they are at its end.
@@ -76,7 +67,10 @@ where
 #[cfg(test)]
 mod tests {
     use freeform_riccati::{MotionModel, RealVariables, RigidMotion};
+    use nalgebra::Vector4;
     use proptest::prelude::*;
+
+    use crate::adaptive::least_squares_law::FilteredPair;
 
     use super::*;
 
@@ -98,15 +92,15 @@ mod tests {
                 // The middle of a small step of the lines' own equations.
                 let rate = |x: &Vector4<f64>| RealVariables::from(*x).rate(&truth.into());
                 let middle = x + 0.5 * step * rate(&x);
-                filter.advance(step, &middle, &law.regressor().at(&middle));
+                filter.advance(step, &middle, &regressor.at(&middle));
                 x += step * rate(&middle);
                 if !x.iter().all(|v| v.abs() < 10.0) {
                     break;
                 }
                 if i % 20 == 19 {
                     let before = (law.parameters() - true_values).abs();
-                    law.forget(20.0 * step);
-                    law.take(20.0 * step, &filter, &x, 1.0);
+                    law.sums_mut().forget(20.0 * step);
+                    law.sums_mut().take(20.0 * step, &filter, &x, 1.0);
                     law.adapt(20.0 * step);
                     let after = (law.parameters() - true_values).abs();
                     prop_assert!((0..3).all(|j| after[j] <= before[j] + 1e-3), "{} to {}", before, after);

@@ -77,6 +77,17 @@ enum Law<const N: usize> {
     Drem(DremLaw<N>),
 }
 
+impl<const N: usize> Law<N> {
+    /// The sums of filtered least squares, of a law that goes by them.
+    fn sums_mut(&mut self) -> Option<&mut LeastSquaresLaw<N>> {
+        match self {
+            Self::LeastSquares(law) => Some(law),
+            Self::Drem(law) => Some(law.sums_mut()),
+            Self::Structured(_) | Self::Printed(_) => None,
+        }
+    }
+}
+
 impl<const N: usize> RunningLaw<N>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
@@ -149,19 +160,14 @@ where
         // A pair that is used alone has nothing to be weighed against.
         let weights = if self.pair.is_some() { [1.0; MAX_PAIRS] } else { frame.weights };
         self.advance(seconds, &paths[..lines.len()], &weights);
-        let of_pairs =
-            self.filters.iter().zip(lines.iter().map(|line| RealVariables::from(*line).state())).zip(weights);
-        match &mut self.law {
-            Law::LeastSquares(law) => {
-                law.forget(seconds);
-                of_pairs.for_each(|((filter, state), weight)| law.take(seconds, filter, &state, weight));
+        if let Some(sums) = self.law.sums_mut() {
+            sums.forget(seconds);
+            for ((filter, line), weight) in self.filters.iter().zip(lines).zip(weights) {
+                sums.take(seconds, filter, &RealVariables::from(*line).state(), weight);
             }
-            Law::Drem(law) => {
-                law.forget(seconds);
-                of_pairs.for_each(|((filter, state), weight)| law.take(seconds, filter, &state, weight));
-                law.adapt(seconds);
-            }
-            Law::Structured(_) | Law::Printed(_) => {}
+        }
+        if let Law::Drem(law) = &mut self.law {
+            law.adapt(seconds);
         }
         self.take_excitation(seconds, lines, &weights);
         true
@@ -198,20 +204,14 @@ where
     }
 
     pub(super) fn shift_origin(&mut self, shift: &OriginShift, by_slopes: bool) {
+        let old_from_new = shift.inverse().of_parameters(self.model);
         self.states.iter_mut().for_each(|state| *state = shift.state(state));
+        self.filters.iter_mut().for_each(|filter| filter.shift_origin(shift, &old_from_new));
         match &mut self.law {
             Law::Structured(law) => law.shift_origin(shift, by_slopes),
             Law::Printed(law) => law.shift_origin(shift),
-            Law::LeastSquares(law) => {
-                let old_from_new = shift.inverse().of_parameters(self.model);
-                law.shift_origin(shift, &old_from_new);
-                self.filters.iter_mut().for_each(|filter| filter.shift_origin(shift, &old_from_new));
-            }
-            Law::Drem(law) => {
-                let old_from_new = shift.inverse().of_parameters(self.model);
-                law.shift_origin(shift, &old_from_new);
-                self.filters.iter_mut().for_each(|filter| filter.shift_origin(shift, &old_from_new));
-            }
+            Law::LeastSquares(law) => law.shift_origin(shift, &old_from_new),
+            Law::Drem(law) => law.shift_origin(shift, &old_from_new),
         }
     }
 

@@ -3,7 +3,7 @@ use freeform_curve_fit::{OpenArc, OpenOutline, Outline, Piece, PixelGrid};
 use image::GrayImage;
 use nalgebra::{Point2, Vector2};
 
-use super::median;
+use super::{interpolated, median};
 
 /// Distance of the samples of a profile, in pixels.
 const SPACING: f64 = 0.5;
@@ -176,7 +176,7 @@ impl EdgeProfile {
         expected: impl IntoIterator<Item = Piece<'a>>,
         reach: f64,
     ) -> Option<SoughtEdges> {
-        let pixel = (grid.to_plane(1.0, 1.0) - grid.to_plane(0.0, 0.0)).abs().min();
+        let pixel = grid.pixel_size().min();
         let pixels = reach / pixel;
         if !self.is_known() || pixels.is_nan() || pixels > FARTHEST {
             return None;
@@ -269,25 +269,16 @@ impl Station {
         if is_within {
             values.extend((0..=2 * reach).map(|k| {
                 let at = place + SPACING * (k as f64 - reach as f64) * normal;
-                let line = |line: i32| grey(picture, at + LINES_APART * f64::from(line) * along);
+                let line = |line: i32| {
+                    // Places are told from the corner of the picture here.
+                    let beside = at + LINES_APART * f64::from(line) * along - Vector2::repeat(0.5);
+                    interpolated(picture, beside, f64::from)
+                };
                 (-LINES..=LINES).map(line).sum::<f64>() / f64::from(2 * LINES + 1)
             }));
         }
         is_within
     }
-}
-
-/// Grey value between pixel centres, at a place in pixels from the corner of the picture, in it.
-fn grey(picture: &GrayImage, place: Point2<f64>) -> f64 {
-    let (x, y) = (place.x - 0.5, place.y - 0.5);
-    let last = |size: u32| size.saturating_sub(2) as usize;
-    let (column, row) = ((x as usize).min(last(picture.width())), (y as usize).min(last(picture.height())));
-    let (u, v) = (x - column as f64, y - row as f64);
-    let (width, pixels) = (picture.width() as usize, picture.as_raw());
-    let at = |column: usize, row: usize| pixels.get(row * width + column).copied().map_or(0.0, f64::from);
-    let upper = at(column, row) + u * (at(column + 1, row) - at(column, row));
-    let lower = at(column, row + 1) + u * (at(column + 1, row + 1) - at(column, row + 1));
-    upper + v * (lower - upper)
 }
 
 /// Places at even distances along the pieces of an outline, with the normal on their right, piece by piece; and whether that is closed. Pieces that

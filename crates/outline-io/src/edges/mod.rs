@@ -97,25 +97,15 @@ struct Edge {
 }
 
 impl EdgeSource<'_> {
-    /// Grey value between the pixels, on a scale where objects are lighter. Beyond the picture its edge goes on.
+    /// Grey value between the pixels, on a scale where objects are lighter.
     #[inline]
-    fn value(&self, x: f64, y: f64) -> f64 {
-        let (width, height) = (self.picture.width() as usize, self.picture.height() as usize);
-        let (x, y) = (x.clamp(0.0, (width - 1) as f64), y.clamp(0.0, (height - 1) as f64));
-        let (column, row) = ((x as usize).min(width.saturating_sub(2)), (y as usize).min(height.saturating_sub(2)));
-        let (u, v) = (x - column as f64, y - row as f64);
-        let pixels = self.picture.as_raw();
-        let (right, below) = (usize::from(width > 1), if height > 1 { width } else { 0 });
-        let at = row * width + column;
-        let grey = |index: usize| f64::from(signal(pixels[index], self.contrast));
-        let upper = grey(at) + u * (grey(at + right) - grey(at));
-        let lower = grey(at + below) + u * (grey(at + below + right) - grey(at + below));
-        upper + v * (lower - upper)
+    fn value(&self, place: Point2<f64>) -> f64 {
+        interpolated(self.picture, place, |pixel| f64::from(signal(pixel, self.contrast)))
     }
 
     fn profile(&self, place: Point2<f64>, normal: Vector2<f64>, fit: &StepFit, values: &mut Vec<f64>) {
         values.clear();
-        values.extend(fit.offsets().map(|s| self.value(place.x + s * normal.x, place.y + s * normal.y)));
+        values.extend(fit.offsets().map(|s| self.value(place + s * normal)));
     }
 
     /// Moves a closed line of crossings, given from the left upper pixel of a window, onto the edges. `None`, and the line as it was, where
@@ -206,6 +196,23 @@ impl EdgeSource<'_> {
             }
         }
     }
+}
+
+/// A value between the pixels, whose centres are at whole numbers, by bilinear interpolation of those of the pixels around. Beyond the picture
+/// its edge goes on.
+#[inline]
+fn interpolated(picture: &GrayImage, place: Point2<f64>, value: impl Fn(u8) -> f64) -> f64 {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let (x, y) = (place.x.clamp(0.0, (width - 1) as f64), place.y.clamp(0.0, (height - 1) as f64));
+    let (column, row) = ((x as usize).min(width.saturating_sub(2)), (y as usize).min(height.saturating_sub(2)));
+    let (u, v) = (x - column as f64, y - row as f64);
+    let pixels = picture.as_raw();
+    let (right, below) = (usize::from(width > 1), if height > 1 { width } else { 0 });
+    let at = row * width + column;
+    let pixel = |index: usize| value(pixels[index]);
+    let upper = pixel(at) + u * (pixel(at + right) - pixel(at));
+    let lower = pixel(at + below) + u * (pixel(at + below + right) - pixel(at + below));
+    upper + v * (lower - upper)
 }
 
 /// The unit normal outwards at a crossing, in columns and rows; `None` on the edge of the picture.
