@@ -41,6 +41,17 @@ fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args([name, &child.id().to_string()]).status().is_ok_and(|status| status.success()));
 }
 
+/// Whether processes that are begun here hear of SIGHUP: where the tests themselves are to outlive their terminal they do not.
+fn hangups_are_heard() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    let are_heard = ignored.is_none_or(|signals| signals & 1 == 0);
+    if !are_heard {
+        eprintln!("not tried with SIGHUP, which is ignored here");
+    }
+    are_heard
+}
+
 /// A video of a box that moves by a pixel from frame to frame.
 fn video(parameters: &str) -> Vec<u8> {
     let mut video = format!("YUV4MPEG2 W80 H60 F10:1 {parameters}Cmono\n").into_bytes();
@@ -90,7 +101,8 @@ fn the_first_ctrl_c_counts_while_a_pipe_stands_still() {
     signal(&child, "-INT");
     assert_eq!(ended(child).status.code(), Some(130));
     // Somebody has written, and goes on some other day.
-    for (name, code) in [("-INT", 0), ("-TERM", 0), ("-HUP", 0)] {
+    let names = ["-INT", "-TERM", "-HUP"];
+    for name in names.into_iter().filter(|name| *name != "-HUP" || hangups_are_heard()) {
         let child = start(&["track", &path]);
         let mut writer = File::options().write(true).open(&path).expect("the other end");
         let csv = sequence("");
@@ -98,7 +110,7 @@ fn the_first_ctrl_c_counts_while_a_pipe_stands_still() {
         thread::sleep(Duration::from_millis(500));
         signal(&child, name);
         let output = ended(child);
-        assert_eq!(output.status.code(), Some(code), "{name}: {}", stderr(&output));
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
         let frames = stdout(&output).lines().map(json).count();
         assert!((3..9).contains(&frames), "{name}: {frames}");
     }
@@ -106,7 +118,8 @@ fn the_first_ctrl_c_counts_while_a_pipe_stands_still() {
 
 #[test]
 fn other_signals_that_ask_for_the_end_leave_nothing_unfinished() {
-    for (name, status) in [("-TERM", 143), ("-HUP", 129)] {
+    let ends = [("-TERM", 143), ("-HUP", 129)];
+    for (name, status) in ends.into_iter().filter(|(name, _)| *name != "-HUP" || hangups_are_heard()) {
         let folder = tempfile::tempdir().expect("a folder");
         let target = file(folder.path(), "target", "old");
         let child = start(&["simulate", "--seconds", "3000", "--output", &target]);
