@@ -14,6 +14,7 @@ mod input;
 mod interrupt;
 mod left_out;
 mod meaning_of_b;
+mod outline_error;
 mod output;
 mod overlay;
 mod picture_input;

@@ -19,6 +19,7 @@ use crate::failure::{Failure, plain};
 use crate::input::Waiting;
 use crate::interrupt;
 use crate::meaning_of_b::MeaningOfB;
+use crate::outline_error::OutlineError;
 use crate::output::short;
 use crate::seen::{Item, Missing, MissingKind, SeenIn};
 use crate::tracing_choice::{Chosen, Preview, choose};
@@ -51,8 +52,7 @@ pub(crate) struct PictureInput {
     chosen: Option<Chosen>,
     /// Whether nothing was given or chosen, as a stream is not to be waited for.
     is_traced_unseen: bool,
-    /// Systematic uncertainty of the outlines by their edges, in their unit.
-    edge_uncertainty: Option<f64>,
+    outline_error: Option<OutlineError>,
     /// Of the first object.
     aspect: PixelAspectCheck,
     /// Objects of the present picture that have not been handed on.
@@ -153,8 +153,7 @@ impl PictureInput {
             ));
         }
         let trace = settings.trace;
-        let edge_uncertainty =
-            preview.and_then(|preview| preview.edge_uncertainty(&settings, options.channel().channel()));
+        let outline_error = preview.and_then(|preview| preview.outline_error(&settings, options.channel().channel()));
         let outlines = PictureOutlines::new(sequence, settings).map_err(Failure::unusable)?;
         let (waiting, found) = (VecDeque::new(), Found::default());
         Ok(Self {
@@ -164,7 +163,7 @@ impl PictureInput {
             trace,
             chosen,
             is_traced_unseen: false,
-            edge_uncertainty,
+            outline_error,
             aspect: PixelAspectCheck::default(),
             waiting,
             frames: 0,
@@ -177,9 +176,9 @@ impl PictureInput {
         &self.options
     }
 
-    /// Systematic uncertainty of the outlines by their edges, in their unit; `None` where nothing tells.
-    pub(crate) fn edge_uncertainty(&self) -> Option<f64> {
-        self.edge_uncertainty
+    /// How far the outlines may lie off; `None` where nothing tells.
+    pub(crate) fn outline_error(&self) -> Option<OutlineError> {
+        self.outline_error
     }
 
     /// What should be known of how the pictures are traced.

@@ -6,10 +6,11 @@ use std::sync::Arc;
 use freeform_motion::outline_io::{
     Background, Channel, Difference, GrayImage, PictureError, PictureFrame, PictureOutlines, PictureSample,
     PictureSequence, PictureSettings, SamplePlan, Selection, SequenceSettings, Smoothing, Tracing, TracingChoice,
-    TracingEvidence, TracingWay, choose_tracing, median_picture, picture_files,
+    TracingEvidence, TracingWay, choose_tracing, is_two_valued, median_picture, picture_files,
 };
 
 use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
+use crate::outline_error::OutlineError;
 use crate::output::short;
 
 /// Fewest pictures that tell how objects are best found.
@@ -85,18 +86,21 @@ impl Preview {
         PictureSample::read(channels, |channel| self.pictures(channel))
     }
 
-    /// Systematic uncertainty of outlines that are traced with these settings, by the edges in some of the pictures.
-    pub(crate) fn edge_uncertainty(&self, settings: &PictureSettings, channel: Channel) -> Option<f64> {
+    /// How far outlines that are traced with these settings may lie off, by some of the pictures.
+    pub(crate) fn outline_error(&self, settings: &PictureSettings, channel: Channel) -> Option<OutlineError> {
+        let pictures: Vec<PictureFrame> = self.pictures(channel)?.flatten().take(EDGES_LOOKED_AT).collect();
+        if !pictures.is_empty() && pictures.iter().all(|frame| is_two_valued(&frame.picture)) {
+            return Some(OutlineError::MaskPixel(settings.trace.pixel()));
+        }
         if matches!(settings.background, Some(Background::RunningMedian(_))) || settings.trace.ring.is_some() {
             return None;
         }
-        let pictures: Vec<PictureFrame> = self.pictures(channel)?.flatten().take(EDGES_LOOKED_AT).collect();
         let settings = PictureSettings { selection: Selection::Largest, ..settings.clone() };
         let traced = PictureOutlines::new(pictures.into_iter().map(Ok), settings).ok()?.flatten();
         let edges = traced.flat_map(|traced| traced.objects.unwrap_or_default()).filter_map(|(_, traced)| traced.edges);
         let mut lengths: Vec<f64> = edges.map(|edges| edges.systematic).collect();
         lengths.sort_by(f64::total_cmp);
-        lengths.get(lengths.len() / 2).copied()
+        lengths.get(lengths.len() / 2).copied().map(OutlineError::Edges)
     }
 
     /// The median of the pictures of the sample, at their full size.

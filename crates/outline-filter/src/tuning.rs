@@ -156,6 +156,10 @@ pub(crate) mod noise {
     pub(crate) const CORRELATION_MEMORY: f64 = 50.0;
     /// Deviations of its estimate by which a correlation must be larger than none.
     pub(crate) const CORRELATION_SIGNIFICANT: f64 = 2.0;
+    /// Deviation of a point of a mask, in pixels: measured on discs of 10 to 60 pixels in radius, smoothed by a pixel (`trace_mask`).
+    pub(crate) const ROUNDED_POINT: f64 = 0.15;
+    /// Length of a mask's contour that is off together, in pixels: the integral of the correlation that smoothing by a pixel leaves, 2 sqrt(pi).
+    pub(crate) const ROUNDED_TOGETHER: f64 = 3.54;
     /// Noise below this many spacings is never too much: exact points leave what the cells do not follow.
     pub(crate) const NEVER_TOO_MUCH: f64 = 0.1;
     /// Points that the assumption of the usual noise of a cell is worth.
@@ -460,6 +464,9 @@ pub(crate) mod symmetry {
 
 /// What is stated at all.
 pub(crate) mod statement {
+    /// Standard deviation of a side of a mask, in pixels: that of rounding, 1 / sqrt(12), where the side lies along the rows or columns. Sides
+    /// that lie across them are off by less.
+    pub(crate) const ROUNDING: f64 = 0.289;
     /// Share of the frames rejected beyond which what the others say is no motion of the object.
     pub(crate) const MOST_REJECTED: f64 = 0.4;
     /// Fewest frames rejected that say so.

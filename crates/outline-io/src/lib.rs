@@ -132,7 +132,7 @@ pub use ring::Ring;
 pub use shape::read_shape;
 pub use table_keys::ColumnsError;
 pub use threshold::Threshold;
-pub use trace::{TracedOutline, trace_mask, trace_objects};
+pub use trace::{TracedOutline, is_two_valued, trace_mask, trace_objects};
 pub use trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 pub use write_error::WriteError;
 

@@ -176,8 +176,9 @@ fn mask_outlines<'a>(
     Ok(Box::new(traced))
 }
 
-/// Whether a picture has no more than two grey values.
-pub(crate) fn is_two_valued(picture: &GrayImage) -> bool {
+/// Whether a picture has no more than two grey values, as masks do.
+#[must_use]
+pub fn is_two_valued(picture: &GrayImage) -> bool {
     let mut seen = [false; 256];
     picture.as_raw().iter().for_each(|value| seen[usize::from(*value)] = true);
     seen.iter().filter(|seen| **seen).count() <= 2

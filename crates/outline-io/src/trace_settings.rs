@@ -105,7 +105,11 @@ impl Default for TraceSettings {
 }
 
 impl TraceSettings {
-    pub(crate) fn check(&self) -> Result<(), TraceError> {
+    /// Whether all settings are in their ranges.
+    ///
+    /// # Errors
+    /// The first one that is not.
+    pub fn check(&self) -> Result<(), TraceError> {
         let refuse = |name, value, expected| Err(TraceError::Setting { name, value, expected });
         let is_length = |value: f64| (1e-50..=1e50).contains(&value);
         match (self.threshold, self.smoothing) {
@@ -130,6 +134,12 @@ impl TraceSettings {
             Smoothing::Automatic => GREY_SIGMA,
             Smoothing::Gaussian(sigma) => sigma,
         }
+    }
+
+    /// The longer side of a pixel in the length unit of the outline.
+    #[must_use]
+    pub fn pixel(&self) -> f64 {
+        self.pixel_grid(0).pixel_size().max()
     }
 
     /// How the pixels of a picture of this height lie in the plane of its outlines.

@@ -58,6 +58,7 @@ impl PyLabelTracer {
             clipping,
             ..TraceSettings::default()
         };
+        settings.check().map_err(value_error)?;
         let places = |selection| Naming::Places(Mutex::new(Identities::new(selection)));
         let naming = match link {
             "labels" => Naming::Labels,
@@ -67,6 +68,12 @@ impl PyLabelTracer {
             _ => return Err(unknown_name("link", link, &["labels", "places", "nearest", "largest"])),
         };
         Ok(Self { settings, naming })
+    }
+
+    /// The longer side of a pixel, in the unit of the outlines.
+    #[getter]
+    fn pixel(&self) -> f64 {
+        self.settings.pixel()
     }
 
     /// The objects of a mask.

@@ -33,6 +33,10 @@ use crate::outline::outline_of;
 /// edge_uncertainty : float
 ///     How far all of a side of the outlines may lie off in every frame, image lengths, such as by a shadow or by a threshold. It widens
 ///     the standard deviations.
+/// mask_pixel : float
+///     Size of a pixel of the masks that the outlines come from, image lengths; 0 for outlines from elsewhere. An outline of a mask is off by the
+///     rounding to pixels, which stays while the object moves by less than one: it widens the standard deviations, the less the farther
+///     the object moves. `identify` and `track` of masks set it by themselves.
 /// smallest_agreement : float
 ///     Smallest share of the points of a frame that must lie on the known outline, in (0, 1).
 /// patience : int
@@ -65,6 +69,7 @@ pub(crate) struct FilterArguments<'a> {
     pub(crate) adaptive: bool,
     pub(crate) dynamics: &'a str,
     pub(crate) edge_uncertainty: f64,
+    pub(crate) mask_pixel: f64,
     pub(crate) smallest_agreement: f64,
     pub(crate) patience: usize,
 }
@@ -72,7 +77,13 @@ pub(crate) struct FilterArguments<'a> {
 impl FilterArguments<'_> {
     pub(crate) fn settings(&self, motion: &str) -> PyResult<FilterSettings> {
         let Self {
-            process_noise: (rates, velocities), adaptive, edge_uncertainty, smallest_agreement, patience, ..
+            process_noise: (rates, velocities),
+            adaptive,
+            edge_uncertainty,
+            mask_pixel,
+            smallest_agreement,
+            patience,
+            ..
         } = *self;
         Ok(FilterSettings {
             model: motion_model(motion)?,
@@ -80,6 +91,7 @@ impl FilterArguments<'_> {
             adaptive,
             dynamics: dynamics(self.dynamics)?,
             edge_uncertainty,
+            mask_pixel,
             smallest_agreement,
             patience,
         })
@@ -90,20 +102,29 @@ impl FilterArguments<'_> {
 impl PyMotionFilter {
     #[new]
     #[pyo3(signature = (motion = "rigid", *, process_noise = (0.0, 0.0), adaptive = true, dynamics = "auto",
-                        edge_uncertainty = 0.0, smallest_agreement = 0.7, patience = 2),
+                        edge_uncertainty = 0.0, mask_pixel = 0.0, smallest_agreement = 0.7, patience = 2),
            text_signature = "(motion='rigid', *, process_noise=(0.0, 0.0), adaptive=True, dynamics='auto', edge_uncertainty=0.0, \
-                             smallest_agreement=0.7, patience=2)")]
+                             mask_pixel=0.0, smallest_agreement=0.7, patience=2)")]
+    #[expect(clippy::too_many_arguments, reason = "keywords of a Python class")]
     fn new(
         motion: &str,
         process_noise: (f64, f64),
         adaptive: bool,
         dynamics: &str,
         edge_uncertainty: f64,
+        mask_pixel: f64,
         smallest_agreement: f64,
         #[pyo3(from_py_with = whole)] patience: usize,
     ) -> PyResult<Self> {
-        let arguments =
-            FilterArguments { process_noise, adaptive, dynamics, edge_uncertainty, smallest_agreement, patience };
+        let arguments = FilterArguments {
+            process_noise,
+            adaptive,
+            dynamics,
+            edge_uncertainty,
+            mask_pixel,
+            smallest_agreement,
+            patience,
+        };
         let settings = arguments.settings(motion)?;
         Ok(Self { inner: Mutex::new(MotionFilter::new(settings).map_err(value_error)?) })
     }

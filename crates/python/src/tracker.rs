@@ -28,7 +28,7 @@ use crate::plane::rectification;
 /// rectify : array_like, shape (3, 3), optional
 ///     Homography from the picture to the plane that the objects move in, where a camera looks at it from aside (see `homography`). All
 ///     results are then in the plane, in its unit of length.
-/// process_noise, adaptive, dynamics, edge_uncertainty, smallest_agreement, patience
+/// process_noise, adaptive, dynamics, edge_uncertainty, mask_pixel, smallest_agreement, patience
 ///     Settings of the motion filter, as of `MotionFilter`.
 #[pyclass(frozen, name = "Tracker", module = "freeform_motion")]
 #[derive(Debug)]
@@ -47,9 +47,9 @@ impl PyTracker {
 impl PyTracker {
     #[new]
     #[pyo3(signature = (motion = "rigid", *, method = "filter", scale = None, rectify = None, process_noise = (0.0, 0.0),
-                        adaptive = true, dynamics = "auto", edge_uncertainty = 0.0, smallest_agreement = 0.7, patience = 2),
+                        adaptive = true, dynamics = "auto", edge_uncertainty = 0.0, mask_pixel = 0.0, smallest_agreement = 0.7, patience = 2),
            text_signature = "(motion='rigid', *, method='filter', scale=None, rectify=None, process_noise=(0.0, 0.0), adaptive=True, \
-                             dynamics='auto', edge_uncertainty=0.0, smallest_agreement=0.7, patience=2)")]
+                             dynamics='auto', edge_uncertainty=0.0, mask_pixel=0.0, smallest_agreement=0.7, patience=2)")]
     #[expect(clippy::too_many_arguments, reason = "keywords of a Python class")]
     fn new(
         motion: &str,
@@ -60,14 +60,22 @@ impl PyTracker {
         adaptive: bool,
         dynamics: &str,
         edge_uncertainty: f64,
+        mask_pixel: f64,
         smallest_agreement: f64,
         #[pyo3(from_py_with = whole)] patience: usize,
     ) -> PyResult<Self> {
         let mut settings = TrackerSettings::new(self::method(method)?, motion_model(motion)?);
         settings.scale = camera_scale(scale)?;
         settings.rectification = rectify.map(rectification).transpose()?;
-        let arguments =
-            FilterArguments { process_noise, adaptive, dynamics, edge_uncertainty, smallest_agreement, patience };
+        let arguments = FilterArguments {
+            process_noise,
+            adaptive,
+            dynamics,
+            edge_uncertainty,
+            mask_pixel,
+            smallest_agreement,
+            patience,
+        };
         let filter = arguments.settings(motion)?;
         if let MethodSettings::Filter(settings) = &mut settings.method {
             *settings = filter;

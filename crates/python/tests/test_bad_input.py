@@ -63,6 +63,7 @@ def test_times_that_do_not_increase_leave_the_filter_as_it_was(bird, time):
         (lambda: ff.Tracker(scale=0.0), ValueError, "0"),
         (lambda: ff.MotionFilter(dynamics="chaotic"), ValueError, "is none of auto, generator, velocity, accelerating"),
         (lambda: ff.MotionFilter(edge_uncertainty=-1.0), ValueError, "edge uncertainty of -1 is not finite and not negative"),
+        (lambda: ff.Tracker(mask_pixel=float("nan")), ValueError, "mask pixel of NaN is not finite and not negative"),
         (lambda: ff.Tracker(rectify=np.zeros((3, 3))), ValueError, "singular"),
         (lambda: ff.Tracker(rectify=np.eye(2)), ValueError, r"rectify: shape \(3, 3\) is needed"),
         (lambda: ff.homography(SQUARE, SQUARE[:3]), ValueError, "4 and 3 points"),

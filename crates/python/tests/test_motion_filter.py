@@ -103,6 +103,23 @@ def test_the_deviation_is_made_of_a_random_and_a_systematic_part(bird):
     assert (omega.std_random, omega.std_systematic) == (estimate.std_random[0], estimate.std_systematic[0])
 
 
+def test_the_rounding_of_masks_to_pixels_is_part_of_the_deviations():
+    masks = ff.simulate("bird", omega=0.02, b=(0.01, 0.0), seconds=1.0).masks(60, 80)
+    estimate = ff.identify(masks, fps=30)["1"].estimate
+    assert (estimate.std_systematic > 0).all()
+    assert abs(estimate["omega"].value - 0.02) < 2 * estimate["omega"].std
+    # What is given is obeyed, and the pixels of another scale are of another size.
+    given = ff.identify(masks, fps=30, edge_uncertainty=0.0)["1"].estimate
+    assert (given.std < estimate.std).all()
+    scaled = ff.identify(masks, fps=30, pixel_size=0.1)["1"].estimate
+    np.testing.assert_allclose(scaled.std_systematic, estimate.std_systematic * [1.0, 0.1, 0.1], rtol=1e-6)
+    # Outlines of masks, one by one.
+    motion_filter = ff.MotionFilter(mask_pixel=1.0)
+    for frame, mask in enumerate(masks):
+        motion_filter.step(frame / 30, ff.outlines(mask)[1])
+    np.testing.assert_array_equal(motion_filter.estimate.std, estimate.std)
+
+
 def test_a_symmetric_outline_has_other_angular_velocities():
     motion_filter = followed(ff.simulate("square", omega=1.0, seconds=1.0))
     omega = motion_filter.estimate["omega"].value

@@ -15,6 +15,7 @@ use super::pictures::{PictureOptions, picture_inputs};
 use super::space::PerspectiveArgs;
 use super::values::{camera_scale, degree, length, motion, rectification};
 use crate::failure::Failure;
+use crate::outline_error::OutlineError;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -102,10 +103,10 @@ pub(crate) struct IdentifyArgs {
 }
 
 impl IdentifyArgs {
-    /// The settings of a tracker with all options, for outlines whose edges are known to a length, if to any.
-    pub(crate) fn tracker_settings(&self, edges: Option<f64>) -> Result<TrackerSettings, Failure> {
-        let mut settings = match edges {
-            Some(length) => self.options.tracker_settings_for_edges(length),
+    /// The settings of a tracker with all options, for outlines that may lie off as pictures say.
+    pub(crate) fn tracker_settings(&self, by_pictures: Option<OutlineError>) -> Result<TrackerSettings, Failure> {
+        let mut settings = match by_pictures {
+            Some(error) => self.options.tracker_settings_for(error),
             None => self.options.tracker_settings(),
         };
         match (&mut settings.method, &self.law.given()[..]) {
@@ -211,6 +212,14 @@ pub(crate) struct TrackOptions {
     /// It widens the standard deviations. The part that comes from it is also given by itself, as std_systematic.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub(crate) edge_uncertainty: Option<f64>,
+
+    /// Size of a pixel of the two-valued masks that the outlines come from, in the unit of the outlines
+    /// [default: 0 for CSV; of pictures that are masks the size of their pixels, unless --edge-uncertainty is given]
+    ///
+    /// The rounding of an outline to pixels stays the same while the object moves by less than a pixel. It widens the standard
+    /// deviations, the less the farther the object has moved.
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub(crate) mask_pixel: Option<f64>,
 }
 
 impl TrackOptions {
@@ -228,6 +237,7 @@ impl TrackOptions {
             (MethodSettings::Filter(settings), _) => MethodSettings::Filter(FilterSettings {
                 dynamics: self.dynamics.into(),
                 edge_uncertainty: self.edge_uncertainty.unwrap_or(0.0),
+                mask_pixel: self.mask_pixel.unwrap_or(0.0),
                 ..settings
             }),
             (method, _) => method,
@@ -235,12 +245,17 @@ impl TrackOptions {
         TrackerSettings { method, scale: self.scale, rectification: self.rectify }
     }
 
-    /// The same for outlines whose edges are known to this length, in the unit of the pictures: it is the edge uncertainty where none is given,
-    /// but for a plane, whose unit is another.
-    pub(crate) fn tracker_settings_for_edges(&self, length: f64) -> TrackerSettings {
-        let is_open = self.edge_uncertainty.is_none() && self.rectify.is_none();
-        let edge_uncertainty = if is_open { Some(length) } else { self.edge_uncertainty };
-        Self { edge_uncertainty, ..self.clone() }.tracker_settings()
+    /// The same for outlines that may lie off as pictures say, in the unit of the pictures. What is given goes before it, and in another plane
+    /// the unit is another.
+    pub(crate) fn tracker_settings_for(&self, by_pictures: OutlineError) -> TrackerSettings {
+        let mut options = self.clone();
+        if self.edge_uncertainty.is_none() && self.mask_pixel.is_none() && self.rectify.is_none() {
+            match by_pictures {
+                OutlineError::Edges(length) => options.edge_uncertainty = Some(length),
+                OutlineError::MaskPixel(length) => options.mask_pixel = Some(length),
+            }
+        }
+        options.tracker_settings()
     }
 
     /// Refuses options that cannot be combined with the motion.
@@ -252,6 +267,7 @@ impl TrackOptions {
             ("--scale", self.scale.is_some()),
             ("--rectify", self.rectify.is_some()),
             ("--edge-uncertainty", self.edge_uncertainty.is_some()),
+            ("--mask-pixel", self.mask_pixel.is_some()),
         ];
         match others.into_iter().find(|(_, is_given)| is_plane && *is_given) {
             Some((option, _)) => {

@@ -53,6 +53,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         rectify: None,
         dynamics: DynamicsChoice::Auto,
         edge_uncertainty: None,
+        mask_pixel: None,
     };
     let by_adaptive_law = TrackOptions { method: IdentifyMethod::Adaptive, ..by_filter.clone() };
 

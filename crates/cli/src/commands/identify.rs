@@ -36,8 +36,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
     let mut tracker = Tracker::new(args.tracker_settings(None)?).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
-    if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
-        tracker = Tracker::new(args.tracker_settings(Some(length))?).map_err(Failure::unusable)?;
+    if let Some(error) = input.pictures().and_then(PictureInput::outline_error) {
+        tracker = Tracker::new(args.tracker_settings(Some(error))?).map_err(Failure::unusable)?;
     }
     if args.report.is_some() {
         tracker = tracker.with_known_outlines(OBJECTS_PLAYED);

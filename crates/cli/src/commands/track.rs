@@ -19,8 +19,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     args.options.check()?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None)?;
-    if let Some(length) = input.pictures().and_then(PictureInput::edge_uncertainty) {
-        let settings = args.options.tracker_settings_for_edges(length);
+    if let Some(error) = input.pictures().and_then(PictureInput::outline_error) {
+        let settings = args.options.tracker_settings_for(error);
         tracker = Tracker::new(settings).map_err(Failure::unusable)?;
     }
     let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;

@@ -306,16 +306,41 @@ fn without_a_motion_files_hold_what_is_known_or_are_said_not_to_be_written() {
     assert_eq!(names(bare.path().to_str().expect("UTF-8")), [""; 0]);
 }
 
-#[test]
-fn the_deviations_of_the_last_pose_are_those_of_the_table() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (frames, base) = pears(folder.path(), "frames", 12);
-    // Two grey values: the stairs of neighbouring pixels go together.
+/// Twelve pictures of two grey values.
+fn masks_of_pears(folder: &Path) -> (String, String) {
+    let (frames, base) = pears(folder, "frames", 12);
     for frame in 0..12 {
         let mask =
             GrayImage::from_fn(160, 120, |x, y| Luma([if pear(frame).get_pixel(x, y).0[0] > 120 { 255 } else { 0 }]));
         mask.save(format!("{frames}/{frame}.png")).expect("a picture");
     }
+    (frames, base)
+}
+
+#[test]
+fn the_rounding_of_masks_to_pixels_is_part_of_the_deviations_unless_an_edge_uncertainty_is_given() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = masks_of_pears(folder.path());
+    let outlines = format!("{base}/outlines.csv");
+    succeed(&format!("outline {frames} --fps 30 --output {outlines}"), "");
+    let omega = |input: &str| {
+        let document = json(&succeed(&format!("identify {input} --json --quiet"), ""));
+        ["value", "std"].map(|field| {
+            document["objects"][0]["parameters"]["omega"][field].as_f64().unwrap_or_else(|| panic!("{document}"))
+        })
+    };
+    let of_masks = omega(&format!("{frames} --fps 30"));
+    assert_eq!(omega(&format!("{outlines} --mask-pixel 1")), of_masks);
+    // Nothing is known of outlines from elsewhere, and what is given is obeyed.
+    let of_outlines = omega(&outlines);
+    assert!(of_outlines[1] < of_masks[1], "{of_outlines:?} {of_masks:?}");
+    assert_eq!(omega(&format!("{frames} --fps 30 --edge-uncertainty 0")), of_outlines);
+}
+
+#[test]
+fn the_deviations_of_the_last_pose_are_those_of_the_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = masks_of_pears(folder.path());
     let document = json(&succeed(&format!("identify {frames} --json --quiet --trajectory {base}/poses.csv"), ""));
     let poses = std::fs::read_to_string(format!("{base}/poses.csv")).expect("poses");
     let split = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();

@@ -11,4 +11,4 @@ pub(crate) use association::{NO_CELL, Pass, View};
 pub(crate) use frame::{Frame, Piece, Reference};
 pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;
-pub(crate) use noise::{NoiseModel, Tolerance, correlation_of, spread};
+pub(crate) use noise::{NoiseModel, Rounding, Tolerance, correlation_of, spread};

@@ -1,4 +1,6 @@
 //! Noise of the points: how much there is, whether it is correlated along the contour, and how much more of it corners have.
+use freeform_curve_fit::{Outline, Piece};
+
 use super::{Measurement, NO_CELL, variance_inflation::VarianceInflation};
 use crate::{map::median, tuning::noise as tuning};
 
@@ -19,13 +21,39 @@ pub(crate) struct NoiseModel {
     pub(crate) sigma: f64,
     /// Frames that its estimate is worth.
     weight: f64,
-    /// What bent cells alone would leave of the residuals.
+    /// What bent cells alone would leave of the residuals, or the rounding of the points.
     floor: f64,
+    rounding: Rounding,
     pub(crate) tolerance: Tolerance,
     level: NoiseLevel,
     correlation: Correlation,
     /// Of each cell.
     inflation: Vec<VarianceInflation>,
+}
+
+/// What points are off that come from two-valued masks. Where the object does not move it is the same in all frames, and does not show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Rounding {
+    /// Of a point, normalised.
+    pub(crate) deviation: f64,
+    /// Points beside each other that are off together, at least 1.
+    shared_by: f64,
+}
+
+impl Rounding {
+    pub(crate) const NONE: Self = Self { deviation: 0.0, shared_by: 1.0 };
+
+    /// Of an outline of masks whose pixels have a size, both in image lengths; a radius of that outline is to be 1.
+    pub(crate) fn of(outline: &Outline, mask_pixel: f64, radius: f64) -> Self {
+        if mask_pixel == 0.0 {
+            return Self::NONE;
+        }
+        let length = |piece: Piece<'_>| piece.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>();
+        let pixels = outline.pieces().map(length).sum::<f64>() / mask_pixel;
+        let shared_by = tuning::ROUNDED_TOGETHER * outline.point_count() as f64 / pixels.max(1.0);
+        Self { deviation: tuning::ROUNDED_POINT * mask_pixel / radius, shared_by: shared_by.max(1.0) }
+    }
 }
 
 /// Spread of the last frames, good ones and bad ones.
@@ -51,6 +79,7 @@ impl NoiseModel {
             sigma,
             weight: tuning::FIRST_WEIGHT,
             floor: tuning::SMALLEST,
+            rounding: Rounding::NONE,
             tolerance: Tolerance::Known,
             level: NoiseLevel { frames: [0.0; tuning::FRAMES], count: 0 },
             correlation: Correlation { ratio: 1.0, frames: 0.0 },
@@ -62,6 +91,17 @@ impl NoiseModel {
     pub(crate) fn allow_for_cells(&mut self, sagitta: f64, spacing: f64) {
         self.floor = self.floor.max(tuning::SAGITTA_LEFT * sagitta).max(tuning::CELL_ERROR * spacing);
         self.sigma = self.sigma.max(2.0 * tuning::SAGITTA_LEFT * sagitta).max(self.floor);
+    }
+
+    /// Takes it that the points are rounded.
+    pub(crate) fn allow_for_rounding(&mut self, rounding: Rounding) {
+        self.rounding = rounding;
+        self.floor = self.floor.max(rounding.deviation);
+        self.sigma = self.sigma.max(self.floor);
+    }
+
+    pub(crate) fn rounding(&self) -> Rounding {
+        self.rounding
     }
 
     /// Takes what frames have shown so far from another model.
@@ -125,7 +165,7 @@ impl NoiseModel {
     pub(crate) fn correlation(&self) -> f64 {
         let Correlation { ratio, frames } = self.correlation;
         let uncertainty = (2.0 / (tuning::STRETCHES as f64 * frames.max(1.0))).sqrt();
-        (ratio / (1.0 + tuning::CORRELATION_SIGNIFICANT * uncertainty)).max(1.0)
+        (ratio / (1.0 + tuning::CORRELATION_SIGNIFICANT * uncertainty)).max(self.rounding.shared_by)
     }
 
     /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
@@ -165,7 +205,9 @@ impl NoiseModel {
         let Correlation { ratio, frames } = self.correlation;
         let positive = |number: f64| number.is_finite() && number > 0.0;
         positive(self.sigma)
-            && [self.weight, self.floor, ratio, frames].iter().all(|number| number.is_finite() && *number >= 0.0)
+            && [self.weight, self.floor, self.rounding.deviation, self.rounding.shared_by, ratio, frames]
+                .iter()
+                .all(|number| number.is_finite() && *number >= 0.0)
             && !self.level.frames.iter().any(|spread| spread.is_nan())
             && self.inflation.len() == cells
             && self.inflation.iter().all(VarianceInflation::is_sound)

@@ -219,7 +219,8 @@ impl MotionFilter {
     /// Begins a track with a first frame.
     fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
         let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
-        let mut track = Track::begin(self.settings.model, outline, &mut self.frame).ok_or(too_few)?;
+        let FilterSettings { model, mask_pixel, .. } = self.settings;
+        let mut track = Track::begin(model, outline, mask_pixel, &mut self.frame).ok_or(too_few)?;
         track.set_time_unit(self.seconds_per_unit());
         self.landmarks = Landmarks::of(outline);
         self.symmetry = 1;

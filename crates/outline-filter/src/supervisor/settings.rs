@@ -21,6 +21,11 @@ pub struct FilterSettings {
     /// Systematic uncertainty of the outlines, image lengths: how far all of a side may lie off in every frame, such as by a shadow or by
     /// a threshold, not negative; 0 by default. It widens what is stated, and enters nothing else.
     pub edge_uncertainty: f64,
+    /// Size of a pixel of the two-valued masks that the outlines were traced from, image lengths, not negative; 0, for other outlines, by
+    /// default. What such an outline is off by the rounding to whole pixels stays as it is while the object moves by less than a pixel, and
+    /// points beside each other are off together: their noise is reckoned with as at least 0.15 of a pixel, and what is stated is
+    /// widened, the less the more pixels the object has moved on.
+    pub mask_pixel: f64,
     /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken, in (0, 1);
     /// 0.7 by default.
     pub smallest_agreement: f64,
@@ -37,6 +42,7 @@ impl Default for FilterSettings {
             adaptive: true,
             dynamics: Dynamics::Auto,
             edge_uncertainty: 0.0,
+            mask_pixel: 0.0,
             smallest_agreement: 0.7,
             patience: 2,
         }
@@ -60,15 +66,15 @@ impl FilterSettings {
     pub(crate) fn check(&self) -> Result<(), FilterError> {
         let fail = |setting, value, range| Err(FilterError::Setting { setting, value, range });
         let noise = self.process_noise;
-        for (setting, value) in
-            [("process noise of rates", noise.rates), ("process noise of velocities", noise.velocities)]
-        {
+        for (setting, value) in [
+            ("process noise of rates", noise.rates),
+            ("process noise of velocities", noise.velocities),
+            ("edge uncertainty", self.edge_uncertainty),
+            ("mask pixel", self.mask_pixel),
+        ] {
             if !(value.is_finite() && value >= 0.0) {
                 return fail(setting, value, "finite and not negative");
             }
-        }
-        if !(self.edge_uncertainty.is_finite() && self.edge_uncertainty >= 0.0) {
-            return fail("edge uncertainty", self.edge_uncertainty, "finite and not negative");
         }
         if !(self.smallest_agreement > 0.0 && self.smallest_agreement < 1.0) {
             return fail("smallest agreement", self.smallest_agreement, "between 0 and 1");

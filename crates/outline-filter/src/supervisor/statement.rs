@@ -3,7 +3,10 @@ use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::DMatrix;
 
-use super::motion_filter::{Counts, MotionFilter, Phase};
+use super::{
+    motion_filter::{Counts, MotionFilter, Phase},
+    settings::FilterSettings,
+};
 use crate::{
     dynamics::{CentredDeviations, Purpose, Summary, WrongFamily},
     tuning::statement as tuning,
@@ -56,9 +59,12 @@ impl MotionFilter {
         let mut all = random;
         all.covariance += moments;
         let displacement = left_out.displacement * track.reference().radius;
-        let size = self.settings.edge_uncertainty.hypot(displacement);
-        if size > 0.0 {
-            let [pose, motion] = track.systematic(size);
+        let FilterSettings { edge_uncertainty, mask_pixel, .. } = self.settings;
+        if [displacement, edge_uncertainty, mask_pixel].iter().any(|length| *length > 0.0) {
+            // The rounding of masks is a saw tooth as the object moves, whose mean falls with the pixels that it moves on.
+            let pixels = (track.travelled() / mask_pixel).max(1.0);
+            let rounding = tuning::ROUNDING * mask_pixel / pixels;
+            let [pose, motion] = track.systematic(edge_uncertainty.hypot(displacement).hypot(rounding));
             all = all.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
         Some(Statement { random, all, family: left_out.family })

@@ -1,11 +1,11 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
-use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector};
+use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, map_point};
 use nalgebra::{DMatrix, Matrix3};
 
 use super::Track;
 use crate::{
-    belief::{StateMatrix, scaled_inverse},
+    belief::{Belief, StateMatrix, scaled_inverse},
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
     tuning::{
         null_space::{TAKES_PART, TURNS_WITH},
@@ -31,8 +31,7 @@ impl Track {
     /// about the middle, normalised. Over the time that the motion is known from it may change by as much as it is.
     pub(crate) fn systematic(&self, size: f64) -> [CentredDeviations; 2] {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
-        let (size, memory) = (size / self.reference.radius, &self.belief.memory);
-        let span = memory.shortest(k).max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE);
+        let (size, span) = (size / self.reference.radius, self.span_of_motion());
         let cells = self.map.cells();
         let mut levers = [0.0; MAX_PARAMETERS];
         for cell in cells {
@@ -45,6 +44,22 @@ impl Track {
             if lever > 0.0 { (0.5 * size / lever).min(1.0) } else { 0.0 }
         });
         [pose, pose * (std::f64::consts::SQRT_2 / span)]
+    }
+
+    /// Time that the motion is known from, in the filter's unit; positive.
+    fn span_of_motion(&self) -> f64 {
+        let memory = &self.belief.memory;
+        memory.shortest(self.belief.parameter_count()).max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
+    }
+
+    /// How far the points of the outline have moved in the image in the time that the motion is known from, root mean square; image lengths.
+    pub(crate) fn travelled(&self) -> f64 {
+        let Belief { model, pose, motion, .. } = &self.belief;
+        let motion = ProjectiveMotion::of_generator(&model.generator(&motion[..model.parameter_count()]));
+        let cells = self.map.cells();
+        let squares = cells.iter().map(|cell| motion.velocity(&map_point(pose, &cell.centre)).norm_squared());
+        let speed = (squares.sum::<f64>() / cells.len().max(1) as f64).sqrt();
+        speed * self.span_of_motion() * self.reference.radius
     }
 
     /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.

@@ -108,7 +108,7 @@ mod tests {
         let [part, whole] = part_and_whole();
         for model in MotionModel::ALL {
             let mut frame = Frame::default();
-            let mut track = Track::begin(model, &part, &mut frame).expect("a track");
+            let mut track = Track::begin(model, &part, 0.0, &mut frame).expect("a track");
             // Well known, so that the reference loses no digits.
             let k = track.belief.parameter_count();
             (0..k).for_each(|i| track.belief.information.dense[k + i][k + i] = 100.0);
@@ -158,7 +158,7 @@ mod tests {
             Outline::closed((0..300).map(point).collect()).expect("an outline")
         };
         let mut frame = Frame::default();
-        let mut track = Track::begin(MotionModel::Rigid, &egg(0.0), &mut frame).expect("a track");
+        let mut track = Track::begin(MotionModel::Rigid, &egg(0.0), 0.0, &mut frame).expect("a track");
         let count = |track: &Track| track.map.cells().len();
         let first = count(&track);
         let mut counts = Vec::new();

@@ -18,7 +18,7 @@ fn oval(model: MotionModel, axis: f64, frame: &mut Frame) -> Track {
         Point2::new(t.cos() + 0.2 * (1.0 - axis) * (2.0 * t).cos(), axis * t.sin())
     };
     let outline = Outline::closed((0..300).map(point).collect()).expect("an outline");
-    let mut track = Track::begin(model, &outline, frame).expect("a track");
+    let mut track = Track::begin(model, &outline, 0.0, frame).expect("a track");
     track.set_noise(SMALL);
     track
 }

@@ -89,7 +89,7 @@ mod tests {
         let model = MotionModel::Rigid;
         let at_rest = Outline::closed((0..600).map(body).collect()).expect("an outline");
         let mut buffers = Frame::default();
-        let plain = Track::begin(model, &at_rest, &mut buffers).expect("a track");
+        let plain = Track::begin(model, &at_rest, 0.0, &mut buffers).expect("a track");
         let reference = plain.reference();
         let (to, middle) = (reference.to_image(), plain.map.middle());
         let from = to.try_inverse().expect("a radius");
@@ -107,7 +107,7 @@ mod tests {
             };
             let outline = Outline::closed((0..600).map(point).collect()).expect("an outline");
             match &mut track {
-                None => track = Track::begin(model, &outline, &mut buffers),
+                None => track = Track::begin(model, &outline, 0.0, &mut buffers),
                 Some(track) => {
                     track.predict(STEP);
                     if change != [0.0; 2] {

@@ -62,13 +62,15 @@ impl Track {
         let contours =
             runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
         buffers.load(first.outline, self.reference);
-        let (model, least_noise) = (self.belief.model, tuning::LEAST_NOISE * self.noise.sigma);
+        let rounding = self.noise.rounding();
+        let (model, least_noise) = (self.belief.model, rounding.deviation.max(tuning::LEAST_NOISE * self.noise.sigma));
         let first_pose = self.first_pose;
         let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least_noise, buffers)?;
         if track.turn_is_unseen() {
             return None;
         }
         track.first_pose = first_pose;
+        track.noise.allow_for_rounding(rounding);
         track.noise.take_level_of(&self.noise);
         track.doubt_first_pose();
         track.belief.motion = self.belief.motion;

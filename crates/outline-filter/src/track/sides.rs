@@ -24,7 +24,7 @@ fn strip(dip: f64) -> Vec<Point2<f64>> {
 fn normals_of(points: Vec<Point2<f64>>) -> Vec<(Point2<f64>, Vector2<f64>)> {
     let outline = |points| Outline::closed(points).expect("an outline");
     let mut frame = Frame::default();
-    let mut track = Track::begin(MotionModel::Rigid, &outline(strip(0.0)), &mut frame).expect("a track");
+    let mut track = Track::begin(MotionModel::Rigid, &outline(strip(0.0)), 0.0, &mut frame).expect("a track");
     track.set_noise(0.05);
     frame.load(&outline(points.clone()), track.reference());
     let view = track.view();

@@ -12,7 +12,7 @@ use crate::{
     belief::Belief,
     dynamics::{CentredPose, FamilyTests, Summary},
     map::{NullDirection, OutlineMap, TurnEvidence},
-    measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
+    measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, update as tuning},
     update::{
@@ -68,16 +68,20 @@ impl Outcome {
 }
 
 impl Track {
-    /// One of what an outline shows, its motion unknown. Outliers and missing arcs are allowed for. `None` for fewer than 8 points, or
+    /// One of what an outline shows, its motion unknown. Outliers and missing arcs are allowed for. Points of masks are
+    /// off by as much as the rounding to their pixels, of a size in image lengths, whatever they show. `None` for fewer than 8 points, or
     /// points that make no contour.
-    pub(crate) fn begin(model: MotionModel, outline: &Outline, frame: &mut Frame) -> Option<Self> {
+    pub(crate) fn begin(model: MotionModel, outline: &Outline, mask_pixel: f64, frame: &mut Frame) -> Option<Self> {
         if outline.point_count() < FEWEST_POINTS {
             return None;
         }
         let reference = Reference::of(outline);
         frame.load(outline, reference);
         let contours = frame.contours(&Matrix3::identity());
-        Self::cut(model, reference, Matrix3::identity(), contours, 0.0, frame)
+        let rounding = Rounding::of(outline, mask_pixel, reference.radius);
+        let mut track = Self::cut(model, reference, Matrix3::identity(), contours, rounding.deviation, frame)?;
+        track.noise.allow_for_rounding(rounding);
+        Some(track)
     }
 
     /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise.

@@ -4,6 +4,7 @@ mod filter_motion;
 mod filter_observability;
 mod filter_support;
 mod known_outline;
+mod mask_rounding;
 mod plane;
 mod recorded;
 mod recording;

@@ -8,8 +8,8 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ._masks import check_masks, split_tracing, times_of, traced
-from ._native import ObjectResult, Observation, Recorder, Tracker, identify_table, track_table
+from ._masks import check_masks, split_tracing, times_of, traced, tracer_of
+from ._native import LabelTracer, ObjectResult, Observation, Recorder, Tracker, identify_table, track_table
 from ._progress import progress_bar
 from ._tables import kind_of, native_table, table_like, with_names
 
@@ -111,7 +111,8 @@ def identify(
     **options
         For masks: `link` and the options of `outlines`. `link` is `labels` if a label stays with its object, `places` if objects are to
         be recognised from mask to mask by place, size and shape, `nearest` or `largest` for one object. For both: further settings of
-        `Tracker`, such as `dynamics`, `edge_uncertainty` and `rectify`.
+        `Tracker`, such as `dynamics`, `edge_uncertainty` and `rectify`. For masks
+        `mask_pixel` is the size of their pixels, unless `edge_uncertainty` is given.
 
     Returns
     -------
@@ -133,13 +134,13 @@ def identify(
     >>> abs(motion["omega"].value - 1.0) < 0.02
     True
     """
-    tracing, tracker = _split(options, motion, method, scale)
-    if kind_of(data) is not None:
-        only_for_masks(tracing, times)
+    kind = kind_of(data)
+    tracer, tracker = _split(options, kind, times, motion=motion, method=method, scale=scale)
+    if tracer is None:
         with progress_bar(progress, None) as advance:
             identify_table(tracker, native_table(data, columns, fps), advance)
     else:
-        for _ in _follow_masks(tracker, data, fps, times, tracing, progress):
+        for _ in _follow_masks(tracker, data, fps, times, tracer, progress):
             pass
     return Identification(tracker.results())
 
@@ -180,23 +181,32 @@ def track(
     ValueError, TypeError
         As `identify`; also a motion that changes, if it is to be smoothed.
     """
-    tracing, tracker = _split(options, motion, method, scale)
     kind = kind_of(data)
-    if kind is not None:
-        only_for_masks(tracing, times)
+    tracer, tracker = _split(options, kind, times, motion=motion, method=method, scale=scale)
+    if tracer is None:
         with progress_bar(progress, None) as advance:
             found = track_table(tracker, native_table(data, columns, fps), smooth, advance)
     else:
         recorder = Recorder()
-        for observation in _follow_masks(tracker, data, fps, times, tracing, progress):
+        for observation in _follow_masks(tracker, data, fps, times, tracer, progress):
             recorder.take(observation)
         found = recorder.columns(tracker, smooth)
     return table_like(kind or "mapping", with_names(found, tracker.objects))
 
 
-def _split(options: dict[str, Any], motion: str, method: str, scale: float | None) -> tuple[dict[str, Any], Tracker]:
+def _split(
+    options: dict[str, Any], kind: str | None, times: Any, **arguments: Any
+) -> tuple[LabelTracer | None, Tracker]:
+    """What traces masks, where the data are no table, and what follows the outlines."""
     tracing, settings = split_tracing(options)
-    return tracing, Tracker(motion, method=method, scale=scale, **settings)
+    if kind is not None:
+        only_for_masks(tracing, times)
+        return None, Tracker(**arguments, **settings)
+    tracer = tracer_of(tracing)
+    # In another plane pixels have another size everywhere.
+    if settings.get("rectify") is None and "edge_uncertainty" not in settings:
+        settings.setdefault("mask_pixel", tracer.pixel)
+    return tracer, Tracker(**arguments, **settings)
 
 
 def only_for_masks(tracing: dict[str, Any], times: Any = None) -> None:
@@ -211,13 +221,13 @@ def _follow_masks(
     masks: Any,
     fps: float | None,
     times: Any,
-    tracing: dict[str, Any],
+    tracer: LabelTracer,
     progress: bool | None,
 ) -> Iterator[Observation]:
     check_masks(masks)
     seconds = times_of(masks, fps, times)
     known: set[int] = set()
-    for frame, (found, refused) in enumerate(traced(masks, tracing, progress)):
+    for frame, (found, refused) in enumerate(traced(masks, tracer, progress)):
         time = next(seconds, None)
         if time is None:
             raise ValueError(f"times: there is none for mask {frame}")

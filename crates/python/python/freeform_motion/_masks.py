@@ -111,11 +111,15 @@ def split_tracing(options: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str,
     return tracing, {name: value for name, value in options.items() if name not in tracing}
 
 
+def tracer_of(tracing: Mapping[str, Any]) -> LabelTracer:
+    """The tracer with these options."""
+    return LabelTracer(**{**_TRACING, **tracing})
+
+
 def traced(
-    masks: Iterable[Any], tracing: Mapping[str, Any], progress: bool | None
+    masks: Iterable[Any], tracer: LabelTracer, progress: bool | None
 ) -> Iterator[tuple[list[tuple[int, Outline]], list[tuple[int, str]]]]:
     """The objects of every mask with their outlines, and those without one with the reason."""
-    tracer = LabelTracer(**{**_TRACING, **tracing})
     with progress_bar(progress, len(masks) if isinstance(masks, Sized) else None) as advance:
         for frame, mask in enumerate(masks):
             yield tracer.trace(frame, label_array(mask, frame))

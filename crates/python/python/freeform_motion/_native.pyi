@@ -169,6 +169,7 @@ class MotionFilter:
         adaptive: bool = True,
         dynamics: str = "auto",
         edge_uncertainty: float = 0.0,
+        mask_pixel: float = 0.0,
         smallest_agreement: float = 0.7,
         patience: int = 2,
     ) -> MotionFilter: ...
@@ -227,6 +228,7 @@ class Tracker:
         adaptive: bool = True,
         dynamics: str = "auto",
         edge_uncertainty: float = 0.0,
+        mask_pixel: float = 0.0,
         smallest_agreement: float = 0.7,
         patience: int = 2,
     ) -> Tracker: ...
@@ -510,6 +512,8 @@ class LabelTracer:
         smoothing: float | None,
         clipping: str,
     ) -> LabelTracer: ...
+    @property
+    def pixel(self) -> float: ...
     def trace(
         self, frame: int, labels: NDArray[np.int64]
     ) -> tuple[list[tuple[int, Outline]], list[tuple[int, str]]]: ...

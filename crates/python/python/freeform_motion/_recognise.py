@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from ._identify import only_for_masks
-from ._masks import check_masks, split_tracing, traced
+from ._masks import check_masks, split_tracing, traced, tracer_of
 from ._native import Evidence, Outline, Recogniser, Recognition, outlines_of_table
 from ._tables import kind_of, native_table
 
@@ -77,5 +77,5 @@ def _outlines(
         yield from outlines_of_table(native_table(data, columns, 1.0))
         return
     check_masks(data)
-    for found, _ in traced(data, tracing, progress):
+    for found, _ in traced(data, tracer_of(tracing), progress):
         yield from ((str(name), outline) for name, outline in found)

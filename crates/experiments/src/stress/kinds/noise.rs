@@ -1,9 +1,10 @@
 use super::of_class;
 use crate::stress::body::Body;
 use crate::stress::class::Class;
+use crate::stress::course::Course;
 use crate::stress::fault::Fault;
 use crate::stress::kind::Kind;
-use crate::stress::recipe::{Recipe, Sampling};
+use crate::stress::recipe::{Depth, Recipe, Sampling, Sensing};
 
 /// Errors that depend on each other, beside independent ones of 0.2 %.
 pub(in crate::stress) fn kinds() -> Vec<Kind> {
@@ -12,6 +13,13 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
     let slow = |points: f64, keep: f64| with(Fault::Slow { deviation: 0.005, points, keep });
     let same = |recipe: Recipe| Recipe { sampling: Sampling::Same, ..recipe };
     let light = |depth: f64| with(Fault::Light { depth });
+    let masks = |pixels: f64, body: Body, pace: f64| {
+        let plain = Recipe::plain();
+        let Course { omega, speed, .. } = plain.course;
+        let course =
+            Course { omega: (pace * omega.0, pace * omega.1), speed: (pace * speed.0, pace * speed.1), ..plain.course };
+        Recipe { body, course, sensing: Sensing::Traced { pixels, depth: Depth::Binary }, ..plain }
+    };
     let blob = |recipe: Recipe| Recipe { body: Body::Blob, ..recipe };
     of_class(
         Class::Noise,
@@ -98,6 +106,32 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
                 "slow flicker",
                 "the outline moves in and out by 1 %, kept from frame to frame to 0.9",
                 with(Fault::Flicker { deviation: 0.01, keep: 0.9 }),
+            ),
+            (
+                "masks of 20 pixels",
+                "traced in masks of two values, 20 pixels to a size",
+                masks(20.0, Body::Object, 1.0),
+            ),
+            ("masks of 80 pixels", "the same, 80 pixels to a size", masks(80.0, Body::Object, 1.0)),
+            (
+                "masks of 20 pixels, slow",
+                "20 pixels to a size, at a twentieth of the speed: a pixel or two in three seconds",
+                masks(20.0, Body::Object, 0.05),
+            ),
+            (
+                "masks of 80 pixels, slow",
+                "80 pixels to a size, at a twentieth of the speed",
+                masks(80.0, Body::Object, 0.05),
+            ),
+            (
+                "masks of 30 pixels, slow polygon",
+                "a polygon of long sides, 30 pixels to a size, at a twentieth of the speed",
+                masks(30.0, Body::Polygon { corners: 5 }, 0.05),
+            ),
+            (
+                "masks of 30 pixels, slow blob",
+                "a smooth contour, 30 pixels to a size, at a twentieth of the speed",
+                masks(30.0, Body::Blob, 0.05),
             ),
         ],
     )

@@ -1,0 +1,60 @@
+//! What outlines of masks are off by the rounding to pixels.
+use crate::filter_support::{frames_of, settings};
+use freeform_outline_filter::{FilterError, FilterSettings, MotionFilter};
+use freeform_riccati::{ProjectiveMotion, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Frame, Shape};
+use proptest::prelude::*;
+
+const FRAMES: usize = 31;
+
+/// The velocity of the object at the end, its standard deviations, and their systematic parts.
+fn stated(settings: FilterSettings, frames: &[Frame]) -> [Vec<f64>; 3] {
+    let mut filter =
+        MotionFilter::new(FilterSettings { adaptive: false, ..settings }).expect("settings in their ranges");
+    for frame in frames {
+        filter.step(frame.time, &frame.outline).expect("a good frame");
+    }
+    let estimate = filter.estimate().expect("a motion");
+    let list = |value: &dyn Fn(freeform_estimate::ParameterEstimate) -> Option<f64>| {
+        estimate.parameters().map(|p| value(p).expect("observable")).collect::<Vec<f64>>()
+    };
+    [list(&|p| p.value), list(&|p| p.standard_deviation), list(&|p| p.systematic_deviation)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+
+    #[test]
+    fn the_rounding_of_masks_counts_the_less_the_more_pixels_the_object_has_moved_on(
+        omega in -1.5..1.5_f64, b1 in -0.5..0.5_f64, pixel in 0.003..0.05_f64, seed in 0..1000_u64,
+    ) {
+        let rounding = pixel / 12.0_f64.sqrt();
+        for pace in [0.0, 0.01, 0.3, 1.0] {
+            let motion = RigidMotion { omega: pace * omega, b1: pace * b1, b2: 0.1 * pace };
+            let frames = frames_of(BuiltInShape::Bird, motion, settings(FRAMES, seed));
+            let of_masks = FilterSettings { mask_pixel: pixel, ..FilterSettings::default() };
+            let with_edges = FilterSettings { edge_uncertainty: rounding, ..of_masks };
+            let [mask, both] = [of_masks, with_edges].map(|settings| stated(settings, &frames));
+            prop_assert_eq!(&mask[0], &both[0]);
+
+            // The way of the points, root mean square: all of them move at a constant speed.
+            let (shape, velocity) = (Shape::from(BuiltInShape::Bird), ProjectiveMotion::of_generator(&motion.generator()));
+            let squares = (0..200).map(|i| velocity.velocity(&shape.point_at(f64::from(i) / 200.0)).norm_squared());
+            let seconds = frames[FRAMES - 1].time - frames[0].time;
+            let pixels = ((squares.sum::<f64>() / 200.0).sqrt() * seconds / pixel).max(1.0);
+            // An edge uncertainty of the same size does not fall.
+            for (mask, both) in mask[2].iter().zip(&both[2]) {
+                let share = (both * both - mask * mask) / (mask * mask);
+                prop_assert!((share.sqrt() / pixels - 1.0).abs() < 0.3, "{} {}", share.sqrt(), pixels);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_pixel_without_a_size_is_refused() {
+    for mask_pixel in [-1.0, f64::NAN, f64::INFINITY] {
+        let error = MotionFilter::new(FilterSettings { mask_pixel, ..FilterSettings::default() }).expect_err("no size");
+        assert!(matches!(error, FilterError::Setting { setting: "mask pixel", .. }), "{error}");
+    }
+}
