@@ -4,6 +4,7 @@ mod checks;
 mod common;
 mod documents;
 mod hostile_geometry;
+mod masks;
 mod observability;
 mod paper_experiments;
 mod projective;

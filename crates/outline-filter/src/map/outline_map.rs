@@ -58,6 +58,11 @@ impl OutlineMap {
         self.spacing
     }
 
+    /// Length of the outline that is known.
+    pub(crate) fn length(&self) -> f64 {
+        self.spacing * self.cells.len() as f64
+    }
+
     /// Number of a cell near a body point, if there is any cell.
     #[inline(always)]
     pub(crate) fn near(&self, q: &Point2<f64>) -> Option<usize> {

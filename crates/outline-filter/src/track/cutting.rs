@@ -9,7 +9,7 @@ use crate::{
     belief::Belief,
     dynamics::FamilyTests,
     map::{Contour, OutlineMap, Resolution},
-    measurement::{Frame, NoiseModel, Reference},
+    measurement::{Frame, NoiseModel, Reference, Rounding},
     prediction::ShapeNoise,
     tuning::{contour::NORMAL_NOISE, map::FEWEST_POINTS, update as tuning},
     update::Sensitivity,
@@ -17,21 +17,26 @@ use crate::{
 
 impl Track {
     /// Takes cells along contours in the body frame, and the loaded points, which were seen in a pose, as their first measurement. `None`
-    /// where the contours do not make an outline. Their noise is no less than what is known of it.
+    /// where the contours do not make an outline. Their noise is no less than what is known of it, and than the rounding of their points.
     pub(super) fn cut(
         model: MotionModel,
         reference: Reference,
         pose: Matrix3<f64>,
         contours: Vec<Contour>,
-        least_noise: f64,
+        (least_noise, rounding): (f64, Rounding),
         frame: &mut Frame,
     ) -> Option<Self> {
+        let least_noise = rounding.deviation.max(least_noise);
         let mut cut = |contours, normal_noise| {
             Self::cut_with(model, reference, pose, contours, (least_noise, normal_noise), frame)
         };
-        let track = cut(contours.clone(), NORMAL_NOISE)?;
+        let mut track = cut(contours.clone(), NORMAL_NOISE)?;
         let needed = track.map.normal_noise();
-        if needed < NORMAL_NOISE { cut(contours, needed).or(Some(track)) } else { Some(track) }
+        if needed < NORMAL_NOISE {
+            track = cut(contours, needed).unwrap_or(track);
+        }
+        track.noise.allow_for_rounding(rounding);
+        Some(track)
     }
 
     /// As [`cut`](Self::cut), with normals whose directions have deviations of no more than that given last.

@@ -62,15 +62,14 @@ impl Track {
         let contours =
             runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
         buffers.load(first.outline, self.reference);
-        let rounding = self.noise.rounding();
-        let (model, least_noise) = (self.belief.model, rounding.deviation.max(tuning::LEAST_NOISE * self.noise.sigma));
-        let first_pose = self.first_pose;
-        let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least_noise, buffers)?;
-        if track.turn_is_unseen() {
+        let (model, least_noise) = (self.belief.model, tuning::LEAST_NOISE * self.noise.sigma);
+        let (first_pose, least) = (self.first_pose, (least_noise, self.noise.rounding()));
+        let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least, buffers)?;
+        // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
+        if track.turn_is_unseen() || track.map.length() > tuning::LONGEST * self.map.length() {
             return None;
         }
         track.first_pose = first_pose;
-        track.noise.allow_for_rounding(rounding);
         track.noise.take_level_of(&self.noise);
         track.doubt_first_pose();
         track.belief.motion = self.belief.motion;
@@ -101,5 +100,44 @@ impl Track {
             }
         }
         Some(list)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MotionModel;
+    use nalgebra::{Matrix3, Point2, Vector3};
+
+    use super::*;
+
+    /// An egg with three bulges, its points elsewhere on it from frame to frame.
+    fn egg(frame: u32) -> Outline {
+        let point = |i: u32| {
+            let t = std::f64::consts::TAU * (f64::from(i) + 0.37 * f64::from(frame)) / 900.0;
+            let r = 1.0 + 0.2 * (3.0 * t).cos() + 0.1 * t.sin();
+            Point2::new(r * t.cos(), 0.8 * r * t.sin())
+        };
+        Outline::closed((0..900).map(point).collect()).expect("an outline")
+    }
+
+    #[test]
+    fn frames_that_do_not_show_one_line_make_no_map() {
+        let outlines: Vec<Outline> = (0..4).map(egg).collect();
+        let mut buffers = Frame::default();
+        let track = Track::begin(MotionModel::Rigid, &outlines[0], 0.0, &mut buffers).expect("a track");
+        // In a row, as where outlines or their poses jitter.
+        let mut is_cut = |apart: f64| {
+            let placed = |(number, outline)| {
+                let shift = apart * f64::from(u32::try_from(number).expect("few"));
+                let pose = Matrix3::identity()
+                    + Matrix3::from_columns(&[Vector3::zeros(), Vector3::zeros(), Vector3::new(shift, -shift, 0.0)]);
+                PlacedFrame { time: number as f64, outline, pose }
+            };
+            let frames: Vec<PlacedFrame<'_>> = outlines.iter().enumerate().map(placed).collect();
+            track.remapped(&frames, 1, &mut buffers, |_, _, _, _| true).is_some()
+        };
+        assert!(is_cut(0.0));
+        assert!(is_cut(0.02));
+        assert!(!is_cut(0.07));
     }
 }

@@ -79,9 +79,7 @@ impl Track {
         frame.load(outline, reference);
         let contours = frame.contours(&Matrix3::identity());
         let rounding = Rounding::of(outline, mask_pixel, reference.radius);
-        let mut track = Self::cut(model, reference, Matrix3::identity(), contours, rounding.deviation, frame)?;
-        track.noise.allow_for_rounding(rounding);
-        Some(track)
+        Self::cut(model, reference, Matrix3::identity(), contours, (0.0, rounding), frame)
     }
 
     /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise.
@@ -157,7 +155,10 @@ impl Track {
             likelihood.squares += innovation.squared;
         }
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
-        let correlation = correlation_of(&frame.measurements, measurement.noise.map(|noise| noise / radius));
+        // Points that do not move show none of what they are rounded by.
+        let rounding = self.noise.rounding().deviation;
+        let noise = measurement.noise.map(|noise| (noise / radius).max(rounding));
+        let correlation = correlation_of(&frame.measurements, noise);
         let verdict = gate.verdict(&measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
