@@ -248,8 +248,10 @@ pub(crate) mod remapping {
     /// Share of the noise that the map has seen, which the points are taken to have at least: where those of many frames lie in one place
     /// they make contours of their own.
     pub(crate) const LEAST_NOISE: f64 = 0.5;
-    /// Length of a map cut anew over that of the map before it, beyond which it follows errors: few points cut corners, but not by so much.
+    /// Length of a map cut anew over that of the map before it, beyond which it follows errors.
     pub(crate) const LONGEST: f64 = 1.4;
+    /// Cells of a map from which on its length says so: one of fewer may itself be too short, as it cuts corners.
+    pub(crate) const CELLS_OF_LENGTH: usize = 64;
     /// Points that follow each other in less than this share of the mean distance lie in one place.
     pub(crate) const COMMON: f64 = 0.2;
 }

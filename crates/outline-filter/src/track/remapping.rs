@@ -66,7 +66,8 @@ impl Track {
         let (first_pose, least) = (self.first_pose, (least_noise, self.noise.rounding()));
         let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least, buffers)?;
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
-        if track.turn_is_unseen() || track.map.length() > tuning::LONGEST * self.map.length() {
+        let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
+        if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {
             return None;
         }
         track.first_pose = first_pose;
