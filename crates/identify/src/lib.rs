@@ -32,8 +32,8 @@ mod adaptive;
 mod error;
 
 pub use adaptive::{
-    AdaptiveDiagnostics, AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice, Regressor, quadratic_terms,
-    solve_lyapunov,
+    AdaptiveDiagnostics, AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice, Regressor, plant_matrices,
+    quadratic_terms, solve_lyapunov,
 };
 pub use error::IdentifyError;
 #[cfg(feature = "serde")]

@@ -20,8 +20,9 @@ numbers behind every figure and table as CSV.";
 ///
 /// Fig. 1 shows the ten objects with their closed quartics. Fig. 2 shows the boomerang with its line factors. Figs. 3, 5
 /// and 7 show the objects along their motion. Figs. 4, 6 and 8 show the estimated parameters against time, each with a
-/// comparison of the laws and the motion filter. 'open' gives tables of what the paper leaves open: noise, frame rate,
-/// camera scale, line pair, gains, curve fit, initial values. 'affine' and 'changing' extend the experiments to affine
+/// comparison of the laws and the motion filter. 'lyapunov' shows e(t), the Lyapunov function and the 36 numbers over lines that
+/// move exactly. 'open' gives tables of what the paper leaves open: noise, frame rate, camera scale, line pair, law, size in the
+/// identifier, gains, curve fit, initial values. 'affine' and 'changing' extend the experiments to affine
 /// motion and to motion that changes slowly.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

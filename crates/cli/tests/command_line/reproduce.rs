@@ -35,7 +35,7 @@ fn a_small_version_of_everything_gives_the_tables_as_they_were() {
     let folder = tempfile::tempdir().expect("a folder");
     let printed = succeed(&format!("reproduce {SMALL} --out {}", folder.path().display()), "");
     let (tables, last_line) = printed.trim_end().rsplit_once('\n').expect("lines");
-    assert!(last_line.starts_with("18 figure(s)") && last_line.ends_with("index.html"), "{last_line}");
+    assert!(last_line.starts_with("20 figure(s)") && last_line.ends_with("index.html"), "{last_line}");
     insta::assert_snapshot!("reproduce", tables);
     let kept = fs::read_to_string(root().join("docs/paper-tables.txt")).expect("the tables of the documents");
     let (kept, _) = kept.trim_end().rsplit_once('\n').expect("lines");
@@ -43,13 +43,13 @@ fn a_small_version_of_everything_gives_the_tables_as_they_were() {
 
     let figures = names_in(folder.path(), "svg");
     let data = names_in(folder.path(), "csv");
-    assert_eq!(figures.len(), 18);
+    assert_eq!(figures.len(), 20);
     assert!(figures.is_subset(&data), "every figure has its numbers: {figures:?} {data:?}");
     let page = fs::read_to_string(folder.path().join("index.html")).expect("the page");
     for name in figures.iter().chain(&data) {
         assert!(page.contains(&format!("{name}.")), "{name}");
     }
-    assert_eq!(page.matches("<figure").count(), 18);
+    assert_eq!(page.matches("<figure").count(), 20);
     let svg = |name: &String| fs::read_to_string(folder.path().join(format!("{name}.svg"))).expect("a figure");
     for text in figures.iter().map(svg).chain([page]) {
         assert!(!text.contains("NaN") && !text.contains("inf\"") && !text.contains("inf "));
@@ -124,7 +124,7 @@ fn numbers_and_text(svg: &str) -> (Vec<f64>, String) {
 #[test]
 fn the_pictures_of_the_documents_are_what_the_command_writes() {
     let folder = tempfile::tempdir().expect("a folder");
-    succeed(&format!("reproduce --only 1 2 3 4 --out {}", folder.path().display()), "");
+    succeed(&format!("reproduce --only 1 2 3 4 8 lyapunov --out {}", folder.path().display()), "");
     let (simulated, identified) = ("simulate --seconds 1", "identify - --scale 0.1 --svg");
     let told = fs::read_to_string(root().join("README.md")).expect("the README");
     assert!(told.contains(&format!("freeform {simulated} | freeform {identified} motion.svg")));

@@ -1,12 +1,12 @@
 //! Fig. 2: a boomerang, its line factors and its related points.
-use freeform_curve_fit::{Fit, FitSettings, ImplicitPolynomial, Outline};
+use freeform_curve_fit::{Fit, FitSettings, Fitter, ImplicitPolynomial, Outline};
 use freeform_decompose::{Decomposition, Line, RelatedPoint, RelatedPoints};
 use freeform_riccati::AffineMotion;
 use freeform_sim_camera::{BuiltInShape, Camera, PaperExperiment, Scene, SequenceLength, Settings};
-use nalgebra::{Point2, Rotation2, Vector2};
+use nalgebra::{Point2, Vector2};
 
 use super::Run;
-use super::curves::{closed_quartic, curve, curve_near, data_of, image_panel, points_of, xy};
+use super::curves::{curve, curve_near, data_of, image_panel, points_of, xy};
 use super::document::{Drawing, Section, Table};
 use super::method::fit_in_words;
 use super::sequence::{Sequence, paper_settings};
@@ -14,8 +14,9 @@ use crate::ExperimentError;
 use crate::figure::{Figure, Look};
 use freeform_motion::significant;
 
-/// The boomerang is turned by this angle in radians, so that its axis of symmetry is not one of the axes.
-const TURN: f64 = 0.4;
+/// The outer level sets of the fit are so far from the points, in RMS radii. With those of the other figures, twice as far away, the
+/// conic lines of the boomerang are real.
+const OFFSET: f64 = 0.05;
 
 /// Lines are drawn so far from their points, in image lengths: beyond every view.
 const FAR: f64 = 20.0;
@@ -35,11 +36,10 @@ impl Boomerang {
     fn seen(seed: u64) -> Result<Self, ExperimentError> {
         let camera = Camera::new(PaperExperiment::SCALE)?;
         let settings = Settings { length: SequenceLength::Frames(1), ..paper_settings(1.0, seed) };
-        let scene = Scene::new(BuiltInShape::Boomerang, AffineMotion::default(), camera)
-            .with_initial_pose(nalgebra::convert(Rotation2::new(TURN)));
+        let scene = Scene::new(BuiltInShape::Boomerang, AffineMotion::default(), camera);
         let frame = Sequence::simulate(scene, settings)?.frames.pop();
         let (_, outline) = frame.ok_or(ExperimentError::NoOutline { object: "boomerang" })?;
-        let fit = closed_quartic(&outline)?;
+        let fit = Fitter::new(fit_settings())?.fit(&outline)?;
         let image_from_working = fit.normalisation().image_from_working();
         let working = Decomposition::of(fit.working())?;
         let decomposition = working.moved(&image_from_working)?;
@@ -47,6 +47,11 @@ impl Boomerang {
         let related = RelatedPoints::of(&working).moved(&image_from_working).scaled(factor);
         Ok(Self { outline, fit, decomposition, related })
     }
+}
+
+/// How the boomerang is fitted.
+fn fit_settings() -> FitSettings {
+    FitSettings { offset: OFFSET, ..FitSettings::default() }
 }
 
 pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
@@ -71,23 +76,27 @@ pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
     let complex = pairs(&decomposition).filter(Pair::is_complex).count() * 2;
     let lines: usize = decomposition.levels().sum();
     let ours = if complex == lines {
-        format!("and so are all {lines} of ours")
+        format!(
+            "all {lines} here are complex too. The quartic lines are so because the curve is bounded; the conic lines need not be, and \
+             of the fit of the other figures, with level sets at {} RMS radii, they are real for this outline",
+            FitSettings::default().offset
+        )
     } else {
         format!(
-            "of ours {complex} are: the quartic lines are complex because the curve is bounded, the conic lines are real \
-             here, which (1) allows, and both are drawn as they are"
+            "{complex} here are complex: the quartic lines because the curve is bounded, the conic lines are real, which (1) allows, \
+             and both are drawn as they are"
         )
     };
     let drawing = Drawing {
         name: "fig2".to_owned(),
         caption: format!(
-            "Fig. 2. A boomerang-shaped quartic (solid) and its line factors (dashed). The paper shows a quartic of {lines} complex \
+            "Fig. 2. A boomerang-shaped quartic (solid) and its line factors (dashed). The paper shows {lines} complex \
              lines; {ours}. Of a conjugate pair x + l y + k the real line Re(x + l y + k) = 0 is drawn: it passes through \
              the related point, where both lines of the pair vanish, in the direction that Re l gives, and stands for both. \
              Which real line a pair has depends on the axes, its related point does not. The paper does not say how it \
              draws complex lines; this convention is this project's, and so is the drawing of the boomerang. The quartic is \
              fitted by {}.",
-            fit_in_words(&FitSettings::default())
+            fit_in_words(&fit_settings())
         ),
         data: data_of(&panels),
         figure: Figure { panels, columns: 1, panel_size: [640.0, 640.0], ..Figure::default() },
@@ -206,6 +215,7 @@ fn real_part(line: &Line) -> Vec<[f64; 2]> {
 mod tests {
     use nalgebra::Complex;
 
+    use super::super::curves::closed_quartic;
     use super::*;
 
     #[test]
@@ -278,6 +288,17 @@ mod tests {
                 }
                 assert!((value(&monomial(i, j), 2) - fitted).abs() < 1e-5 * size.max(1.0));
             }
+        }
+    }
+
+    #[test]
+    fn all_six_lines_of_the_boomerang_are_complex_as_in_the_paper() {
+        for seed in 1..=5 {
+            let Boomerang { outline, decomposition, .. } = Boomerang::seen(seed).expect("a boomerang");
+            assert_eq!(pairs(&decomposition).filter(Pair::is_complex).count(), 3, "seed {seed}");
+            let usual = closed_quartic(&outline).expect("a fit");
+            let usual = Decomposition::of(usual.working()).expect("lines");
+            assert_eq!(pairs(&usual).filter(Pair::is_complex).count(), 2, "seed {seed}: as the caption says");
         }
     }
 

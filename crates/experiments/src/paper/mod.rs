@@ -5,8 +5,10 @@
 //! how it was made, since most of them are numbers of the experiment. Nothing is drawn and nothing is laid out here.
 mod curves;
 mod document;
+mod exact_lines;
 mod extensions;
 mod factors;
+mod lyapunov;
 mod method;
 mod objects;
 mod open_questions;
@@ -15,6 +17,7 @@ mod paper_figure;
 mod parameters;
 mod part;
 mod poses;
+mod questions;
 mod relative_error;
 mod sequence;
 mod traces;

@@ -1,6 +1,6 @@
 use super::document::Section;
 use super::paper_figure::{BIRD, GLIDER, PHONE};
-use super::{Run, extensions, factors, objects, open_questions, parameters, poses};
+use super::{Run, extensions, factors, lyapunov, objects, open_questions, parameters, poses};
 use crate::ExperimentError;
 
 /// A figure of the paper, or what goes beyond it.
@@ -22,7 +22,9 @@ pub enum Part {
     PhonePoses,
     /// Fig. 8: the cellular phone's estimated parameters.
     PhoneParameters,
-    /// Tables of what the paper leaves open: noise, frame rate, scale, line pair, gains, curve fit, initial values.
+    /// Error of the estimator, Lyapunov function and the 36 numbers over lines that move exactly.
+    Lyapunov,
+    /// Tables of what the paper leaves open: noise, frame rate, scale, line pair, laws, size, gains, curve fit, initial values.
     OpenQuestions,
     /// Affine motion, which the paper announces.
     Affine,
@@ -32,7 +34,7 @@ pub enum Part {
 
 impl Part {
     /// All of them, in the order of the page.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Objects,
         Self::Factors,
         Self::BirdPoses,
@@ -41,6 +43,7 @@ impl Part {
         Self::GliderParameters,
         Self::PhonePoses,
         Self::PhoneParameters,
+        Self::Lyapunov,
         Self::OpenQuestions,
         Self::Affine,
         Self::Changing,
@@ -58,6 +61,7 @@ impl Part {
             Self::GliderParameters => "6",
             Self::PhonePoses => "7",
             Self::PhoneParameters => "8",
+            Self::Lyapunov => "lyapunov",
             Self::OpenQuestions => "open",
             Self::Affine => "affine",
             Self::Changing => "changing",
@@ -76,6 +80,7 @@ impl Part {
             Self::GliderParameters => "The glider's estimated parameters, by text and by caption",
             Self::PhonePoses => "The cellular phone along its motion",
             Self::PhoneParameters => "The cellular phone's estimated parameters",
+            Self::Lyapunov => "Error of the estimator and Lyapunov function over exact lines",
             Self::OpenQuestions => "Tables of what the paper leaves open",
             Self::Affine => "Affine motion, six parameters",
             Self::Changing => "A motion that changes slowly",
@@ -90,6 +95,7 @@ impl Part {
             Self::GliderPoses => 2,
             Self::BirdParameters | Self::PhoneParameters => parameters::RUNS,
             Self::GliderParameters => 2 * parameters::RUNS,
+            Self::Lyapunov => lyapunov::RUNS,
             Self::OpenQuestions => open_questions::run_count(starts, repeats),
             Self::Affine => extensions::AFFINE_RUNS,
             Self::Changing => extensions::CHANGING_RUNS,
@@ -106,6 +112,7 @@ impl Part {
             Self::GliderParameters => parameters::section(run, &GLIDER),
             Self::PhonePoses => poses::section(run, &PHONE),
             Self::PhoneParameters => parameters::section(run, &PHONE),
+            Self::Lyapunov => lyapunov::section(run),
             Self::OpenQuestions => open_questions::section(run),
             Self::Affine => extensions::affine(run),
             Self::Changing => extensions::changing(run),

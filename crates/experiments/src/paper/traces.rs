@@ -126,6 +126,7 @@ pub(super) fn look_of(method: &str) -> Look {
         ("structured law, one pair", Look::Series(1)),
         ("structured law", Look::Series(2)),
         ("fast law", Look::Series(3)),
+        ("mixing law", Look::Series(5)),
         ("motion filter, held constant", Look::Dashed(4)),
         ("motion filter, changes told", Look::Dashed(5)),
         ("motion filter", Look::Series(4)),
@@ -224,7 +225,8 @@ mod tests {
     fn every_method_of_a_figure_has_a_look_of_its_own() {
         let beside_the_paper =
             ["36 numbers as printed, one pair", "structured law, one pair", "structured law, all pairs"];
-        let others = ["fast law", "motion filter, changes told", "motion filter", "motion filter, held constant"];
+        let others =
+            ["fast law", "mixing law", "motion filter, changes told", "motion filter", "motion filter, held constant"];
         let looks: Vec<_> = beside_the_paper.iter().chain(&others).map(|method| look_of(method)).collect();
         assert!((0..looks.len()).all(|k| !looks[k + 1..].contains(&looks[k])), "{looks:?}");
         assert_eq!(look_of("structured law"), look_of("structured law, all pairs"));

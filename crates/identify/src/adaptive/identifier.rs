@@ -1,7 +1,7 @@
 use freeform_decompose::{Line, MAX_PAIRS};
 use freeform_estimate::{MotionEstimate, TimeNotIncreasing};
 use freeform_riccati::MotionModel;
-use nalgebra::{Const, DimMin, Vector2};
+use nalgebra::{Const, DimMin, SMatrix, Vector2};
 
 use super::{
     lyapunov::solve_lyapunov,
@@ -257,6 +257,19 @@ impl AdaptiveIdentifier {
             Laws::Six(laws) => laws[self.chosen_law(laws.len())].diagnostics(),
             Laws::Eight(laws) => laws[self.chosen_law(laws.len())].diagnostics(),
         })
+    }
+
+    /// The 36 numbers `[A | C | B]` of equation 19 (4 by 9) as the printed law has adapted them so far, in the coordinates of the lines;
+    /// `None` for the other laws, and before the lines were followed once. Those of a motion are [`plant_matrices`](crate::plant_matrices).
+    #[must_use]
+    pub fn matrices(&self) -> Option<SMatrix<f64, 4, 9>> {
+        match &self.laws {
+            _ if self.followed == 0 => None,
+            Laws::Three(laws) => laws[self.chosen_law(laws.len())].matrices(),
+            Laws::Four(laws) => laws[self.chosen_law(laws.len())].matrices(),
+            Laws::Six(laws) => laws[self.chosen_law(laws.len())].matrices(),
+            Laws::Eight(laws) => laws[self.chosen_law(laws.len())].matrices(),
+        }
     }
 
     /// The pair that the estimate comes from, counted as in the first frame; `None` if from all.

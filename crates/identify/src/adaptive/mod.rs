@@ -16,5 +16,6 @@ mod structured_law;
 
 pub use identifier::AdaptiveIdentifier;
 pub use lyapunov::solve_lyapunov;
+pub use printed_law::plant_matrices;
 pub use regressor::{Regressor, quadratic_terms};
 pub use settings::{AdaptiveDiagnostics, AdaptiveLaw, AdaptiveSettings, PairChoice};

@@ -15,7 +15,12 @@ pub(crate) struct PrintedLaw {
 impl PrintedLaw {
     /// Starts from the matrices that belong to a motion (equation 19).
     pub(crate) fn new(stability: Matrix4<f64>, lyapunov: Matrix4<f64>, motion: &AffineMotion) -> Self {
-        Self { stability, lyapunov, matrices: matrices_of(motion) }
+        Self { stability, lyapunov, matrices: plant_matrices(motion) }
+    }
+
+    /// `[A | C | B]` as adapted so far.
+    pub(crate) fn matrices(&self) -> &SMatrix<f64, 4, 9> {
+        &self.matrices
     }
 
     /// One step of `seconds` by the implicit midpoint rule, as in the structured law, over one pair.
@@ -55,8 +60,10 @@ impl PrintedLaw {
     }
 }
 
-/// `[A | C | B]` of equation 19.
-fn matrices_of(motion: &AffineMotion) -> SMatrix<f64, 4, 9> {
+/// The 36 numbers of equation 19 that belong to a motion: `[A | C | B]`, 4 by 9, which the signals `(X, f(X), -1)` of a line pair are
+/// multiplied by.
+#[must_use]
+pub fn plant_matrices(motion: &AffineMotion) -> SMatrix<f64, 4, 9> {
     let AffineMotion { a1, a2, a3, a4, b1, b2 } = *motion;
     let mut matrices = SMatrix::zeros();
     (matrices[(0, 0)], matrices[(1, 1)], matrices[(2, 2)], matrices[(3, 3)]) = (a1 - a4, a1 - a4, a1, a1);
@@ -92,7 +99,7 @@ mod tests {
             let motion = AffineMotion { a1: p[0], a2: p[1], a3: p[2], a4: p[3], b1: p[4], b2: p[5] };
             let state = Vector4::from(x);
             let rate = RealVariables::from(state).rate(&motion);
-            prop_assert!((matrices_of(&motion) * signals(&state) - rate).norm() < 1e-12);
+            prop_assert!((plant_matrices(&motion) * signals(&state) - rate).norm() < 1e-12);
             let law = PrintedLaw::new(-Matrix4::identity(), Matrix4::identity(), &motion);
             prop_assert!((law.parameters(MotionModel::Affine).fixed_rows::<6>(0) - SVector::from(p)).norm() < 1e-12);
         }
@@ -188,7 +195,7 @@ mod tests {
 
     #[test]
     fn the_36_numbers_are_a_third_off_after_half_a_minute_and_near_the_truth_after_half_an_hour() {
-        let truth = matrices_of(&BIRD);
+        let truth = plant_matrices(&BIRD);
         for states in turning_pairs() {
             let stability = Matrix4::from_diagonal(&Vector4::new(-0.5, -0.5, -1.0, -1.0));
             let lyapunov = Matrix4::from_diagonal(&Vector4::new(0.5, 1.0, 1.0, 1.5));

@@ -139,6 +139,11 @@ where
         parameters
     }
 
+    /// The 36 numbers, of the printed law.
+    pub(super) fn matrices(&self) -> Option<SMatrix<f64, 4, 9>> {
+        if let Law::Printed(law) = &self.law { Some(*law.matrices()) } else { None }
+    }
+
     /// Takes a frame; returns whether the lines could be followed from the one before.
     pub(super) fn take(&mut self, frame: &Frame) -> bool {
         let pairs = self.pair.map_or(0..frame.count, |pair| pair..pair + 1);
