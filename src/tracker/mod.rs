@@ -118,6 +118,11 @@ impl Tracker {
     ///
     /// Where the file cannot be written, what is not in it stays in memory. What cannot be read back is lost, with a rejection of each
     /// further frame and a [`Warning`](crate::Warning) that say so.
+    ///
+    /// An object that rests has no [`expected_outline`](Self::expected_outline) and is not found by [`seek`](Self::seek) or
+    /// [`push_or_seek`](Self::push_or_seek) until its next outline wakes it. Only
+    /// [`follow_recording`](Self::follow_recording) puts objects to rest, so that a program that seeks, and deals with each picture before the
+    /// next, is not concerned.
     #[cfg(feature = "serde")]
     pub fn keep_states_in(&mut self, file: std::fs::File, most_in_memory: usize) {
         let file = std::sync::Arc::new(resting::StateFile::new(file));

@@ -8,7 +8,8 @@ use crate::rejection::RejectionCause;
 
 impl Tracker {
     /// The outline of an object where it is expected at a time in seconds, not before its last frame. `None` unless it is tracked by the
-    /// motion filter, in the coordinates of its outlines (without a rectification).
+    /// motion filter, in the coordinates of its outlines (without a rectification), and does not rest in a file
+    /// (`keep_states_in`, feature `serde`).
     #[must_use]
     pub fn expected_outline(&self, object: &str, time: f64) -> Option<ExpectedOutline> {
         self.objects.positions.get(object).and_then(|position| self.objects.list[*position].expected_outline(time))
@@ -43,7 +44,7 @@ impl Tracker {
     }
 
     /// Asks `seek` for arcs of an object near where it is expected in a frame that has no outline of it, and takes them if they show it.
-    /// `None`, and nothing changed, where they do not.
+    /// `None`, and nothing changed, where they do not, and where the object rests in a file.
     pub fn seek(
         &mut self,
         object: &str,

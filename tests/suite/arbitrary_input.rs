@@ -132,6 +132,8 @@ fn any_pixels_are_traced_or_refused() {
         let pixels = bytes.iter().flat_map(|&value| std::iter::repeat_n(value & 0xc0, usize::from(value % 32)));
         tracing(&[13].into_iter().chain(pixels).collect::<Vec<u8>>());
     });
+    // Found by fuzzing: a point was moved beyond the picture by one rounding.
+    tracing(b"\x03\xff\xff\x00\xff\x2b\xc0\x05\xc0\x15\xff\xff\xe0\xe0\xe0\x15\xff\xff\xff\xff\xff\xff\xef\x14\xff\xff\xff\xff\xc0");
 }
 
 #[test]

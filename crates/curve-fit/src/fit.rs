@@ -1,8 +1,8 @@
 use nalgebra::Point2;
 
 use crate::{
-    bounded_polynomial::BoundedPolynomial, degree::MAX_COEFFICIENTS, isoline, normalisation::Normalisation,
-    polynomial::ImplicitPolynomial, rectangle::Rectangle,
+    bounded_polynomial::BoundedPolynomial, degree::MAX_COEFFICIENTS, image_rows::ImageRows, isoline,
+    normalisation::Normalisation, polynomial::ImplicitPolynomial, rectangle::Rectangle,
 };
 
 /// Cells along the longer side of the rectangle that a curve is looked for in.
@@ -98,7 +98,9 @@ impl Fit {
     /// their first point repeated, as [`isoline::of_function`] finds them on 160 cells along the longer side.
     #[must_use]
     pub fn curve_within(&self, rectangle: &Rectangle) -> Vec<Vec<Point2<f64>>> {
-        isoline::of_function(|p| self.working.evaluate(&self.normalisation.to_working(p)), rectangle, CURVE_CELLS)
+        let f = |p: &Point2<f64>| self.working.evaluate(&self.normalisation.to_working(p));
+        let rows = ImageRows::of(&self.working, &self.normalisation);
+        isoline::of_rows(|xs, y, values| rows.evaluate(xs, y, values), f, rectangle, CURVE_CELLS)
     }
 }
 

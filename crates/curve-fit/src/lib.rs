@@ -35,6 +35,7 @@ mod degree;
 mod error;
 mod fit;
 mod fitter;
+mod image_rows;
 mod interior_point;
 pub mod isoline;
 mod leading_form;

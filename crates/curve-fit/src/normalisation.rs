@@ -57,7 +57,7 @@ impl Normalisation {
     }
 
     /// The inverse of the stretch, by its determinant of size 1.
-    fn unstretch(&self) -> Matrix2<f64> {
+    pub(crate) fn unstretch(&self) -> Matrix2<f64> {
         let s = &self.stretch;
         Matrix2::new(s.m22, -s.m12, -s.m21, s.m11) / s.determinant()
     }

@@ -14,8 +14,9 @@ use crate::picture_error::PictureErrorKind;
 /// Time that a frame stands where the file says 0, in seconds: what browsers do.
 const DEFAULT_DELAY: f64 = 0.1;
 
-/// Pixels that an animation may unpack to, however short it is: eight of the largest pictures.
-const FREE_PIXELS: u64 = 1 << 29;
+/// Pixels that an animation may unpack to, however short it is: four of the largest pictures. Where a way of tracing is chosen each is
+/// traced several times.
+const FREE_PIXELS: u64 = 1 << 28;
 
 /// Pixels more for every byte of it. Pictures of one colour pack about 1300 pixels to a byte, masks some hundreds.
 const PIXELS_PER_BYTE: u64 = 512;

@@ -22,7 +22,8 @@ pub(crate) const DECODER_LIMIT: u64 = 1 << 30;
 /// Reads a picture (PNG, JPEG, TIFF, BMP, WebP, or the first frame of a GIF) as grey values. Its content tells the format,
 /// not its name. It is turned and mirrored as the file says that it is to be seen (EXIF, or the tag of TIFF).
 ///
-/// Colours become their luminance. Where some pixels are transparent the alpha channel is taken instead, so that the
+/// Colours become their luminance, those of inks (CMYK) by way of red, green and blue; a CMYK JPEG is taken as Adobe writes it, with
+/// the largest value for no ink, whether or not it says so. Where some pixels are transparent the alpha channel is taken instead, so that the
 /// visible part is light on dark.
 ///
 /// # Errors
@@ -128,6 +129,7 @@ pub(crate) fn check_size(width: u32, height: u32) -> Result<(), PictureErrorKind
 pub(crate) fn damaged(error: ImageError) -> PictureErrorKind {
     match error {
         ImageError::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => PictureErrorKind::Io(error),
+        error @ ImageError::Unsupported(_) => PictureErrorKind::UnsupportedKind(error),
         error => PictureErrorKind::Damaged(error),
     }
 }

@@ -133,6 +133,10 @@ pub enum PictureErrorKind {
     /// The file ends within the picture.
     #[error("the picture is damaged: the file ends within it")]
     CutShort,
+    /// A picture that is whole, of a kind that its format allows but that is not read here, such as a CMYK TIFF with a plane for
+    /// each ink.
+    #[error("a picture of this kind is not read here: {0}")]
+    UnsupportedKind(#[source] ImageError),
     /// The file ends early or contradicts itself.
     #[error("the picture is damaged: {0}")]
     Damaged(#[source] ImageError),

@@ -16,6 +16,19 @@ const REFINEMENTS: usize = 3;
 /// each step of false position reduces the error in proportion to the curvature of f within the cell. Values that are not
 /// numbers count as positive. No lines where the rectangle is a point or not finite, or `cells` is 0.
 pub fn of_function(f: impl Fn(&Point2<f64>) -> f64, within: &Rectangle, cells: usize) -> Vec<Vec<Point2<f64>>> {
+    let row = |xs: &[f64], y: f64, values: &mut [f64]| {
+        values.iter_mut().zip(xs).for_each(|(value, x)| *value = f(&Point2::new(*x, y)));
+    };
+    of_rows(row, &f, within, cells)
+}
+
+/// As [`of_function`], with the values at the corners of the cells from `row`: those of f at all these x and one y.
+pub(crate) fn of_rows(
+    row: impl Fn(&[f64], f64, &mut [f64]),
+    f: impl Fn(&Point2<f64>) -> f64,
+    within: &Rectangle,
+    cells: usize,
+) -> Vec<Vec<Point2<f64>>> {
     let size = within.size();
     let cell = size.max() / cells as f64;
     if !(cell > 0.0 && cell.is_finite()) {
@@ -23,18 +36,17 @@ pub fn of_function(f: impl Fn(&Point2<f64>) -> f64, within: &Rectangle, cells: u
     }
     let count = |length: f64| ((length / cell).ceil() as usize).clamp(1, cells);
     let (columns, rows) = (count(size.x), count(size.y));
-    let position = |[column, row]: Node| {
-        Point2::new(
-            within.low.x + size.x * column as f64 / columns as f64,
-            within.low.y + size.y * row as f64 / rows as f64,
-        )
-    };
-    let nodes = (0..=rows as i64).flat_map(|row| (0..=columns as i64).map(move |column| [column, row]));
-    let values: Vec<f64> = nodes.map(|node| f(&position(node))).collect();
-    let value = |[column, row]: Node| values[row as usize * (columns + 1) + column as usize];
-    let is_inside = |node: Node| value(node) < 0.0;
+    let xs: Vec<f64> = (0..=columns).map(|column| within.low.x + size.x * column as f64 / columns as f64).collect();
+    let ys: Vec<f64> = (0..=rows).map(|row| within.low.y + size.y * row as f64 / rows as f64).collect();
+    let mut values = vec![0.0; xs.len() * ys.len()];
+    values.chunks_exact_mut(xs.len()).zip(&ys).for_each(|(values, y)| row(&xs, *y, values));
+    let inside: Vec<bool> = values.iter().map(|value| *value < 0.0).collect();
+
+    let position = |[column, row]: Node| Point2::new(xs[column as usize], ys[row as usize]);
+    let index = |[column, row]: Node| row as usize * xs.len() + column as usize;
+    let value = |node: Node| values[index(node)];
     let joins_inside = |cell: Node| corners(cell).map(value).iter().sum::<f64>() < 0.0;
-    let grid = Grid { columns: columns + 1, rows: rows + 1, is_inside, joins_inside };
+    let grid = Grid { columns: xs.len(), rows: ys.len(), is_inside: |node| inside[index(node)], joins_inside };
 
     let crossing = |step: &Step| {
         let [from, to] = step.ascending();
@@ -44,7 +56,7 @@ pub fn of_function(f: impl Fn(&Point2<f64>) -> f64, within: &Rectangle, cells: u
         let first = line.steps.first().filter(|_| line.closed);
         line.steps.iter().chain(first).map(crossing).collect()
     };
-    grid.lines(starts(columns as i64, rows as i64)).into_iter().map(points).collect()
+    grid.lines(starts(columns, rows, &inside)).into_iter().map(points).collect()
 }
 
 /// Corners of a cell, counter-clockwise from the one of the lowest column and row.
@@ -52,15 +64,24 @@ fn corners([column, row]: Node) -> [Node; 4] {
     [[column, row], [column + 1, row], [column + 1, row + 1], [column, row + 1]]
 }
 
-/// Steps into the grid over its edge, then over the right side of every cell: the cell in which a closed line is first met,
-/// row by row, is entered or left there, since all cells to its left and below are free of the line.
-fn starts(columns: i64, rows: i64) -> impl Iterator<Item = Step> {
-    let cells = move || (0..rows).flat_map(move |row| (0..columns).map(move |column| [column, row]));
-    let over_edge = cells().flat_map(move |cell @ [column, row]| {
-        let is_at_edge = [row == 0, column + 1 == columns, row + 1 == rows, column == 0];
-        (0..4).filter(move |&side| is_at_edge[side]).map(move |side| step_into(cell, side))
+/// Steps into the grid over its edge, then over the right side of every cell that a line passes: the cell in which a closed line
+/// is first met, row by row, is entered or left there, since all cells to its left and below are free of the line.
+fn starts(columns: usize, rows: usize, inside: &[bool]) -> impl Iterator<Item = Step> {
+    let (last_column, last_row) = (columns - 1, rows - 1);
+    let over_edge = (0..rows).flat_map(move |row| {
+        let step = if row == 0 || row == last_row { 1 } else { last_column.max(1) };
+        (0..columns).step_by(step).flat_map(move |column| {
+            let is_at_edge = [row == 0, column == last_column, row == last_row, column == 0];
+            (0..4).filter(move |&side| is_at_edge[side]).map(move |side| step_into([column as i64, row as i64], side))
+        })
     });
-    over_edge.chain(cells().map(|cell| step_into(cell, 1)))
+    let nodes = columns + 1;
+    let pairs = inside.chunks_exact(nodes).zip(inside.chunks_exact(nodes).skip(1)).zip(0..);
+    let within = pairs.flat_map(move |((lower, upper), row)| {
+        let right_sides = lower[1..].iter().zip(&upper[1..]).zip(0..);
+        right_sides.filter(|((lower, upper), _)| lower != upper).map(move |(_, column)| step_into([column, row], 1))
+    });
+    over_edge.chain(within)
 }
 
 /// The step into a cell over its lower (0), right, upper or left (3) side.
@@ -91,6 +112,8 @@ fn refined_crossing(
 
 #[cfg(test)]
 mod tests {
+    use std::cell::Cell;
+
     use super::*;
     use proptest::prelude::*;
 
@@ -135,6 +158,25 @@ mod tests {
                 assert!((line[0] - line[1]).norm() < 1.5, "{line:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_function_is_evaluated_once_for_each_corner_and_three_times_for_each_crossing() {
+        let (by_row, by_point) = (Cell::new(0), Cell::new(0));
+        let row = |xs: &[f64], y: f64, values: &mut [f64]| {
+            by_row.set(by_row.get() + values.len());
+            values.iter_mut().zip(xs).for_each(|(value, x)| *value = ellipse(&Point2::new(*x, y)));
+        };
+        let f = |p: &Point2<f64>| {
+            by_point.set(by_point.get() + 1);
+            ellipse(p)
+        };
+        let lines = of_rows(row, f, &square(3.0), 160);
+        assert_eq!(by_row.get(), 161 * 161);
+        // The first point is repeated as the last, and may be found again.
+        let crossings = lines[0].len();
+        assert!((3 * crossings - 3..=3 * crossings).contains(&by_point.get()), "{} {crossings}", by_point.get());
+        assert_eq!(lines, of_function(ellipse, &square(3.0), 160));
     }
 
     #[test]

@@ -33,6 +33,7 @@ mod samples;
 mod walk;
 
 pub use function::of_function;
+pub(crate) use function::of_rows;
 pub use samples::{Crossing, LineTooLong, largest_of_samples, of_samples, signed_area};
 
 /// Where a value that goes linearly from one to another passes a level, as a share of the way, at least `clearance` from

@@ -164,8 +164,9 @@ impl EdgeSource<'_> {
         let mut moved: Vec<Point2<f64>> = (0..line.len()).map(|i| within(points[i] + shift(i))).collect();
         undo_crossings(&points, &mut moved);
         for (crossing, (moved, before)) in line.iter_mut().zip(moved.iter().zip(&points)) {
-            crossing.x += moved.x - before.x;
-            crossing.y += moved.y - before.y;
+            // The difference is rounded.
+            crossing.x = (crossing.x + (moved.x - before.x)).clamp(-0.5 - left as f64, right - left as f64);
+            crossing.y = (crossing.y + (moved.y - before.y)).clamp(-0.5 - top as f64, lower - top as f64);
         }
         Some(EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share })
     }
