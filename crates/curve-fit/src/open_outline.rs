@@ -151,10 +151,7 @@ mod tests {
 
     use super::*;
     use crate::Outline;
-
-    fn points(list: &[(f64, f64)]) -> Vec<Point2<f64>> {
-        list.iter().map(|&(x, y)| Point2::new(x, y)).collect()
-    }
+    use crate::points::points;
 
     #[test]
     fn points_on_one_line_up_to_rounding_are_refused_in_whole_and_in_arcs() {

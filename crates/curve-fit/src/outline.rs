@@ -209,10 +209,7 @@ impl From<OpenOutline> for Outline {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn points(list: &[(f64, f64)]) -> Vec<Point2<f64>> {
-        list.iter().map(|&(x, y)| Point2::new(x, y)).collect()
-    }
+    use crate::points::points;
 
     #[test]
     fn points_that_are_no_outline_are_refused_with_the_reason() {

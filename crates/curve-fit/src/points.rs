@@ -77,3 +77,9 @@ pub(crate) fn check_points(points: &[Point2<f64>], needed: usize) -> Result<(), 
     }
     Ok(())
 }
+
+/// Points for tests.
+#[cfg(test)]
+pub(crate) fn points(list: &[(f64, f64)]) -> Vec<Point2<f64>> {
+    list.iter().map(|&(x, y)| Point2::new(x, y)).collect()
+}

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use crate::support::{file, sequence, stderr};
+use crate::support::{file, sequence, small_pictures, stderr};
 
 /// Calls that can fail while an output is written, and what they fail with.
 const FAULTS: [(&str, &str); 5] = [
@@ -61,14 +61,7 @@ fn whichever_call_fails_every_output_is_the_old_or_the_new_one_and_nothing_else_
     }
     let input = tempfile::tempdir().expect("a folder");
     let csv = file(input.path(), "o.csv", sequence("--points 30 --seconds 0.2"));
-    let pictures = input.path().join("p");
-    fs::create_dir(&pictures).expect("a folder");
-    for frame in 0..2 {
-        let inside = |x: u32, y: u32| (9 + frame..40 + frame).contains(&x) && (12..40 + x / 8).contains(&y);
-        let shade = |x, y| image::Luma([if inside(x, y) { 230 } else { 9 }]);
-        image::GrayImage::from_fn(64, 64, shade).save(pictures.join(format!("{frame}.png"))).expect("a picture");
-    }
-    let pictures = pictures.display();
+    let pictures = small_pictures(input.path(), 2);
     let mut commands = vec![
         "simulate --points 200 --seconds 0.1 --output target".to_owned(),
         "simulate --pictures target-new --scene coin --seconds 0.05".to_owned(),

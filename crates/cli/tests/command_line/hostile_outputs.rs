@@ -4,7 +4,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::Command;
 
-use crate::support::{file, json, run, sequence, stderr, succeed};
+use crate::support::{file, json, run, sequence, small_pictures, stderr, succeed};
 
 fn refused(arguments: &str, reason: &str) {
     let output = run(arguments, &sequence(""));
@@ -88,14 +88,7 @@ fn wherever_writing_fails_old_files_stay_and_nothing_half_done_does() {
     let folder = tempfile::tempdir().expect("a folder");
     let input = tempfile::tempdir().expect("a folder");
     let csv = file(input.path(), "o.csv", sequence(""));
-    let pictures = input.path().join("p");
-    fs::create_dir(&pictures).expect("a folder");
-    for frame in 0..3 {
-        let inside = |x: u32, y: u32| (9 + frame..40 + frame).contains(&x) && (12..40 + x / 8).contains(&y);
-        let shade = |x, y| image::Luma([if inside(x, y) { 230 } else { 9 }]);
-        image::GrayImage::from_fn(64, 64, shade).save(pictures.join(format!("{frame}.png"))).expect("a picture");
-    }
-    let pictures = pictures.display();
+    let pictures = small_pictures(input.path(), 3);
     let target = folder.path().join("target.gif").display().to_string();
     let commands = [
         format!("simulate --seconds 0.2 --output {target}"),

@@ -60,3 +60,15 @@ pub(crate) fn file(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> Stri
     std::fs::write(&path, content).expect("a temporary file");
     path.to_str().expect("UTF-8").to_owned()
 }
+
+/// A new folder with so many small pictures of a body that moves by a pixel from each to the next; its path.
+pub(crate) fn small_pictures(base: &Path, count: u32) -> String {
+    let folder = base.join("p");
+    std::fs::create_dir(&folder).expect("a folder");
+    for frame in 0..count {
+        let inside = |x: u32, y: u32| (9 + frame..40 + frame).contains(&x) && (12..40 + x / 8).contains(&y);
+        let shade = |x, y| image::Luma([if inside(x, y) { 230 } else { 9 }]);
+        image::GrayImage::from_fn(64, 64, shade).save(folder.join(format!("{frame}.png"))).expect("a picture");
+    }
+    folder.display().to_string()
+}
