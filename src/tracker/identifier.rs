@@ -47,8 +47,8 @@ pub(super) struct FilteredObject {
 pub(super) struct Step {
     pub(super) phase: Option<ObjectPhase>,
     pub(super) estimate: Option<MotionEstimate>,
-    pub(super) plane: Option<PlaneEstimate>,
-    pub(super) plane_ambiguity: Option<PlaneAmbiguity>,
+    pub(super) plane: Option<Box<PlaneEstimate>>,
+    pub(super) plane_ambiguity: Option<Box<PlaneAmbiguity>>,
     pub(super) fit: Option<Fit>,
     pub(super) progress: Option<AdaptiveProgress>,
     pub(super) residual: Option<f64>,

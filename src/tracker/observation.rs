@@ -23,7 +23,7 @@ pub struct Observation {
     /// The motion estimated after the frame, in space if a camera scale is given. All numbers are finite. `None` if it is not known.
     pub estimate: Option<MotionEstimate>,
     /// The motion of a plane in space as known after the frame.
-    pub plane: Option<PlaneEstimate>,
+    pub plane: Option<Box<PlaneEstimate>>,
     /// Pose and motion with their joint covariance, in the image (motion filter). The state is the last one known: while the object is lost,
     /// its time is before that of the frame.
     pub state: Option<MotionState>,
@@ -38,7 +38,7 @@ pub struct Observation {
     /// Turns between which the outlines so far do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
     /// Two motions of a plane in space that the outlines so far do not decide between.
-    pub plane_ambiguity: Option<PlaneAmbiguity>,
+    pub plane_ambiguity: Option<Box<PlaneAmbiguity>>,
     /// The outline as far as it is known, in the image, for the objects of [`Tracker::with_known_outlines`](super::Tracker::with_known_outlines)
     /// (motion filter).
     pub known_outline: Option<Box<KnownOutline>>,
@@ -60,7 +60,7 @@ impl Observation {
     /// The parameters of the motion, whichever family it is of.
     #[must_use]
     pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {
-        parameters_of(self.estimate.as_ref(), self.plane.as_ref())
+        parameters_of(self.estimate.as_ref(), self.plane.as_deref())
     }
 }
 

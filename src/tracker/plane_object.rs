@@ -31,11 +31,11 @@ impl PlaneObject {
         self.last_known = estimate.or(self.last_known);
         Step {
             phase: Some(step.phase.into()),
-            plane: estimate,
+            plane: estimate.map(Box::new),
             residual: step.measurement.and_then(|measurement| measurement.noise),
             innovation: step.measurement.map(|measurement| measurement.innovation),
             state: self.filter.follower().state(),
-            plane_ambiguity: estimate.and_then(|_| self.filter.ambiguity()),
+            plane_ambiguity: estimate.and_then(|_| self.filter.ambiguity()).map(Box::new),
             rejected_because: step.rejection.map(RejectionCause::NotAccepted),
             ..Step::default()
         }

@@ -24,14 +24,14 @@ pub struct ObjectResult {
     /// and for a plane in space.
     pub estimate: Option<MotionEstimate>,
     /// The last known motion of a plane in space.
-    pub plane: Option<PlaneEstimate>,
+    pub plane: Option<Box<PlaneEstimate>>,
     /// Velocity of the middle of the object in the last frame, in space if a camera scale is given (motion filter). It may be known while
     /// the angular velocity is not observable, as for a circle.
     pub velocity: Option<PointVelocity>,
     /// Turns between which the outlines do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,
     /// Two motions of a plane in space that the outlines do not decide between.
-    pub plane_ambiguity: Option<PlaneAmbiguity>,
+    pub plane_ambiguity: Option<Box<PlaneAmbiguity>>,
     /// Other angular velocities, rad/s, that explain the outlines as well, because the outline has a symmetry (motion filter).
     pub aliases: Vec<f64>,
     /// Probabilities of the hypotheses of dynamics (motion filter, from the third frame on).
@@ -44,7 +44,7 @@ impl ObjectResult {
     /// The parameters of the motion, whichever family it is of; none where no motion was found.
     #[must_use]
     pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {
-        parameters_of(self.estimate.as_ref(), self.plane.as_ref())
+        parameters_of(self.estimate.as_ref(), self.plane.as_deref())
     }
 }
 

@@ -41,9 +41,9 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         accepted: observation.is_accepted(),
         parameters: observation.parameters().map(|found| Parameters(found, &[])),
         generator: estimate.and_then(generator_rows),
-        normal: observation.plane.as_ref().map(NormalJson::from),
+        normal: observation.plane.as_deref().map(NormalJson::from),
         reason: observation.rejection.as_ref().map(ToString::to_string),
-        ambiguity: ambiguity_json(observation.ambiguity.as_ref(), observation.plane_ambiguity.as_ref()),
+        ambiguity: ambiguity_json(observation.ambiguity.as_ref(), observation.plane_ambiguity.as_deref()),
     })
 }
 
@@ -58,9 +58,9 @@ pub(crate) fn closing_line(Left { seen, result }: &Left) -> serde_json::Result<S
         accepted: false,
         parameters: result.parameters().map(|found| Parameters(found, &[])),
         generator: result.estimate.as_ref().and_then(generator_rows),
-        normal: result.plane.as_ref().map(NormalJson::from),
+        normal: result.plane.as_deref().map(NormalJson::from),
         reason: Some("not seen for long, and forgotten".to_owned()),
-        ambiguity: ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_ref()),
+        ambiguity: ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_deref()),
     })
 }
 
@@ -156,10 +156,10 @@ impl Serialize for ObjectJson<'_> {
         }
         object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
         if result.motion == MotionFamily::Plane {
-            object.serialize_field("normal", &result.plane.as_ref().map(NormalJson::from))?;
+            object.serialize_field("normal", &result.plane.as_deref().map(NormalJson::from))?;
         }
         object.serialize_field("velocity", &result.velocity.as_ref().map(VelocityJson))?;
-        let ambiguity = ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_ref());
+        let ambiguity = ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_deref());
         object.serialize_field("ambiguity", &ambiguity)?;
         object.serialize_field("dynamics", &result.dynamics.map(DynamicsJson::from))?;
         let warnings: Vec<WarningJson> = result.warnings.iter().map(WarningJson::from).collect();

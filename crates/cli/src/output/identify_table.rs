@@ -68,7 +68,7 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &M
 
 /// The normal of a plane at the first frame, two rows; its z is 1.
 fn normal_rows(result: &ObjectResult, truth: Option<PlaneMotion>) -> [Vec<String>; 2] {
-    let normal = result.plane.as_ref().and_then(PlaneEstimate::normal);
+    let normal = result.plane.as_deref().and_then(PlaneEstimate::normal);
     let is_ambiguous = result.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&"normal"));
     let unknown = match &result.plane {
         Some(_) if is_ambiguous => "ambiguous",
