@@ -37,6 +37,8 @@ pub(crate) struct Input {
     /// The comment lines that the file begins with, without `#`.
     pub(crate) comments: Vec<String>,
     source: Source,
+    /// Standard input or a pipe.
+    is_stream: bool,
 }
 
 enum Source {
@@ -63,11 +65,12 @@ impl Input {
         }
         let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
         if path.as_os_str() == "-" {
-            return Self::from_source(Awaited::stdin(), name, options, waiting);
+            return Ok(Self { is_stream: true, ..Self::from_source(Awaited::stdin(), name, options, waiting)? });
         }
         // A pipe can be read once, whatever its name says.
         if fs::metadata(path).is_ok_and(|place| !place.is_file() && !place.is_dir()) {
-            return Self::from_source(Awaited::open(path.clone()), name, options, waiting);
+            let piped = Self::from_source(Awaited::open(path.clone()), name, options, waiting)?;
+            return Ok(Self { is_stream: true, ..piped });
         }
         if PictureSequence::is_named_by(path) {
             return Self::of_pictures(PictureInput::open(paths, options)?, name);
@@ -87,13 +90,13 @@ impl Input {
     }
 
     fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
-        Ok(Self { name, comments: Vec::new(), source: Source::Pictures(Box::new(pictures)) })
+        Ok(Self { name, comments: Vec::new(), source: Source::Pictures(Box::new(pictures)), is_stream: false })
     }
 
     fn of_file(file: Result<OutlineFile, ReadError>, name: String) -> Result<Self, Failure> {
         let file = file.map_err(|error| unreadable(&error))?;
         let comments = file.comments().lines().map(str::to_owned).collect();
-        Ok(Self { name, comments, source: Source::File(file) })
+        Ok(Self { name, comments, source: Source::File(file), is_stream: false })
     }
 
     fn of_polygons(
@@ -138,7 +141,7 @@ impl Input {
         // The head is read again with the rest, so that line numbers are right.
         let whole: Box<dyn Read> = Box::new(Cursor::new(head).chain(source));
         let outlines = OutlineReader::new(whole, name.clone()).map_err(|error| unreadable(&error))?;
-        Ok(Self { name, comments, source: Source::Csv(Box::new(outlines)) })
+        Ok(Self { name, comments, source: Source::Csv(Box::new(outlines)), is_stream: false })
     }
 
     /// The motion that the head of the file says it was simulated with.
@@ -149,6 +152,11 @@ impl Input {
     /// Number of frames, where it is known before they are read.
     pub(crate) fn frame_count(&self) -> Option<u64> {
         self.pictures().and_then(PictureInput::frame_count)
+    }
+
+    /// Whether it comes from standard input or a pipe, which may stand still.
+    pub(crate) fn is_stream(&self) -> bool {
+        self.is_stream
     }
 
     /// Whether the outlines come from pictures.

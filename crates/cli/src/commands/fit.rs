@@ -1,7 +1,9 @@
 use std::io;
 
 use freeform_motion::curve_fit::{Fitter, Outline};
+use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::tracker::FrameRanges;
+use rayon::prelude::*;
 
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
@@ -9,14 +11,20 @@ use crate::fitted_outline::FittedOutline;
 use crate::input::{Input, Waiting};
 use crate::left_out::MissingWarnings;
 use crate::output::{
-    Sink, WholeFile, fit_figure, refuse_overwriting, refuse_standard_output, write_fit_table, write_fits_json,
+    FitsJson, Sink, WholeFile, fit_figure, refuse_overwriting, refuse_standard_output, write_fit_table,
 };
 use crate::progress::Progress;
 use crate::seen::{Item, Missing};
 
+/// Outlines that are fitted side by side at most.
+const OUTLINES_AT_ONCE: usize = 64;
+
+/// Points of these outlines from which on no more are waited for.
+const POINTS_AT_ONCE: usize = 1 << 18;
+
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
-    let mut fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
+    let fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
     let outputs: Vec<_> = args.svg.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
     refuse_overwriting(&args.inputs, &outputs)?;
     refuse_standard_output(&outputs)?;
@@ -26,53 +34,47 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     input.tell_tracing();
     let mut sink = Sink::stdout();
     let mut collected = Collected::default();
-    let (mut reasons, mut first_missing, mut warnings) = (Vec::new(), None::<Missing>, MissingWarnings::default());
+    let (mut first_missing, mut warnings) = (None::<Missing>, MissingWarnings::default());
     let mut failure = None;
     let mut frames = FrameRanges::default();
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
+    // A stream may stand still: what has come is not kept waiting.
+    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
+    let mut waiting = Batch { input: &name, fitter, items: Vec::new(), points: 0 };
     for item in input {
         progress.advance();
-        let frame = match item {
-            Ok(Item::Outline(frame, _)) => frame,
+        match item {
+            Ok(Item::Outline(frame, _)) => {
+                frames.add(frame.frame);
+                if is_wanted(frame.frame) {
+                    waiting.add(Ok(frame));
+                }
+            }
             Ok(Item::NoOutline { reason, frame, .. }) => {
-                reasons.extend(Some(reason).filter(|_| is_wanted(frame)));
-                continue;
+                if is_wanted(frame) {
+                    waiting.add(Err(reason));
+                }
             }
             Ok(Item::Gap(missing)) => {
                 if is_wanted(missing.frame) {
-                    reasons.extend(warnings.take(&missing));
+                    warnings.take(&missing).into_iter().for_each(|reason| waiting.add(Err(reason)));
                     first_missing.get_or_insert(missing);
                 }
-                continue;
             }
             Err(error) => {
                 failure = Some(error);
                 break;
             }
-        };
-        frames.add(frame.frame);
-        if !is_wanted(frame.frame) {
-            continue;
         }
-        match fitter.fit_with_covariance(&frame.outline) {
-            Ok((fit, _)) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
-                let place = format!("{name}: frame {} of object {:?}", frame.frame, frame.object);
-                reasons.push(format!("{place}: a coefficient overflows, the outline is too small or too far away"));
-            }
-            Ok((fit, covariance)) => {
-                let stray_parts = fit.stray_places(&frame.outline);
-                let fitted = FittedOutline::new(&frame, fit).with_deviations(&covariance);
-                let fitted = FittedOutline { stray_parts, ..fitted };
-                collected.take(args, &mut sink, fitted, frame.outline).map_err(|error| sink.failure(&error))?;
-            }
-            Err(error) => {
-                reasons.push(format!("{name}: frame {} of object {:?}: {error}", frame.frame, frame.object));
-            }
+        if waiting.items.len() >= at_once || waiting.points >= POINTS_AT_ONCE {
+            collected.take_all(args, &mut sink, waiting.fit()).map_err(|error| sink.failure(&error))?;
         }
     }
+    collected.take_all(args, &mut sink, waiting.fit()).map_err(|error| sink.failure(&error))?;
     drop(progress);
-    if collected.count == 0 {
+    let Collected { count, with_stray_parts, mut reasons, json, drawn } = collected;
+    if count == 0 {
         let nothing = match (reasons.into_iter().next(), first_missing, args.frame) {
             (_, Some(missing), _) => missing.into_failure(),
             (Some(reason), None, _) => Failure::no_result(reason),
@@ -85,45 +87,103 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     }
     reasons.extend(warnings.finish());
     reasons.iter().for_each(|reason| warn(reason));
-    if let Collected { with_stray_parts: with @ 1.., count, .. } = collected {
+    if with_stray_parts > 0 {
         warn(&format!(
-            "{with} of {count} curve(s) have a stray part away from the outline, where the polynomial is zero too"
+            "{with_stray_parts} of {count} curve(s) have a stray part away from the outline, where the polynomial is zero too"
         ));
     }
     if args.format == FitFormat::Json {
-        write_fits_json(&mut sink, &collected.fits).map_err(|error| sink.failure(&error))?;
+        json.finish(&mut sink).map_err(|error| sink.failure(&error))?;
     }
     let printed = sink.finish();
     if let Some(file) = svg {
-        file.finish_with(fit_figure(&collected.drawn).as_bytes())?;
+        file.finish_with(fit_figure(&drawn).as_bytes())?;
     }
     failure.map_or(printed, Err)
 }
 
-/// What is kept of the outlines while they are read.
+/// Outlines that wait to be fitted, and why others are none, in their order.
+struct Batch<'a> {
+    /// Name of the input, for messages.
+    input: &'a str,
+    fitter: Fitter,
+    items: Vec<Result<OutlineFrame, String>>,
+    /// Points of the outlines.
+    points: usize,
+}
+
+impl Batch<'_> {
+    fn add(&mut self, item: Result<OutlineFrame, String>) {
+        self.points += item.as_ref().map_or(0, |frame| frame.outline.point_count());
+        self.items.push(item);
+    }
+
+    /// The fits of all that wait, computed on all cores; none waits after that.
+    fn fit(&mut self) -> Vec<Result<(FittedOutline, Outline), String>> {
+        self.points = 0;
+        let items = std::mem::take(&mut self.items);
+        let fitted = items.into_par_iter().map_init(
+            || self.fitter.clone(),
+            |fitter, item| {
+                let frame = item?;
+                let told = |reason: String| {
+                    Err(format!("{}: frame {} of object {:?}: {reason}", self.input, frame.frame, frame.object))
+                };
+                match fitter.fit_with_covariance(&frame.outline) {
+                    Ok((fit, _)) if !fit.polynomial().coefficients().iter().all(|a| a.is_finite()) => {
+                        told("a coefficient overflows, the outline is too small or too far away".to_owned())
+                    }
+                    Ok((fit, covariance)) => {
+                        let stray_parts = fit.stray_places(&frame.outline);
+                        let fitted = FittedOutline::new(&frame, fit).with_deviations(&covariance);
+                        Ok((FittedOutline { stray_parts, ..fitted }, frame.outline))
+                    }
+                    Err(error) => told(error.to_string()),
+                }
+            },
+        );
+        fitted.collect()
+    }
+}
+
+/// What has come of the outlines so far.
 #[derive(Default)]
 struct Collected {
     count: usize,
     with_stray_parts: usize,
-    /// All fits, where they are printed together in the end.
-    fits: Vec<FittedOutline>,
-    /// Those of the first frame, where they are drawn.
+    /// Why there is no fit of some.
+    reasons: Vec<String>,
+    json: FitsJson,
+    /// Fits of the first frame, where they are drawn.
     drawn: Vec<(FittedOutline, Outline)>,
 }
 
 impl Collected {
+    fn take_all(
+        &mut self,
+        args: &FitArgs,
+        sink: &mut Sink,
+        fitted: Vec<Result<(FittedOutline, Outline), String>>,
+    ) -> io::Result<()> {
+        for fitted in fitted {
+            match fitted {
+                Ok((fitted, outline)) => self.take(args, sink, fitted, outline)?,
+                Err(reason) => self.reasons.push(reason),
+            }
+        }
+        Ok(())
+    }
+
     fn take(&mut self, args: &FitArgs, sink: &mut Sink, fitted: FittedOutline, outline: Outline) -> io::Result<()> {
-        if args.format == FitFormat::Table {
-            write_fit_table(sink, &fitted, self.count > 0)?;
+        match args.format {
+            FitFormat::Table => write_fit_table(sink, &fitted, self.count > 0)?,
+            FitFormat::Json => self.json.write(sink, &fitted)?,
         }
         self.count += 1;
         self.with_stray_parts += usize::from(!fitted.stray_parts.is_empty());
         let is_of_first_frame = self.drawn.first().is_none_or(|(first, _)| first.frame == fitted.frame);
         if args.svg.is_some() && is_of_first_frame {
-            self.drawn.push((fitted.clone(), outline));
-        }
-        if args.format == FitFormat::Json {
-            self.fits.push(fitted);
+            self.drawn.push((fitted, outline));
         }
         Ok(())
     }

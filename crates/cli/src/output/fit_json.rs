@@ -6,11 +6,26 @@ use serde_json::{Map, Value, json};
 
 use crate::fitted_outline::{Deviations, FittedOutline, Parts};
 
-/// The fits as one JSON object.
-pub(crate) fn write_fits_json(sink: &mut impl Write, fits: &[FittedOutline]) -> io::Result<()> {
-    let outlines: Vec<Value> = fits.iter().map(outline_json).collect();
-    serde_json::to_writer_pretty(&mut *sink, &json!({"schema": "freeform.fit/1", "outlines": outlines}))?;
-    writeln!(sink)
+/// Writes fits one by one as one JSON object, so that they need not be held.
+#[derive(Debug, Default)]
+pub(crate) struct FitsJson {
+    is_begun: bool,
+}
+
+impl FitsJson {
+    /// Writes the next fit.
+    pub(crate) fn write(&mut self, sink: &mut impl Write, fitted: &FittedOutline) -> io::Result<()> {
+        let text = serde_json::to_string_pretty(&outline_json(fitted))?;
+        let before = if self.is_begun { "," } else { "{\n  \"outlines\": [" };
+        self.is_begun = true;
+        // Text of JSON has no line breaks of its own.
+        write!(sink, "{before}\n    {}", text.replace('\n', "\n    "))
+    }
+
+    /// Writes the end, after at least one fit.
+    pub(crate) fn finish(self, sink: &mut impl Write) -> io::Result<()> {
+        writeln!(sink, "\n  ],\n  \"schema\": \"freeform.fit/1\"\n}}")
+    }
 }
 
 fn outline_json(fitted: &FittedOutline) -> Value {

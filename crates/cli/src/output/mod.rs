@@ -33,7 +33,7 @@ pub(crate) use evaluate_markdown::write_evaluation_markdown;
 pub(crate) use evaluate_table::{Evaluated, write_evaluation_table};
 pub(crate) use figures::{fit_figure, parameter_figure};
 pub(crate) use file::{Sink, WholeFile};
-pub(crate) use fit_json::write_fits_json;
+pub(crate) use fit_json::FitsJson;
 pub(crate) use fit_table::write_fit_table;
 pub(crate) use html::{Findings, Report, write_report};
 pub(crate) use identify_json::{closing_line, track_line, write_identify_json};
