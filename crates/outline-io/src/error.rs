@@ -159,6 +159,18 @@ pub enum ReadErrorKind {
         /// Most points that are held.
         limit: usize,
     },
+    /// Nearly all outlines of a file are copies of each other, and very many.
+    #[error(
+        "more than {outlines} outlines or {points} points, which is too much for a file of {length} bytes: nearly all are copies of each other; as CSV they are read"
+    )]
+    UnpacksToTooMuch {
+        /// Most outlines that are read of a file of this length.
+        outlines: u64,
+        /// Most points.
+        points: u64,
+        /// Length of the file in bytes.
+        length: u64,
+    },
     /// Nothing in the file but comments and blank lines.
     #[error("the file is empty, expected a header such as frame,time,x,y")]
     Empty,

@@ -68,6 +68,8 @@ mod parquet_columns;
 #[cfg(feature = "parquet")]
 mod parquet_leaf;
 #[cfg(feature = "parquet")]
+mod parquet_limit;
+#[cfg(feature = "parquet")]
 mod parquet_pages;
 #[cfg(feature = "parquet")]
 mod parquet_reader;

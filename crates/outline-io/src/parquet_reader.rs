@@ -12,6 +12,7 @@ use crate::natural_order::natural_order;
 use crate::outline_rows::OutlineRows;
 use crate::parquet_batch::{Batch, Marks, NO_MARK};
 use crate::parquet_columns::{Layout, Needed};
+use crate::parquet_limit::Unpacked;
 use crate::parquet_source::Source;
 use crate::parquet_table::{Batches, Table, Wanted};
 
@@ -47,6 +48,7 @@ pub struct ParquetReader {
     /// Arc and contour of the latest point.
     mark: (i64, i64),
     latest: LatestFrames,
+    unpacked: Unpacked,
     /// Comes after the outline that was complete before it.
     failure: Option<ReadError>,
     ended: bool,
@@ -94,6 +96,7 @@ impl ParquetReader {
     fn of(table: Table) -> Result<Self, ReadError> {
         let batches = table.batches(Wanted::All);
         let (batch, latest) = (Batch::default(), LatestFrames::default());
+        let unpacked = Unpacked::of_file(table.length());
         let mut reader = Self {
             table,
             batches,
@@ -103,6 +106,7 @@ impl ParquetReader {
             present: None,
             mark: (NO_MARK, NO_MARK),
             latest,
+            unpacked,
             failure: None,
             ended: false,
         };
@@ -244,6 +248,7 @@ impl ParquetReader {
                 return Err(self.error(row, Some(Column::Time), kind));
             }
         }
+        self.unpacked.add_outline().map_err(|kind| self.error(row, None, kind))?;
         self.latest.set(&object, (frame, time));
         let number = self.number(row);
         Ok(self.present.replace(OutlineRows::new(frame, time, object, number, self.batch.points(row).len())))
@@ -254,6 +259,7 @@ impl ParquetReader {
         let number = self.number(row);
         let Some(present) = &mut self.present else { return Ok(()) };
         let points = self.batch.points(row);
+        self.unpacked.add_points(points.len()).map_err(|kind| (None, kind))?;
         let mark = |marks: &Marks, point: usize| match marks {
             Marks::None => NO_MARK,
             Marks::OfRows(marks) => marks[row],

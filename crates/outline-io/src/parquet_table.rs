@@ -64,6 +64,11 @@ impl Table {
         Ok(Self { file, source: Arc::new(source), metadata: Arc::new(metadata), columns })
     }
 
+    /// Length of the file in bytes.
+    pub(crate) fn length(&self) -> u64 {
+        parquet::file::reader::Length::len(self.source.as_ref())
+    }
+
     /// The comment lines that the file was written with.
     pub(crate) fn comments(&self) -> Option<&str> {
         let all = self.metadata.file_metadata().key_value_metadata()?;

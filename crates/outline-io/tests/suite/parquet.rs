@@ -166,6 +166,26 @@ fn no_changed_byte_brings_the_reader_down() {
 }
 
 #[test]
+fn a_short_file_with_very_many_copies_of_an_outline_ends_with_a_word() {
+    let triangle = Outline::closed([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point2::new(x, y)).to_vec());
+    let triangle = triangle.expect("an outline");
+    let at_rest =
+        |frame: u64| OutlineFrame { frame, time: frame as f64, object: "0".into(), outline: triangle.clone() };
+    let frames: Vec<_> = (0..120_000).map(at_rest).collect();
+    let bytes = parquet_of(&frames, WriterOptions::default());
+    let mut reader = ParquetReader::from_bytes(bytes.clone(), "test").expect("a table");
+    let limit = (1 << 15) + bytes.len() / 32;
+    assert!(limit < frames.len(), "{limit}");
+    let read: Vec<_> = reader.by_ref().take_while(Result::is_ok).collect();
+    assert_eq!(read.len(), limit);
+    let error = ParquetReader::from_bytes(bytes, "test").expect("a table").find_map(Result::err).expect("an error");
+    assert!(
+        matches!(error.kind, ReadErrorKind::UnpacksToTooMuch { outlines, .. } if outlines as usize == limit),
+        "{error}"
+    );
+}
+
+#[test]
 fn a_schema_without_end_is_refused() {
     // FileMetaData with a version and a schema of so many groups of one child within each other.
     let depth = 100_000_u32;
