@@ -22,6 +22,7 @@ const NORMAL_HALF_WINDOW: f64 = 0.02;
 
 /// Where the working coordinates of the last frame were, and the outline in them as it was last seen whole, or first seen.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct FollowedPose {
     /// The family that changes of the pose are in.
     model: MotionModel,
@@ -47,6 +48,19 @@ impl FollowedPose {
             .unzip();
         let image_from_working = nalgebra::convert(image_from_working);
         Self { model, time, image_from_working, points, normals, is_whole: matches!(outline, Outline::Closed(_)) }
+    }
+
+    /// Whether it can have come from outlines of an object that is followed in this family.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_of(&self, model: MotionModel) -> bool {
+        let Self { time, image_from_working, points, normals, .. } = self;
+        let coordinates = points.iter().map(|p| p.coords).chain(normals.iter().copied());
+        self.model == model
+            && time.is_finite()
+            && is_regular(image_from_working.matrix())
+            && (1..=REFERENCE_POINTS).contains(&points.len())
+            && points.len() == normals.len()
+            && { coordinates }.all(|v| v.iter().all(|c| c.is_finite()))
     }
 
     /// Seconds since the last frame.
@@ -171,4 +185,10 @@ pub(crate) fn in_working(outline: &Outline, pose: &Projective2<f64>) -> Result<O
             Outline::Open(OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?)?)
         }
     })
+}
+
+/// Whether a map of the plane has finite numbers and an inverse.
+#[cfg(feature = "serde")]
+pub(crate) fn is_regular(map: &Matrix3<f64>) -> bool {
+    map.iter().all(|entry| entry.is_finite()) && map.try_inverse().is_some()
 }

@@ -34,10 +34,13 @@
 mod adaptive_progress;
 mod followed_pose;
 mod frame_ranges;
+mod matched_frame;
 mod number;
 mod pipeline;
 mod pipeline_error;
 mod pipeline_settings;
+#[cfg(feature = "serde")]
+mod pipeline_state;
 mod rectification;
 mod rejection;
 mod settling;

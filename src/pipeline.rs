@@ -1,7 +1,5 @@
 use freeform_curve_fit::{Fit, FitError, Fitter, Normalisation, Normalise, Outline};
-use freeform_decompose::{
-    Correspondence, CorrespondenceError, Criterion, Decomposition, DecompositionError, Line, MAX_PAIRS,
-};
+use freeform_decompose::{Correspondence, Decomposition, DecompositionError};
 use freeform_estimate::MotionEstimate;
 use freeform_identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, IdentifyError};
 use freeform_riccati::{MotionModel, moved_line};
@@ -10,14 +8,13 @@ use nalgebra::{Affine2, Matrix3, Point2, Projective2, Translation2};
 use crate::{
     adaptive_progress::AdaptiveProgress,
     followed_pose::{FollowedPose, in_working},
+    matched_frame::{MatchedFrame, Matches},
     pipeline_error::PipelineError,
     pipeline_settings::PipelineSettings,
     settling::Settling,
     warning::{MANY_REJECTED, Warning},
 };
 
-/// A match by continuity is ambiguous where the second best pairing is less than twice as far away (costs are squares).
-const AMBIGUOUS_COST_RATIO: f64 = 4.0;
 /// Share of ambiguous matches that is worth a warning.
 const MANY_AMBIGUOUS: f64 = 0.03;
 /// Share of intervals over which the lines could not be followed that is worth a warning.
@@ -52,36 +49,22 @@ pub struct FrameResult {
 /// lines that the identifier follows are those, moved to the image by the same map.
 #[derive(Debug, Clone)]
 pub struct Pipeline {
-    settings: PipelineSettings,
-    fitter: Fitter,
-    identifier: AdaptiveIdentifier,
+    pub(crate) settings: PipelineSettings,
+    pub(crate) fitter: Fitter,
+    pub(crate) identifier: AdaptiveIdentifier,
     /// From the coordinates of the identifier to those of the image; `None` before the first good frame.
-    image_from_identifier: Option<Affine2<f64>>,
+    pub(crate) image_from_identifier: Option<Affine2<f64>>,
     /// From the coordinates that the identifier had at the start to its present ones.
-    identifier_from_start: Translation2<f64>,
-    last: Option<MatchedFrame>,
+    pub(crate) identifier_from_start: Translation2<f64>,
+    pub(crate) last: Option<MatchedFrame>,
     /// Of an object that is followed affinely or projectively.
-    pose: Option<FollowedPose>,
-    frames: usize,
-    frames_rejected: usize,
-    counts: Counts,
-    settling: Settling,
-}
-
-/// What the warnings are drawn from.
-#[derive(Debug, Clone, Copy, Default)]
-struct Counts {
+    pub(crate) pose: Option<FollowedPose>,
+    pub(crate) frames: usize,
+    pub(crate) frames_rejected: usize,
     /// Frames whose curve has (nearly) coincident lines.
-    without_separate_lines: usize,
-    matched: usize,
-    ambiguous: usize,
-}
-
-/// The lines of a frame and in which order its pairs continue those of the first frame.
-#[derive(Debug, Clone, Copy)]
-struct MatchedFrame {
-    decomposition: Decomposition,
-    order: [usize; MAX_PAIRS],
+    pub(crate) without_separate_lines: usize,
+    pub(crate) matches: Matches,
+    pub(crate) settling: Settling,
 }
 
 impl Pipeline {
@@ -101,7 +84,8 @@ impl Pipeline {
             pose: None,
             frames: 0,
             frames_rejected: 0,
-            counts: Counts::default(),
+            without_separate_lines: 0,
+            matches: Matches::default(),
             settling: Settling::default(),
         })
     }
@@ -115,7 +99,7 @@ impl Pipeline {
         self.frames += 1;
         let result = self.take(time, outline);
         self.frames_rejected += usize::from(result.is_err());
-        self.counts.without_separate_lines += usize::from(result.as_ref().is_err_and(has_no_separate_lines));
+        self.without_separate_lines += usize::from(result.as_ref().is_err_and(has_no_separate_lines));
         result.map(|result| FrameResult { estimate: self.estimate(), ..result })
     }
 
@@ -135,9 +119,12 @@ impl Pipeline {
                 Some(pose) => self.decomposed_in(outline, pose)?,
                 None => working,
             };
-            self.matched(there, 1.0)?
+            MatchedFrame::after(self.last.as_ref(), there, 1.0)?
         } else {
-            self.matched(working.moved(&(image_from_identifier.inverse() * image_from_working))?, self.settings.size)?
+            {
+                let there = working.moved(&(image_from_identifier.inverse() * image_from_working))?;
+                MatchedFrame::after(self.last.as_ref(), there, self.settings.size)?
+            }
         };
         let (mut lines, count) = matched.lines();
         if self.is_projective() {
@@ -152,7 +139,7 @@ impl Pipeline {
         self.image_from_identifier = Some(image_from_identifier);
         self.last = Some(matched);
         self.remember_pose(time, outline, normalisation, pose);
-        self.counts.take(correspondence.as_ref());
+        self.matches.take(correspondence.as_ref());
         let start_from_identifier = nalgebra::convert(self.identifier_from_start.inverse());
         let at_start = self.identifier.estimate().map(|estimate| estimate.in_coordinates(&start_from_identifier));
         self.settling.take(time, at_start);
@@ -271,28 +258,13 @@ impl Pipeline {
         self.image_from_identifier = Some(image_from_identifier * moved);
     }
 
-    /// Finds which pair continues which, in coordinates in which the first outline has this RMS radius.
-    fn matched(
-        &self,
-        decomposition: Decomposition,
-        radius: f64,
-    ) -> Result<(MatchedFrame, Option<Correspondence>), CorrespondenceError> {
-        let mut order = [0, 1, 2, 3];
-        let Some(last) = &self.last else { return Ok((MatchedFrame { decomposition, order }, None)) };
-        let correspondence = Correspondence::between(&last.decomposition, &decomposition, radius)?;
-        for (slot, &before) in order.iter_mut().zip(&last.order).take(correspondence.permutation().len()) {
-            *slot = correspondence.permutation()[before];
-        }
-        Ok((MatchedFrame { decomposition, order }, Some(correspondence)))
-    }
-
     /// The motion as identified so far, in the image frame; `None` before the lines were followed from one frame to the
     /// next. Parameters of which the
     /// outlines tell nothing are marked unobservable: all of them for a circle.
     #[must_use]
     pub fn estimate(&self) -> Option<MotionEstimate> {
         let identified = self.identified();
-        if self.frames < 2 || 2 * self.counts.without_separate_lines <= self.frames {
+        if self.frames < 2 || 2 * self.without_separate_lines <= self.frames {
             return identified;
         }
         let model = self.settings.identify.model;
@@ -306,6 +278,12 @@ impl Pipeline {
     fn identified(&self) -> Option<MotionEstimate> {
         let map = self.image_from_identifier.as_ref()?;
         Some(self.identifier.estimate()?.in_coordinates(map))
+    }
+
+    /// Its settings.
+    #[must_use]
+    pub fn settings(&self) -> &PipelineSettings {
+        &self.settings
     }
 
     /// The identifier, for its diagnostics. Its estimate is in its own coordinates, not in those of the image.
@@ -345,7 +323,7 @@ impl Pipeline {
         if skipped as f64 > MANY_NOT_FOLLOWED * intervals as f64 {
             warnings.push(Warning::LinesNotFollowed { skipped, intervals });
         }
-        let Counts { ambiguous, matched, .. } = self.counts;
+        let Matches { ambiguous, all: matched } = self.matches;
         if ambiguous as f64 > MANY_AMBIGUOUS * matched as f64 {
             warnings.push(Warning::AmbiguousCorrespondence { ambiguous, matched });
         }
@@ -364,21 +342,9 @@ impl Pipeline {
     }
 }
 
-impl Counts {
-    fn take(&mut self, correspondence: Option<&Correspondence>) {
-        let Some(matching) = correspondence else { return };
-        self.matched += 1;
-        // The order of the values settles the rest, whatever the turn.
-        self.ambiguous += usize::from(
-            matching.decided_by() == Criterion::Continuity
-                && matching.runner_up_cost() < AMBIGUOUS_COST_RATIO * matching.continuity_cost(),
-        );
-    }
-}
-
 /// The family that the pose of an object is followed in where its motion is identified in another: affine at least, since that is
 /// what outlines are normalised by.
-fn follow_by(model: MotionModel) -> MotionModel {
+pub(crate) fn follow_by(model: MotionModel) -> MotionModel {
     model.max(MotionModel::Affine)
 }
 
@@ -403,20 +369,4 @@ fn affine_about_origin(map: &Projective2<f64>) -> Affine2<f64> {
 fn has_no_separate_lines(error: &PipelineError) -> bool {
     use DecompositionError::{CircularLeadingForm, NearDoubleLines};
     matches!(error, PipelineError::Decomposition(CircularLeadingForm { .. } | NearDoubleLines { .. }))
-}
-
-impl MatchedFrame {
-    /// One line of each conjugate pair, in the order of the first frame, and how many there are.
-    fn lines(&self) -> ([Line; MAX_PAIRS], usize) {
-        let pairs = self.decomposition.conjugate_pairs(self.decomposition.degree().value());
-        let mut found = [self.decomposition.level(self.decomposition.degree().value())[0]; MAX_PAIRS];
-        let mut count = 0;
-        for (slot, line) in found.iter_mut().zip(pairs) {
-            *slot = *line;
-            count += 1;
-        }
-        let mut ordered = found;
-        ordered.iter_mut().zip(&self.order).take(count).for_each(|(slot, &pair)| *slot = found[pair]);
-        (ordered, count)
-    }
 }

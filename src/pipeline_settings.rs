@@ -9,6 +9,7 @@ const RMS_RADIUS: f64 = 0.6;
 
 /// Settings of a [`Pipeline`](crate::Pipeline).
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PipelineSettings {
     /// How a curve is fitted to every outline.
     pub fit: FitSettings,

@@ -1,4 +1,6 @@
 use freeform_estimate::MotionEstimate;
+#[cfg(feature = "serde")]
+use freeform_riccati::MotionModel;
 use nalgebra::DVector;
 
 /// Seconds that the adaptive laws take at least, with the paper's gains.
@@ -11,6 +13,7 @@ const SPACING: f64 = 1.5;
 /// Whether the parameters of a run have stopped to drift, in constant memory: estimates of the past are kept at times that
 /// grow geometrically.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Settling {
     began: Option<f64>,
     older: Option<Kept>,
@@ -19,6 +22,7 @@ pub(crate) struct Settling {
 }
 
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Kept {
     seconds: f64,
     estimate: MotionEstimate,
@@ -45,5 +49,18 @@ impl Settling {
             (&now - before).norm() > DRIFT * now.norm()
         });
         (latest.seconds < SHORTEST || drifts).then_some(latest.seconds)
+    }
+
+    /// Whether it can have come from estimates of this model.
+    #[cfg(feature = "serde")]
+    pub(crate) fn is_of(&self, model: MotionModel) -> bool {
+        let kept = [self.older, self.newer, self.latest];
+        let is_sound = |kept: &Kept| {
+            kept.seconds.is_finite()
+                && kept.seconds >= 0.0
+                && kept.estimate.model() == model
+                && kept.estimate.is_finite()
+        };
+        self.began.is_none_or(f64::is_finite) && kept.iter().flatten().all(is_sound)
     }
 }

@@ -10,11 +10,11 @@ use super::{
     contour_order::{ContourOrder, FRAMES},
     identifier::{FilteredObject, Identifier},
     object::{KnownOutlines, REJECTIONS_KEPT, TrackedObject},
-    settings::{Method, MethodSettings, TrackerSettings},
+    settings::{MethodSettings, TrackerSettings},
 };
 use crate::frame_ranges::FrameRanges;
 use crate::rejection::{FrameRejection, RejectionCause};
-use crate::{Rectification, Warning};
+use crate::{Pipeline, PipelineSettings, Rectification, Warning};
 
 /// What the bytes hold, behind the version.
 const KIND: [u8; 4] = *b"trak";
@@ -25,12 +25,6 @@ const MOST_COUNTED: usize = 1 << 48;
 /// Why a tracker cannot be saved or restored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum TrackerStateError {
-    /// The method has no saved state.
-    #[error("objects followed by the method {method} cannot be saved, those of the motion filter can")]
-    Method {
-        /// The method of the tracker.
-        method: Method,
-    },
     /// The motion of a plane in space, which is that of all frames together, has no saved state.
     #[error("objects whose motion in space is followed cannot be saved, those whose motion in the picture is can")]
     Plane,
@@ -42,20 +36,32 @@ pub enum TrackerStateError {
 /// What is saved.
 #[derive(Serialize, Deserialize)]
 struct SavedTracker {
-    settings: FilterSettings,
+    method: SavedMethod,
     scale: Option<f64>,
     /// From the picture to the plane.
     rectification: Option<Matrix3<f64>>,
     objects: Vec<SavedObject>,
 }
 
+/// The method and its settings.
+#[derive(Clone, Serialize, Deserialize)]
+enum SavedMethod {
+    Filter(FilterSettings),
+    Adaptive(Box<PipelineSettings>),
+}
+
+/// What is known of an object. States have a header of their own.
+#[derive(Serialize, Deserialize)]
+enum SavedIdentifier {
+    Filter { state: Vec<u8>, last_known: Option<(f64, MotionEstimate)> },
+    Adaptive { state: Vec<u8> },
+}
+
 /// What is saved of an object.
 #[derive(Serialize, Deserialize)]
 struct SavedObject {
     name: String,
-    /// With a header of its own.
-    filter: Vec<u8>,
-    last_known: Option<(f64, MotionEstimate)>,
+    identifier: SavedIdentifier,
     frames_looked_at: usize,
     /// Frame and length of the line through its points.
     out_of_order: Option<(u64, f64)>,
@@ -105,17 +111,17 @@ impl Tracker {
     /// ```
     ///
     /// # Errors
-    /// Another method than the motion filter.
+    /// The motion of a plane in space, and a state that waits in a file and cannot be had back.
     pub fn to_bytes(&self) -> Result<Vec<u8>, TrackerStateError> {
         let TrackerSettings { method, scale, rectification } = &self.settings;
-        let settings = match method {
-            MethodSettings::Filter(settings) => settings,
+        let method = match method {
+            MethodSettings::Filter(settings) => SavedMethod::Filter(*settings),
+            MethodSettings::Adaptive(settings) => SavedMethod::Adaptive(settings.clone()),
             MethodSettings::Plane(..) => return Err(TrackerStateError::Plane),
-            MethodSettings::Adaptive(_) => return Err(TrackerStateError::Method { method: self.settings.method() }),
         };
         let objects = self.objects.list.iter().map(saved).collect::<Result<_, _>>()?;
         let state = SavedTracker {
-            settings: *settings,
+            method,
             scale: scale.map(CameraScale::value),
             rectification: rectification.map(|plane| *plane.plane_from_picture()),
             objects,
@@ -138,11 +144,15 @@ impl Tracker {
         let scale = state.scale.map(CameraScale::new).transpose().map_err(|_| inconsistent("settings"))?;
         let plane = |map: Matrix3<f64>| Rectification::new(&Projective2::from_matrix_unchecked(map));
         let rectification = state.rectification.map(plane).transpose().map_err(|_| inconsistent("settings"))?;
-        let settings = TrackerSettings { method: MethodSettings::Filter(state.settings), scale, rectification };
+        let method = match state.method {
+            SavedMethod::Filter(settings) => MethodSettings::Filter(settings),
+            SavedMethod::Adaptive(settings) => MethodSettings::Adaptive(settings),
+        };
+        let settings = TrackerSettings { method, scale, rectification };
         let mut tracker = Self::new(settings.clone()).map_err(|_| inconsistent("settings"))?;
         let mut objects = Objects::default();
         for saved in state.objects {
-            let object = restored(saved, state.settings, &settings)?;
+            let object = restored(saved, &settings)?;
             if objects.positions.insert(object.name().to_owned(), objects.list.len()).is_some() {
                 return Err(inconsistent("two objects of one name").into());
             }
@@ -156,8 +166,12 @@ impl Tracker {
 fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
     let lost = |_| StateError::Inconsistent { part: "what an object left in a file" };
     let awake = object.identifier.awake().map_err(lost)?;
-    let Identifier::Filter(filtered) = awake.as_ref().unwrap_or(&object.identifier) else {
-        return Err(TrackerStateError::Method { method: Method::Adaptive });
+    let identifier = match awake.as_ref().unwrap_or(&object.identifier) {
+        Identifier::Filter(filtered) => {
+            SavedIdentifier::Filter { state: filtered.filter.to_bytes()?, last_known: filtered.last_known }
+        }
+        Identifier::Adaptive(pipeline) => SavedIdentifier::Adaptive { state: pipeline.to_bytes()? },
+        Identifier::Plane(_) | Identifier::Resting(_) => return Err(TrackerStateError::Plane),
     };
     let rejections = object.rejections.iter().map(|rejection| {
         let text = rejection.cause.to_string();
@@ -169,8 +183,7 @@ fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
     });
     Ok(SavedObject {
         name: object.name.clone(),
-        filter: filtered.filter.to_bytes()?,
-        last_known: filtered.last_known,
+        identifier,
         frames_looked_at: object.contour_order.seen,
         out_of_order: match object.contour_order.warning {
             Some(Warning::PointsOutOfOrder { frame, perimeters }) => Some((frame, perimeters)),
@@ -183,20 +196,36 @@ fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
     })
 }
 
-fn restored(
-    saved: SavedObject,
-    of_filter: FilterSettings,
-    settings: &TrackerSettings,
-) -> Result<TrackedObject, StateError> {
+/// What was known of an object that was followed with these settings.
+fn restored_identifier(saved: SavedIdentifier, method: &MethodSettings) -> Result<Identifier, StateError> {
     let inconsistent = |part| Err(StateError::Inconsistent { part });
-    let SavedObject { name, last_known, frames_looked_at, frames, rejected, rejections, rejected_later, .. } = saved;
-    let filter = MotionFilter::from_bytes(&saved.filter)?;
-    if *filter.settings() != of_filter || last_known.is_some_and(|(_, motion)| motion.model() != of_filter.model) {
-        return inconsistent("settings of an object");
+    match (saved, method) {
+        (SavedIdentifier::Filter { state, last_known }, MethodSettings::Filter(settings)) => {
+            let filter = MotionFilter::from_bytes(&state)?;
+            let is_of_model = last_known.is_none_or(|(_, motion)| motion.model() == settings.model);
+            if filter.settings() != settings || !is_of_model {
+                return inconsistent("settings of an object");
+            }
+            if last_known.is_some_and(|(time, motion)| !(time.is_finite() && motion.is_finite())) {
+                return inconsistent("last known motion");
+            }
+            Ok(Identifier::Filter(Box::new(FilteredObject { filter, last_known })))
+        }
+        (SavedIdentifier::Adaptive { state }, MethodSettings::Adaptive(settings)) => {
+            let pipeline = Pipeline::from_bytes(&state)?;
+            if pipeline.settings() != &**settings {
+                return inconsistent("settings of an object");
+            }
+            Ok(Identifier::Adaptive(Box::new(pipeline)))
+        }
+        _ => inconsistent("method of an object"),
     }
-    if last_known.is_some_and(|(time, motion)| !(time.is_finite() && motion.is_finite())) {
-        return inconsistent("last known motion");
-    }
+}
+
+fn restored(saved: SavedObject, settings: &TrackerSettings) -> Result<TrackedObject, StateError> {
+    let inconsistent = |part| Err(StateError::Inconsistent { part });
+    let identifier = restored_identifier(saved.identifier, &settings.method)?;
+    let SavedObject { name, frames_looked_at, frames, rejected, rejections, rejected_later, .. } = saved;
     let counts = [frames, MOST_COUNTED].is_sorted() && [rejections.len(), rejected, frames].is_sorted();
     if !counts || rejections.len() > REJECTIONS_KEPT || frames_looked_at > FRAMES || !rejected_later.is_sound() {
         return inconsistent("counts of frames");
@@ -210,7 +239,7 @@ fn restored(
         FrameRejection { object: name.clone(), frame, cause }
     });
     Ok(TrackedObject {
-        identifier: Identifier::Filter(Box::new(FilteredObject { filter, last_known })),
+        identifier,
         scale: settings.scale,
         rectification: settings.rectification,
         contour_order: ContourOrder { seen: frames_looked_at, warning },

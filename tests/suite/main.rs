@@ -7,6 +7,8 @@ mod hostile_geometry;
 mod masks;
 mod observability;
 mod paper_experiments;
+#[cfg(feature = "serde")]
+mod pipeline_state;
 mod projective;
 mod rectification;
 #[cfg(feature = "serde")]

@@ -2,13 +2,13 @@
 use crate::common::frames;
 use freeform_motion::{
     Rectification, Tracker, TrackerSettings,
-    outline_filter::StateError,
+    outline_filter::{FilterSettings, StateError},
     outline_io::OutlineFrame,
-    riccati::{CameraScale, MotionModel, RigidMotion},
+    riccati::{CameraScale, MotionModel, PinholeCamera, RigidMotion},
     sim_camera::{BuiltInShape, Camera, Scene, Settings, Simulator},
-    tracker::{Method, TrackerStateError},
+    tracker::{Method, MethodSettings, TrackerStateError},
 };
-use nalgebra::{Matrix3, Projective2};
+use nalgebra::{Matrix3, Point2, Projective2};
 
 fn seen(shape: BuiltInShape, object: &str, count: usize) -> Vec<OutlineFrame> {
     let motion = RigidMotion { omega: 1.0, b1: 0.5, b2: 0.2 };
@@ -84,7 +84,24 @@ fn a_tracker_is_not_made_from_the_state_of_something_else_or_from_parts() {
 }
 
 #[test]
-fn the_adaptive_method_has_no_saved_state() {
-    let adaptive = Tracker::new(TrackerSettings::new(Method::Adaptive, MotionModel::Rigid)).expect("settings");
-    assert_eq!(adaptive.to_bytes(), Err(TrackerStateError::Method { method: Method::Adaptive }));
+fn a_restored_tracker_of_the_adaptive_method_goes_on_to_the_last_bit() {
+    let settings = TrackerSettings::new(Method::Adaptive, MotionModel::Affine);
+    let mut straight = Tracker::new(settings).expect("settings");
+    let mut interrupted = straight.clone();
+    for (index, frame) in seen(BuiltInShape::Bird, "bird", 10).iter().enumerate() {
+        interrupted = Tracker::from_bytes(&interrupted.to_bytes().expect("memory")).expect("a saved state");
+        assert_eq!(interrupted.push(frame), straight.push(frame), "frame {index}");
+    }
+    assert_eq!(interrupted.settings(), straight.settings());
+    assert_eq!(interrupted.results(), straight.results());
+    assert!(straight.results()[0].estimate.is_some());
+}
+
+#[test]
+fn a_plane_in_space_has_no_saved_state() {
+    let camera = PinholeCamera::new(2.0, Point2::origin()).expect("a camera");
+    let method =
+        MethodSettings::Plane(camera, FilterSettings { model: MotionModel::Projective, ..FilterSettings::default() });
+    let plane = Tracker::new(TrackerSettings { method, ..TrackerSettings::default() }).expect("settings");
+    assert_eq!(plane.to_bytes(), Err(TrackerStateError::Plane));
 }

@@ -5,6 +5,7 @@ pub const MAX_COEFFICIENTS: usize = coefficient_count(8);
 
 /// Even degree of an implicit polynomial. Closed curves need an even one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Degree {
     /// Degree 2, 6 coefficients.
     Conic,

@@ -2,6 +2,7 @@ use crate::{degree::Degree, error::SettingsError};
 
 /// How an implicit polynomial is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// Plain 3L (Blane, Lei, Civi, Cooper 2000): the curve follows the data best, and may be unbounded.
     ThreeLevel,
@@ -24,6 +25,7 @@ pub enum Method {
 
 /// In which coordinates an outline is fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Normalise {
     /// Centred and scaled. The fit of an outline moved by a similarity is the moved fit; that of a stretched or sheared one is not.
     #[default]
@@ -36,6 +38,7 @@ pub enum Normalise {
 
 /// Settings of a [`Fitter`](crate::Fitter).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FitSettings {
     /// Degree of the polynomial.
     pub degree: Degree,

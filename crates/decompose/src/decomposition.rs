@@ -1,6 +1,8 @@
 use freeform_curve_fit::{Degree, ImplicitPolynomial, MAX_COEFFICIENTS};
 use nalgebra::{Affine2, Point2};
 
+#[cfg(feature = "serde")]
+use crate::saved_decomposition::SavedDecomposition;
 use crate::{
     error::DecompositionError,
     line::Line,
@@ -32,6 +34,8 @@ const MAX_LINES: usize = 20;
 /// Source: M. Unel and W. A. Wolovich, On the construction of complete sets of geometric invariants for algebraic curves,
 /// 2000.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SavedDecomposition", into = "SavedDecomposition"))]
 pub struct Decomposition {
     degree: Degree,
     /// Lines of level n, then of level n - 2, and so on.
@@ -78,6 +82,13 @@ impl Decomposition {
     /// lines of a level with almost the same direction, a coefficient other than `c_0` that is zero, a number that is not
     /// finite.
     pub fn from_parts(degree: Degree, lines: &[Line], coefficients: &[f64]) -> Result<Self, DecompositionError> {
+        let result = Self::assembled(degree, lines, coefficients)?;
+        result.levels().try_for_each(|level| check_separation(result.level(level), level))?;
+        Ok(result)
+    }
+
+    /// As [`Self::from_parts`], however near to each other two lines of a level are.
+    pub(crate) fn assembled(degree: Degree, lines: &[Line], coefficients: &[f64]) -> Result<Self, DecompositionError> {
         let n = degree.value();
         let (lines_needed, coefficients_needed) = (offset(degree, 0), n / 2 + 1);
         if lines.len() != lines_needed || coefficients.len() != coefficients_needed {
@@ -118,9 +129,7 @@ impl Decomposition {
                 }
             }
         }
-        let result = result.checked()?;
-        result.levels().try_for_each(|level| check_separation(result.level(level), level))?;
-        Ok(result)
+        result.checked()
     }
 
     /// Degree n.

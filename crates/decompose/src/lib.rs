@@ -42,6 +42,8 @@ mod line_product;
 mod related_point;
 mod roots;
 mod rotation_chart;
+#[cfg(feature = "serde")]
+mod saved_decomposition;
 mod uncertainty;
 
 pub use condition::Condition;

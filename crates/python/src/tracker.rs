@@ -192,7 +192,7 @@ impl PyTracker {
     /// Raises
     /// ------
     /// ValueError
-    ///     The method is `adaptive`, whose objects cannot be saved.
+    ///     What is known of an object cannot be saved.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| self.lock().to_bytes()).map_err(value_error)?;
         Ok(PyBytes::new(py, &bytes))

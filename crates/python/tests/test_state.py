@@ -99,10 +99,26 @@ def test_bytes_that_are_no_state_are_refused(bird):
             ff.MotionFilter.from_bytes(draw.randbytes(draw.randrange(500)))
 
 
-def test_the_adaptive_method_cannot_be_saved():
+def test_a_tracker_of_the_adaptive_method_goes_on(bird):
     tracker = ff.Tracker(method="adaptive")
-    with pytest.raises(ValueError, match="method adaptive cannot be saved"):
-        tracker.to_bytes()
+    for frame in bird:
+        restored = pickle.loads(pickle.dumps(tracker))
+        for one in (tracker, restored):
+            one.push("bird", frame.index, frame.time, frame.outline)
+        assert restored.to_bytes() == tracker.to_bytes()
+    assert repr(restored.results()) == repr(tracker.results())
+
+
+@pytest.mark.parametrize("motion", ["rigid", "affine", "projective"])
+def test_a_pipeline_goes_on_where_it_was(bird, motion):
+    straight, interrupted = ff.Pipeline(motion), ff.Pipeline(motion)
+    for frame in bird:
+        interrupted = pickle.loads(pickle.dumps(copy.deepcopy(interrupted)))
+        for one in (straight, interrupted):
+            one.push(frame.time, frame.outline)
+    assert interrupted.to_bytes() == straight.to_bytes() and straight.estimate is not None
+    with pytest.raises(ValueError, match="not the state of a pipeline|version"):
+        ff.Pipeline.from_bytes(ff.MotionFilter().to_bytes())
 
 
 def moving_lines(time):

@@ -7,17 +7,14 @@ use freeform_motion::identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSetting
 use freeform_motion::outline_filter::{FilterSettings, MotionFilter, with_header};
 use freeform_motion::riccati::{MotionModel, RigidMotion};
 use freeform_motion::sim_camera::{BuiltInShape, Camera, Frame, Scene, SequenceLength, Settings, Simulator};
+use freeform_motion::{Pipeline, PipelineSettings};
 use nalgebra::Complex;
 
 /// Bytes before the state proper.
 const HEADER: usize = 16;
 
 /// Frames of a square, whose turns stay in doubt.
-static FRAMES: LazyLock<Vec<Frame>> = LazyLock::new(|| {
-    let scene = Scene::new(BuiltInShape::Square, RigidMotion { omega: 1.0, b1: 0.2, b2: 0.1 }, Camera::default());
-    let settings = Settings { length: SequenceLength::Frames(8), points: 40, ..Settings::default() };
-    Simulator::new(scene, settings).expect("a simulation").frames().collect()
-});
+static FRAMES: LazyLock<Vec<Frame>> = LazyLock::new(|| frames_of(BuiltInShape::Square));
 
 /// A state after half of them, without its header.
 static STATE: LazyLock<Vec<u8>> = LazyLock::new(|| {
@@ -45,6 +42,29 @@ static ADAPTIVE_STATES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
     };
     all.map(state).collect()
 });
+
+/// The header of a pipeline.
+const PIPELINE: StateFormat = StateFormat { version: 1, kind: *b"pipe", name: "pipeline" };
+
+/// States of pipelines after half of the frames, without their header: of a family without a pose, and of one with it.
+static PIPELINE_STATES: LazyLock<[Vec<u8>; 2]> = LazyLock::new(|| {
+    [MotionModel::Rigid, MotionModel::Projective].map(|model| {
+        let mut pipeline = Pipeline::new(PipelineSettings::for_model(model)).expect("settings");
+        for frame in &BIRDS[..4] {
+            pipeline.push(frame.time, &frame.outline).expect("a bird");
+        }
+        pipeline.to_bytes().expect("memory takes it").split_off(HEADER)
+    })
+});
+
+/// Frames of a bird, whose lines are apart.
+static BIRDS: LazyLock<Vec<Frame>> = LazyLock::new(|| frames_of(BuiltInShape::Bird));
+
+fn frames_of(shape: BuiltInShape) -> Vec<Frame> {
+    let scene = Scene::new(shape, RigidMotion { omega: 1.0, b1: 0.2, b2: 0.1 }, Camera::default());
+    let settings = Settings { length: SequenceLength::Frames(8), points: 40, ..Settings::default() };
+    Simulator::new(scene, settings).expect("a simulation").frames().collect()
+}
 
 /// Lines that turn and drift.
 fn lines_at(frame: i32) -> [Line; 2] {
@@ -77,11 +97,14 @@ pub(super) fn assert_restorable(filter: &MotionFilter) {
 /// Any bytes, and any changes of a good state: an error, or a filter that takes frames.
 pub(crate) fn saved_state(bytes: &[u8]) {
     assert!(MotionFilter::from_bytes(bytes).is_err() && AdaptiveIdentifier::from_bytes(bytes).is_err());
+    assert!(Pipeline::from_bytes(bytes).is_err());
     take_frames(&with_header(*b"filt", bytes));
     take_lines(&ADAPTIVE.with_header(bytes));
     take_frames(&with_header(*b"filt", &changed(&STATE, bytes)));
     let choice = usize::from(bytes.first().copied().unwrap_or(0));
     take_lines(&ADAPTIVE.with_header(&changed(&ADAPTIVE_STATES[choice % ADAPTIVE_STATES.len()], bytes)));
+    take_outlines(&PIPELINE.with_header(bytes));
+    take_outlines(&PIPELINE.with_header(&changed(&PIPELINE_STATES[choice % PIPELINE_STATES.len()], bytes)));
 }
 
 /// A state with some of its bytes changed: three bytes are a place and what is put there.
@@ -114,4 +137,14 @@ fn take_frames(bytes: &[u8]) {
         let _ = (filter.state(), filter.velocity(), filter.ambiguity(), filter.outline_points().count());
         let _ = (filter.aliases(), filter.dynamics(), filter.wrong_family(), filter.unstated());
     }
+}
+
+fn take_outlines(bytes: &[u8]) {
+    let Ok(mut pipeline) = Pipeline::from_bytes(bytes) else { return };
+    for frame in &BIRDS[4..] {
+        // Any answer will do.
+        let _ = (pipeline.push(frame.time, &frame.outline), pipeline.estimate(), pipeline.warnings());
+    }
+    let bytes = pipeline.to_bytes().expect("memory takes it");
+    assert!(Pipeline::from_bytes(&bytes).is_ok_and(|restored| restored.to_bytes().is_ok_and(|again| again == bytes)));
 }
