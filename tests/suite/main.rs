@@ -15,6 +15,8 @@ mod rectification;
 mod resting;
 mod robustness;
 mod seeking;
+#[cfg(feature = "serde")]
+mod serialised;
 mod soak;
 mod tracker;
 #[cfg(feature = "serde")]

@@ -26,6 +26,7 @@ pub enum Background {
 
 /// Which differences from the background belong to an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Difference {
     /// Lighter or darker.
     #[default]

@@ -2,6 +2,7 @@ use image::{DynamicImage, GrayImage, Luma};
 
 /// What is looked at of a colour picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Channel {
     /// The luminance. Where some pixels of a picture are transparent its alpha channel is taken instead, so that the
     /// visible part is light on dark.

@@ -1,5 +1,6 @@
 /// Whether objects are lighter or darker than the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Contrast {
     /// Light objects, as in masks.
     #[default]

@@ -11,6 +11,7 @@ use crate::write_error::WriteError;
 
 /// Which optional columns a file has; the header comes first, so they are fixed before the first outline.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WriterOptions {
     /// Write the `object` column: needed for any object other than [`DEFAULT_OBJECT`].
     pub object_column: bool,

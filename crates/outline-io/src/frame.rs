@@ -8,6 +8,7 @@ pub(crate) const NAME_LIMIT: usize = 1 << 12;
 
 /// What one frame of a sequence shows of one object.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OutlineFrame {
     /// Number of the frame; numbers may have gaps.
     pub frame: u64,

@@ -41,6 +41,7 @@ pub struct PictureFrame {
 
 /// How a sequence of pictures is read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SequenceSettings {
     /// Frames per second; `None` for what the file says (y4m, GIF), else 30. Delays of a GIF that are those of a constant
     /// rate rounded to hundredths of a second are taken for that rate.

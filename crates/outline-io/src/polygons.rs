@@ -20,6 +20,7 @@ const DEFAULT_RATE: f64 = 30.0;
 
 /// Direction of the second coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum VerticalAxis {
     /// From the lower edge of the picture upwards, as outlines of pictures are traced.
     #[default]
@@ -30,6 +31,7 @@ pub enum VerticalAxis {
 
 /// How polygons are read.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PolygonSettings {
     /// Frames per second; `None` for what the file says, else 30.
     pub frames_per_second: Option<f64>,

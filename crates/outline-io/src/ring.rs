@@ -31,6 +31,7 @@ const EDGE_SHARE: f64 = 0.6;
 
 /// A line around an object that otherwise looks like the background.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ring {
     /// Whether the line is lighter or darker than the ground and the object.
     pub contrast: Contrast,

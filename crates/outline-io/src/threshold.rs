@@ -17,6 +17,7 @@ const RARE_SHARE: u64 = 20;
 
 /// The grey value that parts objects from the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Threshold {
     /// Half-way between the median grey values of the two classes that Otsu's method finds; for a mask, half-way between
     /// its two values.

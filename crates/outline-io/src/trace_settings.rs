@@ -17,6 +17,7 @@ const SIGMA_LIMIT: f64 = 100.0;
 
 /// How much the picture is smoothed before its outline is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Smoothing {
     /// By a Gaussian of 1 pixel for a picture of two grey values, whose edges are stairs; of half a pixel for others,
     /// whose grey values place the edge within a pixel but are seldom linear across it.
@@ -29,6 +30,7 @@ pub enum Smoothing {
 
 /// Where the outline is placed, in pictures of more than two grey values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Edges {
     /// On the edge itself: the place of a blurred step between the grey values on both sides, fitted along the normal at every point.
     /// Neither the threshold nor the smoothing moves it.
@@ -40,6 +42,7 @@ pub enum Edges {
 
 /// Which contours of an object are traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Contours {
     /// The boundary alone; holes are filled.
     #[default]
@@ -50,6 +53,7 @@ pub enum Contours {
 
 /// What to make of an object that the edge of the picture clips.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Clipping {
     /// Close the outline along the edge of the picture.
     #[default]
@@ -60,6 +64,7 @@ pub enum Clipping {
 
 /// How an outline is traced in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TraceSettings {
     /// Light objects on dark ground, or the other way round.
     pub contrast: Contrast,

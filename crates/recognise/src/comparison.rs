@@ -2,6 +2,7 @@ use nalgebra::Affine2;
 
 /// How one known outline compares with one that was seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Comparison {
     /// Position of the known outline in the order in which they were added.
     pub known: usize,
@@ -13,6 +14,7 @@ pub struct Comparison {
 
 /// A known outline brought onto one that was seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OutlineFit {
     /// From the coordinates of the known outline to those of the one seen.
     pub map: Affine2<f64>,

@@ -34,6 +34,7 @@ struct Sums {
 
 /// Which known outline an object has.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Recognition {
     /// Position of the known outline; `None` where it is more likely to be none of them.
     pub known: Option<usize>,
@@ -45,6 +46,7 @@ pub struct Recognition {
 
 /// A known outline and how likely it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Candidate {
     /// Position of the known outline.
     pub known: usize,

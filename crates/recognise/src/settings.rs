@@ -2,6 +2,7 @@ use crate::error::RecogniseError;
 
 /// Settings of a [`Recogniser`](crate::Recogniser).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RecogniseSettings {
     /// How well an outline is known at best, in radii of the disc that has its inertia: tracing, pixels and corners cut by the spacing of the
     /// points leave differences that are no noise. In (0, 0.1].

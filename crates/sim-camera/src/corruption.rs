@@ -6,6 +6,7 @@ use crate::sampling::Stretch;
 
 /// An arc of the contour that is out of view.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Occlusion {
     /// Share of the perimeter that is missing, 0 (nothing) up to but not including 1.
     pub fraction: f64,
@@ -24,6 +25,7 @@ impl Default for Occlusion {
 
 /// The arc missing from one frame, as fractions of the perimeter in the body frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HiddenArc {
     /// Where it starts, in [0, 1).
     pub start: f64,

@@ -3,6 +3,7 @@ use rand::{Rng, RngExt as _};
 /// How the points of one frame are spread along the contour. They are drawn anew in every frame, by arc length in the
 /// body frame: point k of one frame has nothing to do with point k of the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sampling {
     /// The contour is cut at a random place and divided into as many equal stretches as there are points; each stretch
     /// gets one.

@@ -15,6 +15,7 @@ const MOST_FRAMES: usize = 1_000_000;
 
 /// How long a sequence is.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SequenceLength {
     /// So many frames, at least 1.
     Frames(usize),
@@ -24,6 +25,7 @@ pub enum SequenceLength {
 
 /// How the outlines are taken and corrupted. Lengths are image lengths.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Settings {
     /// Frames per second; frame k is taken at k / fps.
     pub fps: f64,

@@ -16,6 +16,7 @@ use crate::{
 
 /// One frame of a sequence.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Frame {
     /// Number of the frame, from 0; dropped frames leave gaps.
     pub index: usize,
@@ -29,6 +30,7 @@ pub struct Frame {
 
 /// What was done to a frame, for judging an estimator; not for its eyes.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Corruption {
     /// The object shown instead of the true one.
     pub wrong_shape: Option<BuiltInShape>,

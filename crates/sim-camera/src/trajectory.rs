@@ -7,6 +7,7 @@ use crate::error::SimulationError::{self, OutOfRange};
 
 /// How spin and velocity of the middle change with time from their values at time 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dynamics {
     /// The paper's constant generator (equation 4): the spin is constant, and the velocity of the middle turns with it.
     Generator,

@@ -13,6 +13,7 @@ const SHADOW_BLUR: f64 = 2.5;
 
 /// What a camera makes of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rendering {
     /// Columns and rows.
     pub size: [usize; 2],

@@ -9,6 +9,7 @@ use super::render::Rendering;
 
 /// What test pictures show. Sizes and motions follow from the seed, and whether bodies are lighter or darker than the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PictureScene {
     /// A gear of 18 teeth, one of which is filed away, turns and drifts.
     Gear,

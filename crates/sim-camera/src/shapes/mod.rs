@@ -11,6 +11,7 @@ use crate::{curve::Vertex, error::ShapeError, shape::Shape};
 /// `Boomerang`, `GlassVase` and `Vase` are mirror-symmetric; `CdBox` and `Ellipse` also look the same after half a
 /// turn, `Square` after a quarter, `Circle` after any. The others have no symmetry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum BuiltInShape {
     /// A jet plane seen from above, banking.
     Plane,
