@@ -274,7 +274,7 @@ fn outliers_leave_the_motion_of_all_frames_within_one_and_a_half_times_the_bound
 }
 
 #[test]
-#[ignore = "minutes: cargo test --release --workspace --test suite many_recordings -- --ignored --nocapture"]
+#[ignore = "minutes: cargo test --workspace --test suite many_recordings -- --ignored --nocapture"]
 fn many_recordings_leave_batch_and_filter_within_1_3_of_the_bound_in_every_setting() {
     use MotionModel::{Affine, Projective, Rigid, Similarity};
     println!("| setting | batch estimator | motion filter | intervals of the batch hold |\n|---|---|---|---|");
