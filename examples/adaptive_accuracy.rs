@@ -5,10 +5,11 @@
 //! cargo run --release --example adaptive_accuracy -- [key=value ...] [mask.png ...]
 //! ```
 //!
-//! Keys: `law` (structured, printed, fast), `pairs` (all, best, or the number of one), `seed`, `noise`, and of the fit
-//! `offset`, `margin`, `ridge` (bounded fit) or `kappa` (GS3L); `rejections=1` prints why frames are rejected. Columns: errors of omega
-//! and of b, |w| of the chosen pair and of another, rejected frames, frames with the boundedness constraint active, and
-//! `!` for errors beyond 3 % of omega or 5 % of b, `!!!` beyond three times that.
+//! Keys: `law` (structured, printed, fast), `pairs` (all, best, or the number of one), `size` (RMS radius in the coordinates
+//! of the identifier), `seed`, `noise`, and of the fit `offset`, `margin`, `ridge` (bounded fit) or `kappa` (GS3L);
+//! `rejections=1` prints why frames are rejected. Columns: errors of omega and of b, |w| of the chosen pair and of another,
+//! rejected frames, frames with the boundedness constraint active, and `!` for errors beyond 3 % of omega or 5 % of b,
+//! `!!!` beyond three times that.
 use std::{error::Error, path::Path};
 
 use freeform_motion::{
@@ -71,6 +72,7 @@ impl Measurement {
                         number => PairChoice::Given(number.parse()?),
                     }
                 }
+                ("size", _) => pipeline.size = value.parse()?,
                 ("seed", _) => simulation.seed = value.parse()?,
                 ("noise", _) => simulation.noise = value.parse()?,
                 ("offset", _) => pipeline.fit.offset = value.parse()?,

@@ -3,6 +3,7 @@ mod arbitrary_input;
 mod checks;
 mod common;
 mod documents;
+mod drawn_shapes;
 mod hostile_geometry;
 mod masks;
 mod observability;
