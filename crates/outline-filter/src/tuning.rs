@@ -88,6 +88,8 @@ pub(crate) mod null_space {
     pub(crate) const CHORD_NOISE: f64 = 0.035;
     /// ...but no further than one of so many parts of all.
     pub(crate) const FEWEST_PARTS: usize = 16;
+    /// Squared angle between two chords over the variance of a direction that is anywhere between theirs.
+    pub(crate) const BETWEEN_CHORDS: f64 = 12.0;
     /// Variance that stands for any direction: the mean squared sine.
     pub(crate) const ANY_DIRECTION: f64 = 0.5;
     /// Points of a window over which a quadratic is fitted, for each that its middle is worth.

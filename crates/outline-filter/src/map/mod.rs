@@ -1,4 +1,5 @@
 //! The outline in the body frame: cells along it, how they follow each other, which is nearest to a point, and what they do not show.
+mod centring;
 mod chains;
 mod contour;
 mod growth;

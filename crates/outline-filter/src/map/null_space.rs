@@ -2,7 +2,11 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, turn_rate};
 use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::{OutlineMap, contour::direction_variance};
+use super::{
+    OutlineMap,
+    centring::{Centring, NormalByNeighbours},
+    contour::direction_variance,
+};
 use crate::tuning::{contour::NORMAL_NOISE, null_space as tuning};
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
@@ -200,28 +204,31 @@ impl OutlineMap {
     pub(crate) fn find_null_directions(&mut self, model: MotionModel, sigma: f64) {
         let k = model.parameter_count();
         let count = self.cells.len() as f64;
-        let centroid = Point2::from(self.cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
-        let spread = self.cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
+        let centring = Centring::of(&self.cells, model, sigma);
         let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
         levers.view_mut((0, 0), (k, k)).fill(0.0);
         // What errors of the normals alone would make of the levers.
         let mut levers_of_noise = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
         for (number, cell) in self.cells.iter().enumerate() {
-            let (normal, variance) = self.normal_by_neighbours(number, sigma);
-            let p = Point2::from((cell.centre - centroid) / spread);
+            let normal = self.normal_by_neighbours(number, sigma);
+            // A cell counts for the length of the outline that it stands for.
+            let count = count / centring.relative_length(&normal.direction);
+            let (normal, variance) = centring.normal(&normal);
+            let p = centring.centred(&cell.centre);
             let velocities = |along| SVector::from(model.normal_velocities(&p, along));
             let (across, along) = (velocities(&normal), velocities(&Vector2::new(-normal.y, normal.x)));
             levers += across * across.transpose() / count;
             levers_of_noise += variance / count * along * along.transpose();
         }
-        let middle = self.area_centroid().unwrap_or(centroid);
+        let middle = self.area_centroid().unwrap_or(centring.centroid);
         let of_cells = direction_variance(sigma / self.step, self.half_window);
         let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_cells);
         let eigen = levers.symmetric_eigen();
-        let to_body = Matrix3::new(spread, 0.0, centroid.x, 0.0, spread, centroid.y, 0.0, 0.0, 1.0);
+        let to_body = centring.to_body();
         let space = &mut self.null_space;
         space.in_body.clear();
         space.weakest_turn = f64::INFINITY;
+        let mut unseen: Vec<ParameterVector> = Vec::new();
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
             let of_noise = (vector.transpose() * levers_of_noise * vector)[(0, 0)];
             let told = *value - of_noise;
@@ -235,6 +242,13 @@ impl OutlineMap {
             }
             if !is_shown {
                 let Some(inverse) = to_body.try_inverse() else { continue };
+                let generator = centring.unstretched(&generator);
+                unseen.push(model.parameters_of(&generator));
+                if centring.is_stretched() {
+                    orthonormalise(&mut unseen);
+                }
+                let Some(last) = unseen.last() else { continue };
+                let generator = model.generator(&last[..k]);
                 space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
             }
         }
@@ -254,9 +268,9 @@ impl OutlineMap {
         if is_weak { NORMAL_NOISE.min((weakest / tuning::LEVER_PER_NOISE).sqrt()) } else { NORMAL_NOISE }
     }
 
-    /// Normal of the outline at a cell, and the variance of its direction in rad squared, by the cells some way before and after it. Where
-    /// cells err together this does not, as their own normals do: a circle would have its middle beside where it is.
-    fn normal_by_neighbours(&self, number: usize, sigma: f64) -> (Vector2<f64>, f64) {
+    /// Normal of the outline at a cell by the cells some way before and after it. Where cells err together this does not, as their own normals
+    /// do: a circle would have its middle beside where it is.
+    fn normal_by_neighbours(&self, number: usize, sigma: f64) -> NormalByNeighbours {
         // Of the value of a quadratic in the middle of its window.
         let window = (2 * self.half_window + 1) as f64;
         let noise = sigma * (tuning::QUADRATIC / window).sqrt();
@@ -275,13 +289,18 @@ impl OutlineMap {
             }
             self.cells[here].centre
         });
+        let here = self.cells[number].centre;
+        let bend = (here - before).angle(&(after - here));
+        let of_bend = bend * bend / tuning::BETWEEN_CHORDS;
         let chord = after - before;
         match chord.try_normalize(1e-12) {
             Some(along) => {
-                let variance = (2.0 * noise * noise / chord.norm_squared()).min(tuning::ANY_DIRECTION);
-                (Vector2::new(along.y, -along.x), variance)
+                let of_noise = (2.0 * noise * noise / chord.norm_squared()).min(tuning::ANY_DIRECTION);
+                NormalByNeighbours { direction: Vector2::new(along.y, -along.x), of_noise, of_bend }
             }
-            None => (self.cells[number].normal, tuning::ANY_DIRECTION),
+            None => {
+                NormalByNeighbours { direction: self.cells[number].normal, of_noise: tuning::ANY_DIRECTION, of_bend }
+            }
         }
     }
 
@@ -348,6 +367,18 @@ fn of_its_rates(model: MotionModel, direction: ParameterVector) -> ParameterVect
     kinds.filter(|(_, kind)| **kind != ParameterKind::Rate).for_each(|(rate, _)| *rate = 0.0);
     let squared: f64 = rates.iter().map(|rate| rate * rate).sum();
     if squared > 0.5 { rates.map(|rate| rate / squared) } else { direction }
+}
+
+/// Makes the last of these directions one of length 1 that is orthogonal to those before it.
+fn orthonormalise(directions: &mut [ParameterVector]) {
+    let Some((last, before)) = directions.split_last_mut() else { return };
+    let product = |a: &ParameterVector, b: &ParameterVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    for direction in before {
+        let along = product(last, direction);
+        last.iter_mut().zip(direction).for_each(|(c, d)| *c -= along * *d);
+    }
+    let length = product(last, last).sqrt();
+    last.iter_mut().for_each(|c| *c /= length);
 }
 
 impl NullSpace {

@@ -4,8 +4,8 @@ use freeform_curve_fit::Outline;
 use freeform_estimate::{BoundaryPoint, CramerRaoBound, ProcessNoise};
 use freeform_outline_filter::{FilterError, FilterSettings, MotionFilter, Phase, Rejection};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
-use freeform_sim_camera::{BuiltInShape, Frame, Occlusion, Sampling, Settings, Shape};
-use nalgebra::{Affine2, Matrix3, Point2, Vector2};
+use freeform_sim_camera::{BuiltInShape, Camera, Frame, Occlusion, Sampling, Scene, Settings, Shape, Simulator};
+use nalgebra::{Affine2, Matrix2, Matrix3, Point2, Rotation2, Vector2};
 use proptest::prelude::*;
 
 const RIGID: RigidMotion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -0.3, b2: 0.4 };
@@ -85,6 +85,26 @@ fn a_rigid_motion_is_found_at_the_bound_from_the_third_frame_on() {
 #[test]
 fn an_affine_motion_is_found_at_the_bound() {
     assert_at_bound(MotionModel::Affine, AFFINE, |_| (), 60, 1.5);
+}
+
+#[test]
+fn slender_outlines_under_affine_motion_are_followed_and_found() {
+    for shape in [BuiltInShape::Bird, BuiltInShape::Van, BuiltInShape::Shoe] {
+        for along in [0.3, 1.2] {
+            let across = Rotation2::new(along) * Matrix2::new(1.0, 0.0, 0.0, 0.13) * Rotation2::new(-along);
+            let scene = Scene::new(shape, AFFINE, Camera::default())
+                .with_initial_pose(Affine2::from_matrix_unchecked(across.to_homogeneous()));
+            let settings = Settings { noise: 0.002, ..settings(60, 1) };
+            let frames: Vec<_> = Simulator::new(scene, settings).expect("good settings").frames().collect();
+            let run = filtered(MotionModel::Affine, &frames);
+            assert_eq!((run.frames_rejected(), run.restarts()), (0, 0), "{shape:?} {along}");
+            let found = run.estimate().expect("an estimate");
+            for (parameter, truth) in found.parameters().zip(values(MotionModel::Affine, AFFINE)) {
+                let (value, std) = parameter.value.zip(parameter.standard_deviation).expect("observable");
+                assert!((value - truth).abs() < 5.0 * std && std < 0.02, "{shape:?} {along}: {value} {std} {truth}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_outline_filter::MotionFilter;
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Camera, Frame, Scene, Settings, Shape, Simulator};
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Affine2, Matrix3, Point2, Vector2};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal, Uniform};
@@ -66,6 +66,23 @@ fn a_circle_under_affine_motion_shows_no_turn_and_what_is_stated_is_right() {
                 assert!((value - truth).abs() < 6.0 * std, "{motion:?} {noise}, seed {seed}: {value} {truth} {std}");
             }
         }
+    }
+}
+
+#[test]
+fn a_slender_ellipse_under_affine_motion_shows_no_turn_and_loses_no_frame() {
+    // Along itself it slides unseen, which takes part in all rates.
+    let motion = AffineMotion { a1: 0.05, a2: 0.6, a3: -0.8, a4: -0.08, b1: -0.3, b2: 0.4 };
+    let (sine, cosine) = 0.4_f64.sin_cos();
+    for (seed, noise) in (0..4).zip([0.0005, 0.002].into_iter().cycle()) {
+        let slender = Matrix3::new(cosine, -0.2 * sine, 0.0, sine, 0.2 * cosine, 0.0, 0.0, 0.0, 1.0);
+        let scene = Scene::new(BuiltInShape::Circle, motion, Camera::default())
+            .with_initial_pose(Affine2::from_matrix_unchecked(slender));
+        let settings = Settings { noise, ..settings(40, seed) };
+        let frames: Vec<_> = Simulator::new(scene, settings).expect("good settings").frames().collect();
+        let run = filtered(MotionModel::Affine, &frames);
+        assert_eq!(observable(&run)[..4], [false; 4], "noise {noise}, seed {seed}");
+        assert_eq!(run.frames_rejected(), 0, "noise {noise}, seed {seed}");
     }
 }
 
