@@ -109,7 +109,8 @@ impl OpenOutline {
     pub fn with_deviations(self, deviations: Vec<f64>) -> Result<Self, OutlineError> {
         check_deviations(&deviations, self.arcs.iter().map(|arc| arc.points.len()).sum())?;
         let mut rest = deviations.into_iter();
-        let mut take = |arc: OpenArc| OpenArc { deviations: Some(rest.by_ref().take(arc.points.len()).collect()), ..arc };
+        let mut take =
+            |arc: OpenArc| OpenArc { deviations: Some(rest.by_ref().take(arc.points.len()).collect()), ..arc };
         Ok(Self { arcs: self.arcs.into_iter().map(&mut take).collect() })
     }
 

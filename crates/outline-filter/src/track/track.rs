@@ -12,7 +12,9 @@ use crate::{
     belief::Belief,
     dynamics::{CentredPose, FamilyTests, Summary},
     map::{NullDirection, OutlineMap, TurnEvidence},
-    measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of},
+    measurement::{
+        Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of,
+    },
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, update as tuning},
     update::{
