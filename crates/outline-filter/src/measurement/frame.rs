@@ -20,14 +20,9 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// Of an outline, with a unit of time of one second.
+    /// Of an outline, with a unit of time of one second, before its points are asked what they state.
     pub(crate) fn of(outline: &Outline) -> Self {
-        Self {
-            origin: outline.centroid(),
-            radius: outline.rms_radius(),
-            time_unit: 1.0,
-            stated: PointDeviations::stated_by_good_points(outline),
-        }
+        Self { origin: outline.centroid(), radius: outline.rms_radius(), time_unit: 1.0, stated: f64::INFINITY }
     }
 
     /// Units of time in a second: what a rate by the unit is multiplied by to be one by the second.

@@ -1,6 +1,4 @@
 //! What the points of a frame state of themselves: standard deviations that are known but for a factor.
-use freeform_curve_fit::Outline;
-
 use super::Reference;
 use crate::tuning::deviations as tuning;
 
@@ -20,11 +18,6 @@ pub(crate) struct PointDeviations {
 }
 
 impl PointDeviations {
-    /// Deviation that the good points of an outline state, in its unit; infinite where none state any.
-    pub(crate) fn stated_by_good_points(outline: &Outline) -> f64 {
-        outline.deviations().map_or(f64::INFINITY, |deviations| good(&mut deviations.collect::<Vec<_>>()))
-    }
-
     /// Forgets what was stated.
     pub(super) fn clear(&mut self) {
         self.ratios.clear();

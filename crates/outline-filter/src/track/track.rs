@@ -77,8 +77,9 @@ impl Track {
         if outline.point_count() < FEWEST_POINTS {
             return None;
         }
-        let reference = Reference::of(outline);
+        let mut reference = Reference::of(outline);
         frame.load(outline, reference);
+        reference.take_stated(frame.deviations.good());
         let contours = frame.contours(&Matrix3::identity());
         let rounding = Rounding::of(outline, mask_pixel, reference.radius);
         Self::cut(model, reference, Matrix3::identity(), contours, (0.0, rounding), frame)
