@@ -131,25 +131,28 @@ impl View<'_> {
         let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
         // Points that count for next to nothing need not agree.
         let (mut known, mut agreeing, mut new, mut new_points) = (0.0, 0.0, 0.0, 0usize);
-        let widest = deviations.widest();
+        let (ratios, widest) = (deviations.ratios(), deviations.widest());
+        let limit = |ratio: f64| (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());
+        let alike = limit(1.0);
         values.clear();
         weighted.clear();
         for (i, m) in measurements.iter().enumerate() {
-            let ratio = deviations.ratios().map_or(1.0, |ratios| ratios[i]);
-            let share = (ratio * ratio).recip();
+            let (ratio, share, tolerance) = match ratios {
+                None => (1.0, 1.0, alike),
+                Some(ratios) => (ratios[i], (ratios[i] * ratios[i]).recip(), limit(ratios[i])),
+            };
             if m.cell == NO_CELL {
                 new_points += 1;
                 new += share;
                 continue;
             }
             known += share;
-            let tolerance = (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());
             if m.residual.abs() < tolerance {
                 agreeing += share;
             }
             if let Some(factor) = without_leverage(m, cells.own()[m.cell]).filter(|_| m.weight > 0.0) {
                 let size = m.residual.abs() * factor.sqrt();
-                match deviations.ratios() {
+                match ratios {
                     None => values.push(size),
                     Some(_) => weighted.push((size / ratio, share)),
                 }
