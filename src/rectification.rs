@@ -1,5 +1,5 @@
 //! A known plane: from outlines as a perspective camera sees them to outlines in the plane that the objects move in.
-use freeform_curve_fit::{OpenArc, OpenOutline, Outline, OutlineError};
+use freeform_curve_fit::{Outline, OutlineError};
 use nalgebra::{Matrix3, Point2, Projective2};
 
 /// Smallest ratio of the depths of two points of an outline: nearer to the horizon of the plane, noise decides where a point is.
@@ -92,14 +92,7 @@ impl Rectification {
             let there = self.plane_from_picture * p.to_homogeneous();
             Point2::from(there.xy() / there.z)
         };
-        let moved = |points: &[Point2<f64>]| points.iter().map(point).collect();
-        Ok(match picture {
-            Outline::Closed(closed) => Outline::Closed(closed.mapped(point)?),
-            Outline::Open(arcs) => {
-                let arcs = arcs.arcs().iter().map(|arc| OpenArc::new(moved(arc.points())));
-                Outline::Open(OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?)?)
-            }
-        })
+        Ok(picture.mapped(point)?)
     }
 
     /// The generator in the picture of a motion in the plane: `G A G^-1`, G the map from the plane to the picture.

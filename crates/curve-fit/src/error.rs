@@ -45,6 +45,22 @@ pub enum OutlineError {
     /// No arc at all.
     #[error("an open outline needs at least one arc")]
     NoArc,
+    /// Standard deviations of some of the points only, or of more than there are.
+    #[error("{found} standard deviation(s) for {points} points")]
+    DeviationCount {
+        /// Deviations given.
+        found: usize,
+        /// Points of the outline.
+        points: usize,
+    },
+    /// A standard deviation that is none.
+    #[error("point {index} has the standard deviation {value}, which is not a positive finite number")]
+    Deviation {
+        /// Position of the point in the list, counted from 0.
+        index: usize,
+        /// The offending number.
+        value: f64,
+    },
 }
 
 /// Why a polynomial could not be made or moved.

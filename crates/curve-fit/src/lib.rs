@@ -32,6 +32,7 @@ mod bounded;
 mod bounded_polynomial;
 mod covariance;
 mod degree;
+mod deviations;
 mod error;
 mod fit;
 mod fitter;

@@ -1,14 +1,17 @@
 use nalgebra::Point2;
 
+use crate::deviations::{check_deviations, mapped_deviations};
 use crate::error::OutlineError;
 use crate::points::{check_not_collinear, check_points};
 
-/// An ordered open piece of a contour, either way round: at least two finite points that are not all equal.
+/// An ordered open piece of a contour, either way round: at least two finite points that are not all equal. They may have standard
+/// deviations.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Vec<Point2<f64>>", into = "Vec<Point2<f64>>"))]
+#[cfg_attr(feature = "serde", serde(try_from = "WrittenArc", into = "WrittenArc"))]
 pub struct OpenArc {
     points: Vec<Point2<f64>>,
+    deviations: Option<Vec<f64>>,
 }
 
 impl OpenArc {
@@ -18,7 +21,36 @@ impl OpenArc {
     /// Fewer than 2 points, a coordinate that is not finite or beyond 1e100, all points equal.
     pub fn new(points: Vec<Point2<f64>>) -> Result<Self, OutlineError> {
         check_points(&points, 2)?;
-        Ok(Self { points })
+        Ok(Self { points, deviations: None })
+    }
+
+    /// This arc with standard deviations of its points; see [`Outline::with_deviations`](crate::Outline::with_deviations).
+    ///
+    /// # Errors
+    /// Not one for each point, or one that is not a positive finite number.
+    pub fn with_deviations(self, deviations: Vec<f64>) -> Result<Self, OutlineError> {
+        check_deviations(&deviations, self.points.len())?;
+        Ok(Self { deviations: Some(deviations), ..self })
+    }
+
+    /// The standard deviations of the points in their order; `None` where nothing is known of them.
+    #[must_use]
+    pub fn deviations(&self) -> Option<&[f64]> {
+        self.deviations.as_deref()
+    }
+
+    /// This arc with every point mapped.
+    pub(crate) fn mapped(&self, map: impl Fn(&Point2<f64>) -> Point2<f64>) -> Result<Self, OutlineError> {
+        let moved = Self::new(self.points.iter().map(&map).collect())?;
+        match &self.deviations {
+            Some(own) => moved.with_deviations(mapped_deviations(&self.points, false, own, map).collect()),
+            None => Ok(moved),
+        }
+    }
+
+    fn reverse(&mut self) {
+        self.points.reverse();
+        self.deviations.iter_mut().for_each(|deviations| deviations.reverse());
     }
 
     /// The points in order.
@@ -47,7 +79,7 @@ impl OpenOutline {
     /// The arcs are to be listed in their order along the contour, either way round; for up to three, every order is that.
     ///
     /// # Errors
-    /// No arc, all points on one line.
+    /// As [`in_sequence`](Self::in_sequence).
     pub fn new(mut arcs: Vec<OpenArc>) -> Result<Self, OutlineError> {
         turn_the_same_way(&mut arcs);
         Self::in_sequence(arcs)
@@ -56,13 +88,35 @@ impl OpenOutline {
     /// Takes over arcs that are known to run the same way round, as they are.
     ///
     /// # Errors
-    /// No arc, all points on one line.
+    /// No arc, all points on one line, standard deviations of the points of some arcs only.
     pub fn in_sequence(arcs: Vec<OpenArc>) -> Result<Self, OutlineError> {
         if arcs.is_empty() {
             return Err(OutlineError::NoArc);
         }
         check_not_collinear(arcs.iter().flat_map(|arc| &arc.points))?;
+        let found: usize = arcs.iter().flat_map(OpenArc::deviations).map(<[_]>::len).sum();
+        let points = arcs.iter().map(|arc| arc.points.len()).sum();
+        if found != 0 && found != points {
+            return Err(OutlineError::DeviationCount { found, points });
+        }
         Ok(Self { arcs })
+    }
+
+    /// This outline with standard deviations of its points; see [`Outline::with_deviations`](crate::Outline::with_deviations).
+    ///
+    /// # Errors
+    /// Not one for each point, or one that is not a positive finite number.
+    pub fn with_deviations(self, deviations: Vec<f64>) -> Result<Self, OutlineError> {
+        check_deviations(&deviations, self.arcs.iter().map(|arc| arc.points.len()).sum())?;
+        let mut rest = deviations.into_iter();
+        let mut take =
+            |arc: OpenArc| OpenArc { deviations: Some(rest.by_ref().take(arc.points.len()).collect()), ..arc };
+        Ok(Self { arcs: self.arcs.into_iter().map(&mut take).collect() })
+    }
+
+    /// Whether the points have standard deviations: those of all arcs, or none.
+    pub(crate) fn has_deviations(&self) -> bool {
+        self.arcs[0].deviations.is_some()
     }
 
     /// The arcs in order.
@@ -72,17 +126,26 @@ impl OpenOutline {
     }
 }
 
-impl TryFrom<Vec<Point2<f64>>> for OpenArc {
+#[cfg(feature = "serde")]
+type WrittenArc = (Vec<Point2<f64>>, Option<Vec<f64>>);
+
+#[cfg(feature = "serde")]
+impl TryFrom<WrittenArc> for OpenArc {
     type Error = OutlineError;
 
-    fn try_from(points: Vec<Point2<f64>>) -> Result<Self, OutlineError> {
-        Self::new(points)
+    fn try_from((points, deviations): WrittenArc) -> Result<Self, OutlineError> {
+        let arc = Self::new(points)?;
+        match deviations {
+            Some(deviations) => arc.with_deviations(deviations),
+            None => Ok(arc),
+        }
     }
 }
 
-impl From<OpenArc> for Vec<Point2<f64>> {
+#[cfg(feature = "serde")]
+impl From<OpenArc> for WrittenArc {
     fn from(arc: OpenArc) -> Self {
-        arc.points
+        (arc.points, arc.deviations)
     }
 }
 
@@ -108,7 +171,7 @@ fn turn_the_same_way(arcs: &mut [OpenArc]) {
     }
     let [as_it_is, reversed] = [false, true].map(|first| shortest_joining(arcs, first));
     let (_, directions) = if reversed.0 < as_it_is.0 { reversed } else { as_it_is };
-    arcs.iter_mut().zip(directions).filter(|(_, reverse)| *reverse).for_each(|(arc, _)| arc.points.reverse());
+    arcs.iter_mut().zip(directions).filter(|(_, reverse)| *reverse).for_each(|(arc, _)| arc.reverse());
 }
 
 /// Total length of the gaps and which arcs to reverse, for one direction of the first arc.

@@ -2,20 +2,23 @@ use std::borrow::Cow;
 
 use nalgebra::{Affine2, Point2};
 
+use crate::deviations::{check_deviations, mapped_deviations};
 use crate::error::OutlineError;
-use crate::open_outline::{OpenArc, OpenOutline};
+use crate::open_outline::OpenOutline;
 use crate::points::{Spread, check_not_collinear, check_points, signed_area};
 use crate::rectangle::Rectangle;
 
 /// Points of the boundary of a body in the order in which they follow each other, either way round; the last is joined to the
 /// first, which is not repeated. At least three finite points that do not lie on one line. There may be further closed contours of
-/// the same body within it, such as of holes and marks.
+/// the same body within it, such as of holes and marks. Points may have standard deviations, all of them or none.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "Vec<Vec<Point2<f64>>>", into = "Vec<Vec<Point2<f64>>>"))]
+#[cfg_attr(feature = "serde", serde(try_from = "WrittenOutline", into = "WrittenOutline"))]
 pub struct ClosedOutline {
     points: Vec<Point2<f64>>,
     inner: Vec<Vec<Point2<f64>>>,
+    /// Of all points, the boundary first.
+    deviations: Option<Vec<f64>>,
 }
 
 impl ClosedOutline {
@@ -26,11 +29,11 @@ impl ClosedOutline {
     pub fn new(points: Vec<Point2<f64>>) -> Result<Self, OutlineError> {
         check_points(&points, 3)?;
         check_not_collinear(points.iter())?;
-        Ok(Self { points, inner: Vec::new() })
+        Ok(Self { points, inner: Vec::new(), deviations: None })
     }
 
     /// This boundary with further closed contours of the body, in the place of those that it had: of holes and marks within it. Those of
-    /// holes run the other way round than the boundary.
+    /// holes run the other way round than the boundary. Standard deviations are to be given after them.
     ///
     /// # Errors
     /// As [`new`](Self::new), of any of them.
@@ -39,7 +42,21 @@ impl ClosedOutline {
             check_points(contour, 3)?;
             check_not_collinear(contour.iter())?;
         }
-        Ok(Self { inner, ..self })
+        Ok(Self { inner, deviations: None, ..self })
+    }
+
+    /// This outline with standard deviations of its points; see [`Outline::with_deviations`].
+    ///
+    /// # Errors
+    /// As [`Outline::with_deviations`].
+    pub fn with_deviations(self, deviations: Vec<f64>) -> Result<Self, OutlineError> {
+        check_deviations(&deviations, self.contours().map(<[_]>::len).sum())?;
+        Ok(Self { deviations: Some(deviations), ..self })
+    }
+
+    /// The boundary and the further contours.
+    fn contours(&self) -> impl Iterator<Item = &[Point2<f64>]> + Clone {
+        std::iter::once(self.points.as_slice()).chain(self.inner.iter().map(Vec::as_slice))
     }
 
     /// The further contours, each closed.
@@ -48,13 +65,21 @@ impl ClosedOutline {
         &self.inner
     }
 
-    /// This outline with every point mapped.
+    /// This outline with every point mapped, and its standard deviations as the map stretches what lies across the contour there.
     ///
     /// # Errors
-    /// As [`new`](Self::new), of what the points become.
+    /// As [`new`](Self::new) and [`with_deviations`](Self::with_deviations), of what the points become.
     pub fn mapped(&self, map: impl Fn(&Point2<f64>) -> Point2<f64>) -> Result<Self, OutlineError> {
         let all = |points: &Vec<Point2<f64>>| points.iter().map(&map).collect();
-        Self::new(all(&self.points))?.with_inner(self.inner.iter().map(all).collect())
+        let moved = Self::new(all(&self.points))?.with_inner(self.inner.iter().map(all).collect())?;
+        let Some(mut rest) = self.deviations.as_deref() else { return Ok(moved) };
+        let mut deviations = Vec::with_capacity(rest.len());
+        for contour in self.contours() {
+            let (own, others) = rest.split_at(contour.len());
+            deviations.extend(mapped_deviations(contour, true, own, &map));
+            rest = others;
+        }
+        moved.with_deviations(deviations)
     }
 
     /// The points of the boundary in order.
@@ -80,19 +105,28 @@ pub enum Outline {
     Open(OpenOutline),
 }
 
-impl TryFrom<Vec<Vec<Point2<f64>>>> for ClosedOutline {
+/// The boundary first, then the further contours; and the deviations.
+#[cfg(feature = "serde")]
+type WrittenOutline = (Vec<Vec<Point2<f64>>>, Option<Vec<f64>>);
+
+#[cfg(feature = "serde")]
+impl TryFrom<WrittenOutline> for ClosedOutline {
     type Error = OutlineError;
 
-    /// The boundary first, then the further contours.
-    fn try_from(contours: Vec<Vec<Point2<f64>>>) -> Result<Self, OutlineError> {
+    fn try_from((contours, deviations): WrittenOutline) -> Result<Self, OutlineError> {
         let mut contours = contours.into_iter();
-        Self::new(contours.next().unwrap_or_default())?.with_inner(contours.collect())
+        let outline = Self::new(contours.next().unwrap_or_default())?.with_inner(contours.collect())?;
+        match deviations {
+            Some(deviations) => outline.with_deviations(deviations),
+            None => Ok(outline),
+        }
     }
 }
 
-impl From<ClosedOutline> for Vec<Vec<Point2<f64>>> {
+#[cfg(feature = "serde")]
+impl From<ClosedOutline> for WrittenOutline {
     fn from(outline: ClosedOutline) -> Self {
-        std::iter::once(outline.points).chain(outline.inner).collect()
+        (std::iter::once(outline.points).chain(outline.inner).collect(), outline.deviations)
     }
 }
 
@@ -120,9 +154,7 @@ impl Outline {
             Self::Closed(outline) => (Some(outline), &[][..]),
             Self::Open(outline) => (None, outline.arcs()),
         };
-        let contours = whole.into_iter().flat_map(|outline| outline.inner().iter().map(Vec::as_slice));
-        let contours = whole.map(ClosedOutline::points).into_iter().chain(contours);
-        let closed = contours.map(|points| Piece { points, closed: true });
+        let closed = whole.into_iter().flat_map(ClosedOutline::contours).map(|points| Piece { points, closed: true });
         let open = arcs.iter().map(|arc| Piece { points: arc.points(), closed: false });
         closed.chain(open)
     }
@@ -131,11 +163,35 @@ impl Outline {
     #[must_use]
     pub fn boundary(&self) -> Cow<'_, Self> {
         match self {
-            Self::Closed(ClosedOutline { points, inner }) if !inner.is_empty() => {
-                Cow::Owned(Self::Closed(ClosedOutline { points: points.clone(), inner: Vec::new() }))
+            Self::Closed(ClosedOutline { points, inner, deviations }) if !inner.is_empty() => {
+                let deviations = deviations.as_ref().map(|deviations| deviations[..points.len()].to_vec());
+                Cow::Owned(Self::Closed(ClosedOutline { points: points.clone(), inner: Vec::new(), deviations }))
             }
             _ => Cow::Borrowed(self),
         }
+    }
+
+    /// This outline with standard deviations of its points along the normal of the contour, in the unit of the points and in their order,
+    /// in the place of those that it had. They say how much a point counts in comparison with others: a factor that all of them have in
+    /// common does not matter.
+    ///
+    /// # Errors
+    /// Not one for each point, or one that is not a positive finite number.
+    pub fn with_deviations(self, deviations: Vec<f64>) -> Result<Self, OutlineError> {
+        Ok(match self {
+            Self::Closed(outline) => Self::Closed(outline.with_deviations(deviations)?),
+            Self::Open(outline) => Self::Open(outline.with_deviations(deviations)?),
+        })
+    }
+
+    /// The standard deviations of the points in their order; `None` where nothing is known of them.
+    pub fn deviations(&self) -> Option<impl Iterator<Item = f64> + Clone> {
+        let (whole, arcs) = match self {
+            Self::Closed(outline) => (outline.deviations.as_deref()?, &[][..]),
+            Self::Open(outline) if outline.has_deviations() => (&[][..], outline.arcs()),
+            Self::Open(_) => return None,
+        };
+        Some(whole.iter().chain(arcs.iter().flat_map(|arc| arc.deviations().unwrap_or_default())).copied())
     }
 
     /// All points in order, the arcs or contours one after the other.
@@ -183,11 +239,18 @@ impl Outline {
     /// # Errors
     /// The map sends the points onto one line, to one point, or beyond the accepted range.
     pub fn moved(&self, map: &Affine2<f64>) -> Result<Self, OutlineError> {
-        let move_all = |points: &[Point2<f64>]| points.iter().map(|p| map * p).collect();
+        self.mapped(|p| map * p)
+    }
+
+    /// This outline with every point mapped, and its standard deviations as the map stretches what lies across the contour there.
+    ///
+    /// # Errors
+    /// The map sends the points onto one line, to one point, or beyond the accepted range.
+    pub fn mapped(&self, map: impl Fn(&Point2<f64>) -> Point2<f64>) -> Result<Self, OutlineError> {
         match self {
-            Self::Closed(outline) => outline.mapped(|p| map * p).map(Self::Closed),
+            Self::Closed(outline) => outline.mapped(map).map(Self::Closed),
             Self::Open(outline) => {
-                let arcs = outline.arcs().iter().map(|arc| OpenArc::new(move_all(arc.points())));
+                let arcs = outline.arcs().iter().map(|arc| arc.mapped(&map));
                 OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?).map(Self::Open)
             }
         }

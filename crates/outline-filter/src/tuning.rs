@@ -174,6 +174,17 @@ pub(crate) mod noise {
     pub(crate) const INFLATION_MEMORY: f64 = 400.0;
 }
 
+/// Deviations that points state of themselves.
+pub(crate) mod deviations {
+    /// Share of the points of a frame that are good ones, by the least deviations that are stated: no point counts for more than these.
+    pub(crate) const GOOD_SHARE: f64 = 0.1;
+    /// What the deviation of good points is multiplied by at least when a frame states less: one frame alone is hardly believed.
+    pub(crate) const LARGEST_STEP: f64 = 0.9;
+    /// Deviations over that of a typical point of its frame by which a point is still judged: an edge that was not found lies anywhere, and
+    /// what it says of itself is no more than that.
+    pub(crate) const WIDEST: f64 = 3.0;
+}
+
 /// Comparison of poses by their likelihoods.
 pub(crate) mod likelihood {
     /// Smallest noise that poses are compared by, in spacings: without noise residuals are what straight cells leave.

@@ -17,6 +17,8 @@ pub enum Column {
     Arc,
     /// Contour of a closed outline that has several; optional.
     Contour,
+    /// Standard deviation of the point along the normal of the contour; optional, empty where it is not known.
+    Deviation,
 }
 
 impl Column {
@@ -31,6 +33,7 @@ impl Column {
             Self::Object => "object",
             Self::Arc => "arc",
             Self::Contour => "contour",
+            Self::Deviation => "deviation",
         }
     }
 }

@@ -14,6 +14,7 @@ pub(crate) struct Columns {
     pub(crate) object: Option<usize>,
     pub(crate) arc: Option<usize>,
     pub(crate) contour: Option<usize>,
+    pub(crate) deviation: Option<usize>,
 }
 
 /// What a column is to the rows of one outline.
@@ -21,6 +22,8 @@ pub(crate) struct Columns {
 pub(crate) enum Role {
     /// Holds a coordinate of the point: 0 for x, 1 for y.
     Coordinate(usize),
+    /// Holds the standard deviation of the point.
+    Deviation,
     /// Tells outlines and their arcs apart: the same in every row of one.
     Outline,
     /// Is not looked at.
@@ -36,7 +39,8 @@ impl Columns {
         let object = position(header, Column::Object)?;
         let arc = position(header, Column::Arc)?;
         let contour = position(header, Column::Contour)?;
-        Ok(Self { frame, time, x, y, object, arc, contour })
+        let deviation = position(header, Column::Deviation)?;
+        Ok(Self { frame, time, x, y, object, arc, contour, deviation })
     }
 
     /// The role of the column at an index.
@@ -44,6 +48,7 @@ impl Columns {
         match index {
             _ if index == self.x => Role::Coordinate(0),
             _ if index == self.y => Role::Coordinate(1),
+            _ if Some(index) == self.deviation => Role::Deviation,
             _ if [Some(self.frame), Some(self.time), self.object, self.arc, self.contour].contains(&Some(index)) => {
                 Role::Outline
             }

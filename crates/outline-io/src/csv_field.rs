@@ -30,6 +30,17 @@ pub(crate) fn number(field: &[u8]) -> Result<f64, ReadErrorKind> {
     Ok(value)
 }
 
+/// A standard deviation: a positive number, or none where nothing stands.
+pub(crate) fn deviation(field: &[u8]) -> Result<Option<f64>, ReadErrorKind> {
+    if field.trim_ascii().is_empty() {
+        return Ok(None);
+    }
+    match number(field)? {
+        value if value > 0.0 => Ok(Some(value)),
+        value => Err(ReadErrorKind::NotPositive { value }),
+    }
+}
+
 /// Powers of ten that a float holds exactly, up to as many digits as it holds of any number.
 const POWERS_OF_TEN: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 

@@ -6,14 +6,15 @@ use nalgebra::Point2;
 
 use crate::column::Column;
 use crate::csv_columns::{Columns, Role};
-use crate::csv_field::{frame_number, number, text};
+use crate::csv_field::{deviation, frame_number, number, text};
 use crate::csv_rows::Rows;
 use crate::error::{Place, ReadError, ReadErrorKind};
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
 use crate::latest_frames::LatestFrames;
 use crate::outline_rows::OutlineRows;
 
-/// Reads outlines one by one from CSV with the header `frame,time,x,y` and the optional columns `object` and `arc`.
+/// Reads outlines one by one from CSV with the header `frame,time,x,y` and the optional columns `object`, `arc`, `contour` and
+/// `deviation`.
 ///
 /// The columns may stand in any order; others are ignored. Lines that begin with `#` are comments. Fields may be
 /// quoted, white space around them is ignored, numbers are finite and at most 1e100 in size. The rows of one outline
@@ -24,6 +25,8 @@ use crate::outline_rows::OutlineRows;
 /// - With `arc` values it is open, every value one arc. An arc without two different points is dropped, unless nothing
 ///   remains.
 /// - Points that repeat their neighbour are kept.
+/// - `deviation` values are the standard deviations of points along the normal of the contour, in the unit of x and y: those of all
+///   points of an outline, or of none.
 ///
 /// The reader is an iterator. An outline is returned as soon as the row after it has been read; no more than two rows,
 /// the present outline, and the last frame number and time of every object are held (of more than 32768 objects those seen
@@ -87,13 +90,18 @@ impl<R: Read> OutlineReader<R> {
             return Ok(self.present.take());
         }
         let point = Point2::new(self.number(Column::X, self.columns.x)?, self.number(Column::Y, self.columns.y)?);
+        let stated = match self.columns.deviation.map(|index| deviation(self.rows.field(index))) {
+            Some(Err(kind)) => return Err(self.rows.error(Some(Column::Deviation), kind)),
+            Some(Ok(stated)) => stated,
+            None => None,
+        };
         let continued = match &self.present {
             Some(present) => self.continues(present)?,
             None => false,
         };
         let finished = if continued { None } else { self.begin()? };
         let arc_continues = self.columns.arc.is_none_or(|index| self.rows.same_as_before(index));
-        self.add(point, arc_continues, false)?;
+        self.add((point, stated), arc_continues, false)?;
         Ok(finished)
     }
 
@@ -144,7 +152,12 @@ impl<R: Read> OutlineReader<R> {
 
     /// Adds the point of the present row to the present outline. `arc_continues` tells that the row has the arc value of
     /// the row before, `same_row` that it agrees with it in all but the point.
-    fn add(&mut self, point: Point2<f64>, arc_continues: bool, same_row: bool) -> Result<(), ReadError> {
+    fn add(
+        &mut self,
+        (point, deviation): (Point2<f64>, Option<f64>),
+        arc_continues: bool,
+        same_row: bool,
+    ) -> Result<(), ReadError> {
         let Some(present) = &mut self.present else { return Ok(()) };
         let arc = self.columns.arc.map_or(&b""[..], |index| self.rows.field(index)).trim_ascii();
         if let Some(index) = self.columns.contour.filter(|_| arc.is_empty()) {
@@ -156,7 +169,10 @@ impl<R: Read> OutlineReader<R> {
             }
         }
         match present.add(point, arc, arc_continues, self.rows.end_line()) {
-            Ok(()) => Ok(()),
+            Ok(()) => {
+                deviation.into_iter().for_each(|deviation| present.state_deviation(deviation));
+                Ok(())
+            }
             Err(kind) => Err(self.rows.error(kind.1, kind.0)),
         }
     }

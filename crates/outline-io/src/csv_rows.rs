@@ -68,21 +68,26 @@ impl<R: Read> Rows<R> {
         Ok((rows, found))
     }
 
-    /// Moves to the next row and returns its point, provided that what is buffered begins with that row, that it has
+    /// Moves to the next row and returns its point, with its standard deviation where there is one, provided that what is buffered begins with that row, that it has
     /// no quotes and that it agrees with the row before to the byte wherever that is the role of a column. Otherwise
     /// nothing changes, and [`Self::advance`] is to be called. There is a role for every column.
-    pub(crate) fn next_point(&mut self, roles: &[Role]) -> Option<Point2<f64>> {
+    pub(crate) fn next_point(&mut self, roles: &[Role]) -> Option<(Point2<f64>, Option<f64>)> {
         let mut rest = self.reader.get_ref().buffered();
         if !self.needs_no_quotes || rest.first() == Some(&COMMENT) {
             return None;
         }
-        let mut point = Point2::origin();
+        let (mut point, mut deviation) = (Point2::origin(), None);
         let length = rest.len();
         for (index, role) in roles.iter().enumerate() {
             let used = match *role {
                 Role::Coordinate(axis) => {
                     let (value, used) = leading_number(rest)?;
                     point[axis] = value;
+                    used
+                }
+                Role::Deviation => {
+                    let (value, used) = leading_number(rest).filter(|(value, _)| *value > 0.0)?;
+                    deviation = Some(value);
                     used
                 }
                 Role::Outline => rest.starts_with(&self.row[index]).then_some(self.row[index].len())?,
@@ -98,7 +103,7 @@ impl<R: Read> Rows<R> {
         let length = length - rest.len();
         self.reader.get_mut().skip_line(length);
         self.lines_repeated += 1;
-        Some(point)
+        Some((point, deviation))
     }
 
     /// Moves to the next row; false at the end of the file. The row has as many fields as the header.

@@ -19,6 +19,8 @@ pub struct WriterOptions {
     pub arc_column: bool,
     /// Write the `contour` column: needed for outlines with several contours.
     pub contour_column: bool,
+    /// Write the `deviation` column: the standard deviations of the points, empty for outlines without.
+    pub deviation_column: bool,
     /// Round coordinates to this share of the RMS radius of the first outline or better, and times to a nanosecond;
     /// `None` for all digits.
     pub resolution: Option<f64>,
@@ -32,6 +34,7 @@ impl WriterOptions {
             object_column: options.object_column || frame.object != DEFAULT_OBJECT,
             arc_column: options.arc_column || matches!(frame.outline, Outline::Open(_)),
             contour_column: options.contour_column || has_several(&frame.outline),
+            deviation_column: options.deviation_column || frame.outline.deviations().is_some(),
             ..options
         })
     }
@@ -80,8 +83,9 @@ impl<W: Write> OutlineWriter<W> {
         let object = options.object_column.then_some(Column::Object);
         let arc = options.arc_column.then_some(Column::Arc);
         let contour = options.contour_column.then_some(Column::Contour);
+        let deviation = options.deviation_column.then_some(Column::Deviation);
         writer
-            .write_record(required.chain(object).chain(arc).chain(contour).map(|column| column.name()))
+            .write_record(required.chain(object).chain(arc).chain(contour).chain(deviation).map(|column| column.name()))
             .map_err(io_error)?;
         Ok(Self { writer, options, rounding: Rounding::to_share(options.resolution), text: Vec::new() })
     }
@@ -96,6 +100,7 @@ impl<W: Write> OutlineWriter<W> {
         self.options.check(frame)?;
         let open = matches!(frame.outline, Outline::Open(_));
         self.rounding.take(&frame.outline);
+        let mut deviations = frame.outline.deviations();
         for (arc, piece) in frame.outline.pieces().enumerate() {
             for point in piece.points {
                 self.field(format_args!("{}", frame.frame))?;
@@ -114,6 +119,12 @@ impl<W: Write> OutlineWriter<W> {
                     true if !open => self.field(format_args!("{arc}"))?,
                     true => self.writer.write_field("").map_err(io_error)?,
                     false => {}
+                }
+                if self.options.deviation_column {
+                    match deviations.as_mut().and_then(Iterator::next) {
+                        Some(deviation) => self.number(deviation)?,
+                        None => self.writer.write_field("").map_err(io_error)?,
+                    }
                 }
                 self.writer.write_record(None::<&[u8]>).map_err(io_error)?;
             }

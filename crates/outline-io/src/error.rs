@@ -236,6 +236,12 @@ pub enum ReadErrorKind {
         /// Largest absolute value accepted.
         limit: f64,
     },
+    /// A standard deviation of zero or less.
+    #[error("{value} is not a standard deviation (a number above 0, or nothing)")]
+    NotPositive {
+        /// The number.
+        value: f64,
+    },
     /// A frame number that is not a whole number from 0.
     #[error("{text:?} is not a frame number (a whole number, 0 or more)")]
     NotAFrameNumber {

@@ -25,6 +25,8 @@ pub(crate) struct OutlineRows {
     contour_values: HashSet<Vec<u8>>,
     /// The arcs, or the closed contours.
     pieces: Vec<Vec<Point2<f64>>>,
+    /// Standard deviations of their points; empty where none are stated.
+    deviations: Vec<Vec<f64>>,
 }
 
 impl OutlineRows {
@@ -40,6 +42,7 @@ impl OutlineRows {
             arc_values: HashSet::new(),
             contour_values: HashSet::new(),
             pieces,
+            deviations: Vec::new(),
         }
     }
 
@@ -89,6 +92,14 @@ impl OutlineRows {
         Ok(())
     }
 
+    /// Takes the standard deviation of the point that was added last.
+    pub(crate) fn state_deviation(&mut self, deviation: f64) {
+        self.deviations.resize_with(self.pieces.len(), Vec::new);
+        if let Some(of_piece) = self.deviations.last_mut() {
+            of_piece.push(deviation);
+        }
+    }
+
     fn enter_arc(&mut self, arc: &[u8], first: bool) -> Result<(), ReadErrorKind> {
         let (object, frame) = (self.object.clone(), self.frame);
         let open = !self.arc_values.is_empty();
@@ -110,26 +121,54 @@ impl OutlineRows {
     /// The object's name and the outline of the points.
     pub(crate) fn into_outline(self) -> (String, Result<Outline, OutlineError>) {
         let open = !self.arc_values.is_empty();
-        (self.object, if open { open_outline(self.pieces) } else { closed_outline(self.pieces) })
+        let outline = |(pieces, deviations)| match open {
+            true => open_outline(pieces, deviations),
+            false => closed_outline_with(pieces, deviations),
+        };
+        let (points, found) = (self.point_count, self.deviations.iter().map(Vec::len).sum());
+        if found != 0 && found != points {
+            return (self.object, Err(OutlineError::DeviationCount { found, points }));
+        }
+        (self.object, outline((self.pieces, self.deviations)))
     }
 }
 
 pub(crate) fn closed_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {
-    let mut contours = pieces.into_iter().map(|mut points| {
-        if points.len() > 1 && points.first() == points.last() {
-            points.pop();
-        }
-        points
-    });
-    let boundary = ClosedOutline::new(contours.next().unwrap_or_default())?;
-    boundary.with_inner(contours.collect()).map(Outline::Closed)
+    closed_outline_with(pieces, Vec::new())
 }
 
-pub(crate) fn open_outline(pieces: Vec<Vec<Point2<f64>>>) -> Result<Outline, OutlineError> {
+/// With the standard deviations of the points, unless there are none.
+fn closed_outline_with(
+    mut pieces: Vec<Vec<Point2<f64>>>,
+    mut deviations: Vec<Vec<f64>>,
+) -> Result<Outline, OutlineError> {
+    for (index, points) in pieces.iter_mut().enumerate() {
+        if points.len() > 1 && points.first() == points.last() {
+            points.pop();
+            deviations.get_mut(index).map(Vec::pop);
+        }
+    }
+    let mut contours = pieces.into_iter();
+    let boundary = ClosedOutline::new(contours.next().unwrap_or_default())?;
+    let outline = boundary.with_inner(contours.collect())?;
+    match deviations.is_empty() {
+        true => Ok(outline.into()),
+        false => outline.with_deviations(deviations.concat()).map(Outline::Closed),
+    }
+}
+
+/// With the standard deviations of the points, unless there are none.
+fn open_outline(pieces: Vec<Vec<Point2<f64>>>, deviations: Vec<Vec<f64>>) -> Result<Outline, OutlineError> {
     let mut arcs = Vec::with_capacity(pieces.len());
     let mut refused = None;
+    let mut deviations = deviations.into_iter();
     for points in pieces {
-        match OpenArc::new(points) {
+        let arc = OpenArc::new(points);
+        let arc = match deviations.next() {
+            Some(deviations) => arc.and_then(|arc| arc.with_deviations(deviations)),
+            None => arc,
+        };
+        match arc {
             Ok(arc) => arcs.push(arc),
             Err(error) => refused = refused.or(Some(error)),
         }

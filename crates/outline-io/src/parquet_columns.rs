@@ -142,6 +142,7 @@ fn find(schema: &SchemaDescriptor, column: Column) -> Result<Option<Found>, Head
         Column::Object => "text or whole numbers",
         Column::Frame | Column::Time => "numbers",
         Column::X | Column::Y => "lists of numbers, or numbers",
+        Column::Deviation => "lists of numbers",
         Column::Arc | Column::Contour => "lists of whole numbers, or whole numbers",
     };
     let arity = match descriptor.max_rep_level() {

@@ -7,7 +7,7 @@ use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
 use crate::contrast::signal;
-use crate::edges::{EdgeFit, EdgeSource};
+use crate::edges::{EdgeFit, EdgeSource, UNSEEN};
 use crate::field::{Field, blur_reach};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
@@ -28,7 +28,9 @@ const MOST_HOLES: usize = 32;
 /// The outline of an object in a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TracedOutline {
-    /// The outline, running counter-clockwise in its own coordinates (positive area).
+    /// The outline, running counter-clockwise in its own coordinates (positive area). In pictures of more than two grey values its points
+    /// have standard deviations: those of its edges with their systematic part, where it has been moved onto them, or those of edges that
+    /// are not seen.
     pub outline: Outline,
     /// Whether the edge of the picture clips the object, so that part of its own outline is not seen.
     pub touches_border: bool,
@@ -279,6 +281,15 @@ impl Window<'_> {
         } else {
             ClosedOutline::new(points.into_iter().map(|(point, _)| point).collect())?.with_inner(inner)?.into()
         };
+        let outline = match (&edges, self.edges) {
+            (Some(fit), _) => outline.with_deviations(fit.with_systematic().map(three_digits).collect())?,
+            (None, Some(_)) => {
+                let unseen = three_digits(UNSEEN * settings.pixel_size);
+                let count = outline.point_count();
+                outline.with_deviations(vec![unseen; count])?
+            }
+            (None, None) => outline,
+        };
         Ok(Some(Seen { outline, touches_border, centre, area, invariants, edges }))
     }
 }
@@ -323,6 +334,16 @@ fn object_field(
         }));
     }
     Field { width: mask.width, height: mask.height, values }
+}
+
+/// A positive number to three digits: no deviation is known better, and tables stay short.
+fn three_digits(value: f64) -> f64 {
+    let exponent = 2 - value.log10().floor() as i32;
+    let rounded = match exponent {
+        ..0 => (value / 10_f64.powi(-exponent)).round() * 10_f64.powi(-exponent),
+        _ => (value * 10_f64.powi(exponent)).round() / 10_f64.powi(exponent),
+    };
+    if rounded.is_finite() && rounded > 0.0 { rounded } else { value }
 }
 
 /// The values of the points of the arcs that [`visible_arcs`] makes of these, in their order.

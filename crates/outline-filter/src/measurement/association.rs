@@ -35,7 +35,7 @@ impl View<'_> {
     /// The mean of its neighbours along the contour has little of that noise, and its nearest cell is taken.
     pub(crate) fn measure(&self, frame: &mut Frame, pose: &Matrix3<f64>, null: &[NullDirection], pass: Pass) {
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
-        let half_window = self.half_window_of_places(pose, frame.points.len());
+        let half_window = self.half_window_of_places(pose, frame);
         if pass == Pass::First {
             frame.measurements.clear();
             frame.measurements.resize(frame.points.len(), Measurement::NOTHING);
@@ -55,7 +55,7 @@ impl View<'_> {
         null: &[NullDirection],
         pass: Pass,
     ) {
-        let Frame { points, measurements, values, shifts, pieces, places, .. } = frame;
+        let Frame { points, measurements, values, shifts, pieces, places, deviations, .. } = frame;
         places.clear();
         let in_body = |p: &Point2<f64>| map_point_by::<AFFINE>(inverse, p);
         if half_window == 0 {
@@ -69,7 +69,7 @@ impl View<'_> {
                 for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
                     self.distance::<AFFINE>(measurement, p, inverse, shifts);
                 }
-                self.weigh(measurements, values, pass);
+                self.weigh(measurements, values, deviations, pass);
             }
             for piece in pieces.iter() {
                 let range = piece.range();
@@ -84,15 +84,16 @@ impl View<'_> {
             let normal = self.distance::<AFFINE>(measurement, p, inverse, shifts);
             self.linearise(measurement, p, &normal, null);
         }
-        self.weigh(measurements, values, pass);
+        self.weigh(measurements, values, deviations, pass);
     }
 
     /// Points on either side whose mean says which cell a point belongs to: enough for the noise to be small against a cell, and few
     /// against the outline.
-    fn half_window_of_places(&self, pose: &Matrix3<f64>, count: usize) -> usize {
+    fn half_window_of_places(&self, pose: &Matrix3<f64>, frame: &Frame) -> usize {
         let scale = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
-        let needed = (self.noise.sigma / (scale * self.map.spacing() * tuning::PLACE_NOISE)).powi(2);
-        let most = count as f64 * tuning::WIDEST_WINDOW;
+        let noise = self.noise.sigma * frame.deviations.typical();
+        let needed = (noise / (scale * self.map.spacing() * tuning::PLACE_NOISE)).powi(2);
+        let most = frame.points.len() as f64 * tuning::WIDEST_WINDOW;
         (0.5 * (needed.min(most) - 1.0)).round().max(0.0) as usize
     }
 

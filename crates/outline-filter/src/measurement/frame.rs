@@ -2,7 +2,7 @@ use freeform_curve_fit::Outline;
 use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Point2};
 
-use super::Measurement;
+use super::{Measurement, PointDeviations};
 use crate::{belief::OffsetInformation, map::Contour};
 
 /// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius, and the unit of time.
@@ -15,12 +15,14 @@ pub(crate) struct Reference {
     pub(crate) radius: f64,
     /// Seconds. A power of two, so that nothing is rounded by it.
     pub(crate) time_unit: f64,
+    /// Standard deviation that good points state of themselves, image lengths; infinite where none have stated any.
+    pub(crate) stated: f64,
 }
 
 impl Reference {
-    /// Of an outline, with a unit of time of one second.
+    /// Of an outline, with a unit of time of one second, before its points are asked what they state.
     pub(crate) fn of(outline: &Outline) -> Self {
-        Self { origin: outline.centroid(), radius: outline.rms_radius(), time_unit: 1.0 }
+        Self { origin: outline.centroid(), radius: outline.rms_radius(), time_unit: 1.0, stated: f64::INFINITY }
     }
 
     /// Units of time in a second: what a rate by the unit is multiplied by to be one by the second.
@@ -66,33 +68,45 @@ pub(crate) struct Frame {
     pub(crate) right: Vec<f64>,
     /// For whatever needs a list of numbers.
     pub(crate) values: Vec<f64>,
+    /// For numbers with weights.
+    pub(crate) weighted: Vec<(f64, f64)>,
+    /// What the points state of themselves.
+    pub(crate) deviations: PointDeviations,
 }
 
 impl Frame {
     /// Takes the points of an outline. One that repeats the point before it is no second measurement.
     pub(crate) fn load(&mut self, outline: &Outline, reference: Reference) {
         let (origin, scale) = (reference.origin, 1.0 / reference.radius);
-        let Self { points, pieces, .. } = self;
+        let Self { points, pieces, deviations, .. } = self;
         points.clear();
         pieces.clear();
+        deviations.clear();
+        let mut stated = outline.deviations();
         for piece in outline.pieces() {
             let start = points.len();
             for p in piece.points {
                 let p = Point2::from((p - origin) * scale);
+                let stated = stated.as_mut().and_then(Iterator::next);
                 if points.len() == start || points.last() != Some(&p) {
                     points.push(p);
+                    stated.into_iter().for_each(|stated| deviations.push(stated));
                 }
             }
             while piece.closed && points.len() > start + 1 && points.last() == Some(&points[start]) {
                 points.pop();
+                deviations.pop();
             }
             pieces.push(Piece { start, count: points.len() - start, closed: piece.closed });
         }
+        deviations.compare(&reference);
     }
 
     /// Leaves at most about so many of the points.
     pub(crate) fn thin_out(&mut self, count: usize) {
         let stride = self.points.len().div_ceil(count).max(1);
+        let ranges = self.pieces.iter().map(Piece::range);
+        self.deviations.keep(ranges.flat_map(|range| range.step_by(stride)));
         let mut kept = 0;
         for piece in &mut self.pieces {
             let start = kept;

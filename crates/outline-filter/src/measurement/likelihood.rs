@@ -48,8 +48,7 @@ impl View<'_> {
     /// Of the points as they have been measured, before the information of their frame has been taken.
     pub(crate) fn negative_log_likelihood(&self, frame: &Frame) -> NegativeLogLikelihood {
         let scale = self.comparable_noise();
-        let innovations = frame.measurements.iter().map(|m| self.innovation_of(m, &frame.shifts));
-        of_innovations(innovations, scale, self.noise.correlation())
+        of_innovations(self.innovations(frame), scale, self.noise.correlation())
     }
 
     /// Of the loaded points in several poses. Where the map leaves more than the noise in the best of them, as one of few points does,
@@ -64,7 +63,7 @@ impl View<'_> {
         let mut all: Vec<Vec<Option<f64>>> = Vec::with_capacity(poses.len());
         for pose in poses {
             self.measure(frame, pose, &[], Pass::First);
-            let list: Vec<_> = frame.measurements.iter().map(|m| self.innovation_of(m, &frame.shifts)).collect();
+            let list: Vec<_> = self.innovations(frame).collect();
             let mut sizes: Vec<f64> = list.iter().flatten().map(|innovation| innovation.abs()).collect();
             scale = scale.min(median(&mut sizes).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m));
             all.push(list);
@@ -82,8 +81,8 @@ impl View<'_> {
         poses: &[Matrix3<f64>],
     ) -> Vec<NegativeLogLikelihood> {
         let Some((first, others)) = poses.split_first() else { return Vec::new() };
-        let limit = tuning::FAR_WORSE * self.rough_mean_square(&frame.points, first).max(1.0);
-        let rough: Vec<_> = others.iter().map(|pose| self.rough_mean_square(&frame.points, pose)).collect();
+        let limit = tuning::FAR_WORSE * self.rough_mean_square(frame, first).max(1.0);
+        let rough: Vec<_> = others.iter().map(|pose| self.rough_mean_square(frame, pose)).collect();
         let near = others.iter().zip(&rough).filter(|(_, square)| **square <= limit).map(|(pose, _)| *pose);
         let near: Vec<_> = std::iter::once(*first).chain(near).collect();
         let mut measured = self.negative_log_likelihoods(frame, &near).into_iter();
@@ -96,12 +95,13 @@ impl View<'_> {
     }
 
     /// Mean square of the distances of points from the cells nearest to them in a pose, in units of the noise.
-    fn rough_mean_square(&self, points: &[Point2<f64>], pose: &Matrix3<f64>) -> f64 {
+    fn rough_mean_square(&self, frame: &Frame, pose: &Matrix3<f64>) -> f64 {
+        let (points, ratios) = (&frame.points, frame.deviations.ratios());
         let (map, offsets) = (self.map, &self.belief.offsets);
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
         let length = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let scale = length / self.comparable_noise();
-        let square = |p: &Point2<f64>| {
+        let square = |(i, p): (usize, &Point2<f64>)| {
             let q = map_point(&inverse, p);
             let Some(number) = map.nearest(&q) else { return tuning::UNKNOWN };
             if map.is_beyond_end(number, &q) {
@@ -112,15 +112,24 @@ impl View<'_> {
             // The nearest cell is one that lies beside the point, or the point is far from all of them.
             let is_beside = cell.normal.perp(&from).abs() < map.spacing();
             let distance = if is_beside { cell.normal.dot(&from) - offsets[number] } else { from.norm() };
-            (scale * distance).powi(2).min(tuning::LARGEST * tuning::LARGEST)
+            let ratio = ratios.map_or(1.0, |ratios| ratios[i]);
+            (scale * distance / ratio).powi(2).min(tuning::LARGEST * tuning::LARGEST)
         };
-        points.iter().map(square).sum::<f64>() / points.len() as f64
+        points.iter().enumerate().map(square).sum::<f64>() / points.len() as f64
     }
 
-    /// Distance of a point from the outline as it was known, as if that were exact; `None` where nothing was known.
-    fn innovation_of(&self, m: &Measurement, shifts: &[f64]) -> Option<f64> {
+    fn innovations(&self, frame: &Frame) -> impl ExactSizeIterator<Item = Option<f64>> {
+        let Frame { measurements, shifts, deviations, .. } = frame;
+        let ratios = deviations.ratios();
+        let ratio = move |i: usize| ratios.map_or(1.0, |ratios| ratios[i]);
+        measurements.iter().enumerate().map(move |(i, m)| self.innovation_of(m, ratio(i), shifts))
+    }
+
+    /// Distance of a point from the outline as it was known, as if that were exact and the point a good one; `None` where nothing was
+    /// known. `ratio` is its deviation over that of a good point.
+    fn innovation_of(&self, m: &Measurement, ratio: f64, shifts: &[f64]) -> Option<f64> {
         let own = self.belief.information.cells.own().get(m.cell).copied().filter(|own| *own > 0.0)?;
-        let variance = 1.0 + m.by_offset * m.by_offset / own;
+        let variance = ratio * ratio + m.by_offset * m.by_offset / own;
         Some((m.residual + m.by_offset * shifts[m.cell]) / variance.sqrt())
     }
 }

@@ -2,7 +2,7 @@
 use freeform_riccati::{MAX_PARAMETERS, ParameterVector, map_point_by, pull_back_by};
 use nalgebra::{Matrix3, Point2, Vector2};
 
-use super::{NO_CELL, Pass, View};
+use super::{Counted, NO_CELL, Pass, PointDeviations, View};
 use crate::{
     map::{NullDirection, median},
     tuning::measurement as tuning,
@@ -73,16 +73,47 @@ impl View<'_> {
         null.iter().for_each(|direction| direction.project_out(&mut measurement.jacobian));
     }
 
-    /// Tukey's weights.
-    pub(super) fn weigh(&self, measurements: &mut [Measurement], values: &mut Vec<f64>, pass: Pass) {
+    /// Tukey's weights, over the variances that the points state.
+    pub(super) fn weigh(
+        &self,
+        measurements: &mut [Measurement],
+        values: &mut Vec<f64>,
+        deviations: &PointDeviations,
+        pass: Pass,
+    ) {
+        let ratios = deviations.ratios();
+        if ratios.is_none() && self.noise.counted == Counted::Alike {
+            self.weigh_by(measurements, values, (|_| 1.0, |_, _| 1.0), pass);
+            return;
+        }
+        let (ratio, widest) = (|i: usize| ratios.map_or(1.0, |ratios| ratios[i]), deviations.widest());
+        // A cell that only points which count for little have told of may lie far off: then good points do too.
+        let own = self.belief.information.cells.own();
+        let expected = |i: usize, m: &Measurement| {
+            let known = own.get(m.cell).copied().filter(|own| *own > 0.0).unwrap_or(f64::INFINITY);
+            (ratio(i).min(widest).powi(2) + m.by_offset * m.by_offset / known).sqrt()
+        };
+        self.weigh_by(measurements, values, (ratio, expected), pass);
+    }
+
+    /// By the deviation of each point, and that of its residual with what is not known of its cell, both over the deviation of a good point.
+    #[inline(always)]
+    fn weigh_by(
+        &self,
+        measurements: &mut [Measurement],
+        values: &mut Vec<f64>,
+        (ratio, expected): (impl Fn(usize) -> f64, impl Fn(usize, &Measurement) -> f64),
+        pass: Pass,
+    ) {
         let noise = self.noise;
         let mut scale = noise.sigma;
         let limit = tuning::FULL_WEIGHT * scale;
-        let near = measurements.iter().filter(|m| m.residual.abs() < limit).count();
+        let near = measurements.iter().enumerate().filter(|(i, m)| m.residual.abs() < limit * expected(*i, m)).count();
         let mut share = 1.0;
         if (near as f64) < tuning::NEAR_ENOUGH * measurements.len() as f64 {
             values.clear();
-            values.extend(measurements.iter().filter(|m| m.cell != NO_CELL).map(|m| m.residual.abs()));
+            let known = measurements.iter().enumerate().filter(|(_, m)| m.cell != NO_CELL);
+            values.extend(known.map(|(i, m)| m.residual.abs() / expected(i, m)));
             scale = scale.max(tuning::MEDIAN_TO_DEVIATION * median(values).unwrap_or(0.0));
             if pass == Pass::Again {
                 // A frame with more noise than most counts for less. A prediction that is off by more than the noise, though, must not
@@ -92,20 +123,22 @@ impl View<'_> {
             }
         }
         let scale = 1.0 / scale;
-        for measurement in measurements {
+        for (i, measurement) in measurements.iter_mut().enumerate() {
             if measurement.cell == NO_CELL {
                 measurement.weight = 0.0;
                 continue;
             }
             let variance = noise.inflation(measurement.cell);
             let residual = if variance > 1.0 { measurement.residual / variance.sqrt() } else { measurement.residual };
-            let excess = (residual.abs() * scale - tuning::FULL_WEIGHT) / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT);
+            let ratio = ratio(i);
+            let size = residual.abs() * scale / expected(i, measurement);
+            let excess = (size - tuning::FULL_WEIGHT) / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT);
             measurement.weight = match excess {
                 e if e <= 0.0 => 1.0,
                 e if e < 1.0 => (1.0 - e * e).powi(2),
                 _ => 0.0,
             } * share
-                / variance;
+                / (variance * ratio * ratio);
         }
     }
 }

@@ -5,10 +5,12 @@ mod likelihood;
 mod linearisation;
 mod noise;
 mod normal_consistency;
+mod point_deviations;
 mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
 pub(crate) use frame::{Frame, Piece, Reference};
 pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;
-pub(crate) use noise::{NoiseModel, Rounding, Tolerance, correlation_of, spread};
+pub(crate) use noise::{Counted, NoiseModel, Rounding, Tolerance, correlation_of, spread};
+pub(crate) use point_deviations::{PointDeviations, weighted_median};

@@ -1,7 +1,7 @@
 //! Noise of the points: how much there is, whether it is correlated along the contour, and how much more of it corners have.
 use freeform_curve_fit::{Outline, Piece};
 
-use super::{Measurement, NO_CELL, variance_inflation::VarianceInflation};
+use super::{Frame, NO_CELL, variance_inflation::VarianceInflation};
 use crate::{map::median, tuning::noise as tuning};
 
 /// Whether a frame may show more noise than the contour of the first, none having been compared yet.
@@ -12,6 +12,14 @@ pub(crate) enum Tolerance {
     Known,
     /// The contour of one frame may hide errors that are smooth along it and change from frame to frame.
     Relaxed,
+}
+
+/// Whether points have counted by deviations of their own, so that some cells may be known far less than by one good point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum Counted {
+    Alike,
+    ByDeviation,
 }
 
 /// Deviation of the noise on the points, normalised, and what goes with it.
@@ -25,6 +33,7 @@ pub(crate) struct NoiseModel {
     floor: f64,
     rounding: Rounding,
     pub(crate) tolerance: Tolerance,
+    pub(crate) counted: Counted,
     level: NoiseLevel,
     correlation: Correlation,
     /// Of each cell.
@@ -81,6 +90,7 @@ impl NoiseModel {
             floor: tuning::SMALLEST,
             rounding: Rounding::NONE,
             tolerance: Tolerance::Known,
+            counted: Counted::Alike,
             level: NoiseLevel { frames: [0.0; tuning::FRAMES], count: 0 },
             correlation: Correlation { ratio: 1.0, frames: 0.0 },
             inflation: Vec::new(),
@@ -107,6 +117,7 @@ impl NoiseModel {
     /// Takes what frames have shown so far from another model.
     pub(crate) fn take_level_of(&mut self, other: &Self) {
         (self.level, self.correlation, self.tolerance) = (other.level, other.correlation, other.tolerance);
+        self.counted = other.counted;
     }
 
     /// Makes room for so many cells.
@@ -114,12 +125,12 @@ impl NoiseModel {
         self.inflation.resize(cells, VarianceInflation::NEW);
     }
 
-    /// Takes a frame's estimate of the noise into the running mean.
-    pub(crate) fn take(&mut self, sigma: f64) {
+    /// Takes a frame's estimate of the noise into the running mean, the frame counting for a share of one of good points.
+    pub(crate) fn take(&mut self, sigma: f64, share: f64) {
         let weight = self.weight;
-        self.sigma = (self.sigma * weight + sigma) / (weight + 1.0);
+        self.sigma = (self.sigma * weight + sigma * share) / (weight + share);
         self.sigma = self.sigma.max(self.floor);
-        self.weight = (weight + 1.0).min(tuning::MEMORY);
+        self.weight = (weight + share).min(tuning::MEMORY);
     }
 
     /// Takes the spread of a frame, used or not.
@@ -128,16 +139,17 @@ impl NoiseModel {
         self.level.count += 1;
     }
 
-    /// Takes a squared residual of a cell in units of the noise.
-    pub(crate) fn take_residual(&mut self, cell: usize, square: f64) {
-        self.inflation[cell].take(square);
+    /// Takes a squared residual of a cell in units of the noise of its point, which counts for a share of a good one.
+    pub(crate) fn take_residual(&mut self, cell: usize, square: f64, share: f64) {
+        self.inflation[cell].take(square, share);
     }
 
-    /// Takes how many times the variance of the mean over a stretch was what independent errors give.
-    pub(crate) fn take_correlation(&mut self, ratio: f64) {
+    /// Takes how many times the variance of the mean over a stretch was what independent errors give, in a frame that counts for a share of
+    /// one of good points.
+    pub(crate) fn take_correlation(&mut self, ratio: f64, share: f64) {
         let Correlation { ratio: mean, frames } = &mut self.correlation;
-        *frames = (*frames + 1.0).min(tuning::CORRELATION_MEMORY);
-        *mean += (ratio - *mean) / *frames;
+        *frames = (*frames + share).min(tuning::CORRELATION_MEMORY);
+        *mean += (ratio - *mean) * share / *frames;
     }
 
     /// Variance that the points of a cell count with, in units of that of the noise; at least 1.
@@ -174,27 +186,38 @@ impl NoiseModel {
     }
 }
 
-/// How many times the variance of the mean residual over a stretch of the contour is what independent errors of deviation `noise` give;
-/// `None` where it cannot be told.
-pub(crate) fn correlation_of(measurements: &[Measurement], noise: Option<f64>) -> Option<f64> {
+/// How many times the variance of the weighted mean residual over a stretch of the contour is what independent errors give, of deviation
+/// `noise` for a good point; `None` where it cannot be told. Stretches count by the information that they have.
+pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>) -> Option<f64> {
+    let Frame { measurements, deviations, .. } = frame;
     let length = measurements.len() / tuning::STRETCHES;
     let noise = noise.filter(|noise| *noise > 0.0 && length >= tuning::FEWEST_IN_STRETCH)?;
-    let (mut sum, mut count) = (0.0, 0.0);
-    for stretch in measurements.chunks_exact(length) {
-        let used = stretch.iter().filter(|m| m.weight > 0.0);
-        let (total, number) = used.fold((0.0, 0.0), |(total, number), m| (total + m.residual, number + 1.0));
+    let (mut sum, mut count, mut stretches) = (0.0, 0.0, 0.0);
+    for (stretch, measurements) in measurements.chunks_exact(length).enumerate() {
+        let ratios = deviations.ratios().map(|ratios| &ratios[stretch * length..]);
+        let (mut total, mut weights, mut number) = (0.0, 0.0, 0.0);
+        for (i, m) in measurements.iter().enumerate().filter(|(_, m)| m.weight > 0.0) {
+            let weight = ratios.map_or(1.0, |ratios| (ratios[i] * ratios[i]).recip());
+            total += m.residual * weight;
+            weights += weight;
+            number += 1.0;
+        }
         if 2.0 * number > length as f64 {
             sum += total * total / number;
-            count += 1.0;
+            count += weights / number;
+            stretches += 1.0;
         }
     }
-    (2.0 * count > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
+    (2.0 * stretches > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
 }
 
-/// Robust deviation of all residuals; infinite where there are none.
-pub(crate) fn spread(values: &mut Vec<f64>, measurements: &[Measurement]) -> f64 {
+/// Robust deviation of all residuals, as if all points were good ones; infinite where there are none.
+pub(crate) fn spread(frame: &mut Frame) -> f64 {
+    let Frame { measurements, values, deviations, .. } = frame;
+    let ratios = deviations.ratios();
+    let known = measurements.iter().enumerate().filter(|(_, m)| m.cell != NO_CELL);
     values.clear();
-    values.extend(measurements.iter().filter(|m| m.cell != NO_CELL).map(|m| m.residual.abs()));
+    values.extend(known.map(|(i, m)| m.residual.abs() / ratios.map_or(1.0, |ratios| ratios[i])));
     median(values).map_or(f64::INFINITY, |m| crate::tuning::measurement::MEDIAN_TO_DEVIATION * m)
 }
 

@@ -14,13 +14,13 @@ pub(super) struct VarianceInflation {
 impl VarianceInflation {
     pub(super) const NEW: Self = Self { mean_square: 1.0, points: tuning::INFLATION_PRIOR_POINTS, variance: 1.0 };
 
-    /// Takes one squared residual in units of the noise.
-    pub(super) fn take(&mut self, square: f64) {
-        self.points = (self.points + 1.0).min(tuning::INFLATION_MEMORY);
+    /// Takes one squared residual in units of the noise of its point, which counts for a share of a good one.
+    pub(super) fn take(&mut self, square: f64, share: f64) {
+        self.points = (self.points + share).min(tuning::INFLATION_MEMORY);
         let square = square.min(tuning::INFLATION_CLIPPED * self.variance);
-        let share = 1.0 / self.points;
-        self.mean_square += (square - self.mean_square) * share;
-        let uncertainty = (2.0 * share).sqrt();
+        let of_all = 1.0 / self.points;
+        self.mean_square += (square - self.mean_square) * (share * of_all);
+        let uncertainty = (2.0 * of_all).sqrt();
         self.variance = (self.mean_square / (1.0 + tuning::INFLATION_SIGNIFICANT * uncertainty)).max(1.0);
     }
 }
@@ -48,7 +48,7 @@ mod tests {
             let mut inflation = VarianceInflation::NEW;
             (0..points).for_each(|_| {
                 let residual: f64 = StandardNormal.sample(&mut rng);
-                inflation.take((deviation * residual).powi(2));
+                inflation.take((deviation * residual).powi(2), 1.0);
             });
             inflation.variance
         };

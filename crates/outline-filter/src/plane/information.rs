@@ -3,7 +3,7 @@ use nalgebra::DVector;
 
 use super::scenery::{Matrix8, Vector8};
 use crate::{
-    measurement::{Measurement, NO_CELL},
+    measurement::{Frame, Measurement, NO_CELL},
     tuning::plane as tuning,
 };
 
@@ -127,16 +127,17 @@ impl Information {
     }
 }
 
-/// Sum of squares of residuals in units of the noise, those of outliers limited.
-pub(super) fn squares(measurements: &[Measurement], sigma: f64) -> f64 {
-    let square = |m: &Measurement| {
+/// Sum of squares of the residuals of a measured frame in units of the noise of their points, those of outliers limited.
+pub(super) fn squares(frame: &Frame, sigma: f64) -> f64 {
+    let ratios = frame.deviations.ratios();
+    let square = |(i, m): (usize, &Measurement)| {
         if m.cell == NO_CELL {
             tuning::LARGEST_SQUARE
         } else {
-            (m.residual / sigma).powi(2).min(tuning::LARGEST_SQUARE)
+            (m.residual / (sigma * ratios.map_or(1.0, |ratios| ratios[i]))).powi(2).min(tuning::LARGEST_SQUARE)
         }
     };
-    measurements.iter().map(square).sum()
+    frame.measurements.iter().enumerate().map(square).sum()
 }
 
 #[cfg(test)]

@@ -109,7 +109,7 @@ impl Solution {
         let sensitivity = scenery.sensitivity(&self.motion, seconds)?;
         scenery.measure(&self.belief, frame, &scenery.pose(&self.motion, seconds));
         self.compare(scenery, frame, &sensitivity);
-        self.squares += squares(&frame.measurements, scenery.sigma());
+        self.squares += squares(frame, scenery.sigma());
         self.information.add(&frame.measurements, &sensitivity);
         let step = self.information.solve(&prior(scenery, seconds))?;
         self.squares -= step.fall / scenery.sigma().powi(2);
@@ -196,7 +196,7 @@ impl Solution {
             buffers.load(outline, scenery.reference);
             scenery.measure(&self.belief, buffers, &scenery.pose(&self.motion, *seconds));
             information.add(&buffers.measurements, &sensitivity);
-            sum += squares(&buffers.measurements, scenery.sigma());
+            sum += squares(buffers, scenery.sigma());
         }
         Some((information, sum))
     }

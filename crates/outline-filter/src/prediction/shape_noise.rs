@@ -1,6 +1,7 @@
 //! Shape process noise: outlines that change slowly, as those of segmented pictures do, seen by innovations of the offsets that repeat.
 use crate::{
     belief::{Arrowhead, Belief, OffsetInformation},
+    measurement::{Counted, NoiseModel},
     tuning::shape_noise as tuning,
 };
 
@@ -39,15 +40,17 @@ impl ShapeNoise {
     }
 
     /// Compares the innovations of the offsets with those of the frame before. `before` is the information that the cells had, now
-    /// held by the belief with the frame added; `shifts` are the corrections made; `sigma` is the deviation of the noise.
+    /// held by the belief with the frame added; `shifts` are the corrections made. Where points count by deviations of their own, what less
+    /// than one good point tells of a cell is taken in its own deviations.
     pub(crate) fn compare_innovations(
         &mut self,
         belief: &Belief,
         shifts: &[f64],
         before: &OffsetInformation,
-        sigma: f64,
+        noise: &NoiseModel,
     ) {
-        let scale = belief.scale() / sigma;
+        let scale = belief.scale() / noise.sigma;
+        let counts_alike = noise.counted == Counted::Alike;
         let (mut products, mut squares, mut count) = (0.0, 0.0, 0.0);
         let known = before.own().iter().zip(belief.information.cells.own());
         for ((last, (before, after)), shift) in self.last.iter_mut().zip(known).zip(shifts) {
@@ -55,6 +58,8 @@ impl ShapeNoise {
             // Also false where a cell has no information yet.
             let is_told = gain > tuning::SMALLEST_GAIN && *before > 0.0;
             let innovation = if is_told { scale * shift / gain } else { 0.0 };
+            let share = if counts_alike { 1.0 } else { (after - before).clamp(0.0, 1.0).sqrt() };
+            let innovation = share * innovation;
             let innovation = innovation.clamp(-tuning::CLIPPED, tuning::CLIPPED);
             if innovation != 0.0 && *last != 0.0 {
                 let product = innovation * *last;

@@ -50,7 +50,7 @@ impl MotionFilter {
             self.track.as_mut().into_iter().for_each(Track::confirm_turn);
         }
         if let Some(track) = self.track.as_mut().filter(|_| outcome.is_accepted() || lost) {
-            track.take_spread(outcome.measurement.spread);
+            track.take_spread(&outcome.measurement);
         }
         Some(outcome)
     }

@@ -198,7 +198,7 @@ impl Hypotheses {
             other.take_noise_of(track);
             let gate = Gate { largest_innovation: Some(largest_innovation(other)), ..gate(settings, other) };
             let found = other.update(frame, &gate, Comparison::Asked);
-            other.take_spread(found.measurement.spread);
+            other.take_spread(&found.measurement);
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
             let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);

@@ -265,7 +265,7 @@ impl MotionFilter {
         frame.load(outline, track.reference());
         let outcome = advance(&self.settings, (track, frame), &mut self.history, seconds, known, comparison);
         self.motion_changed |= self.history.is_changing();
-        track.take_spread(outcome.measurement.spread);
+        track.take_spread(&outcome.measurement);
         let turn = self.hypotheses.taken();
         let outcome = self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
         if self.hypotheses.taken() != turn {
@@ -323,7 +323,8 @@ impl MotionFilter {
         self.track.as_ref().map(Track::known_outline)
     }
 
-    /// Standard deviation of the noise on the points, image lengths; `None` before the first frame.
+    /// Standard deviation of the noise on the points, image lengths; `None` before the first frame. Where points state deviations of their
+    /// own, that of good ones.
     #[must_use]
     pub fn noise(&self) -> Option<f64> {
         self.track.as_ref().map(|track| track.sigma() * track.reference().radius)

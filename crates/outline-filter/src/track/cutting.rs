@@ -9,7 +9,7 @@ use crate::{
     belief::Belief,
     dynamics::FamilyTests,
     map::{Contour, OutlineMap, Resolution},
-    measurement::{Frame, NoiseModel, Reference, Rounding},
+    measurement::{Counted, Frame, NoiseModel, Reference, Rounding},
     prediction::ShapeNoise,
     tuning::{contour::NORMAL_NOISE, map::FEWEST_POINTS, update as tuning},
     update::Sensitivity,
@@ -64,13 +64,16 @@ impl Track {
             reference,
             map: Arc::new(OutlineMap::for_contours(resolution)?),
             belief,
-            noise: NoiseModel::new(sigma),
+            noise: NoiseModel::new(sigma / frame.deviations.typical()),
             shape: ShapeNoise::default(),
             sensitivity: Sensitivity::new(),
             family: FamilyTests::default(),
             first_pose: FirstPose::default(),
             frames: 0,
         };
+        if frame.deviations.ratios().is_some() {
+            track.noise.counted = Counted::ByDeviation;
+        }
         track.grow_along(contours, frame);
         if track.map.cells().len() < 3 {
             return None;

@@ -39,8 +39,8 @@ impl Track {
     pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) {
         let model = self.belief.model;
         let map = Arc::make_mut(&mut self.map);
-        // Of the body frame.
-        let sigma = self.noise.sigma / self.belief.scale();
+        // Of the body frame, and of typical points.
+        let sigma = self.noise.sigma * frame.deviations.typical() / self.belief.scale();
         let Some(first_new) = map.grow(contours, sigma, &self.belief.offsets) else {
             return;
         };

@@ -12,7 +12,9 @@ use crate::{
     belief::Belief,
     dynamics::{CentredPose, FamilyTests, Summary},
     map::{NullDirection, OutlineMap, TurnEvidence},
-    measurement::{Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of},
+    measurement::{
+        Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of,
+    },
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, update as tuning},
     update::{
@@ -75,8 +77,9 @@ impl Track {
         if outline.point_count() < FEWEST_POINTS {
             return None;
         }
-        let reference = Reference::of(outline);
+        let mut reference = Reference::of(outline);
         frame.load(outline, reference);
+        reference.take_stated(frame.deviations.good());
         let contours = frame.contours(&Matrix3::identity());
         let rounding = Rounding::of(outline, mask_pixel, reference.radius);
         Self::cut(model, reference, Matrix3::identity(), contours, (0.0, rounding), frame)
@@ -157,8 +160,8 @@ impl Track {
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
         // Points that do not move show none of what they are rounded by.
         let rounding = self.noise.rounding().deviation;
-        let noise = measurement.noise.map(|noise| (noise / radius).max(rounding));
-        let correlation = correlation_of(&frame.measurements, noise);
+        let noise = measurement.noise.map(|noise| measurement.of_good_points(noise));
+        let correlation = correlation_of(frame, noise.map(|noise| (noise / radius).max(rounding)));
         let verdict = gate.verdict(&measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
@@ -166,11 +169,15 @@ impl Track {
             self.frames += 1;
             self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
-            if let Some(noise) = measurement.noise {
-                self.noise.take(noise / radius);
+            if let Some(noise) = noise {
+                self.noise.take(noise / radius, measurement.weight);
             }
             if let Some(ratio) = correlation {
-                self.noise.take_correlation(ratio);
+                self.noise.take_correlation(ratio, measurement.weight);
+            }
+            self.reference.take_stated(frame.deviations.good());
+            if frame.deviations.ratios().is_some() {
+                self.noise.counted = Counted::ByDeviation;
             }
             if measurement.new_points >= tuning::FEWEST_NEW_POINTS {
                 let contours = frame.contours(&self.belief.pose);
@@ -181,9 +188,9 @@ impl Track {
         Outcome { measurement, verdict, innovation, pose, likelihood }
     }
 
-    /// Takes the spread of a frame, image lengths, used or not.
-    pub(crate) fn take_spread(&mut self, spread: f64) {
-        self.noise.take_spread(spread / self.reference.radius);
+    /// Takes the spread of a frame, used or not.
+    pub(crate) fn take_spread(&mut self, measurement: &FrameMeasurement) {
+        self.noise.take_spread(measurement.of_good_points(measurement.spread) / self.reference.radius);
     }
 
     /// Takes the noise of another track: it is the same whatever the pose.
@@ -195,7 +202,7 @@ impl Track {
         self.noise.tolerance = tolerance;
     }
 
-    /// Most noise of a frame that shows the outline, image lengths.
+    /// Most noise of good points in a frame that shows the outline, image lengths.
     pub(crate) fn largest_noise(&self) -> f64 {
         self.view().largest_noise(self.reference.radius)
     }
@@ -335,10 +342,11 @@ impl Track {
     /// Builds what is not saved; false where what was saved is no track with such a unit of time, in seconds.
     pub(crate) fn restore(&mut self, unit: f64) -> bool {
         let cells = self.map.cells().len();
-        let Reference { origin, radius, time_unit } = self.reference;
+        let Reference { origin, radius, time_unit, stated } = self.reference;
         origin.iter().all(|coordinate| coordinate.is_finite())
             && radius.is_normal()
             && radius > 0.0
+            && stated > 0.0
             && time_unit == unit
             && self.frames < MOST_COUNTED
             && self.belief.is_sound(cells)

@@ -20,11 +20,13 @@ pub(crate) fn commit(
     (0..k).for_each(|i| belief.motion[i] += proposal.state[k + i]);
     belief.offsets.iter_mut().zip(&frame.shifts).for_each(|(offset, shift)| *offset += shift);
     // The buffer holds the cells as they were.
-    shape.compare_innovations(belief, &frame.shifts, &frame.cells, noise.sigma);
+    shape.compare_innovations(belief, &frame.shifts, &frame.cells, noise);
     let units = 1.0 / (noise.sigma * noise.sigma);
-    for m in frame.measurements.iter().filter(|m| m.weight > 0.0) {
+    let ratios = frame.deviations.ratios();
+    for (i, m) in frame.measurements.iter().enumerate().filter(|(_, m)| m.weight > 0.0) {
         if let Some(factor) = without_leverage(m, belief.information.cells.own()[m.cell]) {
-            noise.take_residual(m.cell, m.residual * m.residual * units * factor);
+            let share = ratios.map_or(1.0, |ratios| (ratios[i] * ratios[i]).recip());
+            noise.take_residual(m.cell, m.residual * m.residual * units * factor * share, share);
         }
     }
 }

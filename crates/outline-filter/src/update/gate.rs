@@ -4,14 +4,15 @@ use std::fmt;
 use super::solve::Proposal;
 use crate::{
     map::median,
-    measurement::{Frame, Measurement, NO_CELL, View, spread},
+    measurement::{Frame, Measurement, NO_CELL, View, spread, weighted_median},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, update as tuning},
 };
 
 /// Comparison of one frame with the known outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameMeasurement {
-    /// Share of the points that lie on the known outline, of those that do not lie beyond its ends; in [0, 1].
+    /// Share of the points that lie on the known outline, of those that do not lie beyond its ends; in [0, 1]. Points that state deviations
+    /// of their own count by them.
     pub agreement: f64,
     /// Points that lie beyond the known ends of the outline.
     pub new_points: usize,
@@ -20,10 +21,13 @@ pub struct FrameMeasurement {
     pub innovation: f64,
     /// Linearisations taken.
     pub iterations: usize,
-    /// Standard deviation of the noise of this frame, image lengths; `None` if too few cells have been seen before.
+    /// Standard deviation of the noise of this frame, image lengths; `None` if too few cells have been seen before. Where points state
+    /// deviations of their own, that of a typical one of this frame.
     pub noise: Option<f64>,
     /// Robust spread of all points about the outline, including points left out, image lengths; infinite if there are none.
     pub spread: f64,
+    /// What a point counts for by the deviation that it states, in the mean; in (0, 1], 1 for good points and where none state any.
+    pub weight: f64,
 }
 
 /// Why a [`MotionFilter`](crate::MotionFilter) has not used a frame.
@@ -59,7 +63,7 @@ pub(crate) struct Gate {
     pub(crate) smallest_agreement: f64,
     /// Largest squared innovation of the pose, where it matters.
     pub(crate) largest_innovation: Option<f64>,
-    /// Largest deviation of the noise in image lengths, where it matters.
+    /// Largest deviation of the noise of good points in image lengths, where it matters.
     pub(crate) largest_noise: Option<f64>,
 }
 
@@ -78,8 +82,9 @@ impl Gate {
         if let Some(largest) = self.largest_innovation.filter(|largest| innovation > *largest || innovation.is_nan()) {
             return Err(Rejection::InnovationTooLarge { innovation, largest });
         }
+        let of_good = measurement.of_good_points(measurement.noise.unwrap_or(0.0));
         match (measurement.noise, self.largest_noise) {
-            (Some(noise), Some(largest)) if noise > largest || noise.is_nan() => {
+            (Some(noise), Some(largest)) if of_good > largest || noise.is_nan() => {
                 Err(Rejection::NoiseTooLarge { noise })
             }
             _ => Ok(()),
@@ -97,12 +102,18 @@ impl FrameMeasurement {
             iterations,
             noise: None,
             spread: f64::INFINITY,
+            weight: 1.0,
         }
+    }
+
+    /// What noise of a typical point of this frame is for a good point.
+    pub(crate) fn of_good_points(&self, noise: f64) -> f64 {
+        noise * self.weight.sqrt()
     }
 }
 
 impl View<'_> {
-    /// Most noise of a frame that shows the known outline, in image lengths; `radius` is that of the first outline.
+    /// Most noise of good points in a frame that shows the known outline, in image lengths; `radius` is that of the first outline.
     pub(crate) fn largest_noise(&self, radius: f64) -> f64 {
         self.noise.tolerated().max(NEVER_TOO_MUCH * self.map.spacing()) * radius
     }
@@ -115,29 +126,48 @@ impl View<'_> {
         innovation: f64,
         radius: f64,
     ) -> FrameMeasurement {
-        let Frame { measurements, values, cells, .. } = frame;
-        let spread = spread(values, measurements);
+        let spread = spread(frame);
+        let Frame { measurements, values, weighted, cells, deviations, .. } = frame;
         let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
-        let tolerance = (tuning::AGREEING * scale).max(tuning::BEND * self.map.spacing());
-        let (mut known, mut agreeing, mut new_points) = (0usize, 0usize, 0usize);
+        // Points that count for next to nothing need not agree.
+        let (mut known, mut agreeing, mut new, mut new_points) = (0.0, 0.0, 0.0, 0usize);
+        let (ratios, widest) = (deviations.ratios(), deviations.widest());
+        let limit = |ratio: f64| (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());
+        let alike = limit(1.0);
         values.clear();
-        for m in measurements.iter() {
+        weighted.clear();
+        for (i, m) in measurements.iter().enumerate() {
+            let (ratio, share, tolerance) = match ratios {
+                None => (1.0, 1.0, alike),
+                Some(ratios) => (ratios[i], (ratios[i] * ratios[i]).recip(), limit(ratios[i])),
+            };
             if m.cell == NO_CELL {
                 new_points += 1;
+                new += share;
                 continue;
             }
-            known += 1;
-            agreeing += usize::from(m.residual.abs() < tolerance);
+            known += share;
+            if m.residual.abs() < tolerance {
+                agreeing += share;
+            }
             if let Some(factor) = without_leverage(m, cells.own()[m.cell]).filter(|_| m.weight > 0.0) {
-                values.push(m.residual.abs() * factor.sqrt());
+                let size = m.residual.abs() * factor.sqrt();
+                match ratios {
+                    None => values.push(size),
+                    Some(_) => weighted.push((size / ratio, share)),
+                }
             }
         }
-        let enough = values.len() * 4 > measurements.len();
-        let noise = median(values).filter(|_| enough).map(|m| MEDIAN_TO_DEVIATION * m * radius);
-        let total = known as f64 + new_points as f64 / tuning::NEW_POINTS_PER_POINT;
-        let agreement = if total > 0.0 { agreeing as f64 / total } else { 0.0 };
+        let enough = (values.len() + weighted.len()) * 4 > measurements.len();
+        // Points count by their weights: what those that count most scatter by must not hide behind others that say too much of theirs.
+        let middle = if weighted.is_empty() { median(values) } else { weighted_median(weighted) };
+        let typical = deviations.typical();
+        let noise = middle.filter(|_| enough).map(|m| MEDIAN_TO_DEVIATION * m * radius * typical);
+        let total = known + new / tuning::NEW_POINTS_PER_POINT;
+        let agreement = if total > 0.0 { agreeing / total } else { 0.0 };
         let iterations = proposal.iterations;
-        FrameMeasurement { agreement, new_points, innovation, iterations, noise, spread: spread * radius }
+        let (spread, weight) = (spread * radius * typical, deviations.weight());
+        FrameMeasurement { agreement, new_points, innovation, iterations, noise, spread, weight }
     }
 }
 

@@ -6,6 +6,7 @@ mod filter_support;
 mod known_outline;
 mod mask_rounding;
 mod plane;
+mod point_deviations;
 mod recorded;
 mod recording;
 #[cfg(feature = "serde")]

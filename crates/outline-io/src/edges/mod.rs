@@ -35,6 +35,9 @@ const SAME_EDGE: f64 = 0.4;
 /// An edge farther from the outline than this, and so many widths of the edge, is another edge, in pixels.
 const FARTHEST: [f64; 2] = [1.2, 1.2];
 
+/// Standard deviation of a point without an edge, in pixels: half of how far edges may lie from it.
+pub(crate) const UNSEEN: f64 = 0.5 * (FARTHEST[0] + FARTHEST[1] * FIRST_WIDTH);
+
 /// A step of less than this share of the median step of the contour is no edge of the object.
 const SMALLEST_STEP: f64 = 0.3;
 
@@ -52,6 +55,9 @@ const INTERPOLATED_NOISE: f64 = 2.0 / 3.0;
 
 /// Least systematic uncertainty of an edge, in pixels: what the model and the grid of pixels leave.
 const LEAST_SYSTEMATIC: f64 = 0.01;
+
+/// Standard deviation of the Gaussian that heights of steps are smoothed by along the contour, in points.
+const STEPS_TOGETHER: f64 = 4.0;
 
 /// Points of a stretch over which the noise is averaged away to see the systematic part.
 const STRETCH: usize = 24;
@@ -72,6 +78,13 @@ pub struct EdgeFit {
     pub noise: f64,
     /// Share of the points that have an edge of their own.
     pub clear_share: f64,
+}
+
+impl EdgeFit {
+    /// The standard deviations of all points with the systematic part.
+    pub fn with_systematic(&self) -> impl Iterator<Item = f64> {
+        self.deviations.iter().map(|random| random.hypot(self.systematic))
+    }
 }
 
 /// What is looked at of a picture.
@@ -150,8 +163,9 @@ impl EdgeSource<'_> {
         let places = bridged(&edges, &is_clear)?;
         let places = smoothed(&places, self.along);
         let bends = bends(&points, &normals, &places, width);
+        let steps = steps_around(&edges, &is_clear);
         let deviation = |i: usize| {
-            let step = if is_clear[i] { edges[i].step } else { contrast };
+            let step = if is_clear[i] { steps[i] } else { contrast };
             let random = noise.max(0.3) * fit.deviation_of_place(width) / step;
             if is_clear[i] { random } else { random.max(0.5 * farthest) }
         };
@@ -262,6 +276,18 @@ fn bridged(edges: &[Edge], is_clear: &[bool]) -> Option<Vec<f64>> {
         }
     }
     Some(places)
+}
+
+/// The heights of the clear steps, each the mean over those around it: a height has noise of its own, which is not to say how well a
+/// place is known. Those of others as they are.
+fn steps_around(edges: &[Edge], is_clear: &[bool]) -> Vec<f64> {
+    let of_clear = |value: &dyn Fn(&Edge) -> f64| {
+        let values = edges.iter().zip(is_clear).map(|(edge, clear)| if *clear { value(edge) } else { 0.0 });
+        smoothed(&values.collect::<Vec<_>>(), STEPS_TOGETHER)
+    };
+    let (sums, weights) = (of_clear(&|edge| edge.step), of_clear(&|_| 1.0));
+    let means = sums.into_iter().zip(weights).zip(edges.iter().zip(is_clear));
+    means.map(|((sum, weight), (edge, clear))| if *clear { sum / weight } else { edge.step }).collect()
 }
 
 /// Smoothed along the contour by a Gaussian.

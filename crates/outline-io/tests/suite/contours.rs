@@ -61,3 +61,32 @@ fn contours_come_back_from_csv_to_the_last_bit_and_need_their_column() {
     let error = OutlineReader::new(torn.as_bytes(), "csv").expect("a header").next().expect("a row").expect_err("torn");
     assert!(error.to_string().contains("contour \"a\" comes a second time"), "{error}");
 }
+
+#[test]
+fn points_of_grey_pictures_state_deviations_that_come_back_from_csv_in_their_order() {
+    let outline = traced(Contours::All, true);
+    let stated: Vec<f64> = Outline::Closed(outline.clone()).deviations().expect("deviations").collect();
+    assert_eq!(stated.len(), outline.points().len() + outline.inner()[0].len());
+    // The picture has no noise, and its edges are those of a box: a hundredth of a pixel is what any edge is known to.
+    assert!(stated.iter().all(|deviation| (0.005..2.0).contains(deviation)), "{stated:?}");
+    let frame = |outline| OutlineFrame { frame: 0, time: 0.0, object: "0".to_owned(), outline };
+    let frames = [frame(Outline::Closed(outline.clone())), {
+        let without = ClosedOutline::new(outline.points().to_vec()).expect("an outline");
+        OutlineFrame { frame: 1, time: 1.0, ..frame(without.into()) }
+    }];
+    let options = WriterOptions::needed_for(&frames);
+    assert!(options.deviation_column);
+    let mut writer = OutlineWriter::new(Vec::new(), options).expect("memory");
+    frames.iter().for_each(|frame| writer.write(frame).expect("memory"));
+    let csv = writer.finish().expect("memory");
+    let read: Vec<_> =
+        OutlineReader::new(&csv[..], "csv").expect("a header").collect::<Result<_, _>>().expect("outlines");
+    assert_eq!(read, frames);
+    // Without the column the points are the same.
+    let options = WriterOptions { deviation_column: false, ..options };
+    let mut writer = OutlineWriter::new(Vec::new(), options).expect("memory");
+    writer.write(&frames[0]).expect("memory");
+    let csv = writer.finish().expect("memory");
+    let read = OutlineReader::new(&csv[..], "csv").expect("a header").next().expect("an outline").expect("an outline");
+    assert!(read.outline.deviations().is_none() && read.outline.points().eq(frames[0].outline.points()));
+}

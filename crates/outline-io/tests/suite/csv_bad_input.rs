@@ -355,3 +355,21 @@ fn what_is_no_csv_is_named_for_what_it_is() {
     refused(&returns, &[], &format!("in.csv: {message}"));
     refused(returns.repeat(20_000), &[], &format!("in.csv:1: {message}"));
 }
+
+#[test]
+fn deviations_that_are_none_are_refused_and_those_of_some_points_alone_leave_the_outline_out() {
+    let with = |cells: [&str; 3]| {
+        let points = ["0,0", "1,0", "0,1"];
+        let rows = points.iter().zip(cells).map(|(point, cell)| format!("0,0.0,{point},{cell}\n"));
+        format!("frame,time,x,y,deviation\n{}", rows.collect::<String>())
+    };
+    assert_eq!(read_all(with(["0.1", "2", "1e-3"])), (vec![0], vec![]));
+    assert_eq!(read_all(with(["", " ", ""])), (vec![0], vec![]));
+    let none = "is not a standard deviation (a number above 0, or nothing)";
+    refused(with(["0.1", "0", "0.1"]), &[], &format!("in.csv:3: column deviation: 0 {none}"));
+    refused(with(["-0.1", "0.1", "0.1"]), &[], &format!("in.csv:2: column deviation: -0.1 {none}"));
+    refused(with(["0.1", "0.1", "wide"]), &[], "in.csv:4: column deviation: \"wide\" is not a number");
+    let (frames, errors) = read_all(with(["0.1", "", "0.1"]));
+    assert_eq!((frames, errors.len()), (vec![], 1));
+    assert!(errors[0].1 && errors[0].0.contains("2 standard deviation(s) for 3 points"), "{errors:?}");
+}

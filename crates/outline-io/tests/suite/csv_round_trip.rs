@@ -113,7 +113,7 @@ fn rearranged(csv: &[u8], order: &[usize], line_end: &str, noise: &[bool], close
 proptest! {
     #[test]
     fn what_is_written_is_read_back(frames in sequence()) {
-        let all = WriterOptions { object_column: true, arc_column: true, contour_column: false, resolution: None };
+        let all = WriterOptions { object_column: true, arc_column: true, ..WriterOptions::default() };
         assert_same(&read(written(&frames, all).as_slice()), &frames);
         let needed = WriterOptions::needed_for(&frames);
         assert_same(&read(written(&frames, needed).as_slice()), &frames);
@@ -202,7 +202,7 @@ fn what_could_not_be_read_back_is_not_written() {
     assert!(matches!(named, Err(WriteError::NoObjectColumn { .. })));
     assert!(matches!(plain.write(&frame("0", 0.0, &open)), Err(WriteError::NoArcColumn { frame: 3, .. })));
     assert!(matches!(plain.write(&frame("0", f64::NAN, &outline)), Err(WriteError::Time { .. })));
-    let options = WriterOptions { object_column: true, arc_column: true, contour_column: false, resolution: None };
+    let options = WriterOptions { object_column: true, arc_column: true, ..WriterOptions::default() };
     let mut full = OutlineWriter::new(Vec::new(), options).expect("memory never fails");
     for name in [" a", "a ", "a\nb", "\u{7f}"] {
         assert!(matches!(full.write(&frame(name, 0.0, &outline)), Err(WriteError::ObjectName { .. })), "{name:?}");
