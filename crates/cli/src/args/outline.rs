@@ -27,6 +27,12 @@ pub(crate) struct OutlineArgs {
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     pub(crate) output: PathBuf,
 
+    /// Write the standard deviations of the points too, as column `deviation` of CSV
+    ///
+    /// They are known where edges are fitted in grey pictures. `identify` and `track` weigh the points by them.
+    #[arg(long)]
+    pub(crate) deviations: bool,
+
     /// Draw the outlines on every picture: a folder for PNG files, FILE.gif, or FILE.y4m (uncompressed video, which ffmpeg
     /// and others read)
     ///

@@ -474,3 +474,25 @@ fn discs_that_roll_tell_their_turn_by_their_holes_and_not_without_them() {
         assert_eq!(document["objects"].as_array().map(Vec::len), Some(2), "{scene}");
     }
 }
+
+#[test]
+fn deviations_of_points_are_written_where_they_are_asked_for_and_weigh_the_points_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, _) = pears(folder.path(), "frames", 6);
+    let plain = succeed(&format!("outline {frames} --quiet"), "");
+    let with_deviations = succeed(&format!("outline {frames} --quiet --deviations"), "");
+    let rows =
+        |text: &str| -> Vec<String> { text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect() };
+    let (plain_rows, rows) = (rows(&plain), rows(&with_deviations));
+    assert!(rows[0].ends_with(",deviation") && !plain_rows[0].contains("deviation"), "{}", rows[0]);
+    assert_eq!(rows.len(), plain_rows.len());
+    for (row, plain) in rows[1..].iter().zip(&plain_rows[1..]) {
+        let (point, deviation) = row.rsplit_once(',').expect("columns");
+        assert_eq!(point, plain);
+        assert!(deviation.parse::<f64>().is_ok_and(|deviation| deviation > 0.0), "{row}");
+    }
+    let omega = |outlines: &str| {
+        json(&succeed("identify - --json --quiet", outlines))["objects"][0]["parameters"]["omega"]["value"].clone()
+    };
+    assert_ne!(omega(&with_deviations), omega(&plain));
+}
