@@ -78,6 +78,9 @@ impl FollowedPose {
             let (matches, median) = self.match_all(&pose, outline);
             let step = correction(self.model, &matches, ROBUST_MEDIANS * median.max(ROUNDING));
             let Some(corrected) = step.and_then(nalgebra::Transform::try_inverse) else { break };
+            if (pose * corrected).try_inverse().is_none() {
+                break;
+            }
             pose *= corrected;
             if (corrected.matrix() - Matrix3::identity()).amax() < CONVERGED {
                 break;
@@ -92,7 +95,7 @@ impl FollowedPose {
         if !self.is_whole {
             return None;
         }
-        let (count, working_from_image) = (self.points.len(), pose.inverse());
+        let (count, working_from_image) = (self.points.len(), pose.try_inverse()?);
         let place = |p: &Point2<f64>| self.nearest_index(&(working_from_image * p));
         // Places go up or down along all arcs alike.
         let ascent = |arc: &[Point2<f64>]| {
@@ -129,7 +132,8 @@ impl FollowedPose {
     /// Points of an outline in working coordinates with the normal of the nearest point of the reference and the distance from the
     /// line through that; and the median distance.
     fn match_all(&self, pose: &Projective2<f64>, outline: &Outline) -> (Vec<Match>, f64) {
-        let working_from_image = pose.inverse();
+        // A motion that shrinks the object to nothing over a long gap fits no outline.
+        let Some(working_from_image) = pose.try_inverse() else { return (Vec::new(), f64::INFINITY) };
         let every = outline.point_count().div_ceil(PLACED_POINTS);
         let matches: Vec<Match> =
             outline.points().step_by(every).map(|p| self.nearest(working_from_image * p)).collect();
@@ -187,8 +191,13 @@ pub(crate) fn in_working(outline: &Outline, pose: &Projective2<f64>) -> Result<O
     })
 }
 
+/// Determinant of a map over the product of the lengths of its rows below which rounding is most of it.
+#[cfg(feature = "serde")]
+const SINGULAR: f64 = 1e-15;
+
 /// Whether a map of the plane has finite numbers and an inverse.
 #[cfg(feature = "serde")]
 pub(crate) fn is_regular(map: &Matrix3<f64>) -> bool {
-    map.iter().all(|entry| entry.is_finite()) && map.try_inverse().is_some()
+    let lengths: f64 = map.row_iter().map(|row| row.norm()).product();
+    map.iter().all(|entry| entry.is_finite()) && map.determinant().abs() > SINGULAR * lengths
 }

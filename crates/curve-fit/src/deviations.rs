@@ -15,8 +15,12 @@ pub(crate) fn check_deviations(deviations: &[f64], points: usize) -> Result<(), 
     }
 }
 
-/// The deviations of the points of a run after a map: how far it moves a point across the mapped contour that is moved by its
-/// deviation across the contour.
+/// Share of the distance of its neighbours that a point is moved by to see what a map makes of its deviation: small for the bends of the map,
+/// and large for the rounding of coordinates.
+const STEP: f64 = 1e-4;
+
+/// The deviations of the points of a run after a map: how far it moves a point across the mapped contour that is moved a little across the
+/// contour, over that, times its deviation.
 pub(crate) fn mapped_deviations<'a>(
     points: &'a [Point2<f64>],
     closed: bool,
@@ -28,12 +32,17 @@ pub(crate) fn mapped_deviations<'a>(
         let before = if i > 0 { i - 1 } else { usize::from(closed) * last };
         let after = if i < last { i + 1 } else { usize::from(!closed) * last };
         let along = points[after] - points[before];
-        let across = Vector2::new(-along.y, along.x).try_normalize(0.0).unwrap_or_else(Vector2::x);
-        let moved = map(&(points[i] + *deviation * across)) - map(&points[i]);
-        match (map(&points[after]) - map(&points[before])).try_normalize(0.0) {
+        let (across, length) = match along.try_normalize(0.0) {
+            Some(along_unit) => (Vector2::new(-along_unit.y, along_unit.x), along.norm()),
+            None => (Vector2::x(), points[i].coords.norm().max(1.0)),
+        };
+        let step = STEP * length;
+        let moved = map(&(points[i] + step * across)) - map(&points[i]);
+        let stretch = match (map(&points[after]) - map(&points[before])).try_normalize(0.0) {
             Some(direction) => direction.perp(&moved).abs(),
             None => moved.norm(),
-        }
+        };
+        (deviation * (stretch / step)).clamp(f64::MIN_POSITIVE, f64::MAX)
     })
 }
 

@@ -180,6 +180,11 @@ pub(crate) mod deviations {
     pub(crate) const GOOD_SHARE: f64 = 0.1;
     /// What the deviation of good points is multiplied by at least when a frame states less: one frame alone is hardly believed.
     pub(crate) const LARGEST_STEP: f64 = 0.9;
+    /// What it is multiplied by at most when a frame states more: as fast as the noise is learnt, so that a first frame that states too
+    /// little is not believed for ever.
+    pub(crate) const LARGEST_RISE: f64 = 1.01;
+    /// Deviation over that of a good point from which on it is taken for this: such a point counts for a thousandth.
+    pub(crate) const LARGEST_RATIO: f64 = 30.0;
     /// Deviations over that of a typical point of its frame by which a point is still judged: an edge that was not found lies anywhere, and
     /// what it says of itself is no more than that.
     pub(crate) const WIDEST: f64 = 3.0;

@@ -161,7 +161,7 @@ pub enum ReadErrorKind {
     },
     /// Nearly all outlines of a file are copies of each other, and very many.
     #[error(
-        "more than {outlines} outlines or {points} points, which is too much for a file of {length} bytes: nearly all are copies of each other; as CSV they are read"
+        "more than {outlines} outlines or {points} points, too many for a file of {length} bytes to be more than copies of a few; as CSV they are read"
     )]
     UnpacksToTooMuch {
         /// Most outlines that are read of a file of this length.

@@ -18,6 +18,9 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
         .map(AsRef::as_ref)
         .collect();
     refuse_overwriting(&args.inputs, &outputs)?;
+    if args.deviations && TableFormat::of(&args.output) == TableFormat::Parquet {
+        return Err(Failure::unusable("--deviations: Parquet does not have them; write CSV"));
+    }
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     if !input.has_pictures() && args.overlay.is_some() {
         return Err(Failure::unusable(format_args!("{}: not a picture, there is nothing to draw on", input.name)));

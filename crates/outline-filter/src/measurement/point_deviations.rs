@@ -43,7 +43,8 @@ impl PointDeviations {
         let good = good(&mut self.sorted);
         // Where the reference is infinite, this frame is the first one that states any.
         let of_frame = (good / reference.stated).max(1.0);
-        self.ratios.iter_mut().for_each(|ratio| *ratio = (*ratio / good).max(1.0) * of_frame);
+        let ratio_of = |stated: f64| ((stated / good).max(1.0) * of_frame).min(tuning::LARGEST_RATIO);
+        self.ratios.iter_mut().for_each(|ratio| *ratio = ratio_of(*ratio));
         self.good = Some(good);
         self.weigh();
     }
@@ -100,11 +101,19 @@ impl PointDeviations {
 }
 
 impl Reference {
-    /// Takes it that a frame which shows the object has stated smaller deviations. One frame alone is hardly believed.
+    /// Takes it that a frame which shows the object has stated these deviations, if it has. The first that does is believed, one alone of the
+    /// others hardly: the reference falls fast to what many state, and rises slowly.
     pub(crate) fn take_stated(&mut self, good: f64) {
-        if good < self.stated {
-            self.stated = if self.stated.is_finite() { good.max(tuning::LARGEST_STEP * self.stated) } else { good };
+        if good.is_infinite() {
+            return;
         }
+        self.stated = if self.stated.is_finite() {
+            let near = good.clamp(tuning::LARGEST_STEP * self.stated, tuning::LARGEST_RISE * self.stated);
+            // Further off, points count for no less.
+            near.max(good / tuning::LARGEST_RATIO)
+        } else {
+            good
+        };
     }
 }
 

@@ -39,9 +39,10 @@ impl Track {
     pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) {
         let model = self.belief.model;
         let map = Arc::make_mut(&mut self.map);
-        // Of the body frame, and of typical points.
-        let sigma = self.noise.sigma * frame.deviations.typical() / self.belief.scale();
-        let Some(first_new) = map.grow(contours, sigma, &self.belief.offsets) else {
+        // Of the body frame. New cells come from points of this frame alone, and the others do not.
+        let sigma = self.noise.sigma / self.belief.scale();
+        let of_frame = sigma * frame.deviations.typical();
+        let Some(first_new) = map.grow(contours, of_frame, &self.belief.offsets) else {
             return;
         };
         let cells = map.cells().len();

@@ -234,3 +234,37 @@ fn a_filter_that_is_saved_keeps_what_points_have_stated() {
     }
     assert_eq!(told(&interrupted, &[]), told(&straight, &[]));
 }
+
+#[cfg(feature = "serde")]
+#[test]
+fn a_first_frame_that_states_far_too_little_is_not_believed_for_ever_and_leaves_a_sound_state() {
+    for factor in [0.1, 1e-3, 1e-80, 1e-200] {
+        let all = frames(11, 60, |_, _, random| (NOISE, NOISE * (0.9 + 0.2 * random)));
+        let mut with = stating(&all, 1.0);
+        let first = all[0].2.iter().map(|deviation| factor * deviation).collect();
+        with[0].1 = all[0].1.clone().with_deviations(first).expect("deviations");
+        let (filter, steps) = followed(with.iter().map(|(time, outline)| (*time, outline)));
+        assert!(steps.iter().all(FilterStep::is_accepted), "{factor}");
+        let restored = MotionFilter::from_bytes(&filter.to_bytes().expect("memory")).expect("a sound state");
+        assert_eq!(restored.estimate(), filter.estimate());
+        let omega = filter.estimate().and_then(|estimate| estimate.parameters().next()).expect("omega");
+        let (value, deviation) = omega.value.zip(omega.standard_deviation).expect("a turn that is seen");
+        assert!((value - OMEGA).abs() < 4.0 * deviation && deviation < 0.01, "{factor}: {value} {deviation}");
+        // Another object is none, whatever its points state.
+        let mut square = filter.clone();
+        let corners = (0..POINTS).map(|i| {
+            let s = 8.0 * f64::from(i) / f64::from(POINTS);
+            let along = (s % 2.0) - 1.0;
+            match s as u32 / 2 {
+                0 => Point2::new(along, -1.0),
+                1 => Point2::new(1.0, along),
+                2 => Point2::new(-along, 1.0),
+                _ => Point2::new(-1.0, -along),
+            }
+        });
+        let square_outline = Outline::closed(corners.collect()).expect("a square");
+        let square_outline = square_outline.with_deviations(vec![NOISE; POINTS as usize]).expect("deviations");
+        let step = square.step(2.1, &square_outline).expect("a frame");
+        assert!(!step.is_accepted(), "{factor}");
+    }
+}
