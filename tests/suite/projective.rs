@@ -52,6 +52,24 @@ fn a_fifth_of_the_outline_may_be_hidden_under_projective_motion() {
     assert!(errors.iter().all(|error| *error < 0.1), "{errors:?}");
 }
 
+#[test]
+fn a_motion_that_shrinks_the_object_to_nothing_over_a_gap_does_not_end_the_program() {
+    for (model, shrinking) in [(MotionModel::Affine, 6), (MotionModel::Projective, 8)] {
+        let mut settings = PipelineSettings::for_model(model);
+        settings.identify.initial_values = vec![0.0; shrinking];
+        (settings.identify.initial_values[0], settings.identify.initial_values[3]) = (-0.5, -0.5);
+        let mut pipeline = Pipeline::new(settings).expect("settings");
+        let frames: Vec<_> = simulator(BuiltInShape::Bird, 0.2, 0.001, 0.2).frames().collect();
+        for gap in [0.0, 1e4, 1e6, 1e9] {
+            for frame in &frames {
+                // Any answer will do.
+                let _ = pipeline.push(gap + frame.time, &frame.outline);
+            }
+        }
+        assert_eq!(pipeline.frames(), 4 * frames.len());
+    }
+}
+
 /// What the motion filter makes of a second.
 fn filtered(settings: FilterSettings, shape: BuiltInShape) -> ObjectResult {
     let settings = TrackerSettings { method: MethodSettings::Filter(settings), ..TrackerSettings::default() };
