@@ -53,7 +53,7 @@ enum SavedMethod {
 /// What is known of an object. States have a header of their own.
 #[derive(Serialize, Deserialize)]
 enum SavedIdentifier {
-    Filter { state: Vec<u8>, last_known: Option<(f64, MotionEstimate)> },
+    Filter { state: Vec<u8>, last_known: Box<Option<(f64, MotionEstimate)>> },
     Adaptive { state: Vec<u8> },
 }
 
@@ -168,7 +168,7 @@ fn saved(object: &TrackedObject) -> Result<SavedObject, TrackerStateError> {
     let awake = object.identifier.awake().map_err(lost)?;
     let identifier = match awake.as_ref().unwrap_or(&object.identifier) {
         Identifier::Filter(filtered) => {
-            SavedIdentifier::Filter { state: filtered.filter.to_bytes()?, last_known: filtered.last_known }
+            SavedIdentifier::Filter { state: filtered.filter.to_bytes()?, last_known: Box::new(filtered.last_known) }
         }
         Identifier::Adaptive(pipeline) => SavedIdentifier::Adaptive { state: pipeline.to_bytes()? },
         Identifier::Plane(_) | Identifier::Resting(_) => return Err(TrackerStateError::Plane),
@@ -201,7 +201,7 @@ fn restored_identifier(saved: SavedIdentifier, method: &MethodSettings) -> Resul
     let inconsistent = |part| Err(StateError::Inconsistent { part });
     match (saved, method) {
         (SavedIdentifier::Filter { state, last_known }, MethodSettings::Filter(settings)) => {
-            let filter = MotionFilter::from_bytes(&state)?;
+            let (filter, last_known) = (MotionFilter::from_bytes(&state)?, *last_known);
             let is_of_model = last_known.is_none_or(|(_, motion)| motion.model() == settings.model);
             if filter.settings() != settings || !is_of_model {
                 return inconsistent("settings of an object");

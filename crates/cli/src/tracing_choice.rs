@@ -57,7 +57,9 @@ impl Preview {
         let sequence = match self {
             Self::Pictures(files) => {
                 let wanted: Vec<(u64, PathBuf)> = frames.into_iter().map(|k| (k, files[k as usize].clone())).collect();
-                return Some(Box::new(wanted.into_iter().filter_map(move |(frame, path)| {
+                // To open a pipe among them is to wait for somebody who writes to it.
+                let wanted = wanted.into_iter().filter(|(_, path)| path.is_file());
+                return Some(Box::new(wanted.filter_map(move |(frame, path)| {
                     let picture = PictureSequence::open(&[path], settings).ok()?.next()?;
                     Some(picture.map(|picture| PictureFrame { frame, ..picture }))
                 })));

@@ -210,3 +210,23 @@ fn an_object_that_has_left_a_stream_has_a_last_line_and_begins_anew_when_it_come
     assert_eq!((&closed["accepted"], &closed["parameters"]), (&false.into(), &of("leaves")[2]["parameters"]));
     assert!(closed["reason"].as_str().is_some_and(|reason| reason.starts_with("not seen")));
 }
+
+#[test]
+fn a_pipe_among_pictures_whose_tracing_is_chosen_is_named_and_not_waited_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pictures = folder.path().join("simulated");
+    let name = pictures.to_str().expect("UTF-8");
+    succeed(&format!("simulate --pictures {name} --scene gear --frames 6"), "");
+    let mut frames: Vec<_> =
+        fs::read_dir(&pictures).expect("pictures").map(|entry| entry.expect("one").path()).collect();
+    frames.retain(|path| path.extension().is_some_and(|extension| extension == "png"));
+    frames.sort();
+    fs::remove_file(&frames[2]).expect("a picture");
+    let lost = frames[2].file_name().and_then(|name| name.to_str()).expect("UTF-8");
+    pipe(&pictures, lost);
+    for command in ["identify", "track", "outline"] {
+        let output = ended(start(&[command, name, "--fps", "30"]));
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(stderr(&output).contains(&format!("{lost}: not a file")), "{}", stderr(&output));
+    }
+}
