@@ -216,7 +216,7 @@ fn a_pipe_among_pictures_whose_tracing_is_chosen_is_named_and_not_waited_for() {
     let folder = tempfile::tempdir().expect("a folder");
     let pictures = folder.path().join("simulated");
     let name = pictures.to_str().expect("UTF-8");
-    succeed(&format!("simulate --pictures {name} --scene gear --frames 6"), "");
+    succeed(&format!("simulate --pictures {name} --scene gear --seconds 0.2"), "");
     let mut frames: Vec<_> =
         fs::read_dir(&pictures).expect("pictures").map(|entry| entry.expect("one").path()).collect();
     frames.retain(|path| path.extension().is_some_and(|extension| extension == "png"));
@@ -224,8 +224,9 @@ fn a_pipe_among_pictures_whose_tracing_is_chosen_is_named_and_not_waited_for() {
     fs::remove_file(&frames[2]).expect("a picture");
     let lost = frames[2].file_name().and_then(|name| name.to_str()).expect("UTF-8");
     pipe(&pictures, lost);
-    for command in ["identify", "track", "outline"] {
-        let output = ended(start(&[command, name, "--fps", "30"]));
+    let written = folder.path().join("outlines.csv").to_str().expect("UTF-8").to_owned();
+    for command in [vec!["identify"], vec!["track"], vec!["outline", "--output", &written]] {
+        let output = ended(start(&[&command[..], &[name, "--fps", "30"]].concat()));
         assert!(output.status.success(), "{}", stderr(&output));
         assert!(stderr(&output).contains(&format!("{lost}: not a file")), "{}", stderr(&output));
     }
