@@ -57,7 +57,7 @@ impl FollowedPose {
         let coordinates = points.iter().map(|p| p.coords).chain(normals.iter().copied());
         self.model == model
             && time.is_finite()
-            && is_regular(image_from_working.matrix())
+            && crate::regular_map::is_regular(image_from_working.matrix())
             && (1..=REFERENCE_POINTS).contains(&points.len())
             && points.len() == normals.len()
             && { coordinates }.all(|v| v.iter().all(|c| c.is_finite()))
@@ -78,10 +78,11 @@ impl FollowedPose {
             let (matches, median) = self.match_all(&pose, outline);
             let step = correction(self.model, &matches, ROBUST_MEDIANS * median.max(ROUNDING));
             let Some(corrected) = step.and_then(nalgebra::Transform::try_inverse) else { break };
-            if (pose * corrected).try_inverse().is_none() {
+            let next = pose * corrected;
+            if next.try_inverse().is_none() {
                 break;
             }
-            pose *= corrected;
+            pose = next;
             if (corrected.matrix() - Matrix3::identity()).amax() < CONVERGED {
                 break;
             }
@@ -189,15 +190,4 @@ pub(crate) fn in_working(outline: &Outline, pose: &Projective2<f64>) -> Result<O
             Outline::Open(OpenOutline::in_sequence(arcs.collect::<Result<_, _>>()?)?)
         }
     })
-}
-
-/// Determinant of a map over the product of the lengths of its rows below which rounding is most of it.
-#[cfg(feature = "serde")]
-const SINGULAR: f64 = 1e-15;
-
-/// Whether a map of the plane has finite numbers and an inverse.
-#[cfg(feature = "serde")]
-pub(crate) fn is_regular(map: &Matrix3<f64>) -> bool {
-    let lengths: f64 = map.row_iter().map(|row| row.norm()).product();
-    map.iter().all(|entry| entry.is_finite()) && map.determinant().abs() > SINGULAR * lengths
 }

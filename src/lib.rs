@@ -42,6 +42,7 @@ mod pipeline_settings;
 #[cfg(feature = "serde")]
 mod pipeline_state;
 mod rectification;
+mod regular_map;
 mod rejection;
 mod settling;
 pub mod tracker;

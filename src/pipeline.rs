@@ -113,19 +113,13 @@ impl Pipeline {
         };
         let image_from_working = normalisation.image_from_working();
         let decomposition = working.moved(&image_from_working)?;
-        let (matched, correspondence) = if self.is_projective() {
+        let (there, radius) = match &pose {
             // Where the first outline was: those are the working coordinates of the first frame.
-            let there = match &pose {
-                Some(pose) => self.decomposed_in(outline, pose)?,
-                None => working,
-            };
-            MatchedFrame::after(self.last.as_ref(), there, 1.0)?
-        } else {
-            {
-                let there = working.moved(&(image_from_identifier.inverse() * image_from_working))?;
-                MatchedFrame::after(self.last.as_ref(), there, self.settings.size)?
-            }
+            Some(pose) if self.is_projective() => (self.decomposed_in(outline, pose)?, 1.0),
+            None if self.is_projective() => (working, 1.0),
+            _ => (working.moved(&(image_from_identifier.inverse() * image_from_working))?, self.settings.size),
         };
+        let (matched, correspondence) = MatchedFrame::after(self.last.as_ref(), there, radius)?;
         let (mut lines, count) = matched.lines();
         if self.is_projective() {
             let image = pose.unwrap_or_else(|| nalgebra::convert(image_from_working));

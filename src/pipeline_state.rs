@@ -6,17 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Pipeline, PipelineSettings,
-    followed_pose::{FollowedPose, is_regular},
+    followed_pose::FollowedPose,
     matched_frame::{MatchedFrame, Matches},
     pipeline::follow_by,
+    regular_map::is_regular,
     settling::Settling,
 };
 
 /// The format of the bytes.
 const FORMAT: StateFormat = StateFormat { version: 1, kind: *b"pipe", name: "pipeline" };
-
-/// Counters stay below this: more frames than a camera sees in a thousand years.
-const MOST_COUNTED: usize = 1 << 48;
 
 /// What is saved. The buffers of the fitter hold nothing from frame to frame.
 #[derive(Serialize, Deserialize)]
@@ -42,7 +40,7 @@ impl Pipeline {
     /// # Errors
     /// None for a pipeline; the encoder reports errors of its sink, and memory has none.
     pub fn to_bytes(&self) -> Result<Vec<u8>, StateError> {
-        let saved = SavedPipeline {
+        FORMAT.encoded(&SavedPipeline {
             settings: self.settings.clone(),
             identifier: self.identifier.to_bytes()?,
             image_from_identifier: self.image_from_identifier,
@@ -54,9 +52,7 @@ impl Pipeline {
             without_separate_lines: self.without_separate_lines,
             matches: self.matches,
             settling: self.settling.clone(),
-        };
-        let state = postcard::to_allocvec(&saved).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
-        Ok(FORMAT.with_header(&state))
+        })
     }
 
     /// A pipeline from the bytes of [`to_bytes`](Self::to_bytes). Bytes from anywhere may be given: everything is checked.
@@ -83,14 +79,9 @@ impl Pipeline {
     /// # Errors
     /// Bytes of another version or kind, damaged ones, and ones that describe no pipeline.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, StateError> {
-        let inconsistent = |part| StateError::Inconsistent { part };
-        let (saved, rest) = postcard::take_from_bytes::<SavedPipeline>(FORMAT.without_header(bytes)?)
-            .map_err(|_| inconsistent("encoding"))?;
-        if !rest.is_empty() {
-            return Err(inconsistent("bytes left over"));
-        }
+        let saved: SavedPipeline = FORMAT.decoded(bytes)?;
         let identifier = AdaptiveIdentifier::from_bytes(&saved.identifier)?;
-        let new = Self::new(saved.settings.clone()).map_err(|_| inconsistent("settings"))?;
+        let new = Self::new(saved.settings.clone()).map_err(|_| StateError::Inconsistent { part: "settings" })?;
         saved.check(&identifier)?;
         let SavedPipeline { image_from_identifier, identifier_from_start, last, pose, .. } = saved;
         let SavedPipeline { frames, frames_rejected, without_separate_lines, matches, settling, .. } = saved;
@@ -118,7 +109,7 @@ impl SavedPipeline {
         // What it begins with is in coordinates of its own.
         let initial_values = self.settings.identify.initial_values.clone();
         let settings = AdaptiveSettings { initial_values, ..identifier.settings().clone() };
-        let counts = [self.frames_rejected, self.frames, MOST_COUNTED];
+        let counts = [self.frames_rejected, self.frames, StateFormat::MOST_COUNTED];
         let parts = [
             ("settings of the identifier", settings == self.settings.identify),
             ("frames of the identifier", (identifier.frames() > 0) == is_begun && identifier.frames() <= self.frames),

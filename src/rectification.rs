@@ -2,10 +2,10 @@
 use freeform_curve_fit::{Outline, OutlineError};
 use nalgebra::{Matrix3, Point2, Projective2};
 
+use crate::regular_map::is_regular;
+
 /// Smallest ratio of the depths of two points of an outline: nearer to the horizon of the plane, noise decides where a point is.
 const NEAREST_HORIZON: f64 = 0.02;
-/// Determinant of a map with entries of the norm 1 below which it is singular.
-const SINGULAR: f64 = 1e-15;
 
 /// Why a map cannot rectify, or an outline cannot be rectified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -58,15 +58,10 @@ impl Rectification {
     /// A map that is singular or not finite.
     pub fn new(plane_from_picture: &Projective2<f64>) -> Result<Self, RectifyError> {
         let map = *plane_from_picture.matrix();
-        // Coordinates of pictures are of any size: with rows and columns of one size each the determinant tells of the map alone.
-        let rows = map.row_iter().map(|row| row.norm()).product::<f64>();
-        let determinant = map.determinant();
         let inverse = map.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()));
         match inverse {
-            Some(picture_from_plane) if determinant.abs() > SINGULAR * rows => {
-                Ok(Self { plane_from_picture: map, picture_from_plane })
-            }
-            _ => Err(RectifyError::Singular { determinant }),
+            Some(picture_from_plane) if is_regular(&map) => Ok(Self { plane_from_picture: map, picture_from_plane }),
+            _ => Err(RectifyError::Singular { determinant: map.determinant() }),
         }
     }
 

@@ -1,6 +1,6 @@
 //! A tracker as bytes and back.
-use freeform_estimate::MotionEstimate;
-use freeform_outline_filter::{FilterSettings, MotionFilter, StateError, with_header, without_header};
+use freeform_estimate::{MotionEstimate, StateFormat};
+use freeform_outline_filter::{FilterSettings, MotionFilter, StateError, state_format};
 use freeform_riccati::CameraScale;
 use nalgebra::{Matrix3, Projective2};
 use serde::{Deserialize, Serialize};
@@ -16,11 +16,8 @@ use crate::frame_ranges::FrameRanges;
 use crate::rejection::{FrameRejection, RejectionCause};
 use crate::{Pipeline, PipelineSettings, Rectification, Warning};
 
-/// What the bytes hold, behind the version.
-const KIND: [u8; 4] = *b"trak";
-
-/// Counters stay below this.
-const MOST_COUNTED: usize = 1 << 48;
+/// The format of the bytes. They hold states of filters, so that its version is theirs.
+const FORMAT: StateFormat = state_format(*b"trak", "tracker");
 
 /// Why a tracker cannot be saved or restored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -120,14 +117,12 @@ impl Tracker {
             MethodSettings::Plane(..) => return Err(TrackerStateError::Plane),
         };
         let objects = self.objects.list.iter().map(saved).collect::<Result<_, _>>()?;
-        let state = SavedTracker {
+        Ok(FORMAT.encoded(&SavedTracker {
             method,
             scale: scale.map(CameraScale::value),
             rectification: rectification.map(|plane| *plane.plane_from_picture()),
             objects,
-        };
-        let state = postcard::to_allocvec(&state).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
-        Ok(with_header(KIND, &state))
+        })?)
     }
 
     /// A tracker from the bytes of [`to_bytes`](Self::to_bytes). Bytes from anywhere may be given: everything is checked.
@@ -136,11 +131,7 @@ impl Tracker {
     /// Bytes of another version or kind, damaged ones, and ones that describe no tracker.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, TrackerStateError> {
         let inconsistent = |part| StateError::Inconsistent { part };
-        let (state, rest) = postcard::take_from_bytes::<SavedTracker>(without_header(KIND, "tracker", bytes)?)
-            .map_err(|_| inconsistent("encoding"))?;
-        if !rest.is_empty() {
-            return Err(inconsistent("bytes left over").into());
-        }
+        let state: SavedTracker = FORMAT.decoded(bytes)?;
         let scale = state.scale.map(CameraScale::new).transpose().map_err(|_| inconsistent("settings"))?;
         let plane = |map: Matrix3<f64>| Rectification::new(&Projective2::from_matrix_unchecked(map));
         let rectification = state.rectification.map(plane).transpose().map_err(|_| inconsistent("settings"))?;
@@ -226,7 +217,7 @@ fn restored(saved: SavedObject, settings: &TrackerSettings) -> Result<TrackedObj
     let inconsistent = |part| Err(StateError::Inconsistent { part });
     let identifier = restored_identifier(saved.identifier, &settings.method)?;
     let SavedObject { name, frames_looked_at, frames, rejected, rejections, rejected_later, .. } = saved;
-    let counts = [frames, MOST_COUNTED].is_sorted() && [rejections.len(), rejected, frames].is_sorted();
+    let counts = [frames, StateFormat::MOST_COUNTED].is_sorted() && [rejections.len(), rejected, frames].is_sorted();
     if !counts || rejections.len() > REJECTIONS_KEPT || frames_looked_at > FRAMES || !rejected_later.is_sound() {
         return inconsistent("counts of frames");
     }

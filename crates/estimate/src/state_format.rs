@@ -1,4 +1,5 @@
-//! What stands before a saved state: version, kind and checksum.
+//! Saved states, and what stands before them: version, kind and checksum.
+use serde::{Serialize, de::DeserializeOwned};
 
 /// Bytes before the state: version, kind and checksum.
 const HEADER: usize = 16;
@@ -52,6 +53,30 @@ pub struct StateFormat {
 }
 
 impl StateFormat {
+    /// Counters of a saved state stay below this: more frames than a camera sees in a thousand years.
+    pub const MOST_COUNTED: usize = 1 << 48;
+
+    /// A state as bytes with the header before them.
+    ///
+    /// # Errors
+    /// None for states that memory holds.
+    pub fn encoded(&self, state: &impl Serialize) -> Result<Vec<u8>, StateError> {
+        let state = postcard::to_allocvec(state).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
+        Ok(self.with_header(&state))
+    }
+
+    /// The state that bytes are, header and all. Whether its parts belong together remains to be seen.
+    ///
+    /// # Errors
+    /// Bytes of another version or kind, damaged ones, and more or other bytes than those of such a state.
+    pub fn decoded<T: DeserializeOwned>(&self, bytes: &[u8]) -> Result<T, StateError> {
+        match postcard::take_from_bytes(self.without_header(bytes)?) {
+            Ok((state, [])) => Ok(state),
+            Ok(_) => Err(StateError::Inconsistent { part: "bytes left over" }),
+            Err(_) => Err(StateError::Inconsistent { part: "encoding" }),
+        }
+    }
+
     /// Puts the header before a state.
     #[must_use]
     pub fn with_header(&self, state: &[u8]) -> Vec<u8> {

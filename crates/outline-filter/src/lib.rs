@@ -69,10 +69,7 @@ pub use supervisor::{
 pub use track::{KnownOutline, KnownPiece};
 pub use update::{FrameMeasurement, Rejection};
 #[cfg(feature = "serde")]
-pub use {
-    freeform_estimate::StateError,
-    supervisor::{with_header, without_header},
-};
+pub use {freeform_estimate::StateError, supervisor::state_format};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

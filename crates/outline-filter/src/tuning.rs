@@ -500,8 +500,6 @@ pub(crate) mod statement {
 /// States that are read from bytes.
 #[cfg(feature = "serde")]
 pub(crate) mod saved_state {
-    /// Counters of a filter stay below this: more frames than a camera sees in a thousand years.
-    pub(crate) const MOST_COUNTED: usize = 1 << 48;
     /// Numbers beyond this are none of a filter, and their squares are none at all.
     pub(crate) const LARGEST_NUMBER: f64 = 1e100;
     /// How far probabilities may sum to something else than 1, by rounding.

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use freeform_motion::decompose::Line;
 use freeform_motion::estimate::StateFormat;
 use freeform_motion::identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice};
-use freeform_motion::outline_filter::{FilterSettings, MotionFilter, with_header};
+use freeform_motion::outline_filter::{FilterSettings, MotionFilter, state_format};
 use freeform_motion::riccati::{MotionModel, RigidMotion};
 use freeform_motion::sim_camera::{BuiltInShape, Camera, Frame, Scene, SequenceLength, Settings, Simulator};
 use freeform_motion::{Pipeline, PipelineSettings};
@@ -98,9 +98,9 @@ pub(super) fn assert_restorable(filter: &MotionFilter) {
 pub(crate) fn saved_state(bytes: &[u8]) {
     assert!(MotionFilter::from_bytes(bytes).is_err() && AdaptiveIdentifier::from_bytes(bytes).is_err());
     assert!(Pipeline::from_bytes(bytes).is_err());
-    take_frames(&with_header(*b"filt", bytes));
+    take_frames(&state_format(*b"filt", "filter").with_header(bytes));
     take_lines(&ADAPTIVE.with_header(bytes));
-    take_frames(&with_header(*b"filt", &changed(&STATE, bytes)));
+    take_frames(&state_format(*b"filt", "filter").with_header(&changed(&STATE, bytes)));
     let choice = usize::from(bytes.first().copied().unwrap_or(0));
     take_lines(&ADAPTIVE.with_header(&changed(&ADAPTIVE_STATES[choice % ADAPTIVE_STATES.len()], bytes)));
     take_outlines(&PIPELINE.with_header(bytes));

@@ -72,9 +72,13 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
             Item::Outline(frame, seen_in) => {
                 // The header waits for the first outline, so that nothing is printed where there is none.
                 if let Some(sink) = sink.take() {
-                    let deviation_column = args.deviations;
-                    let columns = WriterOptions { arc_column: true, object_column, ..WriterOptions::default() };
-                    let options = WriterOptions { contour_column, deviation_column, ..columns };
+                    let options = WriterOptions {
+                        arc_column: true,
+                        object_column,
+                        contour_column,
+                        deviation_column: args.deviations,
+                        resolution: None,
+                    };
                     match TableWriter::new(sink, TableFormat::of(&args.output), options, &comments) {
                         Ok(new) => writer = Some(new),
                         Err(error) => return Ok(Err(error)),

@@ -13,9 +13,6 @@ use super::{
 /// The format of the bytes.
 const FORMAT: StateFormat = StateFormat { version: 1, kind: *b"adap", name: "adaptive identifier" };
 
-/// Counters stay below this: more frames than a camera sees in a thousand years.
-const MOST_COUNTED: usize = 1 << 48;
-
 /// What is saved. All that follows from the settings is made anew.
 #[derive(Serialize, Deserialize)]
 struct SavedIdentifier {
@@ -38,7 +35,7 @@ impl AdaptiveIdentifier {
     /// None for an identifier; the encoder reports errors of its sink, and memory has none.
     pub fn to_bytes(&self) -> Result<Vec<u8>, StateError> {
         let mut laws = self.laws.clone();
-        let saved = SavedIdentifier {
+        FORMAT.encoded(&SavedIdentifier {
             settings: self.settings.clone(),
             numbers: laws.numbers_mut().into_iter().map(|number| *number).collect(),
             by_slopes: laws.by_slopes_mut().first().is_some_and(|by_slopes| **by_slopes),
@@ -47,9 +44,7 @@ impl AdaptiveIdentifier {
             origin_since: self.origin_since,
             frames: self.frames,
             followed: self.followed,
-        };
-        let state = postcard::to_allocvec(&saved).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
-        Ok(FORMAT.with_header(&state))
+        })
     }
 
     /// An identifier from the bytes of [`to_bytes`](Self::to_bytes). Bytes from anywhere may be given: everything is checked.
@@ -73,12 +68,8 @@ impl AdaptiveIdentifier {
     /// Bytes of another version or kind, damaged ones, and ones that describe no identifier.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, StateError> {
         let inconsistent = |part| StateError::Inconsistent { part };
-        let (saved, rest) = postcard::take_from_bytes::<SavedIdentifier>(FORMAT.without_header(bytes)?)
-            .map_err(|_| inconsistent("encoding"))?;
-        if !rest.is_empty() {
-            return Err(inconsistent("bytes left over"));
-        }
-        let SavedIdentifier { settings, numbers, by_slopes, qualities, last, origin_since, frames, followed } = saved;
+        let SavedIdentifier { settings, numbers, by_slopes, qualities, last, origin_since, frames, followed } =
+            FORMAT.decoded(bytes)?;
         let pairs = settings.pairs;
         let mut identifier = Self::new(settings).map_err(|_| inconsistent("settings"))?;
         let mut places = identifier.laws.numbers_mut();
@@ -93,7 +84,7 @@ impl AdaptiveIdentifier {
         if !last.as_ref().is_none_or(|last| is_sound(last, pairs)) || !origin_since.is_finite() {
             return Err(inconsistent("lines"));
         }
-        let counts = [usize::from(last.is_some()), frames, MOST_COUNTED].is_sorted();
+        let counts = [usize::from(last.is_some()), frames, StateFormat::MOST_COUNTED].is_sorted();
         if !counts || last.is_none() != (frames == 0) || followed > frames.saturating_sub(1) {
             return Err(inconsistent("counts"));
         }

@@ -8,7 +8,7 @@ use nalgebra::SVector;
 
 use crate::tuning::innovations as tuning;
 #[cfg(feature = "serde")]
-use crate::tuning::saved_state::MOST_COUNTED;
+use freeform_estimate::StateFormat;
 
 /// Sums over frames of standardised innovations, in constant memory: means over blocks of frames that double.
 #[derive(Debug, Clone)]
@@ -196,9 +196,9 @@ impl<const N: usize> InnovationSeries<N> {
         let full = blocks.len().saturating_sub(1);
         let counted = full.checked_mul(*length).and_then(|before| before.checked_add(*filled));
         blocks.len() <= tuning::BLOCKS
-            && *frames < MOST_COUNTED
+            && *frames < StateFormat::MOST_COUNTED
             && length.is_power_of_two()
-            && *length < MOST_COUNTED
+            && *length < StateFormat::MOST_COUNTED
             && filled <= length
             && counted == Some(*frames)
     }

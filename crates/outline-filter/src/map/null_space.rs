@@ -242,13 +242,12 @@ impl OutlineMap {
             }
             if !is_shown {
                 let Some(inverse) = to_body.try_inverse() else { continue };
-                let generator = centring.unstretched(&generator);
-                unseen.push(model.parameters_of(&generator));
+                let mut direction = model.parameters_of(&centring.unstretched(&generator));
                 if centring.is_stretched() {
-                    orthonormalise(&mut unseen);
+                    direction = orthonormal(direction, &unseen);
                 }
-                let Some(last) = unseen.last() else { continue };
-                let generator = model.generator(&last[..k]);
+                unseen.push(direction);
+                let generator = model.generator(&direction[..k]);
                 space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
             }
         }
@@ -369,16 +368,15 @@ fn of_its_rates(model: MotionModel, direction: ParameterVector) -> ParameterVect
     if squared > 0.5 { rates.map(|rate| rate / squared) } else { direction }
 }
 
-/// Makes the last of these directions one of length 1 that is orthogonal to those before it.
-fn orthonormalise(directions: &mut [ParameterVector]) {
-    let Some((last, before)) = directions.split_last_mut() else { return };
+/// A direction without its parts along others of length 1, with this length.
+fn orthonormal(mut direction: ParameterVector, others: &[ParameterVector]) -> ParameterVector {
     let product = |a: &ParameterVector, b: &ParameterVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    for direction in before {
-        let along = product(last, direction);
-        last.iter_mut().zip(direction).for_each(|(c, d)| *c -= along * *d);
+    for other in others {
+        let along = product(&direction, other);
+        direction.iter_mut().zip(other).for_each(|(c, d)| *c -= along * *d);
     }
-    let length = product(last, last).sqrt();
-    last.iter_mut().for_each(|c| *c /= length);
+    let length = product(&direction, &direction).sqrt();
+    direction.map(|c| c / length)
 }
 
 impl NullSpace {

@@ -55,7 +55,7 @@ impl PointDeviations {
             self.ratios.clear();
         } else {
             let sum: f64 = self.ratios.iter().map(|ratio| (ratio * ratio).recip()).sum();
-            self.weight = Some((sum / self.ratios.len() as f64).max(f64::MIN_POSITIVE));
+            self.weight = Some(sum / self.ratios.len() as f64);
         }
     }
 

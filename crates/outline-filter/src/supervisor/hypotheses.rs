@@ -8,8 +8,6 @@ use super::{
     settings::FilterSettings,
     tracking::{gate, largest_innovation},
 };
-#[cfg(feature = "serde")]
-use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
     track::{Comparison, Outcome, Track, wrapped},
@@ -19,6 +17,8 @@ use crate::{
     },
     update::Gate,
 };
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 
 /// The track in a pose that was tried.
 #[derive(Debug, Clone)]
@@ -277,7 +277,7 @@ impl Hypotheses {
             && self.turns.len() == self.list.len()
             && self.likelihood.is_sound()
             && self.list.iter().all(|hypothesis| hypothesis.likelihood.is_sound())
-            && self.frames < MOST_COUNTED
+            && self.frames < StateFormat::MOST_COUNTED
             && (self.list.is_empty() || [self.pitch, self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
         is_sound && self.list.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
     }

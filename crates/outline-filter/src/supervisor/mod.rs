@@ -20,5 +20,5 @@ pub use expected_outline::ExpectedOutline;
 pub use motion_filter::{FilterStep, MotionFilter, Phase};
 pub use settings::FilterSettings;
 #[cfg(feature = "serde")]
-pub use state_bytes::{with_header, without_header};
+pub use state_bytes::state_format;
 pub use statement::Unstated;

@@ -3,13 +3,13 @@ use freeform_estimate::{StateError, StateFormat};
 
 use super::motion_filter::{MotionFilter, Phase};
 use crate::track::Track;
-use crate::tuning::{saved_state::MOST_COUNTED, symmetry::LARGEST_ORDER};
+use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
 const VERSION: u32 = 7;
 
-/// What the bytes hold, behind the version.
-const KIND: [u8; 4] = *b"filt";
+/// The format of the bytes.
+const FORMAT: StateFormat = state_format(*b"filt", "filter");
 
 impl MotionFilter {
     /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points. A filter [made from them](Self::from_bytes)
@@ -18,8 +18,7 @@ impl MotionFilter {
     /// # Errors
     /// None for a filter; the encoder reports errors of its sink, and memory has none.
     pub fn to_bytes(&self) -> Result<Vec<u8>, StateError> {
-        let state = postcard::to_allocvec(self).map_err(|_| StateError::Inconsistent { part: "encoding" })?;
-        Ok(with_header(KIND, &state))
+        FORMAT.encoded(self)
     }
 
     /// A filter from the bytes of [`to_bytes`](Self::to_bytes). Bytes from anywhere may be given: everything is checked.
@@ -44,11 +43,7 @@ impl MotionFilter {
     /// # Errors
     /// Bytes of another version or kind, damaged ones, and ones that describe no filter.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, StateError> {
-        let (mut filter, rest) = postcard::take_from_bytes::<Self>(without_header(KIND, "filter", bytes)?)
-            .map_err(|_| StateError::Inconsistent { part: "encoding" })?;
-        if !rest.is_empty() {
-            return Err(StateError::Inconsistent { part: "bytes left over" });
-        }
+        let mut filter: Self = FORMAT.decoded(bytes)?;
         filter.restore()?;
         Ok(filter)
     }
@@ -79,7 +74,7 @@ impl MotionFilter {
         if !self.history.is_sound(&self.settings) {
             return inconsistent("changes of the motion");
         }
-        if !self.counts_are_below(MOST_COUNTED) {
+        if !self.counts_are_below(StateFormat::MOST_COUNTED) {
             return inconsistent("counts");
         }
         if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
@@ -92,18 +87,9 @@ impl MotionFilter {
     }
 }
 
-/// Puts version, kind and checksum before a state. For the states that hold those of filters.
+/// The format of states that hold those of filters; `name` is the kind in words.
 #[doc(hidden)]
 #[must_use]
-pub fn with_header(kind: [u8; 4], state: &[u8]) -> Vec<u8> {
-    StateFormat { version: VERSION, kind, name: "" }.with_header(state)
-}
-
-/// The state behind version, kind and checksum. `expected` names the kind.
-///
-/// # Errors
-/// Bytes of another version or kind, and damaged ones.
-#[doc(hidden)]
-pub fn without_header<'a>(kind: [u8; 4], expected: &'static str, bytes: &'a [u8]) -> Result<&'a [u8], StateError> {
-    StateFormat { version: VERSION, kind, name: expected }.without_header(bytes)
+pub const fn state_format(kind: [u8; 4], name: &'static str) -> StateFormat {
+    StateFormat { version: VERSION, kind, name }
 }

@@ -6,8 +6,6 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2};
 
 use super::first_pose::FirstPose;
-#[cfg(feature = "serde")]
-use crate::tuning::saved_state::MOST_COUNTED;
 use crate::{
     belief::Belief,
     dynamics::{CentredPose, FamilyTests, Summary},
@@ -21,6 +19,8 @@ use crate::{
         FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold, with_hold,
     },
 };
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
 ///
@@ -348,7 +348,7 @@ impl Track {
             && radius > 0.0
             && stated > 0.0
             && time_unit == unit
-            && self.frames < MOST_COUNTED
+            && self.frames < StateFormat::MOST_COUNTED
             && self.belief.is_sound(cells)
             && self.noise.is_sound(cells)
             && self.shape.is_sound(cells)

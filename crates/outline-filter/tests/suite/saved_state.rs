@@ -1,7 +1,7 @@
 //! A filter saved and restored goes on as before to the last bit, and no bytes make a filter that cannot be worked with.
 use crate::filter_support::{filtered, frames_of, settings};
 use freeform_curve_fit::Outline;
-use freeform_outline_filter::{Dynamics, FilterSettings, MotionFilter, StateError, with_header};
+use freeform_outline_filter::{Dynamics, FilterSettings, MotionFilter, StateError, state_format};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Frame, Motion, Occlusion, Settings};
 use nalgebra::{Point2, Vector2};
@@ -138,9 +138,9 @@ fn states_of_another_version_or_kind_are_told() {
     let mut later = bytes.clone();
     later[0] += 1;
     assert_eq!(MotionFilter::from_bytes(&later).err(), Some(StateError::Version { found: 8, supported: 7 }));
-    let other = with_header(*b"else", &bytes[16..]);
+    let other = state_format(*b"else", "filter").with_header(&bytes[16..]);
     assert_eq!(MotionFilter::from_bytes(&other).err(), Some(StateError::Kind { expected: "filter" }));
-    let longer = with_header(*b"filt", &[&bytes[16..], &[0]].concat());
+    let longer = state_format(*b"filt", "filter").with_header(&[&bytes[16..], &[0]].concat());
     assert_eq!(MotionFilter::from_bytes(&longer).err(), Some(StateError::Inconsistent { part: "bytes left over" }));
 }
 
@@ -165,7 +165,9 @@ fn forged_states_are_refused_or_can_be_worked_with() {
                 _ => state[place..(place + 8).min(bytes.len() - 16)].fill([0, 255][rng.random_range(0..2)]),
             }
         }
-        let Ok(mut filter) = MotionFilter::from_bytes(&with_header(*b"filt", &state)) else { continue };
+        let Ok(mut filter) = MotionFilter::from_bytes(&state_format(*b"filt", "filter").with_header(&state)) else {
+            continue;
+        };
         accepted += 1;
         for (index, outline) in outlines.iter().enumerate() {
             // Any answer will do.
