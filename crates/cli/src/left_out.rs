@@ -68,7 +68,9 @@ impl MissingWarnings {
 
 #[cfg(test)]
 mod tests {
-    use freeform_motion::outline_io::TraceError;
+    use std::io::{Error, ErrorKind};
+
+    use freeform_motion::outline_io::{PictureErrorKind, TraceError};
 
     use super::*;
 
@@ -89,5 +91,16 @@ mod tests {
         let later: Vec<String> = warnings.finish().collect();
         assert_eq!(later[0], "frame 4: no object: no closed ring stands out from the ground");
         assert_eq!(later[1], "2 more pictures left out for the same reason: 2, 5");
+    }
+
+    #[test]
+    fn different_answers_of_the_system_are_different_reasons() {
+        let mut warnings = MissingWarnings::default();
+        let told = [ErrorKind::NotFound, ErrorKind::PermissionDenied, ErrorKind::NotFound].map(|kind| {
+            let error = PictureErrorKind::from(Error::from(kind));
+            let (reason, kind) = (error.to_string(), MissingKind::from(&error));
+            warnings.take(&Missing { frame: 0, reason, hint: None, kind, seen_in: None })
+        });
+        assert!(told[0].is_some() && told[1].is_some() && told[2].is_none());
     }
 }

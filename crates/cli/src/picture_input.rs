@@ -13,6 +13,7 @@ use freeform_motion::outline_io::{
 use freeform_motion::riccati::CameraScale;
 
 use crate::args::{PictureOptions, through_ffmpeg};
+use crate::awaited::Awaited;
 use crate::candidate_sheet::draw_candidates;
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
@@ -89,7 +90,9 @@ impl PictureInput {
     pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions) -> Result<Self, Failure> {
         let inputs = paths.to_owned();
         let open = |options: &PictureOptions| {
+            // One that nobody writes to must not keep Ctrl-C from ending the work.
             PictureSequence::open(paths, sequence_settings(options))
+                .map(|sequence| sequence.with_pipes_opened_by(|pipe| Ok(Box::new(Awaited::open(pipe.to_owned())))))
                 .map_err(|error| Failure::unusable(described(&error, paths)))
         };
         let mut sequence = open(options)?;

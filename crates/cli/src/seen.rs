@@ -1,9 +1,10 @@
 //! What is seen in an input: outlines in pictures, and pictures without one.
+use std::io::ErrorKind;
 use std::mem::{Discriminant, discriminant};
 use std::rc::Rc;
 use std::sync::Arc;
 
-use freeform_motion::curve_fit::PixelGrid;
+use freeform_motion::curve_fit::{OutlineError, PixelGrid};
 use freeform_motion::outline_io::{GrayImage, PictureErrorKind, TraceError};
 use freeform_motion::tracker::Recorded;
 
@@ -39,19 +40,28 @@ pub(crate) struct Missing {
 /// The kind of reason, without its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum MissingKind {
-    Unreadable(Discriminant<PictureErrorKind>),
-    NothingFound(Discriminant<TraceError>),
+    /// What the system said, if it was that.
+    Unreadable(Discriminant<PictureErrorKind>, Option<ErrorKind>),
+    NothingFound(Discriminant<TraceError>, Option<Discriminant<OutlineError>>),
 }
 
 impl From<&PictureErrorKind> for MissingKind {
     fn from(kind: &PictureErrorKind) -> Self {
-        Self::Unreadable(discriminant(kind))
+        let told = match kind {
+            PictureErrorKind::Io(error) => Some(error.kind()),
+            _ => None,
+        };
+        Self::Unreadable(discriminant(kind), told)
     }
 }
 
 impl From<&TraceError> for MissingKind {
     fn from(error: &TraceError) -> Self {
-        Self::NothingFound(discriminant(error))
+        let degenerate = match error {
+            TraceError::Degenerate(error) => Some(discriminant(error)),
+            _ => None,
+        };
+        Self::NothingFound(discriminant(error), degenerate)
     }
 }
 

@@ -19,6 +19,9 @@ const FEWEST_PICTURES: usize = 3;
 /// Pictures whose edges tell how well outlines are known.
 const EDGES_LOOKED_AT: usize = 6;
 
+/// Most pixels of these pictures, all together: those of one of the largest.
+const EDGE_PIXELS: usize = 1 << 26;
+
 /// Pixels of all pictures that a ground is the median of.
 const GROUND_PIXELS: usize = 1 << 28;
 
@@ -90,7 +93,13 @@ impl Preview {
 
     /// How far outlines that are traced with these settings may lie off, by some of the pictures.
     pub(crate) fn outline_error(&self, settings: &PictureSettings, channel: Channel) -> Option<OutlineError> {
-        let pictures: Vec<PictureFrame> = self.pictures(channel)?.flatten().take(EDGES_LOOKED_AT).collect();
+        let mut pixels = 0;
+        let is_looked_at = |frame: &PictureFrame| {
+            pixels += frame.picture.as_raw().len();
+            pixels <= EDGE_PIXELS
+        };
+        let pictures: Vec<PictureFrame> =
+            self.pictures(channel)?.flatten().take(EDGES_LOOKED_AT).take_while(is_looked_at).collect();
         if !pictures.is_empty() && pictures.iter().all(|frame| is_two_valued(&frame.picture)) {
             return Some(OutlineError::MaskPixel(settings.trace.pixel()));
         }

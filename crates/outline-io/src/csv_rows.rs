@@ -56,7 +56,10 @@ impl<R: Read> Rows<R> {
         let (row, previous) = (ByteRecord::new(), ByteRecord::new());
         let mut rows = Self { file, reader, field_count: 0, row, needs_no_quotes: false, lines_repeated: 0, previous };
         if !rows.read_row()? {
-            return Err(rows.error_at(None, None, ReadErrorKind::Empty));
+            // Comments alone: of what follows them, where no line ends, all is a comment too.
+            let has_returns_alone = rows.reader.get_ref().has_returns_alone();
+            let kind = if has_returns_alone { ReadErrorKind::LineEnds } else { ReadErrorKind::Empty };
+            return Err(rows.error_at(None, None, kind));
         }
         if rows.reader.get_ref().has_returns_alone() && rows.row.as_slice().trim_ascii_end().contains(&b'\r') {
             return Err(rows.error_at(None, None, ReadErrorKind::LineEnds));

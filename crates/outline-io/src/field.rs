@@ -40,11 +40,22 @@ impl Field {
     pub(crate) fn blur(&mut self, sigma: f64) {
         let weights = kernel(sigma);
         let (width, height) = (self.width, self.height);
-        let mut line = vec![0.0; width.max(height)];
+        let reach = weights.len() - 1;
+        // A row with its ends repeated beyond the grid.
+        let mut line = vec![0.0; width + 2 * reach];
         for row in self.values.chunks_exact_mut(width) {
-            line[..width].copy_from_slice(row);
-            for (x, value) in row.iter_mut().enumerate() {
-                *value = weighted_sum(&line[..width], x, &weights);
+            line[..reach].fill(row[0]);
+            line[reach..][..width].copy_from_slice(row);
+            line[reach + width..].fill(row[width - 1]);
+            row.fill(0.0);
+            for (distance, &weight) in weights.iter().enumerate().skip(1) {
+                let (right, left) = (&line[reach + distance..], &line[reach - distance..]);
+                for ((value, right), left) in row.iter_mut().zip(right).zip(left) {
+                    *value += weight * (right + left);
+                }
+            }
+            for (value, centre) in row.iter_mut().zip(&line[reach..]) {
+                *value += weights[0] * centre;
             }
         }
         // Row by row in both directions: going down the columns would miss the cache at every step. Of the rows that have been
@@ -80,11 +91,4 @@ fn kernel(sigma: f64) -> Vec<f32> {
 /// How far a blur reaches, in samples.
 pub(crate) fn blur_reach(sigma: f64) -> usize {
     (4.0 * sigma).ceil() as usize
-}
-
-fn weighted_sum(line: &[f32], x: usize, weights: &[f32]) -> f32 {
-    let last = line.len() - 1;
-    let sides = |d: usize| line[(x + d).min(last)] + line[x.saturating_sub(d)];
-    let around: f32 = weights.iter().enumerate().skip(1).map(|(d, weight)| weight * sides(d)).sum();
-    weights[0] * line[x] + around
 }

@@ -16,12 +16,12 @@ fn has_wildcard(text: &str) -> bool {
     text.contains(['*', '?', '['])
 }
 
-/// What is no folder and matches a pattern, in any order. Links to folders are not followed by `**`: they may lead to where
+/// All that matches a pattern, in any order. Links to folders are not followed by `**`: they may lead to where
 /// they are, in as many ways as there are.
 pub(crate) fn matching_files(pattern: &str) -> Result<Vec<PathBuf>, PatternError> {
     let path = Path::new(pattern);
     if !path.components().any(|part| part.as_os_str() == ANY_FOLDERS) {
-        return Ok(glob::glob(pattern)?.filter_map(Result::ok).filter(|path| !path.is_dir()).collect());
+        return Ok(glob::glob(pattern)?.filter_map(Result::ok).collect());
     }
     // As paths are put together below.
     let pattern = Pattern::new(&path.components().collect::<PathBuf>().to_string_lossy())?;
@@ -35,8 +35,9 @@ pub(crate) fn matching_files(pattern: &str) -> Result<Vec<PathBuf>, PatternError
         for entry in fs::read_dir(place).into_iter().flatten().flatten() {
             let path = folder.join(entry.file_name());
             if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-                folders.push(path);
-            } else if pattern.matches_path_with(&path, options) && !path.is_dir() {
+                folders.push(path.clone());
+            }
+            if pattern.matches_path_with(&path, options) {
                 found.push(path);
             }
         }

@@ -19,6 +19,12 @@ pub(crate) const PIXEL_LIMIT: u64 = 1 << 26;
 /// Most memory that a decoder may take, in bytes: 16 bits in each of 4 channels of the largest picture, twice.
 pub(crate) const DECODER_LIMIT: u64 = 1 << 30;
 
+/// The same for each pixel of a picture.
+const DECODER_LIMIT_OF_PIXEL: u64 = DECODER_LIMIT / PIXEL_LIMIT;
+
+/// Most memory for what a file tells beside its pixels, in bytes. The largest colour profiles of printers have some megabytes.
+const METADATA_LIMIT: u64 = 1 << 24;
+
 /// Reads a picture (PNG, JPEG, TIFF, BMP, WebP, or the first frame of a GIF) as grey values. Its content tells the format,
 /// not its name. It is turned and mirrored as the file says that it is to be seen (EXIF, or the tag of TIFF).
 ///
@@ -60,6 +66,7 @@ pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Resul
     if let Some(format) = compressed_video(start) {
         return Err(PictureErrorKind::CompressedVideo { format });
     }
+    let limits = limits(start);
     let reader = ImageReader::new(source).with_guessed_format()?;
     let Some(format) = reader.format() else { return Err(PictureErrorKind::NotAPicture) };
     if !format.reading_enabled() {
@@ -73,11 +80,11 @@ pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Resul
         }
         source.seek(SeekFrom::Start(start))?;
     }
-    if let Some(format) = several_pictures(&mut source, format)? {
+    if let Some(format) = several_pictures(&mut source, format, &limits)? {
         return Err(PictureErrorKind::SeveralPictures { format });
     }
     let mut reader = ImageReader::with_format(source, format);
-    reader.limits(limits());
+    reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(damaged)?;
     // The header has been read, the pixels have not: nothing large is allocated yet.
     let (width, height) = decoder.dimensions();
@@ -93,12 +100,13 @@ pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Resul
 fn several_pictures(
     source: &mut (impl BufRead + Seek),
     format: ImageFormat,
+    limits: &Limits,
 ) -> Result<Option<&'static str>, PictureErrorKind> {
     let start = source.stream_position()?;
     // A damaged file is told as such later.
     let is_animated = match format {
         ImageFormat::Png => {
-            PngDecoder::with_limits(&mut *source, limits()).and_then(|png| png.is_apng()).unwrap_or(false)
+            PngDecoder::with_limits(&mut *source, limits.clone()).and_then(|png| png.is_apng()).unwrap_or(false)
         }
         ImageFormat::WebP => WebPDecoder::new(&mut *source).is_ok_and(|webp| webp.has_animation()),
         _ => false,
@@ -113,10 +121,23 @@ fn several_pictures(
     })
 }
 
-fn limits() -> Limits {
+/// The limits of a file that begins so. That of a PNG is told by its size, since its colour profile may unpack to any.
+fn limits(start: &[u8]) -> Limits {
     let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(DECODER_LIMIT);
+    let of_size = png_size(start).map(|[width, height]| {
+        let pixels = u64::from(width).saturating_mul(height.into()).min(PIXEL_LIMIT);
+        METADATA_LIMIT + DECODER_LIMIT_OF_PIXEL * pixels
+    });
+    limits.max_alloc = Some(of_size.unwrap_or(DECODER_LIMIT).min(DECODER_LIMIT));
     limits
+}
+
+/// Columns and rows of a PNG that begins so.
+fn png_size(start: &[u8]) -> Option<[u32; 2]> {
+    let header = start.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR")?;
+    let (numbers, _) = header.split_first_chunk::<8>()?;
+    let [a, b, c, d, e, f, g, h] = *numbers;
+    Some([u32::from_be_bytes([a, b, c, d]), u32::from_be_bytes([e, f, g, h])])
 }
 
 pub(crate) fn check_size(width: u32, height: u32) -> Result<(), PictureErrorKind> {

@@ -7,11 +7,11 @@ use image::{GrayImage, ImageFormat};
 
 use crate::channel::Channel;
 use crate::compressed_video::compressed_video;
-use crate::file_pattern::{is_pattern, matching_files};
+use crate::file_pattern::is_pattern;
 use crate::gif_animation::GifAnimation;
-use crate::natural_order::natural_order;
 use crate::picture::{decode, read_picture_channel};
 use crate::picture_error::{PictureError, PictureErrorKind};
+use crate::picture_files::{MAGIC_LENGTH, beginning, has_picture_extension, picture_files};
 use crate::y4m::{MAGIC, VideoReader};
 
 /// Frames per second where neither the settings nor the file tell.
@@ -19,12 +19,6 @@ const DEFAULT_RATE: f64 = 30.0;
 
 /// Longest picture or animation read from a stream, in bytes.
 const STREAM_LIMIT: u64 = 1 << 30;
-
-/// Number of bytes at the beginning of a file that identify its format.
-const MAGIC_LENGTH: usize = 16;
-
-/// Extensions of the files that a folder is searched for.
-const EXTENSIONS: [&str; 10] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp", "gif", "y4m", "jpe", "webp"];
 
 /// One picture of a sequence.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,10 +47,11 @@ pub struct SequenceSettings {
 /// The pictures of files, folders, animations, videos or a stream, one after the other; one is in memory at a time.
 ///
 /// A picture that cannot be read is an error item, after which the sequence continues with the next file. Its number is
-/// not given to another picture. The same holds for a broken link or a pipe among the pictures of a folder. All pictures have
-/// the size of the first.
+/// not given to another picture. The same holds for a broken link, a pipe or a folder with the name of a picture among the pictures
+/// of a folder. All pictures have the size of the first.
 pub struct PictureSequence {
     settings: SequenceSettings,
+    open_pipe: OpenPipe,
     files: std::vec::IntoIter<SequenceFile>,
     open: Option<OpenFile>,
     next_frame: u64,
@@ -66,6 +61,9 @@ pub struct PictureSequence {
     pixel_aspect: Option<f64>,
     is_interlaced: bool,
 }
+
+/// How something that is no file is opened, to be read once.
+type OpenPipe = fn(&Path) -> io::Result<Box<dyn BufRead>>;
 
 /// A file of a sequence.
 #[derive(Debug)]
@@ -156,7 +154,15 @@ impl PictureSequence {
     fn of(settings: SequenceSettings, files: Vec<SequenceFile>, frame_count: Option<u64>) -> Self {
         let files = files.into_iter();
         let (open, next_frame, size, pixel_aspect, is_interlaced) = Default::default();
-        Self { settings, files, open, next_frame, size, frame_count, pixel_aspect, is_interlaced }
+        let open_pipe: OpenPipe = |path| Ok(Box::new(BufReader::new(File::open(path)?)));
+        Self { settings, open_pipe, files, open, next_frame, size, frame_count, pixel_aspect, is_interlaced }
+    }
+
+    /// Opens the pipes among the paths with this function from now on, such as one that does not wait for ever; by default they are
+    /// opened as files are, which waits for somebody who writes to them. A single path is opened before.
+    #[must_use]
+    pub fn with_pipes_opened_by(self, open_pipe: fn(&Path) -> io::Result<Box<dyn BufRead>>) -> Self {
+        Self { open_pipe, ..self }
     }
 
     /// Whether a path names pictures: by its extension, as a folder, or as a pattern.
@@ -202,12 +208,12 @@ impl PictureSequence {
         if *origin == Origin::Found && !is_file {
             return Err(PictureErrorKind::NotAFile);
         }
-        let mut source = BufReader::new(File::open(path)?);
         let name = path.display().to_string();
         // What is no file can be read only once, front to back.
         if !is_file {
-            return self.open_stream(Box::new(source), &name).map(Some);
+            return self.open_stream((self.open_pipe)(path)?, &name).map(Some);
         }
+        let mut source = BufReader::new(File::open(path)?);
         let start = source.fill_buf()?;
         if start.starts_with(MAGIC) {
             return self.open_stream(Box::new(source), &name).map(Some);
@@ -336,13 +342,6 @@ fn filled(source: &mut impl BufRead) -> io::Result<&[u8]> {
     }
 }
 
-/// Whether a file is taken for a picture where its folder is searched, by its extension.
-#[must_use]
-pub fn has_picture_extension(path: &Path) -> bool {
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    extension.is_some_and(|extension| EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
-}
-
 /// Whether a file may hold several pictures, as far as its beginning tells; that of a pipe would be gone.
 fn may_hold_several(SequenceFile { path, origin }: &SequenceFile) -> bool {
     if !path.is_file() {
@@ -350,54 +349,4 @@ fn may_hold_several(SequenceFile { path, origin }: &SequenceFile) -> bool {
     }
     let start = beginning(path).unwrap_or_default();
     start.starts_with(MAGIC) || start.starts_with(b"GIF")
-}
-
-/// What a file begins with, as far as it tells the format.
-fn beginning(path: &Path) -> io::Result<Vec<u8>> {
-    let mut start = Vec::new();
-    File::open(path)?.take(MAGIC_LENGTH as u64).read_to_end(&mut start)?;
-    Ok(start)
-}
-
-/// Why there are no pictures among files: video that is not decoded, or none at all.
-fn nothing_to_read(path: &Path, mut files: Vec<PathBuf>) -> PictureError {
-    files.sort_by(|a, b| natural_order(&a.to_string_lossy(), &b.to_string_lossy()));
-    let format = |file: &PathBuf| compressed_video(&beginning(file).unwrap_or_default());
-    match files.iter().find_map(|file| Some((file, format(file)?))) {
-        Some((file, format)) => {
-            PictureError::of_file(file.display().to_string(), PictureErrorKind::CompressedVideo { format })
-        }
-        None => PictureError::of_file(path.display().to_string(), PictureErrorKind::NoPictures),
-    }
-}
-
-/// The files that a path stands for: those of the pictures in a folder or that match a pattern, in natural order, or the path.
-/// Those found may be links that lead nowhere, or pipes. `**` in a pattern stands for folders within each other, but does not
-/// follow links.
-///
-/// # Errors
-/// A folder that cannot be read; a folder or a pattern without pictures; a folder of nothing but compressed video, whose
-/// first is named.
-pub fn picture_files(path: &Path) -> Result<Vec<PathBuf>, PictureError> {
-    let failed = |kind| PictureError::of_file(path.display().to_string(), kind);
-    let mut found: Vec<PathBuf> = if path.is_dir() {
-        let entries = fs::read_dir(path).map_err(|error| failed(error.into()))?;
-        let entries = entries.collect::<Result<Vec<_>, _>>().map_err(|error| failed(error.into()))?;
-        let is_hidden = |path: &Path| path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
-        let all = entries.into_iter().map(|entry| entry.path()).filter(|path| !is_hidden(path) && !path.is_dir());
-        let (pictures, others): (Vec<_>, Vec<_>) = all.partition(|path| has_picture_extension(path));
-        if pictures.is_empty() {
-            return Err(nothing_to_read(path, others.into_iter().filter(|path| path.is_file()).collect()));
-        }
-        pictures
-    } else if is_pattern(path) {
-        matching_files(&path.to_string_lossy()).map_err(|_| failed(PictureErrorKind::WrongPattern))?
-    } else {
-        return Ok(vec![path.to_owned()]);
-    };
-    if found.is_empty() {
-        return Err(failed(PictureErrorKind::NoPictures));
-    }
-    found.sort_by(|a, b| natural_order(&a.to_string_lossy(), &b.to_string_lossy()));
-    Ok(found)
 }

@@ -117,6 +117,27 @@ fn the_first_ctrl_c_counts_while_a_pipe_stands_still() {
 }
 
 #[test]
+fn a_pipe_that_is_named_among_pictures_is_read_and_ctrl_c_ends_the_waiting_for_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let first = file(folder.path(), "0.y4m", video(""));
+    let path = pipe(folder.path(), "1.y4m");
+    for command in ["outline", "track", "identify"] {
+        let arguments = [command, &first, &path, "--light", "--fps", "10"];
+        let child = start(&arguments);
+        File::options().write(true).open(&path).expect("the other end").write_all(&video("")).expect("the reader");
+        let whole = ended(child);
+        assert!(whole.status.success(), "{command}: {}", stderr(&whole));
+        // Nobody writes: what came before is known.
+        let child = start(&arguments);
+        thread::sleep(Duration::from_millis(500));
+        signal(&child, "-INT");
+        let half = ended(child);
+        assert_eq!(half.status.code(), Some(0), "{command}: {}", stderr(&half));
+        assert_ne!(stdout(&half), stdout(&whole), "{command}");
+    }
+}
+
+#[test]
 fn other_signals_that_ask_for_the_end_leave_nothing_unfinished() {
     let ends = [("-TERM", 143), ("-HUP", 129)];
     for (name, status) in ends.into_iter().filter(|(name, _)| *name != "-HUP" || hangups_are_heard()) {

@@ -7,7 +7,8 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use image::{GrayImage, Luma};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, GrayImage, ImageEncoder as _, Luma};
 
 use crate::support::file;
 
@@ -91,6 +92,19 @@ fn objects_within_each_other_take_no_more_than_the_picture_does() {
     let (status, peak) = peak(&["track", &nested, "--objects", "all"]);
     assert_eq!(status, Some(0));
     assert!(peak < LIMIT, "{peak} kB");
+}
+
+#[test]
+fn a_colour_profile_that_unpacks_to_much_takes_no_memory() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut png = Vec::new();
+    let mut encoder = PngEncoder::new(&mut png);
+    encoder.set_icc_profile(vec![0; 1 << 29]).expect("PNG has profiles");
+    encoder.write_image(&[0; 100], 10, 10, ExtendedColorType::L8).expect("memory");
+    let path = file(folder.path(), "profile.png", png);
+    let (status, peak) = peak(&["outline", &path]);
+    assert_eq!(status, Some(1));
+    assert!(peak < 100 * 1024, "{peak} kB");
 }
 
 #[test]

@@ -96,12 +96,17 @@ impl<V: Fn(usize, usize) -> f64> Samples<V> {
         Grid { columns: columns + 2, rows: rows + 2, is_inside: |node| self.is_inside(node), joins_inside: |_| true }
     }
 
-    /// Steps into the inside from the row before: every closed line has a first row, where it has one.
+    /// Steps into the inside from the row before: every closed line has a first row, where it has one. Most samples have none, so that
+    /// they are looked at as they lie in memory.
     fn starts(&self) -> impl Iterator<Item = Step> {
-        let [columns, rows] = self.size.map(|count| count as i64);
-        let nodes = (1..=rows).flat_map(move |row| (1..=columns).map(move |column| [column, row]));
-        let steps = nodes.map(|inside| Step { left: [inside[0], inside[1] - 1], right: inside });
-        steps.filter(|start| self.is_inside(start.right))
+        let [columns, rows] = self.size;
+        let is_inside = |x, y| (self.value)(x, y) >= self.level;
+        let enters = move |x: usize, y: usize| is_inside(x, y) && (y == 0 || !is_inside(x, y - 1));
+        let entries = (0..rows).flat_map(move |y| (0..columns).filter(move |&x| enters(x, y)).map(move |x| [x, y]));
+        entries.map(|[x, y]| {
+            let inside = [x as i64 + 1, y as i64 + 1];
+            Step { left: [inside[0], inside[1] - 1], right: inside }
+        })
     }
 
     fn crossing(&self, Step { left: outside, right: inside }: Step) -> Crossing {

@@ -32,9 +32,10 @@ impl MotionFilter {
         }
         // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
         // where nothing fits without.
-        let mut candidates = self.candidates(outline, seconds, Tolerance::Known);
+        let mut poses = None;
+        let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut poses);
         if !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
-            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed);
+            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &mut poses);
             candidates = if relaxed.is_empty() { candidates } else { relaxed };
         }
         let agreement = |c: &Candidate| c.outcome.measurement.agreement;
@@ -55,12 +56,21 @@ impl MotionFilter {
         Some(outcome)
     }
 
-    /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen.
-    fn candidates(&mut self, outline: &Outline, seconds: f64, tolerance: Tolerance) -> Vec<Candidate> {
+    /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen. `poses` are those found before
+    /// in the same frame; they stay if none is accepted, since nothing has changed then that they depend on.
+    fn candidates(
+        &mut self,
+        outline: &Outline,
+        seconds: f64,
+        tolerance: Tolerance,
+        poses: &mut Option<Vec<RegisteredPose>>,
+    ) -> Vec<Candidate> {
         self.track.as_mut().into_iter().for_each(Track::show_turn);
-        let candidates = self.measured(outline, seconds, tolerance);
+        let found = poses.take().unwrap_or_else(|| self.registered(outline));
+        let candidates = self.measured(outline, seconds, tolerance, &found);
         let fitting = candidates.iter().filter(|c| c.outcome.is_accepted());
         let Some(best) = fitting.min_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares)) else {
+            *poses = Some(found);
             return candidates;
         };
         let pose = *best.track.body_pose();
@@ -71,22 +81,37 @@ impl MotionFilter {
                 return candidates;
             }
             self.symmetry = symmetry;
-            return self.measured(outline, seconds, tolerance);
+        } else {
+            track.hide_turn();
         }
-        track.hide_turn();
-        self.measured(outline, seconds, tolerance)
+        let poses = self.registered(outline);
+        self.measured(outline, seconds, tolerance, &poses)
     }
 
-    fn measured(&mut self, outline: &Outline, seconds: f64, tolerance: Tolerance) -> Vec<Candidate> {
+    /// All poses that bring the outline of the track onto that of the frame.
+    fn registered(&mut self, outline: &Outline) -> Vec<RegisteredPose> {
         let Some(track) = self.track.as_ref() else { return Vec::new() };
         let landmarks = self.landmarks.and_then(|landmarks| {
             let pose = track.affine_pose()?;
             Some([landmarks.moved(&pose), Landmarks::of(outline)?])
         });
         self.frame.load(outline, track.reference());
+        register(track, &self.frame.points, landmarks, self.symmetry)
+    }
+
+    /// These poses, measured.
+    fn measured(
+        &mut self,
+        outline: &Outline,
+        seconds: f64,
+        tolerance: Tolerance,
+        poses: &[RegisteredPose],
+    ) -> Vec<Candidate> {
+        let Some(track) = self.track.as_ref() else { return Vec::new() };
+        self.frame.load(outline, track.reference());
         let mut candidates = Vec::new();
-        for found in register(track, &self.frame.points, landmarks, self.symmetry) {
-            let Some((mut track, turn)) = self.moved(&found, seconds).map(|track| (track, found.turn)) else {
+        for found in poses {
+            let Some((mut track, turn)) = self.moved(found, seconds).map(|track| (track, found.turn)) else {
                 continue;
             };
             track.set_tolerance(tolerance);

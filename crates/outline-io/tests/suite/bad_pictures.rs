@@ -3,7 +3,8 @@ use std::io::Cursor;
 use std::path::Path;
 
 use freeform_outline_io::{GrayImage, PictureErrorKind, ReadShapeError, decode_picture, read_picture, read_shape};
-use image::{DynamicImage, ImageFormat, Luma, LumaA, Rgb};
+use image::codecs::png::PngEncoder;
+use image::{DynamicImage, ExtendedColorType, ImageEncoder as _, ImageFormat, Luma, LumaA, Rgb};
 
 fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
@@ -76,6 +77,18 @@ fn checksum(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg()))
     })
+}
+
+#[test]
+fn a_colour_profile_of_any_length_leaves_the_pixels_as_they_are() {
+    for length in [1_000, 40_000_000] {
+        let mut bytes = Vec::new();
+        let mut encoder = PngEncoder::new(&mut bytes);
+        encoder.set_icc_profile(vec![0; length]).expect("PNG has profiles");
+        let picture = disc();
+        encoder.write_image(&picture, picture.width(), picture.height(), ExtendedColorType::L8).expect("memory");
+        assert_eq!(decode(&bytes).expect("a picture"), picture);
+    }
 }
 
 #[test]

@@ -354,6 +354,7 @@ fn what_is_no_csv_is_named_for_what_it_is() {
     let message = "the lines end with carriage returns alone, expected line feeds: use tr '\\r' '\\n'";
     refused(&returns, &[], &format!("in.csv: {message}"));
     refused(returns.repeat(20_000), &[], &format!("in.csv:1: {message}"));
+    refused(format!("# a comment\r{returns}"), &[], &format!("in.csv: {message}"));
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn what_cannot_be_read_among_pictures_is_named_and_keeps_its_place_in_time() {
     use std::os::unix::fs::symlink;
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
-    for frame in [0, 3, 5] {
+    for frame in [0, 3, 5, 7] {
         wedge().save(path(&format!("{frame}.png"))).expect("a picture");
     }
     symlink("nowhere.png", path("1.png")).expect("a link");
@@ -143,10 +143,10 @@ fn what_cannot_be_read_among_pictures_is_named_and_keeps_its_place_in_time() {
     fs::create_dir(path("6.png")).expect("a folder");
     for place in [folder.path().to_owned(), folder.path().join("*.png"), folder.path().join("**/*.png")] {
         let (frames, errors) = opened(place.clone());
-        assert_eq!(frames, [0, 3, 5], "{}", place.display());
-        assert_eq!(errors.len(), 3);
+        assert_eq!(frames, [0, 3, 5, 7], "{}", place.display());
         assert!(errors[0].contains("1.png: No such file"), "{errors:?}");
-        assert!(errors[1].ends_with("2.png: not a file") && errors[2].ends_with("4.png: not a file"), "{errors:?}");
+        let named = ["2.png", "4.png", "6.png"].map(|name| path(name).display().to_string() + ": not a file");
+        assert_eq!(errors[1..], named);
     }
 }
 
