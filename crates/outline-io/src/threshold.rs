@@ -42,10 +42,7 @@ pub(crate) struct Levels {
 
 impl Levels {
     pub(crate) fn of(picture: &GrayImage, contrast: Contrast, threshold: Threshold) -> Result<Self, TraceError> {
-        let mut counts = [0_u64; 256];
-        for value in picture.as_raw() {
-            counts[usize::from(signal(*value, contrast))] += 1;
-        }
+        let counts = histogram(picture, contrast);
         let values = counts.iter().filter(|count| **count > 0).count();
         let (split, fixed) = match threshold {
             Threshold::Automatic => {
@@ -79,6 +76,21 @@ impl Levels {
             }
         }
     }
+}
+
+/// How many pixels have each grey value, on the scale where the object is lighter.
+fn histogram(picture: &GrayImage, contrast: Contrast) -> [u64; 256] {
+    // Pixels beside each other have the same value more often than not: one counter for them would be waited for.
+    let mut counts = [[0_u64; 256]; 4];
+    let (fours, rest) = picture.as_raw().as_chunks::<4>();
+    for four in fours {
+        counts.iter_mut().zip(four).for_each(|(counts, value)| counts[usize::from(*value)] += 1);
+    }
+    rest.iter().for_each(|value| counts[0][usize::from(*value)] += 1);
+    std::array::from_fn(|value| {
+        let of_picture = usize::from(signal(value as u8, contrast));
+        counts.iter().map(|counts| counts[of_picture]).sum()
+    })
 }
 
 impl Levels {

@@ -322,16 +322,21 @@ fn object_field(
 ) -> Field {
     let fills = settings.contours == Contours::Boundary;
     let stride = picture.width() as usize;
+    let value_of = |filled: bool, value: u8| match (filled, set(value)) {
+        (true, false) if fills => levels.object as f32,
+        (false, true) => levels.ground as f32,
+        _ => f32::from(signal(value, settings.contrast)),
+    };
+    // For all grey values at once, of which there are fewer than pixels.
+    let [elsewhere, within]: [[f32; 256]; 2] =
+        [false, true].map(|filled| std::array::from_fn(|value| value_of(filled, value as u8)));
     let mut values = Vec::with_capacity(mask.width * mask.height);
     for row in 0..mask.height {
         let from = (mask.top + row) * stride + mask.left;
         let pixels = &picture.as_raw()[from..from + mask.width];
         let filled = &mask.filled[row * mask.width..(row + 1) * mask.width];
-        values.extend(pixels.iter().zip(filled).map(|(&value, &filled)| match (filled, set(value)) {
-            (true, false) if fills => levels.object as f32,
-            (false, true) => levels.ground as f32,
-            _ => f32::from(signal(value, settings.contrast)),
-        }));
+        let table = |filled: bool| if filled { &within } else { &elsewhere };
+        values.extend(pixels.iter().zip(filled).map(|(&value, &filled)| table(filled)[usize::from(value)]));
     }
     Field { width: mask.width, height: mask.height, values }
 }
