@@ -113,6 +113,7 @@ impl SavedPipeline {
         let parts = [
             ("settings of the identifier", settings == self.settings.identify),
             ("frames of the identifier", (identifier.frames() > 0) == is_begun && identifier.frames() <= self.frames),
+            ("lines of the identifier", identifier.line_count() == self.last.as_ref().map(pair_count)),
             ("coordinates", self.are_coordinates_sound(is_begun)),
             ("lines", self.last.is_none_or(|last| self.is_of_settings(&last))),
             ("pose", self.pose.as_ref().is_none_or(|pose| is_begun && pose.is_of(follow_by(model)))),
@@ -127,19 +128,54 @@ impl SavedPipeline {
     fn are_coordinates_sound(&self, is_begun: bool) -> bool {
         let is_affine = |map: &Affine2<f64>| {
             let last_row = map.matrix().row(2);
-            is_regular(map.matrix()) && last_row.iter().eq(&[0.0, 0.0, 1.0])
+            is_regular(map.matrix())
+                && map.matrix().amax() < StateFormat::LARGEST_NUMBER
+                && last_row.iter().eq(&[0.0, 0.0, 1.0])
         };
-        let is_shift = self.identifier_from_start.vector.iter().all(|shift| shift.is_finite());
+        let shift = &self.identifier_from_start.vector;
+        let is_shift = shift.iter().all(|length| length.abs() < StateFormat::LARGEST_NUMBER);
         is_shift && self.image_from_identifier.is_some() == is_begun && self.image_from_identifier.iter().all(is_affine)
     }
 
     /// Whether lines are those of a curve that the settings ask for, in an order of their pairs.
     fn is_of_settings(&self, last: &MatchedFrame) -> bool {
         let degree = last.decomposition.degree();
-        let pairs = last.decomposition.conjugate_pairs(degree.value()).count();
+        let pairs = pair_count(last);
         let mut sorted = last.order;
         sorted[..pairs].sort_unstable();
         let is_permutation = sorted.iter().enumerate().all(|(index, &pair)| index == pair);
         degree == self.settings.fit.degree && 2 * pairs == degree.value() && is_permutation
+    }
+}
+
+/// Conjugate pairs of lines of the curve, each of which gives the identifier one line.
+fn pair_count(last: &MatchedFrame) -> usize {
+    last.decomposition.conjugate_pairs(last.decomposition.degree().value()).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::{ClosedOutline, Outline};
+    use nalgebra::Point2;
+
+    use super::*;
+
+    #[test]
+    fn an_identifier_of_other_lines_than_those_of_the_curve_is_refused() {
+        let mut pipeline = Pipeline::new(PipelineSettings::default()).expect("settings");
+        let point = |angle: f64| {
+            let radius = 1.0 + 0.2 * (3.0 * angle).cos();
+            Point2::new(2.0 * radius * angle.cos(), radius * angle.sin())
+        };
+        let outline =
+            ClosedOutline::new((0..100).map(|k| point(f64::from(k) * std::f64::consts::TAU / 100.0)).collect());
+        pipeline.push(0.0, &Outline::Closed(outline.expect("an outline"))).expect("a frame");
+        assert!(Pipeline::from_bytes(&pipeline.to_bytes().expect("memory")).is_ok());
+        let (lines, count) = pipeline.last.as_ref().expect("a frame").lines();
+        let mut identifier = AdaptiveIdentifier::new(pipeline.identifier.settings().clone()).expect("settings");
+        identifier.step(0.0, &lines[..count - 1]).expect("a frame");
+        pipeline.identifier = identifier;
+        let error = Pipeline::from_bytes(&pipeline.to_bytes().expect("memory")).err();
+        assert_eq!(error, Some(StateError::Inconsistent { part: "lines of the identifier" }));
     }
 }

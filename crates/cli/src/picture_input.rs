@@ -104,7 +104,9 @@ impl PictureInput {
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
         }
-        Self::of(sequence, Some(preview), inputs, (options, chosen))
+        let is_traced_unseen = chosen.is_none() && !options.has_way() && preview.is_read_once();
+        let input = Self::of(sequence, Some(preview), inputs, (options, chosen))?;
+        Ok(Self { is_traced_unseen, ..input })
     }
 
     /// Pictures in a stream.
@@ -129,7 +131,9 @@ impl PictureInput {
         source.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut beginning).map_err(|error| failed(&error))?;
         let length = video_length(&beginning, PICTURES_AHEAD).unwrap_or(READ_AHEAD).min(READ_AHEAD);
         source.by_ref().take(length).read_to_end(&mut beginning).map_err(|error| failed(&error))?;
-        if interrupt::was_asked_for() {
+        // What has come until then is dealt with as a whole, and no more is waited for.
+        let is_over = interrupt::was_asked_for();
+        if is_over {
             interrupt::put_off();
         }
         let beginning: Arc<[u8]> = beginning.into();
@@ -137,9 +141,10 @@ impl PictureInput {
         let settings = picture_settings(options, None, None)?;
         let (options, chosen) = choose(&preview, &settings, options);
         draw_candidates(options.candidates.as_deref(), &preview, &settings, chosen.as_ref())?;
-        let stream = Cursor::new(beginning).chain(source);
-        let sequence = PictureSequence::from_stream(stream, name, sequence_settings(&options))
-            .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
+        let rest = source.take(if is_over { 0 } else { u64::MAX });
+        let sequence =
+            PictureSequence::from_stream(Cursor::new(beginning).chain(rest), name, sequence_settings(&options))
+                .map_err(|error| Failure::unusable(described(&error, &inputs)))?;
         Self::of(sequence, Some(preview), inputs, (options, chosen))
     }
 

@@ -46,6 +46,12 @@ impl Preview {
         }
     }
 
+    /// Whether nothing can be looked at before it is read for good, as what is no file can be read only once.
+    pub(crate) fn is_read_once(&self) -> bool {
+        let is_pipe = |path: &PathBuf| path.exists() && !path.is_file() && !path.is_dir();
+        matches!(self, Self::Files(paths) if paths.iter().any(is_pipe))
+    }
+
     fn plan(&self) -> SamplePlan {
         match self {
             Self::Pictures(files) => SamplePlan::Spread(files.len() as u64),
@@ -67,10 +73,7 @@ impl Preview {
                     Some(picture.map(|picture| PictureFrame { frame, ..picture }))
                 })));
             }
-            // What is no file can be read only once.
-            Self::Files(paths) if paths.iter().any(|path| path.exists() && !path.is_file() && !path.is_dir()) => {
-                return None;
-            }
+            Self::Files(_) if self.is_read_once() => return None,
             Self::Files(paths) => PictureSequence::open(paths, settings).ok()?,
             Self::Beginning(bytes) => {
                 PictureSequence::from_stream(Cursor::new(Arc::clone(bytes)), "<preview>", settings).ok()?

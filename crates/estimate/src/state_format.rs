@@ -56,6 +56,9 @@ impl StateFormat {
     /// Counters of a saved state stay below this: more frames than a camera sees in a thousand years.
     pub const MOST_COUNTED: usize = 1 << 48;
 
+    /// Numbers of a saved state stay below this: squares of larger ones are none.
+    pub const LARGEST_NUMBER: f64 = 1e100;
+
     /// A state as bytes with the header before them.
     ///
     /// # Errors

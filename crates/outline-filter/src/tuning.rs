@@ -500,8 +500,6 @@ pub(crate) mod statement {
 /// States that are read from bytes.
 #[cfg(feature = "serde")]
 pub(crate) mod saved_state {
-    /// Numbers beyond this are none of a filter, and their squares are none at all.
-    pub(crate) const LARGEST_NUMBER: f64 = 1e100;
     /// How far probabilities may sum to something else than 1, by rounding.
     pub(crate) const SUM_OFF: f64 = 1e-6;
 }

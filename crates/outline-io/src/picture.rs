@@ -19,6 +19,9 @@ pub(crate) const PIXEL_LIMIT: u64 = 1 << 26;
 /// Most memory that a decoder may take, in bytes: 16 bits in each of 4 channels of the largest picture, twice.
 pub(crate) const DECODER_LIMIT: u64 = 1 << 30;
 
+/// Most bytes of a picture as it is decoded: 16 bits in each of 4 channels of the largest. Others have 32.
+const LARGEST_PICTURE: u64 = DECODER_LIMIT / 2;
+
 /// The same for each pixel of a picture.
 const DECODER_LIMIT_OF_PIXEL: u64 = DECODER_LIMIT / PIXEL_LIMIT;
 
@@ -89,6 +92,10 @@ pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Resul
     // The header has been read, the pixels have not: nothing large is allocated yet.
     let (width, height) = decoder.dimensions();
     check_size(width, height)?;
+    let bytes_of_pixel = u64::from(decoder.color_type().bytes_per_pixel());
+    if decoder.total_bytes() > LARGEST_PICTURE {
+        return Err(PictureErrorKind::TooLarge { width, height, limit: LARGEST_PICTURE / bytes_of_pixel });
+    }
     // What cannot be understood turns nothing.
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let mut picture = DynamicImage::ImageLuma8(channel.of(DynamicImage::from_decoder(decoder).map_err(damaged)?));

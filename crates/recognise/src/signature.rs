@@ -11,6 +11,10 @@ use crate::error::RecogniseError;
 pub(crate) const POINTS: usize = 256;
 /// Points on either side of one that its normal is taken from: about the window of the fits.
 const NORMAL_REACH: usize = 4;
+/// Points of a piece of a contour.
+const PIECE: usize = 16;
+/// A piece is taken to be so much larger than it is, as rounding may make it.
+const SLACK: f64 = 1e-9;
 /// The fit that invariants are taken from: a bounded quartic, which always falls into pairs of lines, with a small ridge.
 const FIT: FitSettings = FitSettings {
     degree: freeform_curve_fit::Degree::Quartic,
@@ -47,6 +51,23 @@ pub(crate) struct CurveSignature {
 pub(crate) struct Contour {
     pub(crate) points: Vec<Point2<f64>>,
     pub(crate) normals: Vec<Vector2<f64>>,
+    /// Where every so many points lie.
+    pieces: Vec<Piece>,
+}
+
+/// A circle about the points of a piece of a contour.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    middle: Point2<f64>,
+    radius: f64,
+}
+
+impl Piece {
+    fn of(points: &[Point2<f64>]) -> Self {
+        let middle = points[points.len() / 2];
+        let squared = points.iter().map(|p| (p - middle).norm_squared()).fold(0.0, f64::max);
+        Self { middle, radius: squared.sqrt() + SLACK }
+    }
 }
 
 /// Makes signatures, in buffers that are reused.
@@ -130,13 +151,30 @@ impl Contour {
             Vector2::new(along.y, -along.x).try_normalize(0.0).unwrap_or_default()
         };
         let normals = (0..count).map(normal).collect();
-        Self { points, normals }
+        let pieces = points.chunks(PIECE).map(Piece::of).collect();
+        Self { points, normals, pieces }
     }
 
-    /// Which of its points is nearest.
+    /// Which of its points is nearest, the first of several.
     pub(crate) fn nearest(&self, p: &Point2<f64>) -> usize {
-        let distances = self.points.iter().map(|q| (q - p).norm_squared());
-        distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index)
+        let squared = |q: &Point2<f64>| (q - p).norm_squared();
+        let pieces = || self.points.chunks(PIECE).zip(&self.pieces);
+        // The piece whose middle is nearest tells how far the point is at most.
+        let near = pieces().min_by(|(_, a), (_, b)| squared(&a.middle).total_cmp(&squared(&b.middle)));
+        let most = near.map_or(0.0, |(points, _)| points.iter().map(squared).fold(f64::INFINITY, f64::min)).sqrt();
+        let mut best = (f64::INFINITY, 0);
+        for (number, (points, piece)) in pieces().enumerate() {
+            if squared(&piece.middle) > (most + piece.radius).powi(2) {
+                continue;
+            }
+            for (index, point) in points.iter().enumerate() {
+                let distance = squared(point);
+                if distance < best.0 {
+                    best = (distance, number * PIECE + index);
+                }
+            }
+        }
+        best.1
     }
 
     /// Squared distance of a point from the closed polygon, looked for next to the nearest of its points.

@@ -146,5 +146,6 @@ fn take_outlines(bytes: &[u8]) {
         let _ = (pipeline.push(frame.time, &frame.outline), pipeline.estimate(), pipeline.warnings());
     }
     let bytes = pipeline.to_bytes().expect("memory takes it");
-    assert!(Pipeline::from_bytes(&bytes).is_ok_and(|restored| restored.to_bytes().is_ok_and(|again| again == bytes)));
+    let restored = Pipeline::from_bytes(&bytes).expect("a state that was saved");
+    assert_eq!(restored.to_bytes().expect("memory takes it"), bytes);
 }

@@ -13,7 +13,7 @@ use freeform_motion::{Rectification, TrackerSettings};
 use super::law::LawOptions;
 use super::pictures::{PictureOptions, picture_inputs};
 use super::space::PerspectiveArgs;
-use super::values::{camera_scale, degree, length, motion, rectification};
+use super::values::{GivenRectification, camera_scale, degree, length, motion, rectification};
 use crate::failure::Failure;
 use crate::outline_error::OutlineError;
 
@@ -168,6 +168,20 @@ pub(crate) struct TrackArgs {
     pub(crate) pictures: PictureOptions,
 }
 
+impl IdentifyArgs {
+    /// All files that are read.
+    pub(crate) fn files_read(&self) -> Vec<PathBuf> {
+        self.pictures.files_read(&self.inputs).into_iter().chain(self.options.file_read()).collect()
+    }
+}
+
+impl TrackArgs {
+    /// All files that are read.
+    pub(crate) fn files_read(&self) -> Vec<PathBuf> {
+        self.pictures.files_read(&self.inputs).into_iter().chain(self.options.file_read()).collect()
+    }
+}
+
 /// Options of the identification, shared by several commands.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct TrackOptions {
@@ -196,7 +210,7 @@ pub(crate) struct TrackOptions {
     /// unit of the plane. 'freeform rectify' finds the map from four points.
     #[arg(long, value_name = "FILE|H11,...,H33", value_parser = rectification, allow_hyphen_values = true,
           conflicts_with = "scale")]
-    pub(crate) rectify: Option<Rectification>,
+    pub(crate) rectify: Option<GivenRectification>,
 
     /// What is assumed of how the motion goes on from frame to frame; not used by the adaptive method, nor for projective
     /// motion
@@ -242,7 +256,17 @@ impl TrackOptions {
             }),
             (method, _) => method,
         };
-        TrackerSettings { method, scale: self.scale, rectification: self.rectify }
+        TrackerSettings { method, scale: self.scale, rectification: self.rectification() }
+    }
+
+    /// The map to the plane that the objects move in.
+    pub(crate) fn rectification(&self) -> Option<Rectification> {
+        self.rectify.as_ref().map(|given| given.map)
+    }
+
+    /// The file of that map, where it is one.
+    fn file_read(&self) -> Option<PathBuf> {
+        self.rectify.as_ref()?.file.clone()
     }
 
     /// The same for outlines that may lie off as pictures say, in the unit of the pictures. What is given goes before it, and in another plane

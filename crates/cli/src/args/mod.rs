@@ -32,7 +32,7 @@ pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
 pub(crate) use space::{PerspectiveArgs, PlaneBefore};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -105,11 +105,13 @@ pub(crate) struct CompletionsArgs {
 pub(crate) fn parse() -> Result<Cli, Failure> {
     let matches = with_negative_values(Cli::command()).try_get_matches();
     matches.and_then(|matches| Cli::from_arg_matches(&matches)).map_err(|error| match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match error.print() {
             // A closed pipe is no error.
-            let _ = error.print();
-            Failure::Silent
-        }
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+                Failure::unusable(format_args!("<stdout>: {}", plain(&error)))
+            }
+            _ => Failure::Silent,
+        },
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             let _ = error.print();
             Failure::unusable("a command is missing")

@@ -155,6 +155,11 @@ impl PictureOptions {
         self.dark || self.light || self.threshold.is_some() || self.background.is_some() || self.ring.is_some()
     }
 
+    /// All that is read with these options: what is named for input, and the picture without objects.
+    pub(crate) fn files_read(&self, inputs: &[PathBuf]) -> Vec<PathBuf> {
+        inputs.iter().chain(&self.background).cloned().collect()
+    }
+
     /// Whether pictures are compared with the median of the whole input.
     pub(crate) fn compares_with_whole(&self) -> bool {
         self.background.as_ref().is_some_and(|path| path.as_os_str() == "whole")

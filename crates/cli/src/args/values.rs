@@ -1,4 +1,6 @@
 //! Parsers of the values of options.
+use std::path::PathBuf;
+
 use freeform_motion::Rectification;
 use freeform_motion::curve_fit::Degree;
 use freeform_motion::riccati::{AffineMotion, CameraScale, ProjectiveMotion, RigidMotion, SimilarityMotion};
@@ -120,22 +122,31 @@ pub(crate) fn motion(text: &str) -> Result<ProjectiveMotion, String> {
     }
 }
 
+/// A map from the picture to a plane, and the file that it was read from, if it was.
+#[derive(Debug, Clone)]
+pub(crate) struct GivenRectification {
+    pub(crate) map: Rectification,
+    pub(crate) file: Option<PathBuf>,
+}
+
 /// A map from the picture to a plane: nine numbers row by row, or a file with them, lines that begin with # left out.
-pub(crate) fn rectification(text: &str) -> Result<Rectification, String> {
-    let numbers = match list(text) {
-        Ok(numbers) => numbers,
+pub(crate) fn rectification(text: &str) -> Result<GivenRectification, String> {
+    let (numbers, file) = match list(text) {
+        Ok(numbers) => (numbers, None),
         Err(_) => {
             let content = std::fs::read_to_string(text).map_err(|error| format!("{text}: {error}"))?;
             let lines = content.lines().map(|line| line.split('#').next().unwrap_or_default());
             let fields = lines.flat_map(|line| line.split(|c: char| c == ',' || c.is_whitespace()));
             let numbers = fields.filter(|field| !field.is_empty()).map(finite);
-            numbers.collect::<Result<_, _>>().map_err(|error| format!("{text}: {error}"))?
+            let numbers = numbers.collect::<Result<_, _>>().map_err(|error| format!("{text}: {error}"))?;
+            (numbers, Some(PathBuf::from(text)))
         }
     };
     let count = numbers.len();
     let entries: [f64; 9] = numbers.try_into().map_err(|_| format!("expected nine numbers, found {count}"))?;
     let map = Projective2::from_matrix_unchecked(Matrix3::from_row_slice(&entries));
-    Rectification::new(&map).map_err(|error| error.to_string())
+    let map = Rectification::new(&map).map_err(|error| error.to_string())?;
+    Ok(GivenRectification { map, file })
 }
 
 /// `X,Y=U,V`: a point of a picture, and the same point in a plane.

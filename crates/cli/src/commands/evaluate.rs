@@ -1,6 +1,6 @@
 //! Monte Carlo of the identification.
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, PlaneScene, Setting, Study, suite};
 use freeform_motion::riccati::MotionModel;
@@ -10,7 +10,8 @@ use super::simulate::shape;
 use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluateFormat, MotionChoice, PlaneBefore};
 use crate::failure::Failure;
 use crate::output::{
-    Evaluated, Sink, write_evaluation_csv, write_evaluation_json, write_evaluation_markdown, write_evaluation_table,
+    Evaluated, Sink, refuse_overwriting, write_evaluation_csv, write_evaluation_json, write_evaluation_markdown,
+    write_evaluation_table,
 };
 use crate::progress::Progress;
 
@@ -19,6 +20,8 @@ const RUNS: usize = 50;
 
 /// Simulates, identifies and prints.
 pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
+    let shapes: Vec<PathBuf> = args.shape.iter().map(PathBuf::from).collect();
+    refuse_overwriting(&shapes, &[&args.output])?;
     if args.suite.as_deref() == Some(super::stress::NAME) {
         return super::stress::run(args);
     }

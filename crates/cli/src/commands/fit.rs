@@ -26,7 +26,7 @@ const POINTS_AT_ONCE: usize = 1 << 18;
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let fitter = Fitter::new(args.options.settings()?).map_err(Failure::unusable)?;
     let outputs: Vec<_> = args.svg.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
-    refuse_overwriting(&args.inputs, &outputs)?;
+    refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();

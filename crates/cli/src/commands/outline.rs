@@ -17,7 +17,7 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
         .chain(&args.pictures.candidates)
         .map(AsRef::as_ref)
         .collect();
-    refuse_overwriting(&args.inputs, &outputs)?;
+    refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
     if args.deviations && TableFormat::of(&args.output) == TableFormat::Parquet {
         return Err(Failure::unusable("--deviations: Parquet does not have them; write CSV"));
     }
@@ -25,9 +25,10 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     if !input.has_pictures() && args.overlay.is_some() {
         return Err(Failure::unusable(format_args!("{}: not a picture, there is nothing to draw on", input.name)));
     }
-    interrupt::listen();
     let name = input.name.clone();
+    // A pipe that nobody reads is waited for here, which the first signal ends.
     let mut sink = Sink::open(&args.output)?;
+    interrupt::listen();
     if !args.quiet {
         input.tell();
     }

@@ -1,7 +1,9 @@
 use std::collections::HashMap;
 
 use freeform_motion::outline_io::{OutlineFrame, read_shape};
-use freeform_motion::recognise::{Evidence, RecogniseError, RecogniseSettings, Recogniser, Recognition};
+use freeform_motion::recognise::{Comparison, Evidence, RecogniseError, RecogniseSettings, Recogniser, Recognition};
+
+use rayon::prelude::*;
 
 use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::failure::{Failure, warn};
@@ -10,6 +12,9 @@ use crate::left_out::MissingWarnings;
 use crate::output::{Sink, refuse_overwriting, refuse_standard_output, write_recognised_json, write_recognised_table};
 use crate::progress::Progress;
 use crate::seen::Item;
+
+/// Outlines that are compared at once.
+const OUTLINES_AT_ONCE: usize = 64;
 
 /// What is known of one object.
 pub(crate) struct RecognisedObject {
@@ -23,21 +28,32 @@ pub(crate) struct RecognisedObject {
 /// Names every object of the input.
 pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     let candidates: Vec<_> = args.pictures.candidates.iter().map(AsRef::as_ref).collect();
-    refuse_overwriting(&args.inputs, &candidates)?;
+    let read = [args.pictures.files_read(&args.inputs), args.known.clone()].concat();
+    refuse_overwriting(&read, &candidates)?;
     refuse_standard_output(&candidates)?;
-    let mut recogniser = learnt(args)?;
+    let recogniser = learnt(args)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
     let name = input.name.clone();
     input.tell_tracing();
     let mut sink = Sink::stdout();
     let mut objects = SeenObjects::default();
+    // A stream may stand still: what has come is not kept waiting.
+    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
+    let mut waiting = Vec::new();
     let (mut reasons, mut warnings, mut failure) = (Vec::new(), MissingWarnings::default(), None);
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     for item in input {
         progress.advance();
         match item {
-            Ok(Item::Outline(frame, _)) => objects.of(&frame.object).take(&mut recogniser, &frame),
+            Ok(Item::Outline(frame, _)) => {
+                waiting.push(frame);
+                if waiting.len() >= at_once {
+                    objects.take(&recogniser, &std::mem::take(&mut waiting));
+                }
+            }
             Ok(Item::NoOutline { object, reason, .. }) => {
+                // Objects come in the order in which they are seen.
+                objects.take(&recogniser, &std::mem::take(&mut waiting));
                 objects.of(&object).frames_rejected += 1;
                 reasons.push(reason);
             }
@@ -48,6 +64,7 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
             }
         }
     }
+    objects.take(&recogniser, &waiting);
     drop(progress);
     let refused = |object: &SeenObject| {
         let error = object.first_refusal.as_ref()?;
@@ -112,11 +129,18 @@ impl SeenObjects {
         });
         &mut self.list[position]
     }
+
+    /// Compares outlines on all cores.
+    fn take(&mut self, recogniser: &Recogniser, frames: &[OutlineFrame]) {
+        let compare = |recogniser: &mut Recogniser, frame: &OutlineFrame| recogniser.compare(&frame.outline);
+        let compared: Vec<_> = frames.par_iter().map_init(|| recogniser.clone(), compare).collect();
+        frames.iter().zip(compared).for_each(|(frame, compared)| self.of(&frame.object).take(compared));
+    }
 }
 
 impl SeenObject {
-    fn take(&mut self, recogniser: &mut Recogniser, frame: &OutlineFrame) {
-        match recogniser.compare(&frame.outline) {
+    fn take(&mut self, compared: Result<Vec<Comparison>, RecogniseError>) {
+        match compared {
             Ok(comparisons) => self.evidence.add(&comparisons),
             Err(error) => {
                 self.frames_rejected += 1;

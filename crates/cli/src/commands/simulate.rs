@@ -1,5 +1,5 @@
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
     DEFAULT_OBJECT, OutlineFrame, TableFormat, TableWriter, WriteError, WriterOptions, read_shape,
@@ -9,7 +9,7 @@ use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, Sequenc
 use crate::args::{DisturbanceArgs, MotionChoice, PlaneBefore, SimulateArgs};
 use crate::command_line::command_line;
 use crate::failure::Failure;
-use crate::output::Sink;
+use crate::output::{Sink, refuse_overwriting};
 use crate::progress::Progress;
 use crate::truth::SimulatedMotion;
 
@@ -21,6 +21,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
         return write_pictures(args, folder);
     }
     let simulator = simulator(args)?;
+    refuse_overwriting(&[PathBuf::from(&args.shape)], &[&args.output])?;
     let mut sink = Sink::open(&args.output)?;
     let written = write_sequence(&mut sink, TableFormat::of(&args.output), &simulator, |_| Ok(()));
     match written {

@@ -64,9 +64,14 @@ impl<W: Write> TraceWriter<W> {
     }
 }
 
-/// A name as a cell that no spreadsheet takes for a formula: with a `'` before what would begin one. Numbers stay as they are.
+/// What begins a formula, also in the wide letters of East Asia, which some spreadsheets take for the others.
+const BEGINS_FORMULA: [char; 10] = ['=', '+', '-', '@', '\t', '\r', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
+
+/// A name as a cell that no spreadsheet takes for a formula: with a `'` before what would begin one, also behind marks of byte order, which
+/// some leave out. Numbers stay as they are.
 pub(super) fn text_cell(name: &str) -> String {
-    let begins_formula = name.starts_with(['=', '+', '-', '@', '\t', '\r']) && name.parse::<f64>().is_err();
+    let seen = name.trim_start_matches('\u{feff}');
+    let begins_formula = seen.starts_with(BEGINS_FORMULA) && seen.parse::<f64>().is_err();
     if begins_formula { format!("'{name}") } else { name.to_owned() }
 }
 
@@ -114,6 +119,8 @@ mod tests {
             ("+a", "'+a"),
             ("-2+3", "'-2+3"),
             ("@SUM(A1)", "'@SUM(A1)"),
+            ("\u{ff1d}1\u{ff0b}1", "'\u{ff1d}1\u{ff0b}1"),
+            ("\u{feff}=1", "'\u{feff}=1"),
             ("-1", "-1"),
             ("a=b", "a=b"),
         ] {

@@ -23,9 +23,18 @@ pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: &Path) -> Result
     Ok(())
 }
 
-/// Refuses output files that are an input or one of its pictures, or one another, by whatever names.
-pub(crate) fn refuse_overwriting(inputs: &[PathBuf], outputs: &[&Path]) -> Result<(), Failure> {
-    inputs.iter().try_for_each(|input| refuse_files_of(input, outputs))?;
+/// Refuses output files that are read or of a folder that is, or one another, by whatever names. A PNG within another is one of its
+/// drawings.
+pub(crate) fn refuse_overwriting(read: &[PathBuf], outputs: &[&Path]) -> Result<(), Failure> {
+    read.iter().try_for_each(|input| refuse_files_of(input, outputs))?;
+    for folder in outputs.iter().filter(|output| output.is_dir()) {
+        let is_picture = |output: &&&Path| output.extension().is_some_and(|extension| extension == "png");
+        let is_within = |output: &&&Path| !output.is_dir() && is_same_file(folder_of(output), folder);
+        if let Some(output) = outputs.iter().filter(is_picture).find(is_within) {
+            let reason = format_args!("{}: the drawings go into this folder, write elsewhere", output.display());
+            return Err(Failure::unusable(reason));
+        }
+    }
     for (index, output) in outputs.iter().enumerate() {
         let is_device = output.exists() && !output.is_file() && !output.is_dir();
         if !is_device && outputs[..index].iter().any(|other| is_same_file(other, output)) {
@@ -49,7 +58,9 @@ pub(crate) fn refuse_standard_output(outputs: &[&Path]) -> Result<(), Failure> {
 
 fn refuse_files_of(input: &Path, outputs: &[&Path]) -> Result<(), Failure> {
     // What cannot be listed cannot be read either, which is told in its place.
-    let files = if input.as_os_str() == "-" { Vec::new() } else { picture_files(input).unwrap_or_default() };
+    let stdin = Path::new("/dev/stdin");
+    let input = if input.as_os_str() == "-" { stdin } else { input };
+    let files = picture_files(input).unwrap_or_default();
     for output in outputs {
         if let Some(place) = fs::canonicalize(output).ok().filter(|place| place.is_file())
             && files.iter().any(|file| fs::canonicalize(file).is_ok_and(|file| file == place))

@@ -38,7 +38,7 @@ impl ObservedOverlay {
         }
         let names = input.pictures().is_some_and(|pictures| pictures.options().follows_all());
         let (overlay, curves) = (Overlay::open(path, inputs)?, CurveFitter::new(options)?);
-        Ok(Some(Self { overlay, curves, scale: options.scale, plane: options.rectify, names }))
+        Ok(Some(Self { overlay, curves, scale: options.scale, plane: options.rectification(), names }))
     }
 
     /// Draws one object, or a picture without any.

@@ -223,6 +223,12 @@ impl AdaptiveIdentifier {
         self.frames
     }
 
+    /// Number of lines of a frame; `None` before the first.
+    #[must_use]
+    pub fn line_count(&self) -> Option<usize> {
+        self.last.as_ref().map(|last| last.count)
+    }
+
     /// Over how many of the intervals between the frames the lines could be followed: nothing is learned where a line turns
     /// by more than half a radian, twice the turn of the object.
     #[must_use]

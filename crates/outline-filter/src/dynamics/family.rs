@@ -4,12 +4,12 @@ use std::sync::OnceLock;
 use nalgebra::{DMatrix, DVector};
 
 use super::innovations::InnovationSeries;
-#[cfg(feature = "serde")]
-use crate::tuning::saved_state::LARGEST_NUMBER;
 use crate::{
     tuning::family as tuning,
     update::{LEFT_OUT, LeftOutMatrix, LeftOutScore, LeftOutVector},
 };
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 
 /// What outlines do that their family of motions does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -210,7 +210,9 @@ impl FamilyTests {
     pub(crate) fn is_sound(&self) -> bool {
         let vectors =
             self.information.iter().chain(&self.score).chain(&self.squares).chain([&self.weight, &self.sigma]);
-        self.series.is_sound() && vectors.into_iter().all(|number| number.abs() < LARGEST_NUMBER) && self.sigma >= 0.0
+        self.series.is_sound()
+            && vectors.into_iter().all(|number| number.abs() < StateFormat::LARGEST_NUMBER)
+            && self.sigma >= 0.0
     }
 }
 

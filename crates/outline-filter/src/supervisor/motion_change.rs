@@ -4,8 +4,6 @@ use nalgebra::SVector;
 
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
-#[cfg(feature = "serde")]
-use crate::tuning::saved_state::LARGEST_NUMBER;
 use crate::{
     belief::{StateMatrix, StateVector},
     dynamics::DynamicsFilter,
@@ -14,6 +12,8 @@ use crate::{
     tuning::{motion_change as tuning, statement::REACH},
     update::PoseInnovation,
 };
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 
 /// One entry for each parameter of a pose.
 type PoseVector = SVector<f64, MAX_PARAMETERS>;
@@ -186,11 +186,11 @@ impl MotionHistory {
     /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
     pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
         let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
-        let is_change = |change: &PoseVector| change.iter().all(|entry| entry.abs() < LARGEST_NUMBER);
+        let is_change = |change: &PoseVector| change.iter().all(|entry| entry.abs() < StateFormat::LARGEST_NUMBER);
         self.change.is_finite()
             && self.dynamics.as_ref().is_none_or(of_settings)
             && self.contradiction.as_ref().is_none_or(is_change)
-            && (0.0..LARGEST_NUMBER).contains(&self.since_taken)
+            && (0.0..StateFormat::LARGEST_NUMBER).contains(&self.since_taken)
     }
 }
 
