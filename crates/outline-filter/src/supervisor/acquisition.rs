@@ -11,7 +11,7 @@ use crate::{
     search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
     tuning::supervisor::LARGEST_INNOVATION,
-    update::Gate,
+    update::{Gate, Rejection},
 };
 
 impl MotionFilter {
@@ -100,7 +100,25 @@ impl MotionFilter {
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
         }
+        self.take_vouched_for(outline, &mut candidates);
         candidates
+    }
+
+    /// Takes the frame with candidates too that scatter too much, if one that is accepted explains it no better: the frame shows the
+    /// object then, and the noise of its points, which few of them hardly tell, says nothing against their poses.
+    fn take_vouched_for(&mut self, outline: &Outline, candidates: &mut [Candidate]) {
+        let accepted = candidates.iter().filter(|candidate| candidate.outcome.is_accepted()).map(|c| c.likelihood);
+        let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
+        for candidate in candidates.iter_mut() {
+            let Candidate { track, outcome, likelihood, .. } = candidate;
+            let is_noisy = matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }));
+            if !is_noisy || likelihood.is_worse_than(&best) {
+                continue;
+            }
+            self.frame.load(outline, track.reference());
+            let gate = Gate { largest_noise: None, ..gate(&self.settings, track) };
+            *outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
+        }
     }
 
     /// The track moved into a pose that was found.

@@ -17,7 +17,7 @@ use crate::{
         hypotheses as tuning,
         symmetry::{OFF_MULTIPLE, SAME},
     },
-    update::Gate,
+    update::{Gate, Rejection},
 };
 
 /// The track in a pose that was tried.
@@ -222,10 +222,17 @@ impl Hypotheses {
             other.add_process_noise(&settings.process_noise, seconds);
             other.take_noise_of(track);
             let gate = Gate { largest_innovation: Some(largest_innovation(other)), ..gate(settings, other) };
+            // Where one hypothesis says that the frame shows the object, its noise says nothing against another.
+            let gate = if outcome.is_accepted() { Gate { largest_noise: None, ..gate } } else { gate };
             let found = other.update(frame, &gate, Comparison::Asked);
             other.take_spread(&found.measurement);
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
+            if found.is_accepted() && !self.likelihood.is_worse_than(&of_other) && is_noisy(&outcome) {
+                let gate = Gate { largest_noise: None, largest_innovation: Some(largest_innovation(track)), ..gate };
+                let again = track.update(frame, &gate, Comparison::NotAsked);
+                outcome = if again.is_accepted() { again } else { outcome };
+            }
             let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);
             if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 if let Some(other) = &mut self.list[index].track {
@@ -290,6 +297,11 @@ impl Hypotheses {
         self.list.remove(index);
         self.turns.remove(index);
     }
+}
+
+/// Whether a frame was rejected for nothing but its noise.
+fn is_noisy(outcome: &Outcome) -> bool {
+    matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }))
 }
 
 /// Whether a turn cannot be taken for granted against another.

@@ -266,9 +266,9 @@ impl MotionFilter {
         let outcome = advance(&self.settings, (track, frame), &mut self.history, seconds, known, comparison);
         self.motion_changed |= self.history.is_changing();
         track.take_spread(&outcome.measurement);
-        let turn = self.hypotheses.taken();
+        let (turn, was_accepted) = (self.hypotheses.taken(), outcome.is_accepted());
         let outcome = self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
-        if self.hypotheses.taken() != turn {
+        if self.hypotheses.taken() != turn || outcome.is_accepted() != was_accepted {
             self.history.begin_anew();
         }
         Some(outcome)
