@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 
 use super::{
     hypotheses::{Candidate, Hypotheses},
-    motion_filter::{MotionFilter, Phase},
+    motion_filter::{Counts, MotionFilter, Phase},
     tracking::gate,
 };
 use crate::{
@@ -13,6 +13,9 @@ use crate::{
     tuning::supervisor::LARGEST_INNOVATION,
     update::{Gate, Rejection},
 };
+
+#[cfg(feature = "serde")]
+use crate::tuning::supervisor::FALSE_START;
 
 impl MotionFilter {
     /// Goes on as predicted if that fits, searches for the object otherwise.
@@ -121,6 +124,31 @@ impl MotionFilter {
         }
     }
 
+    /// Begins again with a frame, or with one of those before it in which the object of the first has not been found: the one that most of
+    /// those after it show the object of. Any of them may be wrong as the first may be. Whether there was an outline to begin with.
+    pub(super) fn begin_anew(&mut self, time: f64, outline: &Outline) -> bool {
+        let frames = std::mem::take(&mut self.unfound);
+        let mut best: Option<Self> = None;
+        for (number, (begun_at, first)) in frames.iter().enumerate() {
+            let mut begun = self.clone();
+            if begun.start(*begun_at, first).is_err() {
+                continue;
+            }
+            let later = frames[number + 1..].iter().map(|(time, outline)| (*time, outline));
+            later.chain([(time, outline)]).for_each(|(time, outline)| drop(begun.take(time, outline)));
+            let most = best.as_ref().map_or(1, |best| best.counts.taken);
+            if begun.counts.taken > most {
+                best = Some(begun);
+            }
+        }
+        let Some(mut best) = best else { return self.start(time, outline).is_ok() };
+        // Those frames have been counted as rejected.
+        let Counts { accepted, rejected, restarts, .. } = self.counts;
+        best.counts = Counts { accepted, rejected, restarts, ..best.counts };
+        *self = best;
+        true
+    }
+
     /// The track moved into a pose that was found.
     fn moved(&self, found: &RegisteredPose, seconds: f64) -> Option<Track> {
         let mut track = self.track.clone()?;
@@ -132,5 +160,15 @@ impl MotionFilter {
             track.predict(seconds);
         }
         Some(track)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionFilter {
+    /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other.
+    pub(super) fn unfound_are_sound(&self) -> bool {
+        self.unfound.len() < FALSE_START
+            && self.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.time_of_last_frame())
+            && self.unfound.is_sorted_by(|(a, _), (b, _)| a < b)
     }
 }

@@ -6,7 +6,7 @@ use crate::track::Track;
 use crate::tuning::{saved_state::MOST_COUNTED, symmetry::LARGEST_ORDER};
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 /// What the bytes hold, behind the version.
 const KIND: [u8; 4] = *b"filt";
@@ -87,6 +87,9 @@ impl MotionFilter {
         }
         if !self.window.is_sound() {
             return inconsistent("first frames");
+        }
+        if !self.unfound_are_sound() {
+            return inconsistent("frames without the object");
         }
         Ok(())
     }
