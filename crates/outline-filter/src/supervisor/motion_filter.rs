@@ -354,7 +354,7 @@ impl MotionFilter {
         self.counts.accepted
     }
 
-    /// Frames that did not fit. A frame that starts a new track after others is included.
+    /// Frames that did not fit. A frame that starts a new track after others is included, and so are those that it was begun again with.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
         self.counts.rejected

@@ -2,7 +2,7 @@
 use crate::filter_support::{filter, filtered, frames_of, settings};
 use freeform_curve_fit::Outline;
 use freeform_estimate::{BoundaryPoint, CramerRaoBound, ProcessNoise};
-use freeform_outline_filter::{FilterError, FilterSettings, MotionFilter, Phase, Rejection, Unstated};
+use freeform_outline_filter::{FilterError, FilterSettings, MotionFilter, Phase, Rejection};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Camera, Frame, Occlusion, Sampling, Scene, Settings, Shape, Simulator};
 use nalgebra::{Affine2, Matrix2, Matrix3, Point2, Rotation2, Vector2};
@@ -206,37 +206,6 @@ fn a_first_frame_of_another_object_is_forgotten() {
     assert_eq!(run.restarts(), 1);
     let bound = bound(BuiltInShape::Bird, MotionModel::Rigid, RIGID.into(), 36, 1.0);
     assert!(ratios(&run, &values(MotionModel::Rigid, RIGID.into()), &bound).iter().all(|r| r.0.abs() < 5.0));
-}
-
-#[test]
-fn after_a_wrong_first_frame_another_wrong_one_begins_no_map_where_two_agree() {
-    for seed in 0..4 {
-        let mut frames = frames_of(BuiltInShape::Shoe, RIGID, settings(40, seed));
-        let [van, glider] =
-            [BuiltInShape::Van, BuiltInShape::Glider].map(|shape| frames_of(shape, RIGID, settings(4, seed)));
-        frames[0].outline = van[0].outline.clone();
-        frames[3].outline = glider[3].outline.clone();
-        let run = filtered(MotionModel::Rigid, &frames);
-        // The second and the third frame have been rejected before the map was begun with the second.
-        assert_eq!((run.restarts(), run.frames_rejected()), (1, 3), "seed {seed}");
-        let bound = bound(BuiltInShape::Shoe, MotionModel::Rigid, RIGID.into(), 38, 1.0);
-        let ratios = ratios(&run, &values(MotionModel::Rigid, RIGID.into()), &bound);
-        assert!(ratios.iter().all(|r| r.0.abs() < 5.0), "seed {seed}: {ratios:?}");
-    }
-}
-
-#[test]
-fn one_frame_that_agrees_with_the_first_against_two_states_no_motion_and_another_does() {
-    let mut frames = frames_of(BuiltInShape::Bird, RIGID, settings(5, 5));
-    let others = frames_of(BuiltInShape::Van, RIGID, settings(5, 5));
-    (1..3).for_each(|index| frames[index].outline = others[index].outline.clone());
-    let four = filtered(MotionModel::Rigid, &frames[..4]);
-    assert_eq!(four.phase(), Phase::Tracking);
-    assert_eq!(four.unstated(), Some(Unstated::ManyRejected { rejected: 2, frames: 4 }));
-    assert!(four.estimate().expect("an estimate").parameters().all(|parameter| parameter.value.is_none()));
-    let five = filtered(MotionModel::Rigid, &frames);
-    assert_eq!(five.unstated(), None);
-    assert!(five.estimate().expect("an estimate").parameters().all(|parameter| parameter.value.is_some()));
 }
 
 #[test]
