@@ -135,7 +135,9 @@ impl MotionFilter {
                 continue;
             }
             let later = frames[number + 1..].iter().map(|(time, outline)| (*time, outline));
-            later.chain([(time, outline)]).for_each(|(time, outline)| drop(begun.take(time, outline)));
+            for (time, outline) in later.chain([(time, outline)]) {
+                begun.take(time, outline);
+            }
             let most = best.as_ref().map_or(1, |best| best.counts.taken);
             if begun.counts.taken > most {
                 best = Some(begun);
