@@ -4,8 +4,12 @@
 mod example;
 
 use freeform_motion::curve_fit::{FitSettings, Fitter, Outline};
+use freeform_motion::outline_filter::{FilterSettings, MotionFilter};
 use freeform_motion::outline_io::{GrayImage, TraceSettings, TracedOutline, trace_objects};
-use freeform_motion::sim_camera::{BuiltInShape, Mask};
+use freeform_motion::riccati::{MotionModel, RigidMotion};
+use freeform_motion::sim_camera::{
+    BuiltInShape, Camera, Mask, Sampling, Scene, SequenceLength, Settings, Shape, Simulator,
+};
 use nalgebra::Point2;
 
 /// The segments of a closed polygon.
@@ -43,6 +47,26 @@ fn every_drawn_shape_is_a_simple_closed_curve_with_a_name_of_its_own() {
         let built_in = BuiltInShape::ALL.map(BuiltInShape::name);
         let others = shapes[..index].iter().map(|(other, _)| *other);
         assert!(!others.chain(built_in).any(|other| other == *name), "{name}");
+    }
+}
+
+#[test]
+fn forty_points_of_a_bat_are_not_taken_for_it_turned_by_half_a_circle() {
+    let drawn = example::drawn_shapes().into_iter().find(|(name, _)| *name == "bat").expect("it is one of them");
+    let shape = Shape::from_polygon(&drawn.1).expect("a shape").normalised();
+    let motion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -0.3, b2: 0.4 };
+    for seed in 0..100 {
+        let (length, sampling) = (SequenceLength::Frames(8), Sampling::Independent);
+        let settings = Settings { length, sampling, points: 40, noise: 0.005, seed, ..Settings::default() };
+        let scene = Scene::new(shape.clone(), motion, Camera::default());
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("good settings");
+        for frame in Simulator::new(scene, settings).expect("good settings").frames() {
+            filter.step(frame.time, &frame.outline).expect("increasing times");
+            let step = MotionModel::Rigid.flow(&[motion.omega, motion.b1, motion.b2], frame.time).inverse()
+                * filter.pose().expect("a pose");
+            let off = step.matrix()[(1, 0)].atan2(step.matrix()[(0, 0)]);
+            assert!(off.abs() < std::f64::consts::FRAC_PI_2, "seed {seed}, frame {}: {off}", frame.index);
+        }
     }
 }
 

@@ -493,6 +493,9 @@ pub(crate) mod statement {
     pub(crate) const MOST_REJECTED: f64 = 0.4;
     /// Fewest frames rejected that say so.
     pub(crate) const FEWEST_REJECTED: usize = 5;
+    /// Fewest frames rejected, no fewer than taken, that say so: one by itself may be wrong, and where frames are wrong by chance two of the
+    /// first four hardly are.
+    pub(crate) const FEWEST_AGAINST: usize = 2;
     /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
     pub(crate) const REACH: f64 = 0.26;
 }

@@ -57,17 +57,11 @@ pub(crate) fn register(
         .iter()
         .map(|start| refined(track, &few, MotionModel::Rigid, &(start * pose), tuning::SEARCH_STEPS))
         .collect();
-    let mut best = Vec::new();
-    for found in found.into_iter().filter(|h| h.score.is_finite()) {
-        match best.iter_mut().find(|other| same(other, &found)) {
-            Some(other) if other.score > found.score => *other = found,
-            Some(_) => {}
-            None => best.push(found),
-        }
-    }
+    let mut best = distinct(found);
     keep(&mut best, tuning::REFINED);
-    best = best.iter().map(|h| refined(track, points, MotionModel::Rigid, &h.pose, tuning::REFINEMENT_STEPS)).collect();
-    best.retain(|h| h.score.is_finite());
+    // Some come together only with all points: one taken twice would keep another out.
+    let refine = |h: &RegisteredPose| refined(track, points, MotionModel::Rigid, &h.pose, tuning::REFINEMENT_STEPS);
+    best = distinct(best.iter().map(refine).collect());
     keep(&mut best, tuning::KEPT);
     if symmetry > 1
         && let Some(first) = best.first().copied()
@@ -99,6 +93,19 @@ pub(crate) fn register(
         // A start between middles slides along what the frame shows more of.
         found.pose = map.least_moved(model, pose, &found.pose);
         found.turn = turn_of(&found.pose, pose);
+    }
+    best
+}
+
+/// The best of those that are the same, for each.
+fn distinct(list: Vec<RegisteredPose>) -> Vec<RegisteredPose> {
+    let mut best: Vec<RegisteredPose> = Vec::new();
+    for found in list.into_iter().filter(|h| h.score.is_finite()) {
+        match best.iter_mut().find(|other| same(other, &found)) {
+            Some(other) if other.score > found.score => *other = found,
+            Some(_) => {}
+            None => best.push(found),
+        }
     }
     best
 }

@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 
 use super::{
     hypotheses::{Candidate, Hypotheses},
-    motion_filter::{MotionFilter, Phase},
+    motion_filter::{Counts, MotionFilter, Phase},
     tracking::gate,
 };
 use crate::{
@@ -11,8 +11,11 @@ use crate::{
     search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
     tuning::supervisor::LARGEST_INNOVATION,
-    update::Gate,
+    update::{Gate, Rejection},
 };
+
+#[cfg(feature = "serde")]
+use crate::tuning::supervisor::FALSE_START;
 
 impl MotionFilter {
     /// Goes on as predicted if that fits, searches for the object otherwise.
@@ -125,7 +128,52 @@ impl MotionFilter {
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
         }
+        self.take_vouched_for(outline, &mut candidates);
         candidates
+    }
+
+    /// Takes the frame with candidates too that scatter too much, if one that is accepted explains it no better: the frame shows the
+    /// object then, and the noise of its points, which few of them hardly tell, says nothing against their poses.
+    fn take_vouched_for(&mut self, outline: &Outline, candidates: &mut [Candidate]) {
+        let accepted = candidates.iter().filter(|candidate| candidate.outcome.is_accepted()).map(|c| c.likelihood);
+        let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
+        for candidate in candidates.iter_mut() {
+            let Candidate { track, outcome, likelihood, .. } = candidate;
+            let is_noisy = matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }));
+            if !is_noisy || likelihood.is_worse_than(&best) {
+                continue;
+            }
+            self.frame.load(outline, track.reference());
+            let gate = Gate { largest_noise: None, ..gate(&self.settings, track) };
+            *outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
+        }
+    }
+
+    /// Begins again with a frame, or with one of those before it in which the object of the first has not been found: the one that most of
+    /// those after it show the object of. Any of them may be wrong as the first may be. Whether there was an outline to begin with.
+    pub(super) fn begin_anew(&mut self, time: f64, outline: &Outline) -> bool {
+        let frames = std::mem::take(&mut self.unfound);
+        let mut best: Option<Self> = None;
+        for (number, (begun_at, first)) in frames.iter().enumerate() {
+            let mut begun = self.clone();
+            if begun.start(*begun_at, first).is_err() {
+                continue;
+            }
+            let later = frames[number + 1..].iter().map(|(time, outline)| (*time, outline));
+            for (time, outline) in later.chain([(time, outline)]) {
+                begun.take(time, outline);
+            }
+            let most = best.as_ref().map_or(1, |best| best.counts.taken);
+            if begun.counts.taken > most {
+                best = Some(begun);
+            }
+        }
+        let Some(mut best) = best else { return self.start(time, outline).is_ok() };
+        // Those frames have been counted as rejected.
+        let Counts { accepted, rejected, restarts, .. } = self.counts;
+        best.counts = Counts { accepted, rejected, restarts, ..best.counts };
+        *self = best;
+        true
     }
 
     /// The track moved into a pose that was found.
@@ -139,5 +187,15 @@ impl MotionFilter {
             track.predict(seconds);
         }
         Some(track)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionFilter {
+    /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other.
+    pub(super) fn unfound_are_sound(&self) -> bool {
+        self.unfound.len() < FALSE_START
+            && self.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.time_of_last_frame())
+            && self.unfound.is_sorted_by(|(a, _), (b, _)| a < b)
     }
 }

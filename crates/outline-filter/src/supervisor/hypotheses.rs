@@ -15,7 +15,7 @@ use crate::{
         hypotheses as tuning,
         symmetry::{OFF_MULTIPLE, SAME},
     },
-    update::Gate,
+    update::{Gate, Rejection},
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -92,16 +92,7 @@ impl Hypotheses {
             ..Self::default()
         };
         if taken.is_some() {
-            let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| all.taken + step * pitch).into();
-            if symmetry > 1 {
-                turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
-                turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
-                turns.retain(|turn| (turn - all.taken).abs() > different_turn);
-            } else {
-                // A whole turn more or less looks the same; where it is surely the larger one it is not named.
-                turns.retain(|turn| is_doubtful(*turn, all.taken));
-            }
-            for turn in turns {
+            for turn in all.alike() {
                 all.turns.push(turn);
                 let found =
                     others.as_slice().iter().find(|candidate| wrapped(candidate.turn - turn).abs() < different_turn);
@@ -121,6 +112,39 @@ impl Hypotheses {
             all.list.push(Hypothesis { likelihood, track, ground: Ground::Likeness });
         }
         (taken, all)
+    }
+
+    /// Turns by the angle of symmetry from the one taken, which look the same.
+    fn alike(&self) -> Vec<f64> {
+        let (taken, pitch) = (self.taken, self.pitch);
+        let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| taken + step * pitch).into();
+        if pitch < TAU {
+            let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
+            turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
+            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+            turns.retain(|turn| (turn - taken).abs() > different_turn);
+        } else {
+            // A whole turn more or less looks the same; where it is surely the larger one it is not named.
+            turns.retain(|turn| is_doubtful(*turn, taken));
+        }
+        turns
+    }
+
+    /// After an exchange, names the turns that look like the one taken now in place of those that look like the one before.
+    fn name_alike(&mut self) {
+        for index in (0..self.list.len()).rev() {
+            if self.list[index].ground == Ground::Symmetry && self.list[index].track.is_none() {
+                self.remove(index);
+            }
+        }
+        let different_turn = tuning::DIFFERENT_TURN.min(SAME * self.pitch);
+        for turn in self.alike() {
+            if self.turns.iter().all(|other| (other - turn).abs() > different_turn) {
+                self.turns.push(turn);
+                let likelihood = NegativeLogLikelihood::default();
+                self.list.push(Hypothesis { likelihood, track: None, ground: Ground::Symmetry });
+            }
+        }
     }
 
     pub(super) fn turns(&self) -> &[f64] {
@@ -185,6 +209,7 @@ impl Hypotheses {
             return outcome;
         }
         let mut outcome = outcome;
+        let mut is_another = false;
         self.frames += 1;
         self.likelihood.add(&outcome.likelihood);
         if outcome.is_accepted() {
@@ -197,10 +222,17 @@ impl Hypotheses {
             other.add_process_noise(&settings.process_noise, seconds);
             other.take_noise_of(track);
             let gate = Gate { largest_innovation: Some(largest_innovation(other)), ..gate(settings, other) };
+            // Where one hypothesis says that the frame shows the object, its noise says nothing against another.
+            let gate = if outcome.is_accepted() { Gate { largest_noise: None, ..gate } } else { gate };
             let found = other.update(frame, &gate, Comparison::Asked);
             other.take_spread(&found.measurement);
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
+            if found.is_accepted() && !self.likelihood.is_worse_than(&of_other) && is_noisy(&outcome) {
+                let gate = Gate { largest_noise: None, largest_innovation: Some(largest_innovation(track)), ..gate };
+                let again = track.update(frame, &gate, Comparison::NotAsked);
+                outcome = if again.is_accepted() { again } else { outcome };
+            }
             let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);
             if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 if let Some(other) = &mut self.list[index].track {
@@ -208,6 +240,7 @@ impl Hypotheses {
                 }
                 std::mem::swap(&mut self.likelihood, &mut self.list[index].likelihood);
                 std::mem::swap(&mut self.taken, &mut self.turns[index]);
+                is_another |= ground == Ground::Likeness;
                 let is_worse = !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood);
                 match ground {
                     Ground::Likeness if is_worse => self.remove(index),
@@ -222,6 +255,9 @@ impl Hypotheses {
                     Ground::Symmetry => self.list[index].track = None,
                 }
             }
+        }
+        if is_another {
+            self.name_alike();
         }
         if self.frames >= tuning::FOLLOWED {
             for index in 0..self.list.len() {
@@ -261,6 +297,11 @@ impl Hypotheses {
         self.list.remove(index);
         self.turns.remove(index);
     }
+}
+
+/// Whether a frame was rejected for nothing but its noise.
+fn is_noisy(outcome: &Outcome) -> bool {
+    matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }))
 }
 
 /// Whether a turn cannot be taken for granted against another.

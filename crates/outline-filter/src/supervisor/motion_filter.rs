@@ -61,13 +61,13 @@ impl FilterStep {
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Counts {
-    accepted: usize,
-    rejected: usize,
-    rejected_in_a_row: usize,
+    pub(super) accepted: usize,
+    pub(super) rejected: usize,
+    pub(super) rejected_in_a_row: usize,
     /// Frames that the present track has taken, and that it has not.
     pub(super) taken: usize,
     pub(super) refused: usize,
-    restarts: usize,
+    pub(super) restarts: usize,
 }
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
@@ -124,6 +124,8 @@ pub struct MotionFilter {
     pub(super) motion_changed: bool,
     pub(super) hypotheses: Hypotheses,
     pub(super) window: InitialisationWindow,
+    /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
+    pub(super) unfound: Vec<(f64, Outline)>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
     /// What is stated after the last step, once it has been asked for.
@@ -152,6 +154,7 @@ impl MotionFilter {
             motion_changed: false,
             hypotheses: Hypotheses::default(),
             window: InitialisationWindow::default(),
+            unfound: Vec::new(),
             frame: Frame::default(),
             stated: OnceLock::new(),
         })
@@ -171,6 +174,12 @@ impl MotionFilter {
             self.counts.accepted += 1;
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
+        let (measurement, rejection) = self.take(time, outline);
+        Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
+    }
+
+    /// Takes a frame after the first, at a time in units of time.
+    pub(super) fn take(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
         self.last_time = time;
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
@@ -182,6 +191,7 @@ impl MotionFilter {
             self.counts.accepted += 1;
             self.counts.taken += 1;
             self.counts.rejected_in_a_row = 0;
+            self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
             if self.track.as_mut().is_some_and(Track::may_show_turn) {
@@ -193,8 +203,7 @@ impl MotionFilter {
             self.counts.rejected_in_a_row += 1;
             self.fall_back(time, outline);
         }
-        let measurement = outcome.map(|outcome| outcome.measurement);
-        Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
+        (outcome.map(|outcome| outcome.measurement), rejection)
     }
 
     /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
@@ -217,7 +226,7 @@ impl MotionFilter {
     }
 
     /// Begins a track with a first frame.
-    fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
+    pub(super) fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
         let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
         let FilterSettings { model, mask_pixel, .. } = self.settings;
         let mut track = Track::begin(model, outline, mask_pixel, &mut self.frame).ok_or(too_few)?;
@@ -228,6 +237,7 @@ impl MotionFilter {
         self.replace(track, time, Phase::Acquiring);
         self.last_time = time;
         self.counts.rejected_in_a_row = 0;
+        self.unfound.clear();
         Ok(())
     }
 
@@ -248,7 +258,11 @@ impl MotionFilter {
             Phase::Acquiring => rejected_in_a_row >= tuning::FALSE_START,
             _ => rejected_in_a_row >= tuning::GIVEN_UP || is_outvoted,
         };
-        if give_up && self.start(time, outline).is_ok() {
+        let is_alone = self.phase == Phase::Acquiring && taken == 1;
+        if is_alone && self.unfound.len() + 1 < tuning::FALSE_START {
+            self.unfound.push((time, outline.clone()));
+        }
+        if give_up && self.begin_anew(time, outline) {
             self.counts.restarts += 1;
         } else if self.phase == Phase::Tracking && rejected_in_a_row >= self.settings.patience {
             self.phase = Phase::Lost;
@@ -266,9 +280,9 @@ impl MotionFilter {
         let outcome = advance(&self.settings, (track, frame), &mut self.history, seconds, known, comparison);
         self.motion_changed |= self.history.is_changing();
         track.take_spread(&outcome.measurement);
-        let turn = self.hypotheses.taken();
+        let (turn, was_accepted) = (self.hypotheses.taken(), outcome.is_accepted());
         let outcome = self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
-        if self.hypotheses.taken() != turn {
+        if self.hypotheses.taken() != turn || outcome.is_accepted() != was_accepted {
             self.history.begin_anew();
         }
         Some(outcome)
@@ -340,7 +354,7 @@ impl MotionFilter {
         self.counts.accepted
     }
 
-    /// Frames that did not fit. A frame that starts a new track after others is included.
+    /// Frames that did not fit. A frame that starts a new track after others is included, and so are those that it was begun again with.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
         self.counts.rejected

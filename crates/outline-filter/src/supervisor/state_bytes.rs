@@ -6,7 +6,7 @@ use crate::track::Track;
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 /// The format of the bytes.
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
@@ -82,6 +82,9 @@ impl MotionFilter {
         }
         if !self.window.is_sound() {
             return inconsistent("first frames");
+        }
+        if !self.unfound_are_sound() {
+            return inconsistent("frames without the object");
         }
         Ok(())
     }

@@ -106,9 +106,12 @@ impl MotionFilter {
     pub fn unstated(&self) -> Option<Unstated> {
         let Counts { taken, refused, .. } = self.counts;
         let frames = taken + refused;
+        let are_many = refused >= tuning::FEWEST_REJECTED && refused as f64 > tuning::MOST_REJECTED * frames as f64;
+        // The first frame shows what the object is, but not that it is one.
+        let are_outvoted = refused >= tuning::FEWEST_AGAINST && refused >= taken;
         if self.phase == Phase::Lost {
             Some(Unstated::Lost)
-        } else if refused >= tuning::FEWEST_REJECTED && refused as f64 > tuning::MOST_REJECTED * frames as f64 {
+        } else if are_many || are_outvoted {
             Some(Unstated::ManyRejected { rejected: refused, frames })
         } else {
             None

@@ -190,6 +190,35 @@ fn a_square_that_turns_by_50_degrees_may_have_turned_back_by_40_whatever_its_pat
 }
 
 #[test]
+fn a_turn_of_nearly_half_a_circle_that_later_frames_decide_for_may_have_been_the_other_way_round() {
+    // Nearly the same after half a turn: two frames of few points do not tell, and the smaller turn is taken, without a doubt.
+    let egg = |i: i32| {
+        let t = std::f64::consts::TAU * f64::from(i) / 400.0;
+        Point2::new(0.5 * t.cos(), 0.3 * t.sin() + 0.01 * (2.0 * t).cos())
+    };
+    let shape = Shape::from_polygon(&(0..400).map(egg).collect::<Vec<_>>()).expect("a shape");
+    let turn = 175.0_f64.to_radians();
+    let motion = RigidMotion { omega: -turn, b1: 0.0, b2: 0.0 };
+    let omega = |run: &MotionFilter| run.estimate().expect("an estimate").values()[0];
+    let mut exchanged = 0;
+    for seed in 0..10 {
+        let settings = Settings { fps: 1.0, points: 60, noise: 0.005, ..settings(20, seed) };
+        let scene = Scene::new(shape.clone(), motion, Camera::default());
+        let frames: Vec<_> = Simulator::new(scene, settings).expect("good settings").frames().collect();
+        let [two, all] = [&frames[..2], &frames].map(|frames| filtered(MotionModel::Rigid, frames));
+        if omega(&two).abs() > 0.3 || omega(&all).abs() < 2.9 {
+            continue;
+        }
+        exchanged += 1;
+        let ambiguity = all.ambiguity().unwrap_or_else(|| panic!("seed {seed}: {:?}", all.rival_turns()));
+        let other = std::f64::consts::TAU - turn;
+        assert!(ambiguity.rival_turns.iter().any(|rival| (rival.abs() - other).abs() < 0.1), "{ambiguity:?}");
+        assert_eq!(all.estimate().expect("an estimate").parameters().next().expect("omega").value, None);
+    }
+    assert!(exchanged > 4, "{exchanged}");
+}
+
+#[test]
 fn a_circle_at_rest_far_from_the_origin_shows_the_velocity_of_its_middle_though_not_its_turn() {
     for seed in 0..4 {
         let mut frames = frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(30, seed));
