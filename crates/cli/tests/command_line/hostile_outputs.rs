@@ -37,6 +37,35 @@ fn two_outputs_on_one_file_are_refused_under_whatever_names() {
 }
 
 #[test]
+fn what_a_command_reads_is_not_written_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pictures = small_pictures(folder.path(), 6);
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let ground = file(folder.path(), "ground.png", fs::read(format!("{pictures}/0.png")).expect("a picture"));
+    let plane = file(folder.path(), "plane.txt", "1 0 0 0 1 0 0 0 1");
+    let outlines = file(folder.path(), "outlines.csv", sequence(""));
+    let reason = "this is the input";
+    refused(&format!("outline {pictures} --background {ground} --output {ground}"), reason);
+    refused(&format!("identify - --rectify {plane} --trace {plane}"), reason);
+    refused(&format!("track - --rectify {plane} --overlay {plane}"), reason);
+    refused(&format!("simulate --shape {outlines} --output {}", path("./outlines.csv")), reason);
+    refused(&format!("recognise {pictures} --known {outlines} --candidates {outlines}"), reason);
+    refused(&format!("evaluate --shape {outlines} --output {outlines}"), reason);
+    // As `<` gives it.
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin("freeform"));
+    let input = fs::File::open(&outlines).expect("the file");
+    let output = command.args(["identify", "-", "--trace", &outlines]).stdin(input).output().expect("the binary runs");
+    assert!(output.status.code() == Some(2) && stderr(&output).contains(reason), "{}", stderr(&output));
+    let drawn = path("drawn");
+    succeed(&format!("identify {pictures} --fps 10 --quiet --overlay {drawn}"), "");
+    let within = format!("{drawn}/000001.png");
+    refused(&format!("identify {pictures} --overlay {drawn} --trace {within}"), "the drawings go into this folder");
+    // Other files may lie there.
+    succeed(&format!("identify {pictures} --fps 10 --quiet --overlay {drawn} --trace {drawn}/trace.csv"), "");
+    assert_eq!(fs::read_to_string(&plane).expect("the file"), "1 0 0 0 1 0 0 0 1");
+}
+
+#[test]
 fn standard_output_is_for_the_result_alone() {
     for output in ["/dev/stdout", "/dev/fd/1"].into_iter().filter(|path| Path::new(path).exists()) {
         refused(&format!("identify - --json --trace {output}"), "this is standard output, where the result goes");

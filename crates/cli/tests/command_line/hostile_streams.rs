@@ -138,6 +138,29 @@ fn a_pipe_that_is_named_among_pictures_is_read_and_ctrl_c_ends_the_waiting_for_i
 }
 
 #[test]
+fn the_first_ctrl_c_counts_while_nobody_reads_a_pipe_or_a_picture_stands_still_half_way() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let outlines = file(folder.path(), "o.csv", sequence(""));
+    let child = start(&["outline", &outlines, "--output", &pipe(folder.path(), "out.csv")]);
+    thread::sleep(Duration::from_millis(300));
+    signal(&child, "-INT");
+    assert_eq!(ended(child).status.code(), Some(130));
+    let mut png = std::io::Cursor::new(Vec::new());
+    let picture = image::GrayImage::from_fn(200, 200, |x, y| image::Luma([(x * y % 251) as u8]));
+    picture.write_to(&mut png, image::ImageFormat::Png).expect("memory");
+    let path = pipe(folder.path(), "p.png");
+    for command in ["outline", "track", "identify"] {
+        let child = start(&[command, &path]);
+        let mut writer = File::options().write(true).open(&path).expect("the other end");
+        writer.write_all(&png.get_ref()[..5000]).expect("the reader is there");
+        thread::sleep(Duration::from_millis(300));
+        signal(&child, "-INT");
+        let output = ended(child);
+        assert!(!output.status.success() && stdout(&output).is_empty(), "{command}: {}", stderr(&output));
+    }
+}
+
+#[test]
 fn other_signals_that_ask_for_the_end_leave_nothing_unfinished() {
     let ends = [("-TERM", 143), ("-HUP", 129)];
     for (name, status) in ends.into_iter().filter(|(name, _)| *name != "-HUP" || hangups_are_heard()) {

@@ -92,6 +92,32 @@ fn a_colour_profile_of_any_length_leaves_the_pixels_as_they_are() {
 }
 
 #[test]
+fn a_picture_of_many_bytes_a_pixel_may_have_fewer_pixels() {
+    // A TIFF of 8192 x 8192 pixels of three numbers of 32 bits: its head is all that is looked at.
+    let entry = |tag: u16, kind: u16, count: u32, value: u32| {
+        [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &count.to_le_bytes(), &value.to_le_bytes()].concat()
+    };
+    let entries = [
+        entry(256, 4, 1, 8192),
+        entry(257, 4, 1, 8192),
+        entry(258, 3, 3, 200),
+        entry(259, 3, 1, 1),
+        entry(262, 3, 1, 2),
+        entry(273, 4, 1, 300),
+        entry(277, 3, 1, 3),
+        entry(278, 4, 1, 8192),
+        entry(279, 4, 1, 8192 * 8192 * 12),
+        entry(339, 3, 3, 206),
+    ];
+    let mut tiff = [&b"II*\0\x08\0\0\0"[..], &[entries.len() as u8, 0], &entries.concat(), &[0; 4]].concat();
+    tiff.resize(200, 0);
+    tiff.extend([32, 0, 32, 0, 32, 0, 3, 0, 3, 0, 3, 0]);
+    tiff.resize(1000, 0);
+    let error = decode(&tiff).expect_err("805 million bytes");
+    assert_eq!(error.to_string(), "8192 x 8192 pixels, more than 44739242 in all");
+}
+
+#[test]
 fn a_png_cut_anywhere_is_an_error() {
     let whole = png(disc());
     // The last 12 bytes are the end marker, without which all pixels are there.
