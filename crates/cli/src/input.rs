@@ -28,6 +28,8 @@ pub(crate) enum Waiting {
     None,
     /// Some pictures are waited for.
     Allowed,
+    /// Some are, and Ctrl-C ends that: what has come by then is dealt with.
+    UntilInterrupted,
 }
 
 /// A sequence of outlines, open for reading.

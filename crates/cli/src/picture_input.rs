@@ -124,8 +124,9 @@ impl PictureInput {
             input.is_traced_unseen = !options.has_way();
             return Ok(input);
         }
-        // What is read here is dealt with also where Ctrl-C ends the waiting for more.
-        interrupt::listen();
+        if waiting != Waiting::Allowed {
+            interrupt::listen();
+        }
         let failed = |error: &std::io::Error| Failure::unusable(format_args!("{name}: {}", plain(error)));
         let mut beginning = Vec::new();
         source.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut beginning).map_err(|error| failed(&error))?;

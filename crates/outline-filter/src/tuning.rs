@@ -347,6 +347,9 @@ pub(crate) mod motion_change {
 pub(crate) mod supervisor {
     /// Frames rejected in a row before the second one was ever found: the first was not the object.
     pub(crate) const FALSE_START: usize = 3;
+    /// Starts that came to nothing, one after the other, after which frames are no longer asked whether they are the wrong one: where one
+    /// frame in five is wrong, three starts in a row come to nothing once in a hundred.
+    pub(crate) const MOST_FRUITLESS: usize = 3;
     /// A map that has taken no more frames than this may have been begun from what is not the object.
     pub(crate) const FEW_FRAMES: usize = 5;
     /// Frames rejected in a row after which the object is given up and a new one taken: a second of video.

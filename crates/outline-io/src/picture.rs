@@ -25,8 +25,9 @@ const LARGEST_PICTURE: u64 = DECODER_LIMIT / 2;
 /// The same for each pixel of a picture.
 const DECODER_LIMIT_OF_PIXEL: u64 = DECODER_LIMIT / PIXEL_LIMIT;
 
-/// Most memory for what a file tells beside its pixels, in bytes. The largest colour profiles of printers have some megabytes.
-const METADATA_LIMIT: u64 = 1 << 24;
+/// Most memory for what a PNG tells beside its pixels, in bytes: colour profiles of printers have some megabytes, histories of editors some
+/// tens.
+const METADATA_LIMIT: u64 = 1 << 26;
 
 /// Reads a picture (PNG, JPEG, TIFF, BMP, WebP, or the first frame of a GIF) as grey values. Its content tells the format,
 /// not its name. It is turned and mirrored as the file says that it is to be seen (EXIF, or the tag of TIFF).
@@ -37,7 +38,7 @@ const METADATA_LIMIT: u64 = 1 << 24;
 ///
 /// # Errors
 /// The file cannot be read, is empty, is no picture, has a format that is not supported, holds several pictures (APNG,
-/// animated WebP, TIFF of several pages), has more than 2^26 pixels, or is damaged.
+/// animated WebP, TIFF of several pages), has more than 2^26 pixels, or more than 2^29 bytes as it is decoded, or is damaged.
 pub fn read_picture(path: impl AsRef<Path>) -> Result<GrayImage, PictureError> {
     read_picture_channel(path, Channel::Luminance)
 }

@@ -191,3 +191,31 @@ fn to_segment(p: &Point2<f64>, from: &Point2<f64>, to: &Point2<f64>) -> f64 {
     let share = if length > 0.0 { (along.dot(&there) / length).clamp(0.0, 1.0) } else { 0.0 };
     (there - share * along).norm_squared()
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn contour(points: Vec<Point2<f64>>) -> Contour {
+        let pieces = points.chunks(PIECE).map(Piece::of).collect();
+        Contour { normals: vec![Vector2::x(); points.len()], points, pieces }
+    }
+
+    proptest! {
+        #[test]
+        fn the_nearest_point_is_the_first_of_those_that_a_plain_search_finds(
+            // On a grid, so that many are as near as others.
+            places in prop::collection::vec((-8..8_i32, -8..8_i32), 1..100),
+            from in (-20..20_i32, -20..20_i32),
+        ) {
+            let point = |(x, y): (i32, i32)| Point2::new(f64::from(x) / 8.0, f64::from(y) / 8.0);
+            let contour = contour(places.into_iter().map(point).collect());
+            let from = point(from);
+            let squared = contour.points.iter().map(|q| (q - from).norm_squared());
+            let expected = squared.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(index, _)| index);
+            prop_assert_eq!(Some(contour.nearest(&from)), expected);
+        }
+    }
+}

@@ -157,7 +157,8 @@ impl PictureOptions {
 
     /// All that is read with these options: what is named for input, and the picture without objects.
     pub(crate) fn files_read(&self, inputs: &[PathBuf]) -> Vec<PathBuf> {
-        inputs.iter().chain(&self.background).cloned().collect()
+        let is_file = |path: &&PathBuf| ["median", "whole", "surface"].iter().all(|word| path.as_os_str() != *word);
+        inputs.iter().chain(self.background.as_ref().filter(is_file)).cloned().collect()
     }
 
     /// Whether pictures are compared with the median of the whole input.

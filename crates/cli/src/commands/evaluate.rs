@@ -1,12 +1,12 @@
 //! Monte Carlo of the identification.
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, PlaneScene, Setting, Study, suite};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{BuiltInShape, SequenceLength, Settings, Shape};
 
-use super::simulate::shape;
+use super::simulate::{shape, shape_files};
 use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluateFormat, MotionChoice, PlaneBefore};
 use crate::failure::Failure;
 use crate::output::{
@@ -20,8 +20,7 @@ const RUNS: usize = 50;
 
 /// Simulates, identifies and prints.
 pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
-    let shapes: Vec<PathBuf> = args.shape.iter().map(PathBuf::from).collect();
-    refuse_overwriting(&shapes, &[&args.output])?;
+    refuse_overwriting(&shape_files(&args.shape), &[&args.output])?;
     if args.suite.as_deref() == Some(super::stress::NAME) {
         return super::stress::run(args);
     }

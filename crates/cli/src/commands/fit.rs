@@ -17,10 +17,10 @@ use crate::progress::Progress;
 use crate::seen::{Item, Missing};
 
 /// Outlines that are fitted side by side at most.
-const OUTLINES_AT_ONCE: usize = 64;
+pub(super) const OUTLINES_AT_ONCE: usize = 64;
 
 /// Points of these outlines from which on no more are waited for.
-const POINTS_AT_ONCE: usize = 1 << 18;
+pub(super) const POINTS_AT_ONCE: usize = 1 << 18;
 
 /// Fits a curve to every outline.
 pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {

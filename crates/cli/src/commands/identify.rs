@@ -35,7 +35,7 @@ const STATES_IN_MEMORY: usize = 1024;
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
     let mut tracker = Tracker::new(args.tracker_settings(None)?).map_err(Failure::unusable)?;
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted)?;
     if let Some(error) = input.pictures().and_then(PictureInput::outline_error) {
         tracker = Tracker::new(args.tracker_settings(Some(error))?).map_err(Failure::unusable)?;
     }

@@ -21,13 +21,13 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     if args.deviations && TableFormat::of(&args.output) == TableFormat::Parquet {
         return Err(Failure::unusable("--deviations: Parquet does not have them; write CSV"));
     }
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
+    // A pipe that nobody reads is waited for here, which the first signal ends.
+    let mut sink = Sink::open(&args.output)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted)?;
     if !input.has_pictures() && args.overlay.is_some() {
         return Err(Failure::unusable(format_args!("{}: not a picture, there is nothing to draw on", input.name)));
     }
     let name = input.name.clone();
-    // A pipe that nobody reads is waited for here, which the first signal ends.
-    let mut sink = Sink::open(&args.output)?;
     interrupt::listen();
     if !args.quiet {
         input.tell();

@@ -5,6 +5,7 @@ use freeform_motion::recognise::{Comparison, Evidence, RecogniseError, Recognise
 
 use rayon::prelude::*;
 
+use super::fit::{OUTLINES_AT_ONCE, POINTS_AT_ONCE};
 use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::failure::{Failure, warn};
 use crate::input::{Input, Waiting};
@@ -12,9 +13,6 @@ use crate::left_out::MissingWarnings;
 use crate::output::{Sink, refuse_overwriting, refuse_standard_output, write_recognised_json, write_recognised_table};
 use crate::progress::Progress;
 use crate::seen::Item;
-
-/// Outlines that are compared at once.
-const OUTLINES_AT_ONCE: usize = 64;
 
 /// What is known of one object.
 pub(crate) struct RecognisedObject {
@@ -39,16 +37,18 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     let mut objects = SeenObjects::default();
     // A stream may stand still: what has come is not kept waiting.
     let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
-    let mut waiting = Vec::new();
+    let (mut waiting, mut points) = (Vec::new(), 0);
     let (mut reasons, mut warnings, mut failure) = (Vec::new(), MissingWarnings::default(), None);
     let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
     for item in input {
         progress.advance();
         match item {
             Ok(Item::Outline(frame, _)) => {
+                points += frame.outline.point_count();
                 waiting.push(frame);
-                if waiting.len() >= at_once {
+                if waiting.len() >= at_once || points >= POINTS_AT_ONCE {
                     objects.take(&recogniser, &std::mem::take(&mut waiting));
+                    points = 0;
                 }
             }
             Ok(Item::NoOutline { object, reason, .. }) => {

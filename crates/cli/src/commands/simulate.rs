@@ -21,7 +21,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
         return write_pictures(args, folder);
     }
     let simulator = simulator(args)?;
-    refuse_overwriting(&[PathBuf::from(&args.shape)], &[&args.output])?;
+    refuse_overwriting(&shape_files(std::slice::from_ref(&args.shape)), &[&args.output])?;
     let mut sink = Sink::open(&args.output)?;
     let written = write_sequence(&mut sink, TableFormat::of(&args.output), &simulator, |_| Ok(()));
     match written {
@@ -99,6 +99,12 @@ fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
 }
 
 /// A built-in shape, or that of a file at unit size.
+/// Those of these shapes that are files.
+pub(super) fn shape_files(names_or_files: &[String]) -> Vec<PathBuf> {
+    let is_file = |name: &&String| name.parse::<BuiltInShape>().is_err();
+    names_or_files.iter().filter(is_file).map(PathBuf::from).collect()
+}
+
 pub(super) fn shape(name_or_file: &str) -> Result<Shape, Failure> {
     let unknown = match name_or_file.parse::<BuiltInShape>() {
         Ok(shape) => return Ok(shape.shape()),

@@ -3,14 +3,14 @@ use freeform_curve_fit::Outline;
 
 use super::{
     hypotheses::{Candidate, Hypotheses},
-    motion_filter::{Counts, MotionFilter, Phase},
+    motion_filter::{MotionFilter, Phase},
     tracking::gate,
 };
 use crate::{
     measurement::{NegativeLogLikelihood, Tolerance},
     search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
-    tuning::supervisor::LARGEST_INNOVATION,
+    tuning::supervisor::{LARGEST_INNOVATION, MOST_FRUITLESS},
     update::{Gate, Rejection},
 };
 
@@ -128,13 +128,13 @@ impl MotionFilter {
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
         }
-        self.take_vouched_for(outline, &mut candidates);
+        self.take_vouched_for(outline, tolerance, &mut candidates);
         candidates
     }
 
     /// Takes the frame with candidates too that scatter too much, if one that is accepted explains it no better: the frame shows the
     /// object then, and the noise of its points, which few of them hardly tell, says nothing against their poses.
-    fn take_vouched_for(&mut self, outline: &Outline, candidates: &mut [Candidate]) {
+    fn take_vouched_for(&mut self, outline: &Outline, tolerance: Tolerance, candidates: &mut [Candidate]) {
         let accepted = candidates.iter().filter(|candidate| candidate.outcome.is_accepted()).map(|c| c.likelihood);
         let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
         for candidate in candidates.iter_mut() {
@@ -144,36 +144,33 @@ impl MotionFilter {
                 continue;
             }
             self.frame.load(outline, track.reference());
+            track.set_tolerance(tolerance);
             let gate = Gate { largest_noise: None, ..gate(&self.settings, track) };
             *outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
+            track.set_tolerance(Tolerance::Known);
         }
     }
 
-    /// Begins again with a frame, or with one of those before it in which the object of the first has not been found: the one that most of
-    /// those after it show the object of. Any of them may be wrong as the first may be. Whether there was an outline to begin with.
-    pub(super) fn begin_anew(&mut self, time: f64, outline: &Outline) -> bool {
-        let frames = std::mem::take(&mut self.unfound);
-        let mut best: Option<Self> = None;
-        for (number, (begun_at, first)) in frames.iter().enumerate() {
+    /// Whether a frame shows something else than those before it in which the object of the first has not been found: they agree with each
+    /// other and not with it, so that it is no frame to begin again with. Where nothing is found again and again, that is not looked into.
+    pub(super) fn shows_another(&self, time: f64, outline: &Outline) -> bool {
+        if self.counts.fruitless >= MOST_FRUITLESS {
+            return false;
+        }
+        let mut do_others_agree = false;
+        for (number, (begun_at, first)) in self.unfound.iter().enumerate() {
             let mut begun = self.clone();
             if begun.start(*begun_at, first).is_err() {
                 continue;
             }
-            let later = frames[number + 1..].iter().map(|(time, outline)| (*time, outline));
-            for (time, outline) in later.chain([(time, outline)]) {
-                begun.take(time, outline);
+            for (time, outline) in &self.unfound[number + 1..] {
+                do_others_agree |= begun.take(*time, outline).1.is_none();
             }
-            let most = best.as_ref().map_or(1, |best| best.counts.taken);
-            if begun.counts.taken > most {
-                best = Some(begun);
+            if begun.take(time, outline).1.is_none() {
+                return false;
             }
         }
-        let Some(mut best) = best else { return self.start(time, outline).is_ok() };
-        // Those frames have been counted as rejected.
-        let Counts { accepted, rejected, restarts, .. } = self.counts;
-        best.counts = Counts { accepted, rejected, restarts, ..best.counts };
-        *self = best;
-        true
+        do_others_agree
     }
 
     /// The track moved into a pose that was found.
@@ -192,9 +189,10 @@ impl MotionFilter {
 
 #[cfg(feature = "serde")]
 impl MotionFilter {
-    /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other.
+    /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other, after the first.
     pub(super) fn unfound_are_sound(&self) -> bool {
-        self.unfound.len() < FALSE_START
+        (self.unfound.is_empty() || self.phase == Phase::Acquiring && self.time_unit.is_some())
+            && self.unfound.len() < FALSE_START
             && self.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.time_of_last_frame())
             && self.unfound.is_sorted_by(|(a, _), (b, _)| a < b)
     }

@@ -137,6 +137,13 @@ impl Hypotheses {
                 self.remove(index);
             }
         }
+        // Some that only looked like the one before look the same as the one taken now: the path does not tell them apart.
+        for (hypothesis, turn) in self.list.iter_mut().zip(&self.turns) {
+            let steps = (turn - self.taken) / self.pitch;
+            if self.pitch < TAU && (steps - steps.round()).abs() <= SAME {
+                hypothesis.ground = Ground::Symmetry;
+            }
+        }
         let different_turn = tuning::DIFFERENT_TURN.min(SAME * self.pitch);
         for turn in self.alike() {
             if self.turns.iter().all(|other| (other - turn).abs() > different_turn) {
@@ -258,6 +265,7 @@ impl Hypotheses {
         }
         if is_another {
             self.name_alike();
+            self.compare_intervals(seconds);
         }
         if self.frames >= tuning::FOLLOWED {
             for index in 0..self.list.len() {

@@ -68,6 +68,8 @@ pub(super) struct Counts {
     pub(super) taken: usize,
     pub(super) refused: usize,
     pub(super) restarts: usize,
+    /// Starts in a row after which the object was not found again.
+    pub(super) fruitless: usize,
 }
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
@@ -113,7 +115,7 @@ pub struct MotionFilter {
     /// In units of time, as all times here.
     last_time: f64,
     /// Seconds; one until it is chosen.
-    time_unit: Option<f64>,
+    pub(super) time_unit: Option<f64>,
     /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
     pub(super) symmetry: usize,
     /// Time that the track stands at.
@@ -191,6 +193,7 @@ impl MotionFilter {
             self.counts.accepted += 1;
             self.counts.taken += 1;
             self.counts.rejected_in_a_row = 0;
+            self.counts.fruitless = 0;
             self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
@@ -259,11 +262,14 @@ impl MotionFilter {
             _ => rejected_in_a_row >= tuning::GIVEN_UP || is_outvoted,
         };
         let is_alone = self.phase == Phase::Acquiring && taken == 1;
-        if is_alone && self.unfound.len() + 1 < tuning::FALSE_START {
+        if is_alone && !give_up {
             self.unfound.push((time, outline.clone()));
         }
-        if give_up && self.begin_anew(time, outline) {
+        // Any frame may be wrong, as the first was: then the next one is waited for.
+        let is_wrong = is_alone && rejected_in_a_row == tuning::FALSE_START && self.shows_another(time, outline);
+        if give_up && !is_wrong && self.start(time, outline).is_ok() {
             self.counts.restarts += 1;
+            self.counts.fruitless += 1;
         } else if self.phase == Phase::Tracking && rejected_in_a_row >= self.settings.patience {
             self.phase = Phase::Lost;
         }
@@ -354,7 +360,7 @@ impl MotionFilter {
         self.counts.accepted
     }
 
-    /// Frames that did not fit. A frame that starts a new track after others is included, and so are those that it was begun again with.
+    /// Frames that did not fit. A frame that starts a new track after others is included.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
         self.counts.rejected
@@ -397,7 +403,7 @@ impl MotionFilter {
 
     /// Whether no counter is near its end.
     pub(super) fn counts_are_below(&self, most: usize) -> bool {
-        let Counts { accepted, rejected, rejected_in_a_row, taken, refused, restarts } = self.counts;
-        [accepted, rejected, rejected_in_a_row, taken, refused, restarts].iter().all(|count| *count < most)
+        let Counts { accepted, rejected, rejected_in_a_row, taken, refused, restarts, fruitless } = self.counts;
+        [accepted, rejected, rejected_in_a_row, taken, refused, restarts, fruitless].iter().all(|count| *count < most)
     }
 }

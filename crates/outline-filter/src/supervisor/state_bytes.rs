@@ -12,7 +12,7 @@ const VERSION: u32 = 8;
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
 
 impl MotionFilter {
-    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points. A filter [made from them](Self::from_bytes)
+    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points, before the object was found again also up to two outlines. A filter [made from them](Self::from_bytes)
     /// goes on as this one would, to the last bit. The first four bytes are the version of the format, little-endian.
     ///
     /// # Errors

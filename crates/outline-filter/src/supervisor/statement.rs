@@ -17,7 +17,8 @@ use crate::{
 pub enum Unstated {
     /// The object is lost.
     Lost,
-    /// Too large a share of the frames was rejected for the others to be trusted.
+    /// More than 40 % of five frames or more were rejected, or two or more and no fewer than were taken, so that the others are not to be
+    /// trusted.
     ManyRejected {
         /// Frames rejected since the object was begun with.
         rejected: usize,
@@ -108,7 +109,7 @@ impl MotionFilter {
         let frames = taken + refused;
         let are_many = refused >= tuning::FEWEST_REJECTED && refused as f64 > tuning::MOST_REJECTED * frames as f64;
         // The first frame shows what the object is, but not that it is one.
-        let are_outvoted = refused >= tuning::FEWEST_AGAINST && refused >= taken;
+        let are_outvoted = taken > 1 && refused >= tuning::FEWEST_AGAINST && refused >= taken;
         if self.phase == Phase::Lost {
             Some(Unstated::Lost)
         } else if are_many || are_outvoted {

@@ -1,26 +1,54 @@
 //! First frames that are wrong.
 use crate::filter_support::{filtered, frames_of, settings};
-use freeform_outline_filter::{Phase, Unstated};
+use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Unstated, estimate_batch};
 use freeform_riccati::{MotionModel, RigidMotion};
-use freeform_sim_camera::BuiltInShape;
+use freeform_sim_camera::{BuiltInShape, Frame};
 
 const MOTION: RigidMotion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -0.3, b2: 0.4 };
+
+/// Frames of a shoe of which the first and the fourth show other things.
+fn doubtful(seed: u64) -> Vec<Frame> {
+    let mut frames = frames_of(BuiltInShape::Shoe, MOTION, settings(40, seed));
+    let [van, glider] =
+        [BuiltInShape::Van, BuiltInShape::Glider].map(|shape| frames_of(shape, MOTION, settings(4, seed)));
+    frames[0].outline = van[0].outline.clone();
+    frames[3].outline = glider[3].outline.clone();
+    frames
+}
 
 #[test]
 fn after_a_wrong_first_frame_another_wrong_one_begins_no_map_where_two_agree() {
     for seed in 0..4 {
-        let mut frames = frames_of(BuiltInShape::Shoe, MOTION, settings(40, seed));
-        let [van, glider] =
-            [BuiltInShape::Van, BuiltInShape::Glider].map(|shape| frames_of(shape, MOTION, settings(4, seed)));
-        frames[0].outline = van[0].outline.clone();
-        frames[3].outline = glider[3].outline.clone();
+        let frames = doubtful(seed);
         let run = filtered(MotionModel::Rigid, &frames);
-        // The second and the third frame have been rejected before the map was begun with the second.
-        assert_eq!((run.restarts(), run.frames_rejected()), (1, 3), "seed {seed}");
+        // The map is begun with the fifth.
+        assert_eq!((run.restarts(), run.frames_rejected()), (1, 4), "seed {seed}");
         let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
         let (value, std) = (omega.value.expect("stated"), omega.standard_deviation.expect("known"));
         assert!((value - MOTION.omega).abs() < 5.0 * std && std < 0.01, "seed {seed}: {value}, std {std}");
     }
+}
+
+#[test]
+fn all_frames_together_are_those_after_the_wrong_ones() {
+    let frames: Vec<_> = doubtful(1).into_iter().map(|frame| (frame.time, frame.outline)).collect();
+    let found = estimate_batch(MotionModel::Rigid, &frames).expect("a motion");
+    assert_eq!((found.frames_used, found.converged), (36, true));
+    assert!(found.rounds > 1);
+}
+
+#[test]
+#[cfg(feature = "serde")]
+fn a_filter_saved_between_the_first_frames_goes_on_to_the_last_bit() {
+    let mut straight = MotionFilter::new(FilterSettings::default()).expect("settings");
+    let mut restored = straight.clone();
+    for frame in doubtful(2) {
+        restored = MotionFilter::from_bytes(&restored.to_bytes().expect("memory")).expect("a saved state");
+        let steps = [&mut straight, &mut restored].map(|filter| filter.step(frame.time, &frame.outline).ok());
+        assert_eq!(steps[0], steps[1]);
+        assert_eq!(straight.estimate(), restored.estimate());
+    }
+    assert_eq!(straight.to_bytes(), restored.to_bytes());
 }
 
 #[test]
