@@ -11,6 +11,7 @@ use crate::{
     matched_frame::{MatchedFrame, Matches},
     pipeline_error::PipelineError,
     pipeline_settings::PipelineSettings,
+    regular_map::are_coordinates,
     settling::Settling,
     warning::{MANY_REJECTED, Warning},
 };
@@ -241,6 +242,11 @@ impl Pipeline {
         let origin = (image_from_identifier.inverse() * centre).coords;
         let moved = nalgebra::convert::<_, Affine2<f64>>(Translation2::from(origin));
         let Some(last) = self.last.as_mut().filter(|_| origin.norm() > FAR * self.settings.size) else { return };
+        let (to_image, shift) =
+            (image_from_identifier * moved, Translation2::from(-origin) * self.identifier_from_start);
+        if !are_coordinates(&to_image, &shift) {
+            return;
+        }
         // Those of a projective motion are where the first outline was.
         if self.settings.identify.model != MotionModel::Projective {
             // Lines that cannot be told in the new coordinates stay in the old.
@@ -248,8 +254,8 @@ impl Pipeline {
             last.decomposition = decomposition;
         }
         self.identifier.shift_origin(origin);
-        self.identifier_from_start = Translation2::from(-origin) * self.identifier_from_start;
-        self.image_from_identifier = Some(image_from_identifier * moved);
+        self.identifier_from_start = shift;
+        self.image_from_identifier = Some(to_image);
     }
 
     /// The motion as identified so far, in the image frame; `None` before the lines were followed from one frame to the

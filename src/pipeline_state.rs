@@ -9,7 +9,7 @@ use crate::{
     followed_pose::FollowedPose,
     matched_frame::{MatchedFrame, Matches},
     pipeline::follow_by,
-    regular_map::is_regular,
+    regular_map::are_coordinates,
     settling::Settling,
 };
 
@@ -126,15 +126,9 @@ impl SavedPipeline {
     }
 
     fn are_coordinates_sound(&self, is_begun: bool) -> bool {
-        let is_affine = |map: &Affine2<f64>| {
-            let last_row = map.matrix().row(2);
-            is_regular(map.matrix())
-                && map.matrix().amax() < StateFormat::LARGEST_NUMBER
-                && last_row.iter().eq(&[0.0, 0.0, 1.0])
-        };
-        let shift = &self.identifier_from_start.vector;
-        let is_shift = shift.iter().all(|length| length.abs() < StateFormat::LARGEST_NUMBER);
-        is_shift && self.image_from_identifier.is_some() == is_begun && self.image_from_identifier.iter().all(is_affine)
+        let identity = Affine2::identity();
+        let to_image = self.image_from_identifier.as_ref();
+        to_image.is_some() == is_begun && are_coordinates(to_image.unwrap_or(&identity), &self.identifier_from_start)
     }
 
     /// Whether lines are those of a curve that the settings ask for, in an order of their pairs.

@@ -1,4 +1,7 @@
-use nalgebra::Matrix3;
+use nalgebra::{Affine2, Matrix3, Translation2};
+
+/// Numbers beyond this are no coordinates: their squares are none.
+const LARGEST: f64 = 1e100;
 
 /// Determinant of a map with columns of length 1 below which it has no inverse but by rounding.
 const SINGULAR: f64 = 1e-15;
@@ -11,6 +14,13 @@ pub(crate) fn is_regular(map: &Matrix3<f64>) -> bool {
     scaled.column_iter_mut().for_each(|mut column| column /= column.norm());
     // What is not finite, or has a row of zeros, has no determinant.
     scaled.determinant().abs() > SINGULAR
+}
+
+/// Whether coordinates can be worked with: those that a map takes to the image, and those that a shift takes to others of them.
+pub(crate) fn are_coordinates(to_image: &Affine2<f64>, shift: &Translation2<f64>) -> bool {
+    let is_affine = to_image.matrix().row(2).iter().eq(&[0.0, 0.0, 1.0]);
+    let numbers = to_image.matrix().iter().chain(shift.vector.iter());
+    is_affine && is_regular(to_image.matrix()) && { numbers }.all(|number| number.abs() < LARGEST)
 }
 
 #[cfg(test)]

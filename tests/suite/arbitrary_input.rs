@@ -166,9 +166,13 @@ fn what_the_targets_in_fuzz_have_found_stays_mended() {
         47, 10, 223, 8, 0, 4, 4, 220, 220, 220, 0, 220, 220, 255, 255, 0, 0, 4, 1, 0, 0, 0, 0, 251, 0, 3, 99, 99, 0,
         99, 99, 99, 32,
     ]);
+    motion_filter(&[255, 255, 255, 9, 255, 9, 91, 0, 0, 0, 14, 255, 153, 255, 255, 63, 255, 8, 8]);
     // A pipeline of a changed state could not be saved and restored after some frames.
     #[cfg(feature = "serde")]
-    crate::checks::saved_state(b"=J#=J#9J\xf52");
+    {
+        crate::checks::saved_state(b"=J#=J#9J\xf52");
+        crate::checks::saved_state(&[0x96, 0xb7, 0xa9]);
+    }
     // A list of 1.2 billion truth values in 60 bytes, through which the library counted for seconds.
     #[cfg(feature = "parquet")]
     crate::checks::parquet_reader(&[

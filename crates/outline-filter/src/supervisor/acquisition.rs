@@ -121,6 +121,10 @@ impl MotionFilter {
             let gate = gate(&self.settings, &track);
             let outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
             track.set_tolerance(Tolerance::Known);
+            // A projective pose may be all but singular.
+            if !track.outline_points().all(|point| point.coords.iter().all(|c| c.is_finite())) {
+                continue;
+            }
             candidates.push(Candidate { track, outcome, turn, likelihood: NegativeLogLikelihood::default() });
         }
         let poses: Vec<_> = candidates.iter().map(|candidate| *candidate.track.body_pose()).collect();
