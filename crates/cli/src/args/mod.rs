@@ -108,7 +108,7 @@ pub(crate) fn parse() -> Result<Cli, Failure> {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match error.print() {
             // A closed pipe is no error.
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-                Failure::unusable(format_args!("<stdout>: {}", plain(&error)))
+                Failure::unusable(format_args!("standard output: {}", plain(&error)))
             }
             _ => Failure::Silent,
         },

@@ -34,6 +34,8 @@ fn a_full_disk_is_told_on_one_line() {
         vec!["identify", &input],
         vec!["fit", &input],
         vec!["completions", "bash"],
+        vec!["--help"],
+        vec!["track", "--help"],
     ] {
         let full = File::options().write(true).open("/dev/full").expect("the device");
         let output = command().args(&arguments).stdout(full).stderr(Stdio::piped()).output().expect("the binary runs");
