@@ -161,7 +161,7 @@ impl PictureSequence {
     /// Opens the pipes among the paths with this function from now on, such as one that does not wait for ever; by default they are
     /// opened as files are, which waits for somebody who writes to them. A single path is opened before.
     #[must_use]
-    pub fn with_pipes_opened_by(self, open_pipe: fn(&Path) -> io::Result<Box<dyn BufRead>>) -> Self {
+    pub fn with_pipes_opened_by(self, open_pipe: OpenPipe) -> Self {
         Self { open_pipe, ..self }
     }
 

@@ -168,20 +168,6 @@ pub(crate) struct TrackArgs {
     pub(crate) pictures: PictureOptions,
 }
 
-impl IdentifyArgs {
-    /// All files that are read.
-    pub(crate) fn files_read(&self) -> Vec<PathBuf> {
-        self.pictures.files_read(&self.inputs).into_iter().chain(self.options.file_read()).collect()
-    }
-}
-
-impl TrackArgs {
-    /// All files that are read.
-    pub(crate) fn files_read(&self) -> Vec<PathBuf> {
-        self.pictures.files_read(&self.inputs).into_iter().chain(self.options.file_read()).collect()
-    }
-}
-
 /// Options of the identification, shared by several commands.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct TrackOptions {
@@ -264,9 +250,10 @@ impl TrackOptions {
         self.rectify.as_ref().map(|given| given.map)
     }
 
-    /// The file of that map, where it is one.
-    fn file_read(&self) -> Option<PathBuf> {
-        self.rectify.as_ref()?.file.clone()
+    /// All that is read with these options: that of `pictures`, and the file of that map, where it is one.
+    pub(crate) fn files_read(&self, pictures: &PictureOptions, inputs: &[PathBuf]) -> Vec<PathBuf> {
+        let of_map = self.rectify.as_ref().and_then(|given| given.file.clone());
+        pictures.files_read(inputs).into_iter().chain(of_map).collect()
     }
 
     /// The same for outlines that may lie off as pictures say, in the unit of the pictures. What is given goes before it, and in another plane

@@ -140,7 +140,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let candidates = &args.pictures.candidates;
     let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay, candidates];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
-    refuse_overwriting(&args.files_read(), &outputs)?;
+    refuse_overwriting(&args.options.files_read(&args.pictures, &args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
     args.options.check()?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {

@@ -2,7 +2,6 @@ use std::collections::HashMap;
 
 use freeform_motion::outline_io::{OutlineFrame, read_shape};
 use freeform_motion::recognise::{Comparison, Evidence, RecogniseError, RecogniseSettings, Recogniser, Recognition};
-
 use rayon::prelude::*;
 
 use super::fit::{OUTLINES_AT_ONCE, POINTS_AT_ONCE};

@@ -14,7 +14,7 @@ use crate::reader::{Event, follow_stream};
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = args.overlay.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
-    refuse_overwriting(&args.files_read(), &outputs)?;
+    refuse_overwriting(&args.options.files_read(&args.pictures, &args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
     args.options.check()?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;

@@ -11,7 +11,7 @@ use crate::{
     search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
     tuning::supervisor::{LARGEST_INNOVATION, MOST_FRUITLESS},
-    update::{Gate, Rejection},
+    update::Gate,
 };
 
 #[cfg(feature = "serde")]
@@ -143,13 +143,12 @@ impl MotionFilter {
         let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
         for candidate in candidates.iter_mut() {
             let Candidate { track, outcome, likelihood, .. } = candidate;
-            let is_noisy = matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }));
-            if !is_noisy || likelihood.is_worse_than(&best) {
+            if !outcome.is_noisy() || likelihood.is_worse_than(&best) {
                 continue;
             }
             self.frame.load(outline, track.reference());
             track.set_tolerance(tolerance);
-            let gate = Gate { largest_noise: None, ..gate(&self.settings, track) };
+            let gate = gate(&self.settings, track).without_noise();
             *outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
             track.set_tolerance(Tolerance::Known);
         }

@@ -15,7 +15,7 @@ use crate::{
         hypotheses as tuning,
         symmetry::{OFF_MULTIPLE, SAME},
     },
-    update::{Gate, Rejection},
+    update::Gate,
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -70,7 +70,7 @@ impl Hypotheses {
     /// Of an outline with a symmetry of some order, 1 where there is none, takes the smallest turn of all that are not significantly worse than the best.
     pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
         let pitch = TAU / symmetry as f64;
-        let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
+        let different_turn = different_turn(pitch);
         candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
         let Some(best) = candidates.first().map(|c| c.likelihood) else { return (None, Self::default()) };
         candidates.retain(|candidate| !candidate.likelihood.is_worse_than(&best));
@@ -101,11 +101,8 @@ impl Hypotheses {
                 all.list.push(Hypothesis { likelihood, track, ground: Ground::Symmetry });
             }
         }
-        let off_symmetry = |turn: f64| {
-            let steps = (turn - all.taken) / pitch;
-            symmetry == 1 || (steps - steps.round()).abs() > SAME
-        };
-        let others: Vec<Candidate> = others.filter(|candidate| off_symmetry(candidate.turn)).collect();
+        let others: Vec<Candidate> =
+            others.filter(|candidate| !look_the_same(candidate.turn, all.taken, pitch)).collect();
         for candidate in others {
             all.turns.push(candidate.turn);
             let (likelihood, track) = (candidate.likelihood, Some(candidate.track));
@@ -119,7 +116,7 @@ impl Hypotheses {
         let (taken, pitch) = (self.taken, self.pitch);
         let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| taken + step * pitch).into();
         if pitch < TAU {
-            let different_turn = tuning::DIFFERENT_TURN.min(SAME * pitch);
+            let different_turn = different_turn(pitch);
             turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
             turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
             turns.retain(|turn| (turn - taken).abs() > different_turn);
@@ -139,12 +136,11 @@ impl Hypotheses {
         }
         // Some that only looked like the one before look the same as the one taken now: the path does not tell them apart.
         for (hypothesis, turn) in self.list.iter_mut().zip(&self.turns) {
-            let steps = (turn - self.taken) / self.pitch;
-            if self.pitch < TAU && (steps - steps.round()).abs() <= SAME {
+            if look_the_same(*turn, self.taken, self.pitch) {
                 hypothesis.ground = Ground::Symmetry;
             }
         }
-        let different_turn = tuning::DIFFERENT_TURN.min(SAME * self.pitch);
+        let different_turn = different_turn(self.pitch);
         for turn in self.alike() {
             if self.turns.iter().all(|other| (other - turn).abs() > different_turn) {
                 self.turns.push(turn);
@@ -229,15 +225,14 @@ impl Hypotheses {
             other.add_process_noise(&settings.process_noise, seconds);
             other.take_noise_of(track);
             let gate = Gate { largest_innovation: Some(largest_innovation(other)), ..gate(settings, other) };
-            // Where one hypothesis says that the frame shows the object, its noise says nothing against another.
-            let gate = if outcome.is_accepted() { Gate { largest_noise: None, ..gate } } else { gate };
+            let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
             let found = other.update(frame, &gate, Comparison::Asked);
             other.take_spread(&found.measurement);
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
-            if found.is_accepted() && !self.likelihood.is_worse_than(&of_other) && is_noisy(&outcome) {
-                let gate = Gate { largest_noise: None, largest_innovation: Some(largest_innovation(track)), ..gate };
-                let again = track.update(frame, &gate, Comparison::NotAsked);
+            if found.is_accepted() && !self.likelihood.is_worse_than(&of_other) && outcome.is_noisy() {
+                let gate = Gate { largest_innovation: Some(largest_innovation(track)), ..gate };
+                let again = track.update(frame, &gate.without_noise(), Comparison::NotAsked);
                 outcome = if again.is_accepted() { again } else { outcome };
             }
             let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);
@@ -307,9 +302,15 @@ impl Hypotheses {
     }
 }
 
-/// Whether a frame was rejected for nothing but its noise.
-fn is_noisy(outcome: &Outcome) -> bool {
-    matches!(outcome.verdict, Err(Rejection::NoiseTooLarge { .. }))
+/// Turns this far apart are different, with an angle of symmetry.
+fn different_turn(pitch: f64) -> f64 {
+    tuning::DIFFERENT_TURN.min(SAME * pitch)
+}
+
+/// Whether turns differ by a multiple of the angle of a symmetry, so that they look the same.
+fn look_the_same(turn: f64, other: f64, pitch: f64) -> bool {
+    let steps = (turn - other) / pitch;
+    pitch < TAU && (steps - steps.round()).abs() <= SAME
 }
 
 /// Whether a turn cannot be taken for granted against another.

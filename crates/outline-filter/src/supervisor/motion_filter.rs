@@ -61,13 +61,13 @@ impl FilterStep {
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Counts {
-    pub(super) accepted: usize,
-    pub(super) rejected: usize,
-    pub(super) rejected_in_a_row: usize,
+    accepted: usize,
+    rejected: usize,
+    rejected_in_a_row: usize,
     /// Frames that the present track has taken, and that it has not.
     pub(super) taken: usize,
     pub(super) refused: usize,
-    pub(super) restarts: usize,
+    restarts: usize,
     /// Starts in a row after which the object was not found again.
     pub(super) fruitless: usize,
 }

@@ -60,7 +60,7 @@ fn measured(
     let widening = dynamics.as_ref().map_or(1.0, DynamicsFilter::widening);
     let parameters = track.model().parameter_count();
     let anywhere = match known {
-        Known::ShowsObject => Gate { largest_noise: None, ..gate(settings, track) },
+        Known::ShowsObject => gate(settings, track).without_noise(),
         _ => gate(settings, track),
     };
     if !settings.finds_changes() && known == Known::ShowsObject {

@@ -67,6 +67,11 @@ impl Outcome {
     pub(crate) fn is_accepted(&self) -> bool {
         self.verdict.is_ok()
     }
+
+    /// Whether the frame was rejected for nothing but its noise.
+    pub(crate) fn is_noisy(&self) -> bool {
+        matches!(self.verdict, Err(Rejection::NoiseTooLarge { .. }))
+    }
 }
 
 impl Track {

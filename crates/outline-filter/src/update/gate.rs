@@ -68,6 +68,11 @@ pub(crate) struct Gate {
 }
 
 impl Gate {
+    /// The same gate where something else says that the frame shows the object: its noise says nothing against a pose then.
+    pub(crate) fn without_noise(self) -> Self {
+        Self { largest_noise: None, ..self }
+    }
+
     /// Tests the measurement of a frame.
     ///
     /// # Errors
