@@ -228,6 +228,12 @@ impl Hypotheses {
             let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
             let found = other.update(frame, &gate, Comparison::Asked);
             other.take_spread(&found.measurement);
+            // Searches that began apart may find the same motion in the end.
+            let are_compared = ground == Ground::Likeness && outcome.is_accepted() && found.is_accepted();
+            if are_compared && track.differs_from(other).is_some_and(|deviations| deviations < tuning::DIFFERENT) {
+                self.remove(index);
+                continue;
+            }
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
             if found.is_accepted() && !self.likelihood.is_worse_than(&of_other) && outcome.is_noisy() {

@@ -1,6 +1,6 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
-use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, map_point};
+use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point};
 use nalgebra::{DMatrix, Matrix3};
 
 use super::Track;
@@ -169,6 +169,17 @@ impl Track {
         let unit = self.reference.time_unit;
         let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
+    }
+
+    /// The largest difference of pose or motion from another track of the same object, in standard deviations.
+    pub(crate) fn differs_from(&self, other: &Self) -> Option<f64> {
+        let (belief, k) = (&self.belief, self.belief.parameter_count());
+        let covariance = belief.covariance_of(&belief.marginal, self.noise.effective_variance())?;
+        // The error of the pose is on the left.
+        let apart = belief.model.parameters_of(&logarithm(&(other.belief.pose * belief.pose.try_inverse()?))?);
+        let motions = belief.motion.iter().zip(&other.belief.motion).map(|(one, other)| other - one);
+        let differences = apart[..k].iter().copied().chain(motions.take(k)).enumerate();
+        Some(differences.map(|(j, d)| d.abs() / covariance[(j, j)].sqrt()).fold(0.0, f64::max))
     }
 
     /// The largest difference of a parameter of two motions, in standard deviations; normalised.

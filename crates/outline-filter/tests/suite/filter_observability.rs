@@ -3,7 +3,7 @@ use crate::filter_support::{filter, filtered, frames_of, settings};
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
 use freeform_outline_filter::MotionFilter;
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
-use freeform_sim_camera::{BuiltInShape, Camera, Frame, Scene, Settings, Shape, Simulator};
+use freeform_sim_camera::{BuiltInShape, Camera, Frame, Scene, SequenceLength, Settings, Shape, Simulator};
 use nalgebra::{Affine2, Matrix3, Point2, Vector2};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -216,6 +216,19 @@ fn a_turn_of_nearly_half_a_circle_that_later_frames_decide_for_may_have_been_the
         assert_eq!(all.estimate().expect("an estimate").parameters().next().expect("omega").value, None);
     }
     assert!(exchanged > 4, "{exchanged}");
+}
+
+#[test]
+fn searches_that_began_apart_and_found_the_same_motion_are_no_rivals() {
+    // In the few noisy points of the second frame the search finds two turns; from the next frames both tracks find the true one.
+    let motion = RigidMotion { omega: 1.5, b1: 0.6, b2: -0.4 };
+    for seed in 15..25 {
+        let length = SequenceLength::Frames(30);
+        let settings = Settings { length, seed, fps: 30.0, points: 60, noise: 0.01, ..Settings::default() };
+        let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Boomerang, motion, settings));
+        assert!(run.rival_turns().is_empty() && run.aliases().is_empty(), "seed {seed}: {:?}", run.rival_turns());
+        assert!(run.velocity().is_some(), "seed {seed}");
+    }
 }
 
 #[test]
