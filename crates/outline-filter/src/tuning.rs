@@ -323,7 +323,7 @@ pub(crate) mod hypotheses {
     pub(crate) const SURELY_SMALLER: f64 = 2.0;
     /// Frames after which hypotheses that are surely larger turns are no longer followed: a symmetric outline will not tell them apart.
     pub(crate) const FOLLOWED: usize = 8;
-    /// Deviations by which the motions of hypotheses must differ to be in doubt.
+    /// Deviations by which poses or motions of hypotheses must differ to be in doubt.
     pub(crate) const DIFFERENT: f64 = 2.0;
 }
 
@@ -350,6 +350,11 @@ pub(crate) mod supervisor {
     /// Starts that came to nothing, one after the other, after which frames are no longer asked whether they are the wrong one: where one
     /// frame in five is wrong, three starts in a row come to nothing once in a hundred.
     pub(crate) const MOST_FRUITLESS: usize = 3;
+    /// Starts that came to nothing, one after the other, after which every start is followed by a pause: 30 frames, a second of video.
+    pub(crate) const HOPELESS: usize = 10;
+    /// Frames that are not searched in such a pause: of all frames one in 16 is then searched, and an object that comes at last is found
+    /// within two seconds of video.
+    pub(crate) const PAUSE: usize = 15 * FALSE_START;
     /// A map that has taken no more frames than this may have been begun from what is not the object.
     pub(crate) const FEW_FRAMES: usize = 5;
     /// Frames rejected in a row after which the object is given up and a new one taken: a second of video.

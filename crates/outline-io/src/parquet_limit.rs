@@ -1,8 +1,8 @@
 //! How much a Parquet file may unpack to. Its columns can say very often the same in a few bytes, which CSV cannot.
 use crate::error::ReadErrorKind;
 
-/// Outlines that a file may hold however short it is: a quarter of an hour of one object at rest at 30 frames a second.
-const OUTLINES: u64 = 1 << 15;
+/// Outlines that a file may hold however short it is: nine minutes of one object at rest at 30 frames a second.
+const OUTLINES: u64 = 1 << 14;
 
 /// Bytes of a file for each further outline. Eight points that differ from outline to outline take about as many: two bytes for each
 /// coordinate that is rounded to a hundredth of a pixel.
@@ -61,8 +61,8 @@ mod tests {
             let mut unpacked = Unpacked::of_file(length);
             (0..).find(|_| unpacked.add_outline().is_err())
         };
-        assert_eq!(limit(0), Some(1 << 15));
-        assert_eq!(limit(1 << 20), Some((1 << 15) + (1 << 15)));
+        assert_eq!(limit(0), Some(1 << 14));
+        assert_eq!(limit(1 << 20), Some((1 << 14) + (1 << 15)));
         let mut unpacked = Unpacked::of_file(0);
         assert!(unpacked.add_points(1 << 22).is_ok());
         assert!(unpacked.add_points(1).is_err());

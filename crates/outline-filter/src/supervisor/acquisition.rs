@@ -10,12 +10,9 @@ use crate::{
     measurement::{NegativeLogLikelihood, Tolerance},
     search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
-    tuning::supervisor::{LARGEST_INNOVATION, MOST_FRUITLESS},
+    tuning::supervisor::LARGEST_INNOVATION,
     update::Gate,
 };
-
-#[cfg(feature = "serde")]
-use crate::tuning::supervisor::FALSE_START;
 
 impl MotionFilter {
     /// Goes on as predicted if that fits, searches for the object otherwise.
@@ -154,28 +151,6 @@ impl MotionFilter {
         }
     }
 
-    /// Whether a frame shows something else than those before it in which the object of the first has not been found: they agree with each
-    /// other and not with it, so that it is no frame to begin again with. Where nothing is found again and again, that is not looked into.
-    pub(super) fn shows_another(&self, time: f64, outline: &Outline) -> bool {
-        if self.counts.fruitless >= MOST_FRUITLESS {
-            return false;
-        }
-        let mut do_others_agree = false;
-        for (number, (begun_at, first)) in self.unfound.iter().enumerate() {
-            let mut begun = self.clone();
-            if begun.start(*begun_at, first).is_err() {
-                continue;
-            }
-            for (time, outline) in &self.unfound[number + 1..] {
-                do_others_agree |= begun.take(*time, outline).1.is_none();
-            }
-            if begun.take(time, outline).1.is_none() {
-                return false;
-            }
-        }
-        do_others_agree
-    }
-
     /// The track moved into a pose that was found.
     fn moved(&self, found: &RegisteredPose, seconds: f64) -> Option<Track> {
         let mut track = self.track.clone()?;
@@ -187,16 +162,5 @@ impl MotionFilter {
             track.predict(seconds);
         }
         Some(track)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl MotionFilter {
-    /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other, after the first.
-    pub(super) fn unfound_are_sound(&self) -> bool {
-        (self.unfound.is_empty() || self.phase == Phase::Acquiring && self.time_unit.is_some())
-            && self.unfound.len() < FALSE_START
-            && self.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.time_of_last_frame())
-            && self.unfound.is_sorted_by(|(a, _), (b, _)| a < b)
     }
 }

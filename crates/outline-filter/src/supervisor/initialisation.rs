@@ -75,7 +75,7 @@ impl MotionFilter {
         };
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
         self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
-        self.begin_window(self.time_of_last_frame(), outline, &new);
+        self.begin_window(self.last_time, outline, &new);
         self.replace(new, self.track_time, Phase::Acquiring);
     }
 }

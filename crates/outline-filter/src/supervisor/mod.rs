@@ -8,6 +8,7 @@ mod initialisation;
 mod motion_change;
 mod motion_filter;
 mod settings;
+mod starts;
 #[cfg(feature = "serde")]
 mod state_bytes;
 mod statement;

@@ -18,7 +18,7 @@ use crate::{
     measurement::Frame,
     search::Landmarks,
     track::{KnownOutline, Outcome, Track},
-    tuning::{map::FEWEST_POINTS, supervisor as tuning},
+    tuning::supervisor as tuning,
     update::{FrameMeasurement, Rejection},
 };
 
@@ -28,7 +28,7 @@ use crate::{
 pub enum Phase {
     /// No frame yet.
     Waiting,
-    /// The outline is known, its motion is not. The object is searched for in the next frame.
+    /// The outline is known, its motion is not. The object is searched for in the next frames.
     Acquiring,
     /// Outline and motion are known and predict the next frame.
     Tracking,
@@ -61,14 +61,14 @@ impl FilterStep {
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Counts {
-    accepted: usize,
-    rejected: usize,
-    rejected_in_a_row: usize,
+    pub(super) accepted: usize,
+    pub(super) rejected: usize,
+    pub(super) rejected_in_a_row: usize,
     /// Frames that the present track has taken, and that it has not.
     pub(super) taken: usize,
     pub(super) refused: usize,
-    restarts: usize,
-    /// Starts in a row after which the object was not found again.
+    pub(super) restarts: usize,
+    /// Starts in a row after which the object was not found in more than a few frames.
     pub(super) fruitless: usize,
 }
 
@@ -113,7 +113,7 @@ pub struct MotionFilter {
     /// Of the first outline, in its image coordinates.
     pub(super) landmarks: Option<Landmarks>,
     /// In units of time, as all times here.
-    last_time: f64,
+    pub(super) last_time: f64,
     /// Seconds; one until it is chosen.
     pub(super) time_unit: Option<f64>,
     /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
@@ -186,6 +186,7 @@ impl MotionFilter {
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
             Phase::Tracking => self.follow(time, outline),
+            Phase::Acquiring if self.pauses() => None,
             _ => self.acquire(time, outline),
         };
         let rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
@@ -193,7 +194,9 @@ impl MotionFilter {
             self.counts.accepted += 1;
             self.counts.taken += 1;
             self.counts.rejected_in_a_row = 0;
-            self.counts.fruitless = 0;
+            if self.counts.taken > tuning::FEW_FRAMES {
+                self.counts.fruitless = 0;
+            }
             self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
@@ -228,53 +231,6 @@ impl MotionFilter {
         self.time_unit.unwrap_or(1.0)
     }
 
-    /// Begins a track with a first frame.
-    pub(super) fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
-        let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
-        let FilterSettings { model, mask_pixel, .. } = self.settings;
-        let mut track = Track::begin(model, outline, mask_pixel, &mut self.frame).ok_or(too_few)?;
-        track.set_time_unit(self.seconds_per_unit());
-        self.landmarks = Landmarks::of(outline);
-        self.symmetry = 1;
-        self.begin_window(time, outline, &track);
-        self.replace(track, time, Phase::Acquiring);
-        self.last_time = time;
-        self.counts.rejected_in_a_row = 0;
-        self.unfound.clear();
-        Ok(())
-    }
-
-    /// Forgets what was known of hypotheses and changes, and keeps a frame as the first of a new track.
-    pub(super) fn begin_window(&mut self, time: f64, outline: &Outline, track: &Track) {
-        self.window = InitialisationWindow::begin(time, outline, track);
-        self.hypotheses = Hypotheses::default();
-        (self.history, self.motion_changed) = (MotionHistory::default(), false);
-        (self.counts.taken, self.counts.refused) = (1, 0);
-    }
-
-    /// After a rejected frame: look elsewhere, or begin again.
-    fn fall_back(&mut self, time: f64, outline: &Outline) {
-        let Counts { rejected_in_a_row, taken, refused, .. } = self.counts;
-        // Few frames that more speak against than for did not show the object.
-        let is_outvoted = rejected_in_a_row >= self.settings.patience && taken <= tuning::FEW_FRAMES && refused > taken;
-        let give_up = match self.phase {
-            Phase::Acquiring => rejected_in_a_row >= tuning::FALSE_START,
-            _ => rejected_in_a_row >= tuning::GIVEN_UP || is_outvoted,
-        };
-        let is_alone = self.phase == Phase::Acquiring && taken == 1;
-        if is_alone && !give_up {
-            self.unfound.push((time, outline.clone()));
-        }
-        // Any frame may be wrong, as the first was: then the next one is waited for.
-        let is_wrong = is_alone && rejected_in_a_row == tuning::FALSE_START && self.shows_another(time, outline);
-        if give_up && !is_wrong && self.start(time, outline).is_ok() {
-            self.counts.restarts += 1;
-            self.counts.fruitless += 1;
-        } else if self.phase == Phase::Tracking && rejected_in_a_row >= self.settings.patience {
-            self.phase = Phase::Lost;
-        }
-    }
-
     /// Predicts and measures.
     fn follow(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
         let track = self.track.as_mut()?;
@@ -299,10 +255,6 @@ impl MotionFilter {
     #[must_use]
     pub fn dynamics(&self) -> Option<DynamicsWeights> {
         self.history.dynamics.as_ref().map(DynamicsFilter::weights)
-    }
-
-    pub(super) fn time_of_last_frame(&self) -> f64 {
-        self.last_time
     }
 
     pub(super) fn replace(&mut self, track: Track, time: f64, phase: Phase) {

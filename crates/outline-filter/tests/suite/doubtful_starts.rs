@@ -64,3 +64,37 @@ fn one_frame_that_agrees_with_the_first_against_two_states_no_motion_and_another
     assert_eq!(five.unstated(), None);
     assert!(five.estimate().expect("an estimate").parameters().all(|parameter| parameter.value.is_some()));
 }
+
+/// Frames of seven shapes in turn, so that no frame shows what one of the six before it does.
+fn in_turn(count: usize) -> Vec<Frame> {
+    use BuiltInShape::{Bird, Boomerang, Glider, Hat, Plane, Shoe, Van};
+    let shapes =
+        [Bird, Boomerang, Glider, Hat, Plane, Shoe, Van].map(|shape| frames_of(shape, MOTION, settings(count, 3)));
+    (0..count).map(|i| shapes[i % shapes.len()][i].clone()).collect()
+}
+
+#[test]
+fn an_object_that_comes_after_many_others_is_found_within_two_seconds_of_video() {
+    const BEFORE: usize = 200;
+    let frames = frames_of(BuiltInShape::Vase, MOTION, settings(BEFORE + 60, 4));
+    let frames: Vec<_> = in_turn(BEFORE).into_iter().chain(frames[BEFORE..].iter().cloned()).collect();
+    let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+    let found = frames.iter().position(|frame| {
+        filter.step(frame.time, &frame.outline).expect("increasing times");
+        filter.phase() == Phase::Tracking && filter.velocity().is_some()
+    });
+    assert!(found.is_some_and(|index| (BEFORE..BEFORE + 55).contains(&index)), "{found:?}");
+    assert!(filter.velocity().is_some());
+}
+
+#[test]
+fn of_frames_that_show_another_object_each_time_few_are_searched_for_long() {
+    let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+    let steps =
+        in_turn(400).into_iter().map(|frame| filter.step(frame.time, &frame.outline).expect("increasing times"));
+    // A frame that is searched is measured.
+    let searched: Vec<_> = steps.map(|step| step.measurement.is_some()).collect();
+    let share = |frames: &[bool]| frames.iter().filter(|searched| **searched).count() as f64 / frames.len() as f64;
+    assert!(share(&searched[..25]) > 0.9, "{}", share(&searched[..25]));
+    assert!(share(&searched[100..]) < 0.1, "{}", share(&searched[100..]));
+}

@@ -174,7 +174,7 @@ fn a_short_file_with_very_many_copies_of_an_outline_ends_with_a_word() {
     let frames: Vec<_> = (0..120_000).map(at_rest).collect();
     let bytes = parquet_of(&frames, WriterOptions::default());
     let mut reader = ParquetReader::from_bytes(bytes.clone(), "test").expect("a table");
-    let limit = (1 << 15) + bytes.len() / 32;
+    let limit = (1 << 14) + bytes.len() / 32;
     assert!(limit < frames.len(), "{limit}");
     let read: Vec<_> = reader.by_ref().take_while(Result::is_ok).collect();
     assert_eq!(read.len(), limit);

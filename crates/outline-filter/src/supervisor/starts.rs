@@ -1,0 +1,109 @@
+//! Maps begun from a frame, and begun again where that frame did not show the object.
+use freeform_curve_fit::Outline;
+
+use super::{
+    error::FilterError,
+    hypotheses::Hypotheses,
+    motion_change::MotionHistory,
+    motion_filter::{Counts, MotionFilter, Phase},
+    settings::FilterSettings,
+    window::InitialisationWindow,
+};
+use crate::{
+    search::Landmarks,
+    track::Track,
+    tuning::{map::FEWEST_POINTS, supervisor as tuning},
+};
+
+impl MotionFilter {
+    /// Begins a track with a first frame.
+    pub(super) fn start(&mut self, time: f64, outline: &Outline) -> Result<(), FilterError> {
+        let too_few = FilterError::TooFewPoints { found: outline.point_count(), needed: FEWEST_POINTS };
+        let FilterSettings { model, mask_pixel, .. } = self.settings;
+        let mut track = Track::begin(model, outline, mask_pixel, &mut self.frame).ok_or(too_few)?;
+        track.set_time_unit(self.seconds_per_unit());
+        self.landmarks = Landmarks::of(outline);
+        self.symmetry = 1;
+        self.begin_window(time, outline, &track);
+        self.replace(track, time, Phase::Acquiring);
+        self.last_time = time;
+        self.counts.rejected_in_a_row = 0;
+        self.unfound.clear();
+        Ok(())
+    }
+
+    /// Forgets what was known of hypotheses and changes, and keeps a frame as the first of a new track.
+    pub(super) fn begin_window(&mut self, time: f64, outline: &Outline, track: &Track) {
+        self.window = InitialisationWindow::begin(time, outline, track);
+        self.hypotheses = Hypotheses::default();
+        (self.history, self.motion_changed) = (MotionHistory::default(), false);
+        (self.counts.taken, self.counts.refused) = (1, 0);
+    }
+
+    /// After a rejected frame: look elsewhere, or begin again.
+    pub(super) fn fall_back(&mut self, time: f64, outline: &Outline) {
+        let Counts { rejected_in_a_row, taken, refused, .. } = self.counts;
+        // Few frames that more speak against than for did not show the object.
+        let is_outvoted = rejected_in_a_row >= self.settings.patience && taken <= tuning::FEW_FRAMES && refused > taken;
+        let give_up = match self.phase {
+            Phase::Acquiring if self.is_hopeless() => rejected_in_a_row >= tuning::FALSE_START + tuning::PAUSE,
+            Phase::Acquiring => rejected_in_a_row >= tuning::FALSE_START,
+            _ => rejected_in_a_row >= tuning::GIVEN_UP || is_outvoted,
+        };
+        let is_alone = self.phase == Phase::Acquiring && taken == 1;
+        if is_alone && !give_up && !self.is_hopeless() {
+            self.unfound.push((time, outline.clone()));
+        }
+        // Any frame may be wrong, as the first was: then the next one is waited for.
+        let is_wrong = is_alone && rejected_in_a_row == tuning::FALSE_START && self.shows_another(time, outline);
+        if give_up && !is_wrong && self.start(time, outline).is_ok() {
+            self.counts.restarts += 1;
+            self.counts.fruitless += 1;
+        } else if self.phase == Phase::Tracking && rejected_in_a_row >= self.settings.patience {
+            self.phase = Phase::Lost;
+        }
+    }
+
+    /// Whether so many starts have come to nothing that not every frame is worth a search.
+    fn is_hopeless(&self) -> bool {
+        self.counts.fruitless >= tuning::HOPELESS
+    }
+
+    /// Whether the next frame is not searched.
+    pub(super) fn pauses(&self) -> bool {
+        self.is_hopeless() && self.counts.rejected_in_a_row >= tuning::FALSE_START
+    }
+
+    /// Whether a frame shows something else than those before it in which the object of the first has not been found: they agree with each
+    /// other and not with it, so that it is no frame to begin again with. Where nothing is found again and again, that is not looked into.
+    fn shows_another(&self, time: f64, outline: &Outline) -> bool {
+        if self.counts.fruitless >= tuning::MOST_FRUITLESS {
+            return false;
+        }
+        let mut do_others_agree = false;
+        for (number, (begun_at, first)) in self.unfound.iter().enumerate() {
+            let mut begun = self.clone();
+            if begun.start(*begun_at, first).is_err() {
+                continue;
+            }
+            for (time, outline) in &self.unfound[number + 1..] {
+                do_others_agree |= begun.take(*time, outline).1.is_none();
+            }
+            if begun.take(time, outline).1.is_none() {
+                return false;
+            }
+        }
+        do_others_agree
+    }
+}
+
+#[cfg(feature = "serde")]
+impl MotionFilter {
+    /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other, after the first.
+    pub(super) fn unfound_are_sound(&self) -> bool {
+        (self.unfound.is_empty() || self.phase == Phase::Acquiring && self.time_unit.is_some())
+            && self.unfound.len() < tuning::FALSE_START
+            && self.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.last_time)
+            && self.unfound.is_sorted_by(|(a, _), (b, _)| a < b)
+    }
+}
