@@ -6,8 +6,8 @@ use freeform_riccati::DynamicsError;
 /// Why a frame gave nothing, or a pipeline could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PipelineError {
-    /// The size of the object in the identifier is not above 0.
-    #[error("size of {size} in the identifier is not a finite number above 0")]
+    /// The size of the object in the identifier is out of its range: powers of it up to the degree of the curve are computed with.
+    #[error("size of {size} in the identifier is not a number from 1e-6 to 1e6")]
     Size {
         /// The RMS radius asked for.
         size: f64,

@@ -1,3 +1,5 @@
+use std::ops::RangeInclusive;
+
 use freeform_curve_fit::{FitSettings, Method, Normalise};
 use freeform_identify::{AdaptiveLaw, AdaptiveSettings};
 use freeform_riccati::MotionModel;
@@ -7,6 +9,9 @@ use crate::pipeline_error::PipelineError;
 /// RMS radius of the first outline in the coordinates of the identifier where no other is given.
 const RMS_RADIUS: f64 = 0.6;
 
+/// Radii whose eighth powers and their squares, which the degree of a curve asks for, are far from the ends of the numbers.
+const SIZES: RangeInclusive<f64> = 1e-6..=1e6;
+
 /// Settings of a [`Pipeline`](crate::Pipeline).
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -15,7 +20,7 @@ pub struct PipelineSettings {
     pub fit: FitSettings,
     /// How the motion is identified from its lines.
     pub identify: AdaptiveSettings,
-    /// RMS radius of the first outline in the coordinates of the identifier, above 0. The gains of the paper belong to objects of about
+    /// RMS radius of the first outline in the coordinates of the identifier, from 1e-6 to 1e6. The gains of the paper belong to objects of about
     /// size 1; a larger radius makes the law settle faster and follow the noise more.
     pub size: f64,
 }
@@ -50,6 +55,6 @@ impl PipelineSettings {
     /// Checks what neither the fit nor the identifier checks.
     pub(crate) fn check(&self) -> Result<(), PipelineError> {
         let size = self.size;
-        if size.is_normal() && size > 0.0 { Ok(()) } else { Err(PipelineError::Size { size }) }
+        if SIZES.contains(&size) { Ok(()) } else { Err(PipelineError::Size { size }) }
     }
 }

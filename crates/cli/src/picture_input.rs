@@ -1,9 +1,11 @@
 //! Outlines of the objects in pictures.
 use std::collections::VecDeque;
 use std::io::{BufRead, Cursor, Read as _};
+use std::num::NonZero;
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
+use std::thread::available_parallelism;
 
 use freeform_motion::outline_io::{
     Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineFrame, PictureError, PictureErrorKind,
@@ -27,6 +29,9 @@ use crate::tracing_choice::{Chosen, Preview, choose};
 
 /// Pictures that the running median is taken of where no other number is given.
 const MEDIAN_SIZE: u8 = 25;
+
+/// Pictures that are traced side by side for each core, so that none stands still while the next ones are read.
+const PICTURES_OF_CORE: usize = 2;
 
 /// Most bytes of a stream that are read ahead to choose how it is traced.
 const READ_AHEAD: u64 = 1 << 26;
@@ -104,8 +109,14 @@ impl PictureInput {
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
         }
-        let is_traced_unseen = chosen.is_none() && !options.has_way() && preview.is_read_once();
-        let input = Self::of(sequence, Some(preview), inputs, (options, chosen))?;
+        let is_read_once = preview.is_read_once();
+        let is_traced_unseen = chosen.is_none() && !options.has_way() && is_read_once;
+        let mut input = Self::of(sequence, Some(preview), inputs, (options, chosen))?;
+        if !is_read_once {
+            // Nobody waits for what is in files.
+            let cores = available_parallelism().map_or(1, NonZero::get);
+            input.outlines = input.outlines.tracing_at_once(PICTURES_OF_CORE * cores);
+        }
         Ok(Self { is_traced_unseen, ..input })
     }
 

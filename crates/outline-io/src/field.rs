@@ -1,4 +1,4 @@
-use freeform_curve_fit::isoline::{self, Crossing, LineTooLong};
+use freeform_curve_fit::isoline::{self, LargestLines, LineTooLong, WantedHoles};
 
 /// Grey values on a grid of samples, row by row.
 #[derive(Debug, Clone)]
@@ -9,11 +9,16 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// Where the grey value passes a level, between the samples: of the lines the one around the largest area; `None` if
-    /// there is none.
-    pub(crate) fn outer_isoline(&self, level: f64, most: usize) -> Result<Option<Vec<Crossing>>, LineTooLong> {
+    /// Where the grey value passes a level, between the samples: of the lines the one around the largest area and those around holes; `None` if
+    /// there is no line.
+    pub(crate) fn isolines(
+        &self,
+        level: f64,
+        wanted: WantedHoles,
+        most: usize,
+    ) -> Result<Option<LargestLines>, LineTooLong> {
         let value = |x: usize, y: usize| f64::from(self.values[y * self.width + x]);
-        isoline::largest_of_samples([self.width, self.height], value, level, most)
+        isoline::largest_of_samples([self.width, self.height], value, level, wanted, most)
     }
 
     /// Indices of the samples above, below and beside a sample, as far as the grid goes.

@@ -1,5 +1,7 @@
 use std::collections::VecDeque;
+use std::panic::resume_unwind;
 use std::sync::Arc;
+use std::thread::{self, Scope, ScopedJoinHandle};
 
 use image::GrayImage;
 
@@ -11,6 +13,9 @@ use crate::picture_error::{PictureError, TraceError};
 use crate::picture_sequence::PictureFrame;
 use crate::trace::{TracedOutline, trace_objects};
 use crate::trace_settings::TraceSettings;
+
+/// Pixels of the pictures that are traced side by side, at most: two pictures of 1920 x 1080. One picture may have more.
+const PIXELS_AT_ONCE: usize = 1 << 22;
 
 /// How outlines are found in a sequence of pictures.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -76,25 +81,53 @@ pub struct PictureOutlines<S> {
     median: Option<RunningMedian>,
     /// Pictures read ahead for the first median; `None` before they have been read.
     ahead: Option<VecDeque<Result<PictureFrame, PictureError>>>,
-    latest: Option<Latest>,
+    /// Pictures traced side by side.
+    at_once: usize,
+    /// Pictures traced and not yet handed on.
+    traced: VecDeque<Result<(PictureFrame, Traced), PictureError>>,
+    /// Of the last picture traced, which may come again.
+    latest: Option<(View, Traced)>,
 }
 
-/// What was seen in a picture, which may come again.
-#[derive(Debug)]
-struct Latest {
+/// What is traced in a picture.
+type Traced = Result<Vec<TracedOutline>, TraceError>;
+
+/// What is looked at.
+#[derive(Debug, Clone)]
+struct View {
     picture: Arc<GrayImage>,
-    /// What it was compared with.
+    /// What it is compared with, if with anything but its own surface.
     ground: Option<Arc<GrayImage>>,
-    traced: Result<Vec<TracedOutline>, TraceError>,
 }
 
-impl Latest {
-    fn is_of(&self, picture: &Arc<GrayImage>, ground: Option<&Arc<GrayImage>>) -> bool {
-        let is_same_ground = match (&self.ground, ground) {
-            (Some(before), Some(now)) => Arc::ptr_eq(before, now),
-            (before, now) => before.is_none() && now.is_none(),
+/// The tracing of a picture.
+enum Tracing<'a> {
+    Done(Traced),
+    Begun(ScopedJoinHandle<'a, Traced>),
+    /// The picture before shows the same.
+    AsBefore,
+}
+
+impl View {
+    fn is_same_as(&self, other: &Self) -> bool {
+        let is_same_ground = match (&self.ground, &other.ground) {
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            (one, other) => one.is_none() && other.is_none(),
         };
-        is_same_ground && Arc::ptr_eq(&self.picture, picture)
+        is_same_ground && Arc::ptr_eq(&self.picture, &other.picture)
+    }
+
+    fn traced(&self, settings: &PictureSettings, limit: usize) -> Traced {
+        let picture = &*self.picture;
+        let surface = match settings.background {
+            Some(Background::Surface) => Some(ground_surface(picture)),
+            _ => None,
+        };
+        let Some(ground) = surface.as_ref().or(self.ground.as_deref()) else {
+            return trace_objects(picture, &settings.trace, limit);
+        };
+        let trace = TraceSettings { contrast: Contrast::LightOnDark, ..settings.trace };
+        trace_objects(&checked_difference(settings.difference, picture, ground)?, &trace, limit)
     }
 }
 
@@ -115,7 +148,15 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         };
         let ahead = if median.is_some() { None } else { Some(VecDeque::new()) };
         let identities = Identities::new(settings.selection);
-        Ok(Self { source, settings, identities, median: median.map(|(median, _)| median), ahead, latest: None })
+        let (median, traced) = (median.map(|(median, _)| median), VecDeque::new());
+        Ok(Self { source, settings, identities, median, ahead, at_once: 1, traced, latest: None })
+    }
+
+    /// Traces so many pictures side by side from now on, at least one, on threads of their own; fewer where they are large. As many are read
+    /// ahead, so that the pictures of a camera that runs come late. By default one.
+    #[must_use]
+    pub fn tracing_at_once(self, pictures: usize) -> Self {
+        Self { at_once: pictures.max(1), ..self }
     }
 
     /// The source of the pictures.
@@ -161,33 +202,76 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         Some(item)
     }
 
-    fn objects(&mut self, frame: &PictureFrame) -> Result<Vec<(u64, TracedOutline)>, TraceError> {
-        let ground = match (&self.settings.background, &mut self.median) {
+    /// What the picture read last is compared with.
+    fn ground(&mut self) -> Option<Arc<GrayImage>> {
+        match (&self.settings.background, &mut self.median) {
             (Some(Background::Picture(ground)), _) => Some(ground),
             (Some(Background::RunningMedian(_)), Some(median)) => median.get(),
             _ => None,
-        };
-        let picture = &frame.picture;
-        if let Some(latest) = self.latest.as_ref().filter(|latest| latest.is_of(picture, ground)) {
-            return self.identities.assign(frame.frame, latest.traced.clone()?);
         }
-        // Makes room before more is needed.
-        self.latest = None;
-        let limit = self.identities.limit();
-        let surface = match self.settings.background {
-            Some(Background::Surface) => Some(Arc::new(ground_surface(picture))),
-            _ => None,
-        };
-        let traced = match surface.as_ref().or(ground) {
-            None => trace_objects(picture, &self.settings.trace, limit),
-            Some(ground) => {
-                let settings = TraceSettings { contrast: Contrast::LightOnDark, ..self.settings.trace };
-                let difference = checked_difference(self.settings.difference, picture, ground);
-                difference.and_then(|difference| trace_objects(&difference, &settings, limit))
+        .cloned()
+    }
+
+    /// Reads the next pictures and begins to trace them.
+    fn begin_tracing<'a>(
+        &mut self,
+        scope: &'a Scope<'a, '_>,
+        settings: &'a PictureSettings,
+        limit: usize,
+    ) -> Vec<Result<(PictureFrame, View, Tracing<'a>), PictureError>> {
+        let mut begun = Vec::new();
+        let mut view_before = self.latest.as_ref().map(|(view, _)| view.clone());
+        let mut room = PIXELS_AT_ONCE;
+        while begun.len() < self.at_once
+            && let Some(item) = self.next_picture()
+        {
+            let frame = match item {
+                Ok(frame) => frame,
+                Err(error) => {
+                    begun.push(Err(error));
+                    continue;
+                }
+            };
+            let view = View { picture: Arc::clone(&frame.picture), ground: self.ground() };
+            let pixels = view.picture.as_raw().len();
+            let is_same = view_before.replace(view.clone()).is_some_and(|before| before.is_same_as(&view));
+            let tracing = if is_same {
+                Tracing::AsBefore
+            } else if self.at_once == 1 {
+                // Makes room before more is needed.
+                self.latest = None;
+                Tracing::Done(view.traced(settings, limit))
+            } else {
+                let view = view.clone();
+                Tracing::Begun(scope.spawn(move || view.traced(settings, limit)))
+            };
+            begun.push(Ok((frame, view, tracing)));
+            room = room.saturating_sub(pixels);
+            if room < pixels {
+                break;
             }
-        };
-        self.latest = Some(Latest { picture: Arc::clone(picture), ground: ground.cloned(), traced: traced.clone() });
-        self.identities.assign(frame.frame, traced?)
+        }
+        begun
+    }
+
+    /// Reads the next pictures and traces them.
+    fn trace_next(&mut self) {
+        let (settings, limit) = (self.settings.clone(), self.identities.limit());
+        thread::scope(|scope| {
+            for item in self.begin_tracing(scope, &settings, limit) {
+                let item = item.map(|(frame, view, tracing)| {
+                    let traced = match (tracing, &self.latest) {
+                        (Tracing::Done(traced), _) => traced,
+                        (Tracing::Begun(thread), _) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+                        (Tracing::AsBefore, Some((_, traced))) => traced.clone(),
+                        (Tracing::AsBefore, None) => view.traced(&settings, limit),
+                    };
+                    self.latest = Some((view, traced.clone()));
+                    (frame, traced)
+                });
+                self.traced.push_back(item);
+            }
+        });
     }
 }
 
@@ -208,8 +292,12 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> Iterator for Pictur
     type Item = Result<TracedFrame, PictureError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        Some(self.next_picture()?.map(|frame| {
-            let objects = self.objects(&frame);
+        if self.traced.is_empty() {
+            self.trace_next();
+        }
+        let item = self.traced.pop_front()?;
+        Some(item.map(|(frame, traced)| {
+            let objects = traced.and_then(|traced| self.identities.assign(frame.frame, traced));
             TracedFrame { frame, objects }
         }))
     }

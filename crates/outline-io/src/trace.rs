@@ -1,6 +1,6 @@
 use std::borrow::Cow;
 
-use freeform_curve_fit::isoline::{self, Crossing, LineTooLong};
+use freeform_curve_fit::isoline::{Crossing, LargestLines, LineTooLong, WantedHoles};
 use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline};
 use image::GrayImage;
 use nalgebra::Point2;
@@ -227,13 +227,13 @@ impl Seen {
 impl Window<'_> {
     /// The longest outer outline in the window of a picture of this height; `None` where nothing passes the level.
     pub(crate) fn outline(&self, picture_height: u32, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
-        let outer = self.field.outer_isoline(self.level, POINT_LIMIT);
-        let outer = outer.map_err(|LineTooLong { most }| TraceError::TooManyPoints { limit: most })?;
-        let Some(mut line) = outer else { return Ok(None) };
-        let mut inner = match settings.contours {
-            Contours::Boundary => Vec::new(),
-            Contours::All => self.inner_lines(&line),
+        let count = match settings.contours {
+            Contours::Boundary => 0,
+            Contours::All => MOST_HOLES,
         };
+        let lines = self.field.isolines(self.level, WantedHoles { smallest: SMALLEST_HOLE, count }, POINT_LIMIT);
+        let lines = lines.map_err(|LineTooLong { most }| TraceError::TooManyPoints { limit: most })?;
+        let Some(LargestLines { outer: mut line, holes: mut inner }) = lines else { return Ok(None) };
         let place = [self.left, self.top];
         let mut edges = self.edges.and_then(|source| source.refine(&mut line, place));
         let of_inner: Vec<Option<EdgeFit>> =
@@ -291,24 +291,6 @@ impl Window<'_> {
             (None, None) => outline,
         };
         Ok(Some(Seen { outline, touches_border, centre, area, invariants, edges }))
-    }
-}
-
-impl Window<'_> {
-    /// The lines around what is on the other side of the level within an outer line, of at least the smallest area.
-    fn inner_lines(&self, outer: &[Crossing]) -> Vec<Vec<Crossing>> {
-        let Field { width, height, values } = self.field;
-        let lines = isoline::of_samples([*width, *height], |x, y| f64::from(values[y * width + x]), self.level);
-        let outer_area = isoline::signed_area(outer);
-        let is_hole = |line: &Vec<Crossing>| {
-            let area = isoline::signed_area(line);
-            area * outer_area < 0.0 && area.abs() >= SMALLEST_HOLE && line.iter().all(|crossing| !crossing.at_edge)
-        };
-        let mut lines: Vec<Vec<Crossing>> = lines.into_iter().filter(is_hole).collect();
-        let area = |line: &Vec<Crossing>| isoline::signed_area(line).abs();
-        lines.sort_by(|a, b| area(b).total_cmp(&area(a)));
-        lines.truncate(MOST_HOLES);
-        lines
     }
 }
 

@@ -79,8 +79,8 @@ impl Settings {
     /// A number that is not finite or out of its range, fewer than 3 points in view or more than 4194304, no frame or more than a million.
     pub fn frame_count(&self) -> Result<usize, SimulationError> {
         positive("fps", self.fps)?;
-        not_negative("noise", self.noise)?;
-        not_negative("outlier radius", self.outlier_radius)?;
+        length_or_none("noise", self.noise)?;
+        length_or_none("outlier radius", self.outlier_radius)?;
         fraction("occlusion", self.occlusion.fraction)?;
         fraction("outliers", self.outliers)?;
         fraction("wrong frames", self.wrong_frames)?;
@@ -126,8 +126,9 @@ fn positive(setting: &'static str, value: f64) -> Result<(), SimulationError> {
     check(value.is_finite() && value > 0.0, setting, value, "finite and above 0")
 }
 
-fn not_negative(setting: &'static str, value: f64) -> Result<(), SimulationError> {
-    check(value.is_finite() && value >= 0.0, setting, value, "finite and not negative")
+/// Squares of longer lengths are no numbers.
+fn length_or_none(setting: &'static str, value: f64) -> Result<(), SimulationError> {
+    check((0.0..=1e50).contains(&value), setting, value, "from 0 to 1e50")
 }
 
 fn fraction(setting: &'static str, value: f64) -> Result<(), SimulationError> {

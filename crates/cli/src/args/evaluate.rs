@@ -7,7 +7,7 @@ use freeform_motion::sim_camera::Sampling;
 
 use super::identify::MotionChoice;
 use super::simulated::{DisturbanceArgs, TrueMotionArgs};
-use super::values::{at_least_one, fraction, frame_count, positive};
+use super::values::{at_least_one, fraction, frame_count, positive, thread_count};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -121,8 +121,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(long)]
     pub(crate) list: bool,
 
-    /// Number of threads [default: one per core]
-    #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
+    /// Number of threads, at most 1024 [default: one per core]
+    #[arg(long, value_name = "COUNT", value_parser = thread_count)]
     pub(crate) threads: Option<usize>,
 
     /// Do not print times, so that the same seed gives the same output

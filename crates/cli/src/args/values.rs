@@ -6,6 +6,9 @@ use freeform_motion::curve_fit::Degree;
 use freeform_motion::riccati::{AffineMotion, CameraScale, ProjectiveMotion, RigidMotion, SimilarityMotion};
 use nalgebra::{Matrix3, Point2, Projective2};
 
+/// Most threads that may be asked for.
+const MOST_THREADS: usize = 1024;
+
 /// A finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| format!("{text:?} is not a number"))?;
@@ -49,6 +52,12 @@ pub(crate) fn fraction(text: &str) -> Result<f64, String> {
 pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
     let count: usize = text.trim().parse().map_err(|_| format!("{text:?} is not a whole number"))?;
     if count >= 1 { Ok(count) } else { Err(format!("{text} is below 1")) }
+}
+
+/// A number of threads that a machine can have.
+pub(crate) fn thread_count(text: &str) -> Result<usize, String> {
+    let count = at_least_one(text)?;
+    if count <= MOST_THREADS { Ok(count) } else { Err(format!("more than {MOST_THREADS} threads")) }
 }
 
 /// A number of frames that can show a motion.

@@ -7,6 +7,9 @@ use freeform_motion::outline_io::picture_files;
 use super::destination::{folder_of, is_same_file};
 use crate::failure::Failure;
 
+/// Standard output as a file.
+const STDOUT: &str = "/dev/stdout";
+
 /// Refuses a folder for drawings that is the input, or holds it.
 pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: &Path) -> Result<(), Failure> {
     let Some(place) = fs::canonicalize(folder).ok().filter(|place| place.is_dir()) else { return Ok(()) };
@@ -23,10 +26,11 @@ pub(crate) fn refuse_drawing_beside(inputs: &[PathBuf], folder: &Path) -> Result
     Ok(())
 }
 
-/// Refuses output files that are read or of a folder that is, or one another, by whatever names. A PNG within another is one of its
-/// drawings.
+/// Refuses output files that are read or of a folder that is, or one another, by whatever names; standard output too, which would be read as it
+/// grows. A PNG within another is one of its drawings.
 pub(crate) fn refuse_overwriting(read: &[PathBuf], outputs: &[&Path]) -> Result<(), Failure> {
-    read.iter().try_for_each(|input| refuse_files_of(input, outputs))?;
+    let all = [outputs, &[Path::new(STDOUT)]].concat();
+    read.iter().try_for_each(|input| refuse_files_of(input, &all))?;
     for folder in outputs.iter().filter(|output| output.is_dir()) {
         let is_picture = |output: &&&Path| output.extension().is_some_and(|extension| extension == "png");
         let is_within = |output: &&&Path| !output.is_dir() && is_same_file(folder_of(output), folder);
@@ -46,7 +50,7 @@ pub(crate) fn refuse_overwriting(read: &[PathBuf], outputs: &[&Path]) -> Result<
 
 /// Refuses outputs that are standard output by another name, where the result goes.
 pub(crate) fn refuse_standard_output(outputs: &[&Path]) -> Result<(), Failure> {
-    let (stdout, nowhere) = (Path::new("/dev/stdout"), Path::new("/dev/null"));
+    let (stdout, nowhere) = (Path::new(STDOUT), Path::new("/dev/null"));
     let is_stdout = |output: &&&Path| fs::metadata(output).is_ok() && is_same_file(output, stdout);
     match outputs.iter().find(is_stdout) {
         Some(output) if !is_same_file(output, nowhere) => {

@@ -101,6 +101,10 @@ fn wrong_usage_is_told_on_one_line() {
         "fit - --margin 3",
         "fit - --offset 7",
         "fit - --method 3m",
+        "identify - --method adaptive --size 1e200",
+        "identify - --method adaptive --size 1e-200",
+        "simulate --noise 1e100",
+        "simulate --noise -1",
         "nonsense",
         "outline",
     ] {

@@ -170,6 +170,7 @@ fn wrong_usage_is_told_on_one_line() {
         ("--seconds -1", "-1"),
         ("--runs 0", "below 1"),
         ("--threads 0", "below 1"),
+        ("--threads 18446744073709551615", "more than 1024 threads"),
         ("--noise NaN", "NaN"),
         ("--points 2", "at least 3"),
         ("--occlusion 1", "[0, 1)"),

@@ -66,6 +66,23 @@ fn what_a_command_reads_is_not_written_to() {
 }
 
 #[test]
+fn a_result_is_not_appended_to_what_it_is_of() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let csv = sequence("--seconds 0.5");
+    let input = file(folder.path(), "outlines.csv", &csv);
+    for command in ["identify", "track", "fit", "outline", "recognise"] {
+        let appended = fs::OpenOptions::new().append(true).open(&input).expect("the file");
+        let mut arguments = vec![command, &input];
+        arguments.extend((command == "recognise").then_some(["--known", &input]).into_iter().flatten());
+        let mut program = Command::new(assert_cmd::cargo::cargo_bin("freeform"));
+        let output = program.args(&arguments).stdout(appended).output().expect("the binary runs");
+        assert!(output.status.code() == Some(2), "{command}: {}", stderr(&output));
+        assert!(stderr(&output).contains("/dev/stdout: this is the input"), "{command}: {}", stderr(&output));
+        assert_eq!(fs::read_to_string(&input).expect("the file"), csv, "{command}");
+    }
+}
+
+#[test]
 fn standard_output_is_for_the_result_alone() {
     for output in ["/dev/stdout", "/dev/fd/1"].into_iter().filter(|path| Path::new(path).exists()) {
         refused(&format!("identify - --json --trace {output}"), "this is standard output, where the result goes");

@@ -95,6 +95,15 @@ fn objects_within_each_other_take_no_more_than_the_picture_does() {
 }
 
 #[test]
+fn holes_without_number_take_no_more_than_the_picture_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sieve = picture(folder.path(), "sieve.png", |x, y| x % 2 == 0 || y % 2 == 0);
+    let (status, peak) = peak(&["outline", &sieve, "--contours", "all", "--light", "--smoothing", "0"]);
+    assert_eq!(status, Some(0));
+    assert!(peak < LIMIT / 2, "{peak} kB");
+}
+
+#[test]
 fn a_colour_profile_that_unpacks_to_much_takes_no_memory() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut png = Vec::new();

@@ -84,6 +84,9 @@ fn names_and_numbers_that_mean_nothing_are_wrong_usage() {
     assert!(!folder.path().join("new").exists());
     let output = run(&format!("reproduce --only 9 --out {}", folder.path().display()), "");
     assert!(stderr(&output).contains("changing"), "the names that there are: {}", stderr(&output));
+    let output = run(&format!("reproduce --only lyapunov --seconds 1e9 --out {}", folder.path().display()), "");
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("at most 1000000"), "{}", stderr(&output));
     let occupied = file(folder.path(), "occupied", "");
     let output = run(&format!("reproduce --only 1 --out {occupied}"), "");
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));

@@ -34,7 +34,7 @@ mod walk;
 
 pub use function::of_function;
 pub(crate) use function::of_rows;
-pub use samples::{Crossing, LineTooLong, largest_of_samples, of_samples, signed_area};
+pub use samples::{Crossing, LargestLines, LineTooLong, WantedHoles, largest_of_samples, of_samples, signed_area};
 
 /// Where a value that goes linearly from one to another passes a level, as a share of the way, at least `clearance` from
 /// both ends; in the middle where the values do not tell.

@@ -38,39 +38,66 @@ pub struct LineTooLong {
     pub most: usize,
 }
 
-/// Of the lines of [`of_samples`] the one with the largest [`signed_area`], the last of several; `None` if there is none.
-/// Nothing is kept of the others, of which there may be as many as samples.
+/// The lines of an object among those of [`of_samples`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct LargestLines {
+    /// The one with the largest [`signed_area`], the last of several.
+    pub outer: Vec<Crossing>,
+    /// Lines around holes, which have a negative area, the largest first.
+    pub holes: Vec<Vec<Crossing>>,
+}
+
+/// Which holes are wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WantedHoles {
+    /// The area that they enclose at least, in squares of the sample spacing.
+    pub smallest: f64,
+    /// How many at most.
+    pub count: usize,
+}
+
+/// Of the lines of [`of_samples`] the largest, and those of the largest holes that do not run along the edge of the grid; `None` if there is no
+/// line. Nothing is kept of the others, of which there may be as many as samples.
 ///
 /// # Errors
-/// A line, this or another, has more than `most` crossings.
+/// A line, one of these or another, has more than `most` crossings, or those of the holes have together.
 pub fn largest_of_samples(
     size: [usize; 2],
     value: impl Fn(usize, usize) -> f64,
     level: f64,
+    wanted: WantedHoles,
     most: usize,
-) -> Result<Option<Vec<Crossing>>, LineTooLong> {
+) -> Result<Option<LargestLines>, LineTooLong> {
     let samples = Samples { size, value, level };
-    let grid = samples.grid();
-    let mut passed = grid.nothing_passed();
-    let mut largest: Option<(f64, Step)> = None;
-    for start in samples.starts() {
-        if !grid.begins_a_line(&passed, start) {
-            continue;
+    let mut outer: Option<Summary> = None;
+    let mut holes: Vec<Summary> = Vec::new();
+    for line in samples.summaries(most) {
+        let line = line?;
+        if outer.is_none_or(|before| before.area.total_cmp(&line.area).is_le()) {
+            outer = Some(line);
         }
-        let mut count = 0;
-        let steps = grid.steps_from(start).inspect(|step| {
-            count += 1;
-            passed.mark(grid.index(*step));
-        });
-        let area = signed_area_of(steps.take(most + 1).map(|step| samples.crossing(step)));
-        if count > most {
-            return Err(LineTooLong { most });
-        }
-        if largest.is_none_or(|(before, _)| before.total_cmp(&area).is_le()) {
-            largest = Some((area, start));
+        if line.area < 0.0 && -line.area >= wanted.smallest && !line.is_at_edge {
+            let place = holes.partition_point(|before| before.area <= line.area);
+            holes.insert(place, line);
+            holes.truncate(wanted.count);
         }
     }
-    Ok(largest.map(|(_, start)| grid.steps_from(start).map(|step| samples.crossing(step)).collect()))
+    if holes.iter().map(|line| line.crossings).sum::<usize>() > most {
+        return Err(LineTooLong { most });
+    }
+    let Some(outer) = outer.map(|line| samples.line(line.start)) else { return Ok(None) };
+    Ok(Some(LargestLines { outer, holes: holes.into_iter().map(|line| samples.line(line.start)).collect() }))
+}
+
+/// What is kept of a line that has been passed.
+#[derive(Debug, Clone, Copy)]
+struct Summary {
+    start: Step,
+    /// Its [`signed_area`].
+    area: f64,
+    crossings: usize,
+    /// Whether any crossing is where the line was closed along the edge of the grid.
+    is_at_edge: bool,
 }
 
 /// Samples of a grid and a level. A margin of one node stands for what surrounds the grid: no line leaves it.
@@ -94,6 +121,33 @@ impl<V: Fn(usize, usize) -> f64> Samples<V> {
     fn grid(&self) -> Grid<impl Fn(Node) -> bool, impl Fn(Node) -> bool> {
         let [columns, rows] = self.size;
         Grid { columns: columns + 2, rows: rows + 2, is_inside: |node| self.is_inside(node), joins_inside: |_| true }
+    }
+
+    /// All lines, one after the other; an error for one of more crossings than `most`.
+    fn summaries(&self, most: usize) -> impl Iterator<Item = Result<Summary, LineTooLong>> {
+        let grid = self.grid();
+        let mut passed = grid.nothing_passed();
+        self.starts().filter_map(move |start| {
+            if !grid.begins_a_line(&passed, start) {
+                return None;
+            }
+            let (mut crossings, mut is_at_edge) = (0, false);
+            let steps = grid.steps_from(start).take(most.saturating_add(1));
+            let area = signed_area_of(steps.map(|step| {
+                let crossing = self.crossing(step);
+                passed.mark(grid.index(step));
+                crossings += 1;
+                is_at_edge |= crossing.at_edge;
+                crossing
+            }));
+            let line = Summary { start, area, crossings, is_at_edge };
+            Some(if crossings > most { Err(LineTooLong { most }) } else { Ok(line) })
+        })
+    }
+
+    /// The line that begins with a step.
+    fn line(&self, start: Step) -> Vec<Crossing> {
+        self.grid().steps_from(start).map(|step| self.crossing(step)).collect()
     }
 
     /// Steps into the inside from the row before: every closed line has a first row, where it has one. Most samples have none, so that
@@ -186,12 +240,25 @@ mod tests {
                 prop::collection::vec(prop::collection::vec((0..5_u8).prop_map(f64::from), w), h)),
         ) {
             let lines = of_samples([values[0].len(), values.len()], |x, y| values[y][x], 2.0);
+            let found = |count: usize, most: usize| {
+                let (size, wanted) = ([values[0].len(), values.len()], WantedHoles { smallest: 1.0, count });
+                largest_of_samples(size, |x, y| values[y][x], 2.0, wanted, most)
+            };
             let largest = lines.iter().max_by(|a, b| signed_area(a).total_cmp(&signed_area(b)));
-            let found = |most: usize| largest_of_samples([values[0].len(), values.len()], |x, y| values[y][x], 2.0, most);
-            prop_assert_eq!(found(1000).expect("short lines"), largest.cloned());
+            let is_hole =
+                |line: &&Vec<Crossing>| signed_area(line) <= -1.0 && line.iter().all(|crossing| !crossing.at_edge);
+            let mut holes: Vec<Vec<Crossing>> = lines.iter().filter(is_hole).cloned().collect();
+            holes.sort_by(|a, b| signed_area(a).total_cmp(&signed_area(b)));
             let longest = lines.iter().map(Vec::len).max().unwrap_or(0);
-            prop_assert_eq!(found(longest).is_ok(), true);
-            prop_assert_eq!(found(longest.saturating_sub(1)).is_ok(), longest == 0);
+            let most = longest.max(holes.iter().map(Vec::len).sum());
+            let all = |count: usize| {
+                largest.map(|outer| LargestLines { outer: outer.clone(), holes: holes[..holes.len().min(count)].to_vec() })
+            };
+            prop_assert_eq!(found(100, most), Ok(all(100)));
+            prop_assert_eq!(found(100, most.saturating_sub(1)).is_ok(), most == 0);
+            prop_assert_eq!(found(1, longest), Ok(all(1)));
+            prop_assert_eq!(found(0, longest), Ok(all(0)));
+            prop_assert_eq!(found(0, longest.saturating_sub(1)).is_ok(), longest == 0);
             for (y, row) in values.iter().enumerate() {
                 for (x, value) in row.iter().enumerate() {
                     let winding: i32 = lines.iter().map(|line| winding(line, x as f64, y as f64)).sum();

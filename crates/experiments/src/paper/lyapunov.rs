@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 
 use freeform_identify::AdaptiveLaw;
 use freeform_motion::significant;
-use freeform_sim_camera::PaperExperiment;
+use freeform_sim_camera::{PaperExperiment, SequenceLength, Settings};
 use nalgebra::SMatrix;
 
 use super::Run;
@@ -110,6 +110,9 @@ fn course(lines: &ExactLines, law: AdaptiveLaw, seconds: f64) -> Result<Course, 
 }
 
 pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
+    // No longer than other sequences can be.
+    let length = SequenceLength::Seconds(run.seconds * LONG);
+    Settings { fps: FPS, length, ..Settings::default() }.frame_count()?;
     let mut table = Table {
         name: "lyapunov-growth".to_owned(),
         title: "The Lyapunov function over exact lines".to_owned(),
