@@ -23,6 +23,8 @@
 //! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
 //! - [`OutlineColumns`] are outlines as columns of a table in memory with one row per point, [`OutlineLists`] with one row per outline.
 //! - [`read_shape`] reads one closed outline from either.
+//!
+//! Pictures are PNG, BMP, GIF or y4m; also JPEG, TIFF and WebP with the feature `all-pictures`, which is on by default.
 mod affine_moment_invariants;
 mod assignment;
 mod background;

@@ -3,6 +3,7 @@ use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::Path;
 
 use image::codecs::png::PngDecoder;
+#[cfg(feature = "all-pictures")]
 use image::codecs::webp::WebPDecoder;
 use image::metadata::Orientation;
 use image::{DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
@@ -29,7 +30,7 @@ const DECODER_LIMIT_OF_PIXEL: u64 = DECODER_LIMIT / PIXEL_LIMIT;
 /// tens.
 const METADATA_LIMIT: u64 = 1 << 26;
 
-/// Reads a picture (PNG, JPEG, TIFF, BMP, WebP, or the first frame of a GIF) as grey values. Its content tells the format,
+/// Reads a picture (PNG, BMP, the first frame of a GIF; JPEG, TIFF and WebP with the feature `all-pictures`) as grey values. Its content tells the format,
 /// not its name. It is turned and mirrored as the file says that it is to be seen (EXIF, or the tag of TIFF).
 ///
 /// Colours become their luminance, those of inks (CMYK) by way of red, green and blue; a CMYK JPEG is taken as Adobe writes it, with
@@ -116,6 +117,7 @@ fn several_pictures(
         ImageFormat::Png => {
             PngDecoder::with_limits(&mut *source, limits.clone()).and_then(|png| png.is_apng()).unwrap_or(false)
         }
+        #[cfg(feature = "all-pictures")]
         ImageFormat::WebP => WebPDecoder::new(&mut *source).is_ok_and(|webp| webp.has_animation()),
         _ => false,
     };

@@ -53,7 +53,7 @@ pub enum PictureErrorKind {
     /// The content is that of no picture format.
     #[error("not a picture")]
     NotAPicture,
-    /// A picture format that is not built in.
+    /// A picture format that is not built in; three are with the feature `all-pictures` alone.
     #[error("pictures of type {format} are not supported")]
     Unsupported {
         /// Its media type.

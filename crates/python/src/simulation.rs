@@ -32,7 +32,7 @@ const MARGIN: f64 = 0.05;
 /// Parameters
 /// ----------
 /// shape : str or array_like, shape (n, 2)
-///     Name of a built-in shape, a file (CSV polygon or mask picture), or the corners of a polygon in order.
+///     Name of a built-in shape, a file (CSV polygon, or mask as PNG, BMP or GIF), or the corners of a polygon in order.
 /// omega : float
 ///     Angular velocity in rad/s, positive clockwise (y up).
 /// b : tuple of float

@@ -125,3 +125,10 @@ def test_an_unknown_parameter_is_a_key_error(bird):
         motion_filter.step(frame.time, frame.outline)
     with pytest.raises(KeyError, match="is none of omega, b1, b2"):
         motion_filter.estimate["sigma"]
+
+
+def test_a_shape_in_a_picture_of_another_format_is_told_as_such(tmp_path):
+    path = tmp_path / "shape.jpg"
+    path.write_bytes(b"\xff\xd8\xff\xe0" + bytes(100))
+    with pytest.raises(ValueError, match="shape.jpg: pictures of type image/jpeg are not supported"):
+        ff.simulate(str(path))
