@@ -9,7 +9,7 @@ use crate::pipeline_error::PipelineError;
 /// RMS radius of the first outline in the coordinates of the identifier where no other is given.
 const RMS_RADIUS: f64 = 0.6;
 
-/// Radii whose eighth powers and their squares, which the degree of a curve asks for, are far from the ends of the numbers.
+/// The coefficients of a curve go with powers of the radius up to its degree, which is 8 at most: within these they stay numbers.
 const SIZES: RangeInclusive<f64> = 1e-6..=1e6;
 
 /// Settings of a [`Pipeline`](crate::Pipeline).

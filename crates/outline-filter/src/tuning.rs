@@ -350,11 +350,13 @@ pub(crate) mod supervisor {
     /// Starts that came to nothing, one after the other, after which frames are no longer asked whether they are the wrong one: where one
     /// frame in five is wrong, three starts in a row come to nothing once in a hundred.
     pub(crate) const MOST_FRUITLESS: usize = 3;
-    /// Starts that came to nothing, one after the other, after which every start is followed by a pause: 30 frames, a second of video.
-    pub(crate) const HOPELESS: usize = 10;
-    /// Frames that are not searched in such a pause: of all frames one in 16 is then searched, and an object that comes at last is found
-    /// within two seconds of video.
-    pub(crate) const PAUSE: usize = 15 * FALSE_START;
+    /// Frames that may be searched one after the other: two seconds of video.
+    pub(crate) const MOST_SEARCHES: usize = 60;
+    /// Frames after which another one may be searched: a search costs as much as 15 to 30 frames that are followed, so that searches for what
+    /// never comes double the cost at most. An object that comes at last is found within two seconds of video.
+    pub(crate) const FRAMES_OF_SEARCH: usize = 16;
+    /// So many frames one counts as that is followed: an object that is hidden a second in three is searched for in most of the frames.
+    pub(crate) const FOLLOWED_FRAME: usize = 4;
     /// A map that has taken no more frames than this may have been begun from what is not the object.
     pub(crate) const FEW_FRAMES: usize = 5;
     /// Frames rejected in a row after which the object is given up and a new one taken: a second of video.

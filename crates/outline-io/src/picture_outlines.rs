@@ -2,6 +2,7 @@ use std::collections::VecDeque;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::{self, Scope, ScopedJoinHandle};
+use std::time::{Duration, Instant};
 
 use image::GrayImage;
 
@@ -14,8 +15,12 @@ use crate::picture_sequence::PictureFrame;
 use crate::trace::{TracedOutline, trace_objects};
 use crate::trace_settings::TraceSettings;
 
-/// Pixels of the pictures that are traced side by side, at most: two pictures of 1920 x 1080. One picture may have more.
+/// Pixels of the pictures that are traced side by side, at most: two pictures of 1920 x 1080, or one that is larger. What is worked with is some
+/// tens of bytes for each, which a picture of the largest size takes alone.
 const PIXELS_AT_ONCE: usize = 1 << 22;
+
+/// Time that pictures are read ahead for: no longer, so that what has been read is soon dealt with where reading is slow.
+const LONGEST_READING: Duration = Duration::from_millis(200);
 
 /// How outlines are found in a sequence of pictures.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -81,6 +86,8 @@ pub struct PictureOutlines<S> {
     median: Option<RunningMedian>,
     /// Pictures read ahead for the first median; `None` before they have been read.
     ahead: Option<VecDeque<Result<PictureFrame, PictureError>>>,
+    /// Whether the source has ended.
+    is_over: bool,
     /// Pictures traced side by side.
     at_once: usize,
     /// Pictures traced and not yet handed on.
@@ -149,11 +156,11 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         let ahead = if median.is_some() { None } else { Some(VecDeque::new()) };
         let identities = Identities::new(settings.selection);
         let (median, traced) = (median.map(|(median, _)| median), VecDeque::new());
-        Ok(Self { source, settings, identities, median, ahead, at_once: 1, traced, latest: None })
+        Ok(Self { source, settings, identities, median, ahead, is_over: false, at_once: 1, traced, latest: None })
     }
 
-    /// Traces so many pictures side by side from now on, at least one, on threads of their own; fewer where they are large. As many are read
-    /// ahead, so that the pictures of a camera that runs come late. By default one.
+    /// Traces so many pictures side by side from now on, at least one, on threads of their own; fewer where they have more than 2^22 pixels
+    /// together, or take long to be read. As many are read ahead, so that the pictures of a camera that runs come late. By default one.
     #[must_use]
     pub fn tracing_at_once(self, pictures: usize) -> Self {
         Self { at_once: pictures.max(1), ..self }
@@ -189,13 +196,20 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
                     }
                     first.push_back(item);
                 }
+                self.is_over = first.len() < wanted;
                 self.ahead.insert(first)
             }
         };
         if let Some(item) = ahead.pop_front() {
             return Some(item);
         }
-        let item = self.source.next()?;
+        if self.is_over {
+            return None;
+        }
+        let item = self.source.next();
+        // The source is not asked again.
+        self.is_over = item.is_none();
+        let item = item?;
         if let (Some(median), Ok(frame)) = (&mut self.median, &item) {
             median.add(&frame.picture);
         }
@@ -221,8 +235,9 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
     ) -> Vec<Result<(PictureFrame, View, Tracing<'a>), PictureError>> {
         let mut begun = Vec::new();
         let mut view_before = self.latest.as_ref().map(|(view, _)| view.clone());
-        let mut room = PIXELS_AT_ONCE;
+        let (mut room, began) = (PIXELS_AT_ONCE, Instant::now());
         while begun.len() < self.at_once
+            && (begun.is_empty() || began.elapsed() < LONGEST_READING)
             && let Some(item) = self.next_picture()
         {
             let frame = match item {
@@ -235,15 +250,19 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
             let view = View { picture: Arc::clone(&frame.picture), ground: self.ground() };
             let pixels = view.picture.as_raw().len();
             let is_same = view_before.replace(view.clone()).is_some_and(|before| before.is_same_as(&view));
+            if !is_same && begun.is_empty() {
+                // Makes room before more is needed.
+                self.latest = None;
+            }
             let tracing = if is_same {
                 Tracing::AsBefore
             } else if self.at_once == 1 {
-                // Makes room before more is needed.
-                self.latest = None;
                 Tracing::Done(view.traced(settings, limit))
             } else {
-                let view = view.clone();
-                Tracing::Begun(scope.spawn(move || view.traced(settings, limit)))
+                let on_thread = view.clone();
+                let begun = thread::Builder::new().spawn_scoped(scope, move || on_thread.traced(settings, limit));
+                // The system may have no more threads.
+                begun.map_or_else(|_| Tracing::Done(view.traced(settings, limit)), Tracing::Begun)
             };
             begun.push(Ok((frame, view, tracing)));
             room = room.saturating_sub(pixels);

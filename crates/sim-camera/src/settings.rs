@@ -35,13 +35,13 @@ pub struct Settings {
     pub points: usize,
     /// How the points are spread along the contour.
     pub sampling: Sampling,
-    /// Standard deviation of the Gaussian noise on each coordinate.
+    /// Standard deviation of the Gaussian noise on each coordinate, from 0 to 1e50.
     pub noise: f64,
     /// The missing arc, at a random place in every frame.
     pub occlusion: Occlusion,
     /// Share of the points, in [0, 1), that are moved somewhere else; rounded to whole points.
     pub outliers: f64,
-    /// Radius of the disc about a point that its outlier is drawn from.
+    /// Radius of the disc about a point that its outlier is drawn from, from 0 to 1e50.
     pub outlier_radius: f64,
     /// Probability, in [0, 1), that a frame shows another object of the paper's figure 1 in the same place, turned at
     /// random.
@@ -126,7 +126,7 @@ fn positive(setting: &'static str, value: f64) -> Result<(), SimulationError> {
     check(value.is_finite() && value > 0.0, setting, value, "finite and above 0")
 }
 
-/// Squares of longer lengths are no numbers.
+/// Poses have the same limit: fourth powers of longer lengths, which moments are made of, are soon no numbers.
 fn length_or_none(setting: &'static str, value: f64) -> Result<(), SimulationError> {
     check((0.0..=1e50).contains(&value), setting, value, "from 0 to 1e50")
 }

@@ -30,6 +30,10 @@ impl MotionFilter {
                 return Some(outcome);
             }
         }
+        if !self.may_search() {
+            return None;
+        }
+        self.searches.take();
         // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
         // where nothing fits without.
         let mut poses = None;

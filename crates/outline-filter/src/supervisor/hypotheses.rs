@@ -230,10 +230,7 @@ impl Hypotheses {
             other.take_spread(&found.measurement);
             // Searches that began apart may find the same motion in the end.
             let are_compared = ground == Ground::Likeness && outcome.is_accepted() && found.is_accepted();
-            if are_compared && track.differs_from(other).is_some_and(|deviations| deviations < tuning::DIFFERENT) {
-                self.remove(index);
-                continue;
-            }
+            let have_met = are_compared && track.has_met(other, different_turn(self.pitch));
             self.list[index].likelihood.add(&found.likelihood);
             let of_other = self.list[index].likelihood;
             if found.is_accepted() && !self.likelihood.is_worse_than(&of_other) && outcome.is_noisy() {
@@ -241,7 +238,8 @@ impl Hypotheses {
                 let again = track.update(frame, &gate.without_noise(), Comparison::NotAsked);
                 outcome = if again.is_accepted() { again } else { outcome };
             }
-            let is_better = ground == Ground::Likeness && self.likelihood.is_worse_than(&of_other);
+            let is_better = ground == Ground::Likeness
+                && (self.likelihood.is_worse_than(&of_other) || have_met && of_other.squares < self.likelihood.squares);
             if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 if let Some(other) = &mut self.list[index].track {
                     std::mem::swap(other, track);
@@ -251,12 +249,14 @@ impl Hypotheses {
                 is_another |= ground == Ground::Likeness;
                 let is_worse = !outcome.is_accepted() || self.list[index].likelihood.is_worse_than(&self.likelihood);
                 match ground {
-                    Ground::Likeness if is_worse => self.remove(index),
+                    Ground::Likeness if is_worse || have_met => self.remove(index),
                     Ground::Symmetry if is_worse => self.list[index].track = None,
                     _ => {}
                 }
                 outcome = found;
-            } else if outcome.is_accepted() && (!found.is_accepted() || of_other.is_worse_than(&self.likelihood)) {
+            } else if outcome.is_accepted()
+                && (have_met || !found.is_accepted() || of_other.is_worse_than(&self.likelihood))
+            {
                 match ground {
                     Ground::Likeness => self.remove(index),
                     // Its path is no evidence.

@@ -7,6 +7,7 @@ mod hypotheses;
 mod initialisation;
 mod motion_change;
 mod motion_filter;
+mod search_budget;
 mod settings;
 mod starts;
 #[cfg(feature = "serde")]

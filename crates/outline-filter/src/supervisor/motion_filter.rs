@@ -8,6 +8,7 @@ use super::{
     error::FilterError,
     hypotheses::Hypotheses,
     motion_change::MotionHistory,
+    search_budget::SearchBudget,
     settings::FilterSettings,
     statement::Statement,
     tracking::{Known, advance},
@@ -18,7 +19,6 @@ use crate::{
     measurement::Frame,
     search::Landmarks,
     track::{KnownOutline, Outcome, Track},
-    tuning::supervisor as tuning,
     update::{FrameMeasurement, Rejection},
 };
 
@@ -28,11 +28,12 @@ use crate::{
 pub enum Phase {
     /// No frame yet.
     Waiting,
-    /// The outline is known, its motion is not. The object is searched for in the next frames.
+    /// The outline is known, its motion is not. The object is searched for in the next frames; after two seconds of video in vain in one of
+    /// 16.
     Acquiring,
     /// Outline and motion are known and predict the next frame.
     Tracking,
-    /// The object was not found in the last frames. It is searched for in every frame.
+    /// The object was not found in the last frames. It is searched for in every frame; in fewer where that has been in vain for long.
     Lost,
 }
 
@@ -43,7 +44,8 @@ pub struct FilterStep {
     pub time: f64,
     /// Phase after the frame.
     pub phase: Phase,
-    /// Comparison with the known outline; `None` if there was no outline or no pose to compare with.
+    /// Comparison with the known outline; `None` if there was no outline or no pose to compare with, or the frame was not
+    /// searched.
     pub measurement: Option<FrameMeasurement>,
     /// Why the frame was not used; `None` if it was used.
     pub rejection: Option<Rejection>,
@@ -68,7 +70,7 @@ pub(super) struct Counts {
     pub(super) taken: usize,
     pub(super) refused: usize,
     pub(super) restarts: usize,
-    /// Starts in a row after which the object was not found in more than a few frames.
+    /// Starts in a row after which the object was not found again.
     pub(super) fruitless: usize,
 }
 
@@ -121,6 +123,7 @@ pub struct MotionFilter {
     /// Time that the track stands at.
     pub(super) track_time: f64,
     pub(super) counts: Counts,
+    pub(super) searches: SearchBudget,
     pub(super) history: MotionHistory,
     /// Whether the motion of the present track has ever been seen to change.
     pub(super) motion_changed: bool,
@@ -152,6 +155,7 @@ impl MotionFilter {
             symmetry: 1,
             track_time: 0.0,
             counts: Counts::default(),
+            searches: SearchBudget::default(),
             history: MotionHistory::default(),
             motion_changed: false,
             hypotheses: Hypotheses::default(),
@@ -186,17 +190,15 @@ impl MotionFilter {
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
             Phase::Tracking => self.follow(time, outline),
-            Phase::Acquiring if self.pauses() => None,
             _ => self.acquire(time, outline),
         };
+        self.searches.add_frame(self.phase == Phase::Tracking);
         let rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
         if rejection.is_none() {
             self.counts.accepted += 1;
             self.counts.taken += 1;
             self.counts.rejected_in_a_row = 0;
-            if self.counts.taken > tuning::FEW_FRAMES {
-                self.counts.fruitless = 0;
-            }
+            self.counts.fruitless = 0;
             self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);

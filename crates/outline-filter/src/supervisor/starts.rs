@@ -46,12 +46,11 @@ impl MotionFilter {
         // Few frames that more speak against than for did not show the object.
         let is_outvoted = rejected_in_a_row >= self.settings.patience && taken <= tuning::FEW_FRAMES && refused > taken;
         let give_up = match self.phase {
-            Phase::Acquiring if self.is_hopeless() => rejected_in_a_row >= tuning::FALSE_START + tuning::PAUSE,
-            Phase::Acquiring => rejected_in_a_row >= tuning::FALSE_START,
+            Phase::Acquiring => rejected_in_a_row >= tuning::FALSE_START && self.may_search(),
             _ => rejected_in_a_row >= tuning::GIVEN_UP || is_outvoted,
         };
         let is_alone = self.phase == Phase::Acquiring && taken == 1;
-        if is_alone && !give_up && !self.is_hopeless() {
+        if is_alone && !give_up && rejected_in_a_row < tuning::FALSE_START {
             self.unfound.push((time, outline.clone()));
         }
         // Any frame may be wrong, as the first was: then the next one is waited for.
@@ -64,31 +63,30 @@ impl MotionFilter {
         }
     }
 
-    /// Whether so many starts have come to nothing that not every frame is worth a search.
-    fn is_hopeless(&self) -> bool {
-        self.counts.fruitless >= tuning::HOPELESS
-    }
-
-    /// Whether the next frame is not searched.
-    pub(super) fn pauses(&self) -> bool {
-        self.is_hopeless() && self.counts.rejected_in_a_row >= tuning::FALSE_START
+    /// Whether the next frame is searched for the object. A start is worth a few searches, or none.
+    pub(super) fn may_search(&self) -> bool {
+        let is_start_over = self.phase == Phase::Acquiring && self.counts.rejected_in_a_row >= tuning::FALSE_START;
+        self.searches.has(if is_start_over { tuning::FALSE_START } else { 1 })
     }
 
     /// Whether a frame shows something else than those before it in which the object of the first has not been found: they agree with each
     /// other and not with it, so that it is no frame to begin again with. Where nothing is found again and again, that is not looked into.
-    fn shows_another(&self, time: f64, outline: &Outline) -> bool {
-        if self.counts.fruitless >= tuning::MOST_FRUITLESS {
+    fn shows_another(&mut self, time: f64, outline: &Outline) -> bool {
+        if self.counts.fruitless >= tuning::MOST_FRUITLESS || !self.searches.has(tuning::FALSE_START) {
             return false;
         }
         let mut do_others_agree = false;
-        for (number, (begun_at, first)) in self.unfound.iter().enumerate() {
-            let mut begun = self.clone();
+        let before = self.clone();
+        for (number, (begun_at, first)) in before.unfound.iter().enumerate() {
+            let mut begun = before.clone();
             if begun.start(*begun_at, first).is_err() {
                 continue;
             }
-            for (time, outline) in &self.unfound[number + 1..] {
+            for (time, outline) in &before.unfound[number + 1..] {
+                self.searches.take();
                 do_others_agree |= begun.take(*time, outline).1.is_none();
             }
+            self.searches.take();
             if begun.take(time, outline).1.is_none() {
                 return false;
             }

@@ -6,7 +6,7 @@ use crate::track::Track;
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 
 /// The format of the bytes.
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
@@ -74,7 +74,7 @@ impl MotionFilter {
         if !self.history.is_sound(&self.settings) {
             return inconsistent("changes of the motion");
         }
-        if !self.counts_are_below(StateFormat::MOST_COUNTED) {
+        if !self.counts_are_below(StateFormat::MOST_COUNTED) || !self.searches.is_sound() {
             return inconsistent("counts");
         }
         if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {

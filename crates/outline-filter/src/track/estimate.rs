@@ -5,9 +5,10 @@ use nalgebra::{DMatrix, Matrix3};
 
 use super::Track;
 use crate::{
-    belief::{Belief, StateMatrix, scaled_inverse},
+    belief::{Belief, StateMatrix, StateVector, scaled_inverse},
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
     tuning::{
+        hypotheses::DIFFERENT,
         null_space::{TAKES_PART, TURNS_WITH},
         supervisor::STEPS_KNOWN,
     },
@@ -171,15 +172,19 @@ impl Track {
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
     }
 
-    /// The largest difference of pose or motion from another track of the same object, in standard deviations.
-    pub(crate) fn differs_from(&self, other: &Self) -> Option<f64> {
+    /// Whether another track of the same object has come to the same pose and motion: nearer than a length, normalised, and nearer than what is
+    /// in doubt by all that is known of both together.
+    pub(crate) fn has_met(&self, other: &Self, near: f64) -> bool {
         let (belief, k) = (&self.belief, self.belief.parameter_count());
-        let covariance = belief.covariance_of(&belief.marginal, self.noise.effective_variance())?;
         // The error of the pose is on the left.
-        let apart = belief.model.parameters_of(&logarithm(&(other.belief.pose * belief.pose.try_inverse()?))?);
-        let motions = belief.motion.iter().zip(&other.belief.motion).map(|(one, other)| other - one);
-        let differences = apart[..k].iter().copied().chain(motions.take(k)).enumerate();
-        Some(differences.map(|(j, d)| d.abs() / covariance[(j, j)].sqrt()).fold(0.0, f64::max))
+        let change = belief.pose.try_inverse().and_then(|inverse| logarithm(&(other.belief.pose * inverse)));
+        let Some(pose) = change.map(|change| belief.model.parameters_of(&change)) else { return false };
+        let mut apart = StateVector::zeros();
+        for j in 0..k {
+            (apart[j], apart[k + j]) = (pose[j], other.belief.motion[j] - belief.motion[j]);
+        }
+        let squared = apart.dot(&(belief.marginal * apart)) / self.noise.effective_variance();
+        apart.norm() < near && squared < DIFFERENT * DIFFERENT
     }
 
     /// The largest difference of a parameter of two motions, in standard deviations; normalised.

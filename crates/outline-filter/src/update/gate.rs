@@ -52,7 +52,7 @@ pub enum Rejection {
         /// Standard deviation of this frame's noise, image lengths.
         noise: f64,
     },
-    /// No pose was found.
+    /// No pose was found, or none was looked for, as too many frames have been searched in vain.
     NotFound,
 }
 

@@ -74,6 +74,18 @@ fn in_turn(count: usize) -> Vec<Frame> {
 }
 
 #[test]
+#[cfg(feature = "serde")]
+fn a_filter_saved_while_frames_are_not_searched_goes_on_to_the_last_bit() {
+    let mut straight = MotionFilter::new(FilterSettings::default()).expect("settings");
+    for frame in in_turn(120) {
+        let mut restored = MotionFilter::from_bytes(&straight.to_bytes().expect("memory")).expect("a saved state");
+        let steps = [&mut straight, &mut restored].map(|filter| filter.step(frame.time, &frame.outline).ok());
+        assert_eq!(steps[0], steps[1]);
+        assert_eq!(straight.to_bytes(), restored.to_bytes());
+    }
+}
+
+#[test]
 fn an_object_that_comes_after_many_others_is_found_within_two_seconds_of_video() {
     const BEFORE: usize = 200;
     let frames = frames_of(BuiltInShape::Vase, MOTION, settings(BEFORE + 60, 4));
@@ -95,6 +107,6 @@ fn of_frames_that_show_another_object_each_time_few_are_searched_for_long() {
     // A frame that is searched is measured.
     let searched: Vec<_> = steps.map(|step| step.measurement.is_some()).collect();
     let share = |frames: &[bool]| frames.iter().filter(|searched| **searched).count() as f64 / frames.len() as f64;
-    assert!(share(&searched[..25]) > 0.9, "{}", share(&searched[..25]));
+    assert!(share(&searched[..50]) > 0.9, "{}", share(&searched[..50]));
     assert!(share(&searched[100..]) < 0.1, "{}", share(&searched[100..]));
 }

@@ -222,13 +222,18 @@ fn a_turn_of_nearly_half_a_circle_that_later_frames_decide_for_may_have_been_the
 fn searches_that_began_apart_and_found_the_same_motion_are_no_rivals() {
     // In the few noisy points of the second frame the search finds two turns; from the next frames both tracks find the true one.
     let motion = RigidMotion { omega: 1.5, b1: 0.6, b2: -0.4 };
+    let mut had_rivals = 0;
     for seed in 15..25 {
         let length = SequenceLength::Frames(30);
         let settings = Settings { length, seed, fps: 30.0, points: 60, noise: 0.01, ..Settings::default() };
-        let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Boomerang, motion, settings));
+        let frames = frames_of(BuiltInShape::Boomerang, motion, settings);
+        let rivals_after = |count: usize| filtered(MotionModel::Rigid, &frames[..count]).rival_turns().len();
+        had_rivals += usize::from((2..6).any(|count| rivals_after(count) > 0));
+        let run = filtered(MotionModel::Rigid, &frames);
         assert!(run.rival_turns().is_empty() && run.aliases().is_empty(), "seed {seed}: {:?}", run.rival_turns());
         assert!(run.velocity().is_some(), "seed {seed}");
     }
+    assert!(had_rivals > 0);
 }
 
 #[test]

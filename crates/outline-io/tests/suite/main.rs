@@ -16,5 +16,6 @@ mod parquet;
 mod pictures_as_people_have_them;
 mod polygons;
 mod sequences;
+mod side_by_side;
 mod support;
 mod tracing;

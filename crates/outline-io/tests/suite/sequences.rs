@@ -2,11 +2,10 @@
 use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::support::traced;
 use freeform_outline_io::{
-    Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureFrame, PictureOutlines,
+    Background, Channel, Clipping, Contrast, GrayImage, PictureError, PictureErrorKind, PictureOutlines,
     PictureSequence, PictureSettings, Ring, SequenceSettings, TraceError, TraceSettings, TracedFrame, TracedOutline,
     picture_files, trace_mask,
 };
@@ -322,62 +321,6 @@ fn changes_of_shape(found: &[TracedOutline]) -> String {
     changes.sort_by(f64::total_cmp);
     let share = |part: usize| changes[(changes.len() - 1) * part / 10];
     format!("change of shape: median {:.3}, 9 of 10 below {:.3}, largest {:.3}", share(5), share(9), share(10))
-}
-
-#[test]
-fn pictures_traced_side_by_side_give_what_they_give_one_after_the_other() {
-    let shared = Arc::new(disc(30.0, 10.0));
-    let picture = |frame: u64| match frame {
-        // The same as before, and once more.
-        6..9 => Arc::clone(&shared),
-        // Nothing to be seen.
-        11 => Arc::new(GrayImage::new(80, 60)),
-        _ => Arc::new(disc(20.0 + 2.0 * frame as f64, 9.0)),
-    };
-    let read = |frame: u64| {
-        let file = format!("{frame}.png");
-        match frame {
-            4 => Err(PictureError { file, frame: None, kind: PictureErrorKind::NotAFile }),
-            _ => Ok(PictureFrame { frame, time: frame as f64, file, picture: picture(frame) }),
-        }
-    };
-    for background in [None, Some(Background::RunningMedian(5)), Some(Background::Surface)] {
-        let settings = PictureSettings { background, ..PictureSettings::default() };
-        let traced = |at_once: usize| {
-            let outlines = PictureOutlines::new((0..15).map(read), settings.clone()).expect("settings");
-            outlines.tracing_at_once(at_once).map(|item| item.map_err(|error| error.to_string())).collect::<Vec<_>>()
-        };
-        let one = traced(1);
-        assert_eq!(one.len(), 15);
-        assert!(one.iter().flatten().filter(|traced| traced.objects.is_ok()).count() > 5);
-        for at_once in [0, 2, 3, 7, 100] {
-            assert_eq!(traced(at_once), one, "{at_once} at once");
-        }
-    }
-}
-
-#[test]
-fn a_name_kept_for_an_object_holds_where_pictures_are_traced_side_by_side() {
-    // Gone for more pictures than its name is kept for by itself.
-    let away = 5..25;
-    let picture = |frame: u64| {
-        let centre = if away.contains(&frame) { 400.0 } else { 30.0 };
-        Arc::new(disc(centre, 10.0))
-    };
-    let read =
-        |frame: u64| Ok(PictureFrame { frame, time: frame as f64, file: String::new(), picture: picture(frame) });
-    let names = |at_once: usize| {
-        let outlines = PictureOutlines::new((0..30).map(read), PictureSettings::default()).expect("settings");
-        let mut outlines = outlines.tracing_at_once(at_once);
-        let mut names = Vec::new();
-        while let Some(traced) = outlines.next() {
-            let traced = traced.expect("a picture");
-            outlines.keep(0, traced.frame.frame);
-            names.push(traced.objects.ok().map(|objects| objects[0].0));
-        }
-        names
-    };
-    assert_eq!(names(4), names(1));
 }
 
 #[test]
