@@ -110,14 +110,15 @@ impl PictureInput {
             sequence = open(&options)?;
         }
         let is_read_once = preview.is_read_once();
-        let is_traced_unseen = chosen.is_none() && !options.has_way() && is_read_once;
+        let is_traced_unseen = is_read_once && chosen.is_none() && !options.has_way();
         let mut input = Self::of(sequence, Some(preview), inputs, (options, chosen))?;
         if !is_read_once {
             // Nobody waits for what is in files.
             let cores = available_parallelism().map_or(1, NonZero::get);
             input.outlines = input.outlines.tracing_at_once(PICTURES_OF_CORE * cores);
         }
-        Ok(Self { is_traced_unseen, ..input })
+        input.is_traced_unseen = is_traced_unseen;
+        Ok(input)
     }
 
     /// Pictures in a stream.

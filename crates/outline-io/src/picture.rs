@@ -30,8 +30,8 @@ const DECODER_LIMIT_OF_PIXEL: u64 = DECODER_LIMIT / PIXEL_LIMIT;
 /// tens.
 const METADATA_LIMIT: u64 = 1 << 26;
 
-/// Reads a picture (PNG, BMP, the first frame of a GIF; JPEG, TIFF and WebP with the feature `all-pictures`) as grey values. Its content tells the format,
-/// not its name. It is turned and mirrored as the file says that it is to be seen (EXIF, or the tag of TIFF).
+/// Reads a picture (PNG, BMP, the first frame of a GIF; JPEG, TIFF and WebP with the feature `all-pictures`) as grey values. Its content
+/// tells the format, not its name. It is turned and mirrored as the file says that it is to be seen (EXIF, or the tag of TIFF).
 ///
 /// Colours become their luminance, those of inks (CMYK) by way of red, green and blue; a CMYK JPEG is taken as Adobe writes it, with
 /// the largest value for no ink, whether or not it says so. Where some pixels are transparent the alpha channel is taken instead, so that the

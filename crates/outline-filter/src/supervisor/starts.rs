@@ -76,13 +76,13 @@ impl MotionFilter {
             return false;
         }
         let mut do_others_agree = false;
-        let before = self.clone();
-        for (number, (begun_at, first)) in before.unfound.iter().enumerate() {
-            let mut begun = before.clone();
+        let unfound = self.unfound.clone();
+        for (number, (begun_at, first)) in unfound.iter().enumerate() {
+            let mut begun = self.clone();
             if begun.start(*begun_at, first).is_err() {
                 continue;
             }
-            for (time, outline) in &before.unfound[number + 1..] {
+            for (time, outline) in &unfound[number + 1..] {
                 self.searches.take();
                 do_others_agree |= begun.take(*time, outline).1.is_none();
             }

@@ -172,8 +172,8 @@ impl Track {
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
     }
 
-    /// Whether another track of the same object has come to the same pose and motion: nearer than a length, normalised, and nearer than what is
-    /// in doubt by all that is known of both together.
+    /// Whether another track of the same object has come to the same pose and motion: their difference, normalised, is shorter than `near`, and
+    /// within [`DIFFERENT`] deviations by the joint covariance of pose and motion.
     pub(crate) fn has_met(&self, other: &Self, near: f64) -> bool {
         let (belief, k) = (&self.belief, self.belief.parameter_count());
         // The error of the pose is on the left.
