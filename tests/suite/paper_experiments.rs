@@ -56,7 +56,7 @@ fn masks_of_real_objects_are_followed_as_well_in_four_cases_out_of_five() {
 }
 
 /// Largest error of a1 to a4, as a fraction of the largest of them, and that of b after 30 s.
-fn affine_errors(shape: BuiltInShape, noise: f64, settings: &PipelineSettings) -> (f64, f64) {
+fn affine_errors(shape: impl Into<Shape>, noise: f64, settings: &PipelineSettings) -> (f64, f64) {
     let motion = AffineMotion { a1: 0.05, a2: 1.2, a3: -1.7, a4: -0.08, b1: -0.3, b2: 0.4 };
     let scene = Scene::new(shape, motion, Camera::default());
     let simulation = freeform_motion::sim_camera::Settings { noise, ..seconds(30.0) };
@@ -81,6 +81,18 @@ fn six_parameters_are_found_to_one_percent_without_noise_and_to_three_with_the_n
             assert!(rates < limit && b < limit, "{shape}, noise {noise}: {rates}, {b}");
         }
     }
+}
+
+/// What makes it as wide as long makes its noise four times the distance of its points.
+#[test]
+fn six_parameters_of_a_slender_outline_are_found_to_a_tenth_in_the_noise_of_the_paper() {
+    let half = |k: i32| f64::from(k) / 100.0;
+    let upper = (0..100).map(|k| (half(k), 0.24 * half(k) * (1.0 - half(k))));
+    let lower = (0..100).map(|k| (1.0 - half(k), -0.5 * half(k).powi(2) * (1.0 - half(k))));
+    let points: Vec<_> = upper.chain(lower).map(Into::<[f64; 2]>::into).map(nalgebra::Point2::from).collect();
+    let shape = Shape::from_polygon(&points).expect("a polygon").normalised();
+    let (rates, b) = affine_errors(shape, 0.005, &PipelineSettings::for_model(MotionModel::Affine));
+    assert!(rates < 0.1 && b < 0.1, "{rates}, {b}");
 }
 
 #[test]

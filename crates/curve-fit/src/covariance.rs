@@ -50,6 +50,8 @@ pub(crate) struct Fitted<'a> {
     pub(crate) normals: [&'a [f64]; 2],
     /// Number of points of the outline where those fitted are between them, so that neighbours share noise.
     pub(crate) interpolated_from: Option<usize>,
+    /// Standard deviation of the noise along the normals.
+    pub(crate) noise: f64,
     pub(crate) offset: f64,
     pub(crate) polynomial: &'a ImplicitPolynomial,
     /// Inverse of the Gram matrix, ridge included.
@@ -60,7 +62,6 @@ impl Fitted<'_> {
     /// The score of a point is how its rows `m (d - m' a)` change as it moves along its normal; the covariance is
     /// `s^2 G^-1 (sum of scores by their transposes) G^-1`.
     pub(crate) fn covariance(&self) -> FitCovariance {
-        let noise = self.noise();
         let degree = self.polynomial.degree();
         let size = degree.coefficient_count();
         let a = self.polynomial.coefficients();
@@ -81,32 +82,32 @@ impl Fitted<'_> {
         // Sums over more points than there were have the noise of those that there were.
         let shared = self.interpolated_from.map_or(1.0, |from| self.points[0].len() as f64 / from as f64);
         let middle = &scores * scores.transpose() * shared;
-        FitCovariance { per_unit_noise: self.inverse * middle * self.inverse, noise }
+        FitCovariance { per_unit_noise: self.inverse * middle * self.inverse, noise: self.noise }
     }
+}
 
-    fn noise(&self) -> f64 {
-        let [xs, ys] = self.points;
-        let [nx, ny] = self.normals;
-        let count = xs.len();
-        let (lag, kept) = self
-            .interpolated_from
-            .map_or((SKIPPED, 1.0), |from| ((SKIPPED * count).div_ceil(from.max(1)), OF_INTERPOLATED));
-        let norm = (kept * FOURTH_DIFFERENCE.iter().map(|w| w * w).sum::<f64>()).sqrt();
-        let mut differences: Vec<f64> = (0..count)
-            .map(|i| {
-                let along = |values: &[f64]| {
-                    let terms = FOURTH_DIFFERENCE.iter().enumerate();
-                    terms.map(|(k, w)| w * values[(i + k * lag) % count]).sum::<f64>()
-                };
-                let middle = (i + 2 * lag) % count;
-                (along(xs) * nx[middle] + along(ys) * ny[middle]).abs() / norm
-            })
-            .collect();
-        if count == 0 {
-            return 0.0;
-        }
-        MEDIAN_TO_SIGMA * *differences.select_nth_unstable_by(count / 2, f64::total_cmp).1
+/// Standard deviation of the noise of points along their normals, in their units, from the fourth differences along the outline.
+/// `interpolated_from` is the number of points of the outline where these are between them, so that neighbours share noise.
+pub(crate) fn noise_along(points: [&[f64]; 2], normals: [&[f64]; 2], interpolated_from: Option<usize>) -> f64 {
+    let ([xs, ys], [nx, ny]) = (points, normals);
+    let count = xs.len();
+    let (lag, kept) =
+        interpolated_from.map_or((SKIPPED, 1.0), |from| ((SKIPPED * count).div_ceil(from.max(1)), OF_INTERPOLATED));
+    let norm = (kept * FOURTH_DIFFERENCE.iter().map(|w| w * w).sum::<f64>()).sqrt();
+    let mut differences: Vec<f64> = (0..count)
+        .map(|i| {
+            let along = |values: &[f64]| {
+                let terms = FOURTH_DIFFERENCE.iter().enumerate();
+                terms.map(|(k, w)| w * values[(i + k * lag) % count]).sum::<f64>()
+            };
+            let middle = (i + 2 * lag) % count;
+            (along(xs) * nx[middle] + along(ys) * ny[middle]).abs() / norm
+        })
+        .collect();
+    if count == 0 {
+        return 0.0;
     }
+    MEDIAN_TO_SIGMA * *differences.select_nth_unstable_by(count / 2, f64::total_cmp).1
 }
 
 /// Derivatives of the monomials at a point in a direction.

@@ -4,7 +4,7 @@ use pulp::Arch;
 use crate::{
     area_moments::AreaMoments,
     bounded,
-    covariance::{FitCovariance, Fitted},
+    covariance::{FitCovariance, Fitted, noise_along},
     degree::MAX_COEFFICIENTS,
     error::{FitError, SettingsError},
     fit::{Factorisation, Fit, FitDiagnostics},
@@ -32,6 +32,8 @@ pub struct Fitter {
     normals: [Vec<f64>; 2],
     regression: NormalRegression,
     even: EvenOutline,
+    /// RMS radius of `even` in the coordinates that it was spread in.
+    even_radius: f64,
     moments: LevelSetMoments,
     system: TriangularSystem,
 }
@@ -49,6 +51,7 @@ impl Fitter {
             normals: Default::default(),
             regression: NormalRegression::default(),
             even: EvenOutline::default(),
+            even_radius: 1.0,
             moments: LevelSetMoments::ZERO,
             system: TriangularSystem::new(),
         })
@@ -106,11 +109,24 @@ impl Fitter {
             points: self.points.each_ref().map(Vec::as_slice),
             normals: self.normals.each_ref().map(Vec::as_slice),
             interpolated_from: (self.settings.normalise == Normalise::Affine).then(|| outline.point_count()),
+            noise: self.noise(outline),
             offset: self.settings.offset,
             polynomial: &fit.working,
             inverse: &inverse,
         };
         Ok((fit, fitted.covariance()))
+    }
+
+    /// Standard deviation of the noise of the outline loaded, along its normals and in working coordinates.
+    fn noise(&self, outline: &Outline) -> f64 {
+        if self.settings.normalise != Normalise::Affine {
+            let [points, normals] = [&self.points, &self.normals].map(|pair| pair.each_ref().map(Vec::as_slice));
+            return noise_along(points, normals, None);
+        }
+        // Of what was smoothed, the noise is gone.
+        let (xs, ys): (Vec<_>, Vec<_>) = self.even.rough().map(|(p, _)| (p.x, p.y)).unzip();
+        let (nx, ny): (Vec<_>, Vec<_>) = self.even.rough().map(|(_, n)| (n.x, n.y)).unzip();
+        noise_along([&xs, &ys], [&nx, &ny], Some(outline.point_count())) / self.even_radius
     }
 
     fn fit_loaded(&mut self, outline: &Outline, normalisation: Normalisation) -> Result<Fit, FitError> {
@@ -158,6 +174,7 @@ impl Fitter {
             self.load_evenly(outline, &frame);
             let [xs, ys] = &mut self.points;
             let within = Arch::new().dispatch(|| normalise(xs, ys));
+            self.even_radius = within.radius;
             self.find_normals();
             return Ok(frame.after(&within));
         }

@@ -57,6 +57,7 @@ mod resampling;
 mod residuals;
 mod ridge;
 mod settings;
+mod smoothing;
 mod stray_parts;
 mod vectors;
 mod windows;

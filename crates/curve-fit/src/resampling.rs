@@ -1,41 +1,68 @@
 //! Points spread evenly by arc length along an outline.
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
-use crate::outline::{Outline, Piece};
+use crate::{
+    outline::{Outline, Piece},
+    smoothing::smooth,
+};
 
 /// Fewest points of an outline that is spread anew: sparse polygons are filled up, so that what is fitted is the polygon and not
 /// its corners.
 const FEWEST: usize = 256;
 
-/// An outline whose points have been spread anew, in buffers that are reused.
+/// An outline whose points have been spread anew and smoothed, in buffers that are reused.
+///
+/// What stretches a slender outline to a round one stretches its noise as well, to several times the distance of neighbours. An outline
+/// that runs to and fro like that has neither arc lengths nor normals, and the curve through it depends on the direction of the stretch.
+/// So the noise is taken down first.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct EvenOutline {
     points: Vec<Point2<f64>>,
     /// Number of points of every piece and whether it is closed.
     pieces: Vec<(usize, bool)>,
     moved: Vec<Point2<f64>>,
+    /// Spread evenly, before they are smoothed.
+    rough: Vec<Point2<f64>>,
+    /// The same, smoothed point by point, before they are spread evenly once more.
+    smoothed: Vec<Point2<f64>>,
     lengths: Vec<f64>,
 }
 
 impl EvenOutline {
-    /// Takes the outline as `map` moves it, every piece spread evenly by arc length there.
+    /// Takes the outline as `map` moves it, every piece smoothed and spread evenly by arc length there.
     pub(crate) fn spread(&mut self, outline: &Outline, map: impl Fn(&Point2<f64>) -> Point2<f64>) {
         let total = outline.point_count();
-        self.points.clear();
+        for buffer in [&mut self.points, &mut self.rough, &mut self.smoothed] {
+            buffer.clear();
+        }
         self.pieces.clear();
+        let spread_total = outline.pieces().map(|piece| resampled_count(piece.points.len(), total)).sum();
         for piece in outline.pieces() {
             self.moved.clear();
             self.moved.extend(piece.points.iter().map(&map));
             let count = resampled_count(piece.points.len(), total);
             self.pieces.push((count, piece.closed));
             let moved = Piece { points: &self.moved, closed: piece.closed };
-            resample(moved, count, &mut self.lengths, &mut self.points);
+            let start = self.rough.len();
+            resample(moved, count, &mut self.lengths, &mut self.rough);
+            smooth(Piece { points: &self.rough[start..], closed: piece.closed }, spread_total, &mut self.smoothed);
+            let smoothed = Piece { points: &self.smoothed[start..], closed: piece.closed };
+            resample(smoothed, count, &mut self.lengths, &mut self.points);
         }
     }
 
     /// All points in order.
     pub(crate) fn points(&self) -> &[Point2<f64>] {
         &self.points
+    }
+
+    /// The points of a closed piece, if there is no other, before they were smoothed, with the normals that they have after it.
+    pub(crate) fn rough(&self) -> impl Iterator<Item = (Point2<f64>, Vector2<f64>)> {
+        let count = self.smoothed.len();
+        self.rough.iter().enumerate().map(move |(i, p)| {
+            let along = self.smoothed[(i + 1) % count] - self.smoothed[(i + count - 1) % count];
+            (*p, Vector2::new(along.y, -along.x).try_normalize(0.0).unwrap_or_default())
+        })
     }
 
     /// Number of points of every piece, and whether it is closed.
