@@ -35,10 +35,12 @@ pub(crate) fn deviation(field: &[u8]) -> Result<Option<f64>, ReadErrorKind> {
     if field.trim_ascii().is_empty() {
         return Ok(None);
     }
-    match number(field)? {
-        value if value > 0.0 => Ok(Some(value)),
-        value => Err(ReadErrorKind::NotPositive { value }),
-    }
+    positive(number(field)?).map(Some)
+}
+
+/// A standard deviation that is a number already.
+pub(crate) fn positive(value: f64) -> Result<f64, ReadErrorKind> {
+    if value > 0.0 { Ok(value) } else { Err(ReadErrorKind::NotPositive { value }) }
 }
 
 /// Powers of ten that a float holds exactly, up to as many digits as it holds of any number.

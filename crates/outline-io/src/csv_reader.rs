@@ -79,6 +79,12 @@ impl<R: Read> OutlineReader<R> {
         Self { rows, columns, roles, present: None, latest: LatestFrames::default(), failure: None, ended: false }
     }
 
+    /// Whether the header has the column `deviation`.
+    #[must_use]
+    pub fn has_deviation_column(&self) -> bool {
+        self.columns.deviation.is_some()
+    }
+
     /// Reads one row; returns the outline that it completes, if any.
     fn step(&mut self) -> Result<Option<OutlineRows>, ReadError> {
         if let Some(point) = self.rows.next_point(&self.roles) {

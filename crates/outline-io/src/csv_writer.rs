@@ -19,7 +19,8 @@ pub struct WriterOptions {
     pub arc_column: bool,
     /// Write the `contour` column: needed for outlines with several contours.
     pub contour_column: bool,
-    /// Write the `deviation` column: the standard deviations of the points, empty for outlines without. Without it they are not written.
+    /// Write the `deviation` column: the standard deviations of the points, empty or null for outlines without. Without it they are not
+    /// written.
     pub deviation_column: bool,
     /// Round coordinates to this share of the RMS radius of the first outline or better, and times to a nanosecond;
     /// `None` for all digits.

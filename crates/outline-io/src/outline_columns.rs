@@ -4,7 +4,9 @@ use crate::column::Column;
 use crate::error::{ReadError, ReadErrorKind};
 use crate::frame::OutlineFrame;
 use crate::outline_rows::{OutlineRows, closed_outline};
-use crate::table_keys::{ColumnsError, LatestOutlines, TableKeys, at, check_length, check_number, mark_text};
+use crate::table_keys::{
+    ColumnsError, LatestOutlines, TableKeys, at, check_deviation, check_length, check_number, mark_text,
+};
 
 /// A table of outlines in memory: one entry per point in every column, as the columns of a CSV file. The rows of one outline (same frame
 /// and object) follow each other in the order of the contour. [`OutlineLists`](crate::OutlineLists) has one row per outline.
@@ -27,6 +29,9 @@ pub struct OutlineColumns<'a> {
     pub arc: Option<&'a [i64]>,
     /// Number of the contour, negative for none; `None` where all closed outlines have one.
     pub contour: Option<&'a [i64]>,
+    /// Standard deviation along the normal of the contour, in the unit of the coordinates, NaN for all points of outlines without; `None`
+    /// where no outline has them.
+    pub deviation: Option<&'a [f64]>,
 }
 
 impl<'a> OutlineColumns<'a> {
@@ -40,7 +45,8 @@ impl<'a> OutlineColumns<'a> {
     /// let (x, y) = ([0.0, 2.0, 0.0, 5.0, 7.0, 5.0], [0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
     /// let (frame, time) = ([0; 6], [0.0; 6]);
     /// let columns = OutlineColumns {
-    ///     names: &names, object: Some(&object), frame: &frame, time: &time, x: &x, y: &y, arc: None, contour: None
+    ///     names: &names, object: Some(&object), frame: &frame, time: &time, x: &x, y: &y,
+    ///     arc: None, contour: None, deviation: None,
     /// };
     /// let outlines = columns.outlines()?.collect::<Result<Vec<_>, _>>()?;
     /// assert_eq!(outlines[1].object, "right");
@@ -59,6 +65,7 @@ impl<'a> OutlineColumns<'a> {
         check_length(Column::Y, self.y.len(), expected)?;
         check_length(Column::Arc, self.arc.map_or(expected, <[_]>::len), expected)?;
         check_length(Column::Contour, self.contour.map_or(expected, <[_]>::len), expected)?;
+        check_length(Column::Deviation, self.deviation.map_or(expected, <[_]>::len), expected)?;
         Ok(ColumnOutlines { columns: *self, keys, row: 0, latest: LatestOutlines::of(&keys), ended: false })
     }
 }
@@ -86,12 +93,15 @@ impl ColumnOutlines<'_> {
         let last = (first..keys.rows()).take_while(|row| keys.are_alike(*row, first)).last().unwrap_or(first);
         let rows = first..last + 1;
         rows.clone().try_for_each(|row| keys.check_time(row, first))?;
-        let OutlineColumns { x, y, .. } = self.columns;
+        let OutlineColumns { x, y, arc, contour, deviation, .. } = self.columns;
         for row in rows.clone() {
             check_number(x[row], Column::X, row)?;
             check_number(y[row], Column::Y, row)?;
+            if let Some(stated) = deviation.map(|deviation| deviation[row]).filter(|stated| !stated.is_nan()) {
+                check_deviation(stated, row)?;
+            }
         }
-        let outline = if self.columns.arc.is_none() && self.columns.contour.is_none() {
+        let outline = if arc.is_none() && contour.is_none() && deviation.is_none() {
             let points = x[rows.clone()].iter().zip(&y[rows]).map(|(x, y)| Point2::new(*x, *y));
             closed_outline(vec![points.collect()])
         } else {
@@ -102,9 +112,9 @@ impl ColumnOutlines<'_> {
         keys.finished((first, last), outline)
     }
 
-    /// The points of arcs and contours.
+    /// The points of arcs and contours, and their standard deviations.
     fn pieces(&self, rows: std::ops::Range<usize>) -> Result<OutlineRows, ReadError> {
-        let OutlineColumns { x, y, arc, contour, .. } = self.columns;
+        let OutlineColumns { x, y, arc, contour, deviation, .. } = self.columns;
         let mut outline = self.keys.begin(rows.start, rows.len());
         let mut arc_text = String::new();
         for row in rows.clone() {
@@ -126,6 +136,9 @@ impl ColumnOutlines<'_> {
             let added =
                 outline.add(Point2::new(x[row], y[row]), arc_text.as_bytes(), arc_continues && follows, row as u64);
             added.map_err(|(kind, column): (ReadErrorKind, _)| at(column, row, kind))?;
+            if let Some(stated) = deviation.map(|deviation| deviation[row]).filter(|stated| !stated.is_nan()) {
+                outline.state_deviation(stated);
+            }
         }
         Ok(outline)
     }

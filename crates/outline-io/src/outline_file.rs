@@ -101,6 +101,7 @@ pub struct OutlineFile {
     outlines: Box<dyn Iterator<Item = Result<OutlineFrame, ReadError>>>,
     comments: String,
     is_rate_assumed: bool,
+    has_deviation_column: bool,
 }
 
 impl std::fmt::Debug for OutlineFile {
@@ -118,7 +119,8 @@ impl OutlineFile {
         #[cfg(feature = "parquet")]
         {
             let reader = crate::parquet_reader::ParquetReader::open(path)?;
-            Ok(Self { comments: reader.comments().to_owned(), outlines: Box::new(reader), is_rate_assumed: false })
+            let (comments, has_deviation_column) = (reader.comments().to_owned(), reader.has_deviation_column());
+            Ok(Self { outlines: Box::new(reader), comments, is_rate_assumed: false, has_deviation_column })
         }
         #[cfg(not(feature = "parquet"))]
         {
@@ -169,7 +171,14 @@ impl OutlineFile {
 
     fn of_polygons(files: &[(String, Vec<u8>)], settings: &PolygonSettings) -> Result<Self, ReadError> {
         let PolygonOutlines { outlines, is_rate_assumed } = read_polygons(files, settings)?;
-        Ok(Self { outlines: Box::new(outlines.into_iter()), comments: String::new(), is_rate_assumed })
+        let outlines = Box::new(outlines.into_iter());
+        Ok(Self { outlines, comments: String::new(), is_rate_assumed, has_deviation_column: false })
+    }
+
+    /// Whether the file has a column of standard deviations.
+    #[must_use]
+    pub fn has_deviation_column(&self) -> bool {
+        self.has_deviation_column
     }
 
     /// Whether the rate of the frames is neither given nor in the file: 30 frames per second are assumed then.

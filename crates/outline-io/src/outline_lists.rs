@@ -6,7 +6,9 @@ use crate::column::Column;
 use crate::error::{ReadError, ReadErrorKind};
 use crate::frame::OutlineFrame;
 use crate::outline_rows::{OutlineRows, closed_outline};
-use crate::table_keys::{ColumnsError, LatestOutlines, TableKeys, at, check_length, check_number, mark_text};
+use crate::table_keys::{
+    ColumnsError, LatestOutlines, TableKeys, at, check_deviation, check_length, check_number, mark_text,
+};
 
 /// Lists of values one after the other, as Arrow has them: list `i` is `values[offsets[i]..offsets[i + 1]]`.
 #[derive(Debug, Clone, Copy)]
@@ -95,6 +97,16 @@ pub struct ListChunk<'a> {
     pub arc: Marks<'a>,
     /// Contours of closed outlines.
     pub contour: Marks<'a>,
+    /// Standard deviations of the points along the normal of the contour, in the unit of the coordinates, an empty list for outlines
+    /// without; `None` where no outline has them.
+    pub deviation: Option<Lists<'a, f64>>,
+}
+
+impl<'a> ListChunk<'a> {
+    /// The standard deviations of the points of a row; none where it states none.
+    fn deviations(&self, row: usize) -> &'a [f64] {
+        self.deviation.map_or(&[], |lists| lists.list(row))
+    }
 }
 
 /// A table of outlines in memory with one row per outline, whose points are lists: as in Parquet, and as Arrow has it. The points may be
@@ -125,7 +137,7 @@ impl<'a> OutlineLists<'a> {
     /// let offsets = [0, 3, 6];
     /// let x = Lists { offsets: &offsets, values: &[0.0, 2.0, 0.0, 5.0, 7.0, 5.0] };
     /// let y = Lists { offsets: &offsets, values: &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0] };
-    /// let chunks = vec![ListChunk { x, y, arc: Marks::None, contour: Marks::None }];
+    /// let chunks = vec![ListChunk { x, y, arc: Marks::None, contour: Marks::None, deviation: None }];
     /// let table = OutlineLists { names: &[], object: None, frame: &[0, 1], time: &[0.0, 0.1], chunks };
     /// let outlines = table.outlines()?.collect::<Result<Vec<_>, _>>()?;
     /// assert_eq!(outlines[1].outline.centroid().x, 17.0 / 3.0);
@@ -146,6 +158,10 @@ impl<'a> OutlineLists<'a> {
             for (column, marks) in [(Column::Arc, chunk.arc), (Column::Contour, chunk.contour)] {
                 check_length(column, marks.len().unwrap_or(chunk.x.len()), chunk.x.len())?;
                 marks.check(column)?;
+            }
+            if let Some(deviation) = chunk.deviation {
+                check_length(Column::Deviation, deviation.len(), chunk.x.len())?;
+                deviation.check(Column::Deviation)?;
             }
             rows += chunk.x.len();
         }
@@ -195,7 +211,8 @@ impl<'a> ListOutlines<'a> {
         let (keys, first) = (self.keys, place.row);
         self.latest.check(&keys, first)?;
         let (x, y) = points(chunk, place)?;
-        let outline = if matches!((chunk.arc, chunk.contour), (Marks::None, Marks::None)) {
+        let has_marks = !matches!((chunk.arc, chunk.contour), (Marks::None, Marks::None));
+        let outline = if !has_marks && chunk.deviations(place.in_chunk).is_empty() {
             place.row += 1;
             place.in_chunk += 1;
             closed_outline(vec![x.iter().zip(y).map(|(x, y)| Point2::new(*x, *y)).collect()])
@@ -252,6 +269,11 @@ fn add_row(outline: &mut OutlineRows, chunk: &ListChunk<'_>, place: Place) -> Re
             check_list(column, marks.list(in_chunk).len(), x.len(), row)?;
         }
     }
+    let deviations = chunk.deviations(in_chunk);
+    if !deviations.is_empty() {
+        check_list(Column::Deviation, deviations.len(), x.len(), row)?;
+        deviations.iter().try_for_each(|deviation| check_deviation(*deviation, row))?;
+    }
     let mut latest = None;
     let mut arc_text = String::new();
     for (point, (x, y)) in x.iter().zip(y).enumerate() {
@@ -269,6 +291,9 @@ fn add_row(outline: &mut OutlineRows, chunk: &ListChunk<'_>, place: Place) -> Re
         latest = Some((arc, contour));
         let added = outline.add(Point2::new(*x, *y), arc_text.as_bytes(), arc_continues, row as u64);
         added.map_err(|(kind, column)| at(column, row, kind))?;
+        if let Some(deviation) = deviations.get(point) {
+            outline.state_deviation(*deviation);
+        }
     }
     Ok(())
 }

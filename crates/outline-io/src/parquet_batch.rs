@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use crate::column::Column;
-use crate::csv_field::{NUMBER_LIMIT, quoted_start};
+use crate::csv_field::{NUMBER_LIMIT, positive, quoted_start};
 use crate::error::ReadErrorKind;
 use crate::frame::{DEFAULT_OBJECT, NAME_LIMIT};
 use crate::parquet_columns::{Arity, Found};
@@ -39,6 +39,8 @@ pub(crate) struct Batch {
     pub(crate) y: Vec<f64>,
     pub(crate) arc: Marks,
     pub(crate) contour: Marks,
+    /// Standard deviations of the points, NaN where none is stated; empty where the file has no such column.
+    pub(crate) deviation: Vec<f64>,
 }
 
 /// What is wrong in which of the rows just read, and in which column.
@@ -69,6 +71,7 @@ impl Batch {
         self.ends.truncate(rows);
         self.x.truncate(points);
         self.y.truncate(points);
+        self.deviation.truncate(points);
         for marks in [&mut self.arc, &mut self.contour] {
             match marks {
                 Marks::None => {}
@@ -87,6 +90,7 @@ impl Batch {
         self.ends.extend(other.ends.iter().map(|end| end + points));
         self.x.append(&mut other.x);
         self.y.append(&mut other.y);
+        self.deviation.append(&mut other.deviation);
         for (marks, new) in [(&mut self.arc, other.arc), (&mut self.contour, other.contour)] {
             match (marks, new) {
                 (Marks::OfRows(marks), Marks::OfRows(mut new)) | (Marks::OfPoints(marks), Marks::OfPoints(mut new)) => {
@@ -151,17 +155,17 @@ pub(crate) fn frames(found: &Found, cells: &Cells, rows: usize) -> (Vec<u64>, Op
 /// Finite numbers.
 pub(crate) fn numbers(found: &Found, cells: &Cells, rows: usize) -> (Vec<f64>, Option<BadRow>) {
     each_row(found, cells, rows, |values, position| {
-        let value = match (values, position) {
-            (_, None) => return Err(ReadErrorKind::EmptyField),
-            (Values::Signed(values), Some(position)) => values[position] as f64,
-            (Values::Unsigned(values), Some(position)) => values[position] as f64,
-            (Values::Float(values), Some(position)) => values[position],
-            (Values::Text(values), Some(position)) => {
-                return Err(ReadErrorKind::NotANumber { text: quoted_start(values[position].data()) });
-            }
-        };
-        checked(value)
+        checked(number(values, position.ok_or(ReadErrorKind::EmptyField)?)?)
     })
+}
+
+fn number(values: &Values, position: usize) -> Result<f64, ReadErrorKind> {
+    match values {
+        Values::Signed(values) => Ok(values[position] as f64),
+        Values::Unsigned(values) => Ok(values[position] as f64),
+        Values::Float(values) => Ok(values[position]),
+        Values::Text(values) => Err(ReadErrorKind::NotANumber { text: quoted_start(values[position].data()) }),
+    }
 }
 
 /// Names of objects; those that follow each other share theirs.
@@ -266,37 +270,64 @@ pub(crate) fn marks(found: &Found, cells: &Cells, points: &[usize]) -> (Marks, O
         });
         return (Marks::OfRows(marks), bad);
     }
-    let mut marks = Vec::with_capacity(points.last().copied().unwrap_or(0));
     // A mark that is missing in a list is none, but takes its place.
-    let (mut item, mut value) = (0, 0);
+    let (marks, bad) = each_point(found, cells, points, NO_MARK, |values, position| {
+        position.map_or(Ok(NO_MARK), |position| mark(values, position))
+    });
+    (Marks::OfPoints(marks), bad)
+}
+
+/// Standard deviations, NaN where none is stated. Lists must be as long as those of the points, or missing.
+pub(crate) fn deviations(found: &Found, cells: &Cells, points: &[usize]) -> (Vec<f64>, Option<BadRow>) {
+    let stated = |values: &Values, position: usize| checked(number(values, position)?).and_then(positive);
+    match found.arity {
+        Arity::One => each_row(found, cells, points.len(), |values, position| {
+            position.map_or(Ok(f64::NAN), |position| stated(values, position))
+        }),
+        Arity::List => each_point(found, cells, points, f64::NAN, |values, position| {
+            stated(values, position.ok_or(ReadErrorKind::EmptyField)?)
+        }),
+    }
+}
+
+/// One value per point from lists, up to the first row where it cannot be had; `none` for the points of rows whose list is missing or empty.
+fn each_point<T: Copy>(
+    found: &Found,
+    cells: &Cells,
+    points: &[usize],
+    none: T,
+    value: impl Fn(&Values, Option<usize>) -> Result<T, ReadErrorKind>,
+) -> (Vec<T>, Option<BadRow>) {
+    let mut all = Vec::with_capacity(points.last().copied().unwrap_or(0));
+    let (mut item, mut next) = (0, 0);
     let mut start = 0;
     for (row, end) in points.iter().enumerate() {
         let bad = |kind| Some(BadRow { row, column: found.column, kind });
-        let first_mark = marks.len();
+        let first = all.len();
         let mut is_first = true;
         while item < cells.repetition.len() && (is_first || cells.repetition[item] != 0) {
             is_first = false;
             let level = cells.definition.get(item).copied().unwrap_or(found.present);
             item += 1;
-            if level == found.present {
-                match mark(&cells.values, value) {
-                    Ok(mark) => marks.push(mark),
-                    Err(kind) => return (Marks::OfPoints(marks), bad(kind)),
-                }
-                value += 1;
-            } else if level >= found.element {
-                marks.push(NO_MARK);
+            if level < found.element {
+                continue;
+            }
+            let position = (level == found.present).then_some(next);
+            next += usize::from(position.is_some());
+            match value(&cells.values, position) {
+                Ok(value) => all.push(value),
+                Err(kind) => return (all, bad(kind)),
             }
         }
-        let (count, expected) = (marks.len() - first_mark, end - start);
+        let (count, expected) = (all.len() - first, end - start);
         if count == 0 {
-            marks.resize(first_mark + expected, NO_MARK);
+            all.resize(first + expected, none);
         } else if count != expected {
-            return (Marks::OfPoints(marks), bad(ReadErrorKind::ListLength { found: count, expected }));
+            return (all, bad(ReadErrorKind::ListLength { found: count, expected }));
         }
         start = *end;
     }
-    (Marks::OfPoints(marks), None)
+    (all, None)
 }
 
 fn mark(values: &Values, position: usize) -> Result<i64, ReadErrorKind> {

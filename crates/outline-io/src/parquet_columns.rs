@@ -1,4 +1,5 @@
 //! Which columns of a Parquet file hold what.
+use parquet::basic::LogicalType;
 use parquet::schema::types::SchemaDescriptor;
 
 use crate::column::Column;
@@ -48,6 +49,7 @@ pub(crate) struct TableColumns {
     pub(crate) object: Option<Found>,
     pub(crate) arc: Option<Found>,
     pub(crate) contour: Option<Found>,
+    pub(crate) deviation: Option<Found>,
 }
 
 /// Whether frames are needed.
@@ -86,6 +88,7 @@ impl TableColumns {
             object: find(Column::Object)?,
             arc: find(Column::Arc)?,
             contour: find(Column::Contour)?,
+            deviation: find(Column::Deviation)?,
         };
         columns.check(schema)?;
         Ok(columns)
@@ -100,7 +103,7 @@ impl TableColumns {
 
     /// Every column that is read.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Found> {
-        let optional = [&self.frame, &self.time, &self.object, &self.arc, &self.contour];
+        let optional = [&self.frame, &self.time, &self.object, &self.arc, &self.contour, &self.deviation];
         optional.into_iter().flatten().chain([&self.x, &self.y])
     }
 
@@ -117,12 +120,17 @@ impl TableColumns {
             (Arity::One, Arity::List) => return wrong(&self.y, "one value in a row, as column x has"),
             _ => {}
         }
-        for found in [&self.arc, &self.contour].into_iter().flatten() {
+        for found in [&self.arc, &self.contour, &self.deviation].into_iter().flatten() {
             if self.x.arity == Arity::One && found.arity == Arity::List {
                 return wrong(found, "one value in a row, as column x has");
             }
         }
-        Ok(())
+        match &self.deviation {
+            Some(found) if self.x.arity == Arity::List && found.arity == Arity::One => {
+                wrong(found, "lists, as column x has")
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -138,11 +146,16 @@ fn find(schema: &SchemaDescriptor, column: Column) -> Result<Option<Found>, Head
     let mut positions = (0..schema.num_columns()).filter(of_name);
     let Some(position) = positions.next() else { return Ok(None) };
     let descriptor = schema.column(position);
+    // A column of nothing but nulls has no lists, whatever x and y have, and states nothing.
+    let is_null =
+        matches!(descriptor.logical_type_ref(), Some(LogicalType::Unknown)) && descriptor.max_rep_level() == 0;
+    if column == Column::Deviation && is_null {
+        return Ok(None);
+    }
     let expected = match column {
         Column::Object => "text or whole numbers",
         Column::Frame | Column::Time => "numbers",
-        Column::X | Column::Y => "lists of numbers, or numbers",
-        Column::Deviation => "lists of numbers",
+        Column::X | Column::Y | Column::Deviation => "lists of numbers, or numbers",
         Column::Arc | Column::Contour => "lists of whole numbers, or whole numbers",
     };
     let arity = match descriptor.max_rep_level() {

@@ -23,13 +23,15 @@ const SORT_LIMIT: usize = 1 << 26;
 const ROW_COST: usize = 8;
 
 /// Reads outlines one by one from Parquet: one row per outline with the columns `frame`, `time`, `x` and `y`, the last two lists of
-/// numbers in the order of the contour, and the optional columns `object`, `arc` and `contour`.
+/// numbers in the order of the contour, and the optional columns `object`, `arc`, `contour` and `deviation`.
 ///
 /// The columns may stand in any order; others are not read. Numbers may be of any type, and `object` text or whole numbers.
 ///
 /// - `arc` and `contour` are lists with a whole number for every point; null, or a negative number, is none. They mean what they mean in CSV,
 ///   see [`OutlineReader`](crate::OutlineReader).
 /// - Or they are one whole number: then a row is one arc or contour of its outline.
+/// - `deviation` is a list with the standard deviation of every point, see [`OutlineReader`](crate::OutlineReader); null or an empty list
+///   for an outline without.
 /// - The rows may be in any order. Where the frames of an object do not increase from row to row, all rows are read and ordered by
 ///   frame and object, which files of more than 64 million points refuse.
 /// - Where `x` and `y` are numbers and no lists, a row is one point as in CSV, and the order of the rows is that of the contours.
@@ -91,6 +93,12 @@ impl ParquetReader {
     #[must_use]
     pub fn comments(&self) -> &str {
         self.table.comments().unwrap_or_default()
+    }
+
+    /// Whether the file has the column `deviation`.
+    #[must_use]
+    pub fn has_deviation_column(&self) -> bool {
+        self.table.columns.deviation.is_some()
     }
 
     fn of(table: Table) -> Result<Self, ReadError> {
@@ -282,8 +290,11 @@ impl ParquetReader {
                 entered.map_err(|kind| (Some(Column::Contour), kind))?;
             }
             self.mark = (arc, contour);
-            let point = Point2::new(self.batch.x[point], self.batch.y[point]);
-            present.add(point, arc_text.as_bytes(), arc_continues, number).map_err(|(kind, column)| (column, kind))?;
+            let place = Point2::new(self.batch.x[point], self.batch.y[point]);
+            present.add(place, arc_text.as_bytes(), arc_continues, number).map_err(|(kind, column)| (column, kind))?;
+            if let Some(deviation) = self.batch.deviation.get(point).filter(|deviation| !deviation.is_nan()) {
+                present.state_deviation(*deviation);
+            }
         }
         Ok(())
     }

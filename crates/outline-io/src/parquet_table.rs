@@ -9,7 +9,7 @@ use parquet::file::reader::ChunkReader;
 use crate::column::Column;
 use crate::csv_columns::HeaderError;
 use crate::error::{Place, ReadError, ReadErrorKind, Span};
-use crate::parquet_batch::{BadRow, Batch, Marks, coordinates, frames, marks, names, numbers};
+use crate::parquet_batch::{BadRow, Batch, Marks, coordinates, deviations, frames, marks, names, numbers};
 use crate::parquet_columns::{Arity, Found, Layout, Needed, TableColumns};
 use crate::parquet_leaf::{Cells, Leaf};
 use crate::parquet_pages::{Allowance, CheckedPages};
@@ -154,6 +154,8 @@ struct Group {
     points: Option<[Leaf; 2]>,
     arc: Option<Leaf>,
     contour: Option<Leaf>,
+    /// Where the coordinates are wanted.
+    deviation: Option<Leaf>,
 }
 
 /// Rows that could be read, and what is wrong with the row behind them.
@@ -177,12 +179,12 @@ impl Batches {
         let is_wanted = |found: &&Found| self.wanted == Wanted::All || found.arity == Arity::One;
         let marks = |found: &Option<Found>| found.as_ref().filter(is_wanted).map(open).transpose();
         let (arc, contour) = (marks(&columns.arc)?, marks(&columns.contour)?);
-        let points = match self.wanted {
-            Wanted::Keys => None,
-            Wanted::All => Some([open(&columns.x)?, open(&columns.y)?]),
+        let (points, deviation) = match self.wanted {
+            Wanted::Keys => (None, None),
+            Wanted::All => (Some([open(&columns.x)?, open(&columns.y)?]), optional(&columns.deviation)?),
         };
         let (frame, time, object) = (optional(&columns.frame)?, optional(&columns.time)?, optional(&columns.object)?);
-        Ok(Group { left: rows, frame, time, object, points, arc, contour })
+        Ok(Group { left: rows, frame, time, object, points, arc, contour, deviation })
     }
 
     fn read(&mut self) -> Result<Option<Read>, ReadError> {
@@ -290,6 +292,11 @@ impl Group {
         };
         batch.arc = marks_of(&mut self.arc, &columns.arc)?;
         batch.contour = marks_of(&mut self.contour, &columns.contour)?;
+        if let (Some(leaf), Some(found)) = (&mut self.deviation, &columns.deviation) {
+            let (stated, bad_deviation) = deviations(found, &cells(leaf, found)?, &batch.ends);
+            batch.deviation = stated;
+            bad.extend(bad_deviation);
+        }
         let bad = bad.into_iter().min_by_key(|bad| bad.row);
         // Levels of damaged files may tell of other rows.
         let whole = bad.as_ref().map_or(rows, |bad| bad.row);

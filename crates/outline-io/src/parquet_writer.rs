@@ -24,7 +24,8 @@ const GROUP_POINTS: usize = 1 << 20;
 const GROUP_ROWS: usize = 1 << 16;
 
 /// Writes outlines one by one as Parquet with one row per outline: `object`, `frame`, `time`, `x` and `y`, and where the options ask for
-/// them `arc` and `contour`. `x` and `y` are lists of floats, `arc` and `contour` lists of whole numbers as long, or null.
+/// them `arc`, `contour` and `deviation`. `x` and `y` are lists of floats, `arc` and `contour` lists of whole numbers as long, or null, and
+/// `deviation` lists of floats as long, or null.
 /// [`ParquetReader`](crate::ParquetReader) reads the file back to the last bit, as it does CSV. The column `object` is always there.
 ///
 /// Rows are gathered until they have a million points. Nothing can be read before [`Self::finish`] has written the table of contents.
@@ -53,14 +54,15 @@ struct Rows {
     y: Vec<f64>,
     /// Whether a point is the first of its row.
     is_first: Vec<bool>,
-    arc: Pieces,
-    contour: Pieces,
+    arc: OptionalLists<i32>,
+    contour: OptionalLists<i32>,
+    deviation: OptionalLists<f64>,
 }
 
-/// The piece that points belong to: a list per row, or null.
+/// A value for every point, such as the piece that it belongs to: a list per row, or null.
 #[derive(Debug, Default)]
-struct Pieces {
-    values: Vec<i32>,
+struct OptionalLists<T> {
+    values: Vec<T>,
     definition: Vec<i16>,
     repetition: Vec<i16>,
 }
@@ -68,21 +70,20 @@ struct Pieces {
 /// Definition level of the elements of lists that may be null.
 const IN_OPTIONAL_LIST: i16 = 2;
 
-impl Pieces {
-    fn push(&mut self, outline: &Outline, has_pieces: bool) {
-        if !has_pieces {
+impl<T> OptionalLists<T> {
+    /// Adds a row. The list is not empty.
+    fn push(&mut self, list: Option<impl Iterator<Item = T>>) {
+        let Some(list) = list else {
             self.definition.push(0);
             self.repetition.push(0);
             return;
-        }
+        };
         let mut repetition = 0;
-        for (piece, points) in (0..).zip(outline.pieces()) {
-            for _ in points.points {
-                self.values.push(piece);
-                self.definition.push(IN_OPTIONAL_LIST);
-                self.repetition.push(repetition);
-                repetition = 1;
-            }
+        for value in list {
+            self.values.push(value);
+            self.definition.push(IN_OPTIONAL_LIST);
+            self.repetition.push(repetition);
+            repetition = 1;
         }
     }
 }
@@ -105,16 +106,19 @@ impl<W: Write> ParquetWriter<W> {
         ];
         columns.extend(options.arc_column.then(|| list("arc", "OPTIONAL", "INT32")));
         columns.extend(options.contour_column.then(|| list("contour", "OPTIONAL", "INT32")));
+        columns.extend(options.deviation_column.then(|| list("deviation", "OPTIONAL", "DOUBLE")));
         let schema = parse_message_type(&format!("message outlines {{ {} }}", columns.join(" "))).map_err(failed)?;
         let comments = KeyValue::new(COMMENTS.to_owned(), comments.join("\n"));
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
-            // Coordinates hardly repeat.
+            // Coordinates and standard deviations hardly repeat.
             .set_column_dictionary_enabled(list_path("x"), false)
             .set_column_dictionary_enabled(list_path("y"), false)
+            .set_column_dictionary_enabled(list_path("deviation"), false)
             .set_statistics_enabled(EnabledStatistics::Chunk)
             .set_column_statistics_enabled(list_path("x"), EnabledStatistics::None)
             .set_column_statistics_enabled(list_path("y"), EnabledStatistics::None)
+            .set_column_statistics_enabled(list_path("deviation"), EnabledStatistics::None)
             .set_created_by(format!("freeform version {}", env!("CARGO_PKG_VERSION")))
             .set_key_value_metadata(Some(vec![comments]))
             .build();
@@ -145,11 +149,16 @@ impl<W: Write> ParquetWriter<W> {
             is_first = false;
         }
         let open = matches!(frame.outline, Outline::Open(_));
+        let pieces =
+            || (0..).zip(frame.outline.pieces()).flat_map(|(number, piece)| piece.points.iter().map(move |_| number));
         if self.options.arc_column {
-            rows.arc.push(&frame.outline, open);
+            rows.arc.push(open.then(pieces));
         }
         if self.options.contour_column {
-            rows.contour.push(&frame.outline, !open);
+            rows.contour.push((!open).then(pieces));
+        }
+        if self.options.deviation_column {
+            rows.deviation.push(frame.outline.deviations());
         }
         if rows.x.len() >= GROUP_POINTS || rows.frame.len() >= GROUP_ROWS {
             self.write_group()?;
@@ -184,6 +193,10 @@ impl<W: Write> ParquetWriter<W> {
         let asked = [(self.options.arc_column, &rows.arc), (self.options.contour_column, &rows.contour)];
         for (_, pieces) in asked.into_iter().filter(|(is_asked, _)| *is_asked) {
             column::<Int32Type>(&mut group, &pieces.values, Some((&pieces.definition, &pieces.repetition)))?;
+        }
+        if self.options.deviation_column {
+            let OptionalLists { values, definition, repetition } = &rows.deviation;
+            column::<DoubleType>(&mut group, values, Some((definition, repetition)))?;
         }
         group.close().map_err(failed)?;
         self.pass_on()

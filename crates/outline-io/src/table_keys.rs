@@ -2,7 +2,7 @@
 use freeform_curve_fit::{Outline, OutlineError};
 
 use crate::column::Column;
-use crate::csv_field::NUMBER_LIMIT;
+use crate::csv_field::{NUMBER_LIMIT, positive};
 use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::frame::{DEFAULT_OBJECT, OutlineFrame};
 use crate::outline_rows::OutlineRows;
@@ -169,6 +169,12 @@ pub(crate) fn check_number(value: f64, column: Column, row: usize) -> Result<(),
         return Err(at(Some(column), row, ReadErrorKind::TooLarge { value, limit: NUMBER_LIMIT }));
     }
     Ok(())
+}
+
+/// Refuses what is no standard deviation.
+pub(crate) fn check_deviation(value: f64, row: usize) -> Result<(), ReadError> {
+    check_number(value, Column::Deviation, row)?;
+    positive(value).map(drop).map_err(|kind| at(Some(Column::Deviation), row, kind))
 }
 
 pub(crate) fn at(column: Option<Column>, row: usize, kind: ReadErrorKind) -> ReadError {

@@ -1,7 +1,7 @@
 //! Outlines as columns of a table: the same as from a file, and the same mistakes found.
 use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline};
 use freeform_outline_io::{
-    ColumnsError, OutlineColumns, OutlineFrame, OutlineReader, OutlineWriter, ReadError, ReadErrorKind, Span,
+    Column, ColumnsError, OutlineColumns, OutlineFrame, OutlineReader, OutlineWriter, ReadError, ReadErrorKind, Span,
     WriterOptions,
 };
 use nalgebra::Point2;
@@ -18,6 +18,7 @@ struct Table {
     y: Vec<f64>,
     arc: Vec<i64>,
     contour: Vec<i64>,
+    deviation: Vec<f64>,
 }
 
 impl Table {
@@ -28,6 +29,10 @@ impl Table {
                 table.names.push(frame.object.clone());
                 table.names.len() - 1
             });
+            match frame.outline.deviations() {
+                Some(stated) => table.deviation.extend(stated),
+                None => table.deviation.resize(table.deviation.len() + frame.outline.point_count(), f64::NAN),
+            }
             for (number, piece) in (0..).zip(frame.outline.pieces()) {
                 for p in piece.points {
                     table.object.push(object as u32);
@@ -44,8 +49,9 @@ impl Table {
     }
 
     fn columns(&self) -> OutlineColumns<'_> {
-        let Self { names, object, frame, time, x, y, arc, contour } = self;
-        OutlineColumns { names, object: Some(object), frame, time, x, y, arc: Some(arc), contour: Some(contour) }
+        let Self { names, object, frame, time, x, y, arc, contour, deviation } = self;
+        let (arc, contour, deviation) = (Some(&arc[..]), Some(&contour[..]), Some(&deviation[..]));
+        OutlineColumns { names, object: Some(object), frame, time, x, y, arc, contour, deviation }
     }
 
     fn read(&self) -> Vec<Result<OutlineFrame, ReadError>> {
@@ -74,6 +80,12 @@ fn with_hole(shift: f64) -> Outline {
     boundary.with_inner(vec![square(1.0)]).expect("a hole inside").into()
 }
 
+/// With standard deviations of its points.
+fn stating(outline: Outline) -> Outline {
+    let stated = (1..=outline.point_count()).map(|point| 0.1 * point as f64).collect();
+    outline.with_deviations(stated).expect("positive numbers")
+}
+
 fn frame(frame: u64, object: &str, outline: Outline) -> OutlineFrame {
     OutlineFrame { frame, time: frame as f64 / 30.0, object: object.to_owned(), outline }
 }
@@ -90,8 +102,10 @@ fn recording() -> Vec<OutlineFrame> {
 fn columns_give_the_outlines_that_the_same_rows_of_a_file_give() {
     let mut frames = recording();
     frames.extend((0..3).map(|k| frame(k, "hollow", with_hole(0.1 * k as f64))));
-    let options =
-        WriterOptions { arc_column: true, contour_column: true, object_column: true, ..WriterOptions::default() };
+    let stated = [triangle(0.0), two_arcs(0.0), with_hole(0.0)].map(stating);
+    frames.extend((0..).zip(stated).map(|(k, outline)| frame(k, "stating", outline)));
+    let options = WriterOptions::needed_for(&frames);
+    assert!(options.arc_column && options.contour_column && options.deviation_column);
     let mut writer = OutlineWriter::new(Vec::new(), options).expect("memory");
     frames.iter().for_each(|frame| writer.write(frame).expect("memory"));
     let file = writer.finish().expect("memory");
@@ -105,14 +119,15 @@ fn columns_give_the_outlines_that_the_same_rows_of_a_file_give() {
 #[test]
 fn without_objects_and_arcs_there_is_one_object_with_closed_outlines() {
     let table = Table::of(&[frame(3, "0", triangle(0.0)), frame(5, "0", triangle(1.0))]);
-    let columns = OutlineColumns { object: None, arc: None, contour: None, names: &[], ..table.columns() };
+    let columns =
+        OutlineColumns { object: None, arc: None, contour: None, deviation: None, names: &[], ..table.columns() };
     let read: Vec<_> = columns.outlines().expect("columns").collect::<Result<_, _>>().expect("good");
     assert_eq!(read, [frame(3, "0", triangle(0.0)), frame(5, "0", triangle(1.0))]);
 }
 
 #[test]
-fn a_last_point_that_repeats_the_first_is_dropped() {
-    let mut table = Table::of(&[frame(0, "0", triangle(0.0))]);
+fn a_last_point_that_repeats_the_first_is_dropped_with_its_deviation() {
+    let mut table = Table::of(&[frame(0, "0", stating(triangle(0.0)))]);
     let again = table.clone();
     for (column, first) in [(&mut table.x, again.x[0]), (&mut table.y, again.y[0])] {
         column.push(first);
@@ -122,7 +137,8 @@ fn a_last_point_that_repeats_the_first_is_dropped() {
     table.time.push(0.0);
     table.arc.push(-1);
     table.contour.push(0);
-    assert_eq!(table.read().remove(0).expect("a triangle").outline, triangle(0.0));
+    table.deviation.push(7.0);
+    assert_eq!(table.read().remove(0).expect("a triangle").outline, stating(triangle(0.0)));
 }
 
 #[test]
@@ -133,6 +149,9 @@ fn columns_of_different_lengths_and_objects_without_names_are_refused() {
     assert!(
         matches!(short.outlines(), Err(ColumnsError::Length { found, expected, .. }) if (found, expected) == (rows - 1, rows))
     );
+    let short = OutlineColumns { deviation: Some(&table.deviation[1..]), ..table.columns() };
+    let expected = ColumnsError::Length { column: Column::Deviation, found: rows - 1, expected: rows };
+    assert_eq!(short.outlines().err(), Some(expected));
     let nameless = OutlineColumns { names: &table.names[..2], ..table.columns() };
     assert_eq!(nameless.outlines().err(), Some(ColumnsError::NoName { row: 9, position: 2, names: 2 }));
 }
@@ -177,6 +196,42 @@ fn mistakes_are_told_with_their_row() {
 }
 
 #[test]
+fn deviations_that_are_none_are_refused_with_their_row() {
+    let good = Table::of(
+        &recording().into_iter().map(|of| OutlineFrame { outline: stating(of.outline), ..of }).collect::<Vec<_>>(),
+    );
+    assert!(good.read().iter().all(|read| read.as_ref().is_ok_and(|frame| frame.outline.deviations().is_some())));
+    for (value, message) in [
+        (0.0, "row 4: column deviation: 0 is not a standard deviation (a number above 0, or nothing)"),
+        (-0.5, "row 4: column deviation: -0.5 is not a standard deviation (a number above 0, or nothing)"),
+        (f64::INFINITY, "row 4: column deviation: \"inf\" is not a finite number"),
+        (1e101, "row 4: column deviation: 1e101 is beyond 1e100"),
+    ] {
+        let mut table = good.clone();
+        table.deviation[4] = value;
+        let read = table.read();
+        let error = read[1].as_ref().expect_err("no deviation");
+        assert!(error.to_string().ends_with(message) && !error.is_recoverable() && read.len() == 2, "{error}");
+    }
+}
+
+#[test]
+fn an_outline_with_deviations_of_some_points_is_left_out_and_the_reading_goes_on() {
+    for outline in [triangle(0.0), two_arcs(0.0), with_hole(0.0)] {
+        let points = outline.point_count();
+        let mut table = Table::of(&[frame(0, "0", stating(outline.clone())), frame(1, "0", outline)]);
+        // NaN is none, for all points of an outline.
+        assert!(table.read().iter().all(Result::is_ok));
+        table.deviation[2] = f64::NAN;
+        let read = table.read();
+        let error = read[0].as_ref().expect_err("one is missing");
+        let message = format!("{} standard deviation(s) for {points} points", points - 1);
+        assert!(error.is_recoverable() && error.to_string().ends_with(&message), "{error}");
+        assert!(read.len() == 2 && read[1].is_ok());
+    }
+}
+
+#[test]
 fn reading_goes_on_after_points_that_are_no_outline() {
     let mut table = Table::of(&recording());
     table.y[..3].fill(0.0);
@@ -190,10 +245,10 @@ fn reading_goes_on_after_points_that_are_no_outline() {
 proptest! {
     #[test]
     fn no_columns_make_it_panic_or_run_on(
-        rows in prop::collection::vec((0..3_u32, 0..4_u64, -1.0..2.0_f64, prop::num::f64::ANY, prop::num::f64::ANY, -2..3_i64), 0..40),
+        rows in prop::collection::vec((0..3_u32, 0..4_u64, -1.0..2.0_f64, prop::num::f64::ANY, prop::num::f64::ANY, -2..3_i64, prop::num::f64::ANY), 0..40),
     ) {
         let mut table = Table { names: ["a", "b", "c"].map(str::to_owned).to_vec(), ..Table::default() };
-        for (object, frame, time, x, y, arc) in rows {
+        for (object, frame, time, x, y, arc, deviation) in rows {
             table.object.push(object);
             table.frame.push(frame);
             table.time.push(time);
@@ -201,6 +256,7 @@ proptest! {
             table.y.push(y);
             table.arc.push(arc);
             table.contour.push(arc - 1);
+            table.deviation.push(deviation);
         }
         let count = table.frame.len();
         prop_assert!(table.columns().outlines().expect("columns").count() <= count);

@@ -46,7 +46,15 @@ fn outline() -> impl Strategy<Value = Outline> {
     let arc = points(2).prop_filter_map("equal points", |points| OpenArc::new(points).ok());
     let open = prop::collection::vec(arc, 1..4)
         .prop_filter_map("points on one line", |arcs| OpenOutline::new(arcs).ok().map(Outline::Open));
-    prop_oneof![closed, open]
+    let deviation = prop_oneof![1e-3..10.0, 1e-300..1e-299, 1e99..1e100];
+    let stated = prop::option::of(prop::collection::vec(deviation, 90));
+    (prop_oneof![closed, open], stated).prop_map(|(outline, stated)| match stated {
+        Some(stated) => {
+            let of_points = stated[..outline.point_count()].to_vec();
+            outline.with_deviations(of_points).expect("positive numbers")
+        }
+        None => outline,
+    })
 }
 
 /// Frames with gaps in number and time, each showing some of the objects.
@@ -113,7 +121,8 @@ fn rearranged(csv: &[u8], order: &[usize], line_end: &str, noise: &[bool], close
 proptest! {
     #[test]
     fn what_is_written_is_read_back(frames in sequence()) {
-        let all = WriterOptions { object_column: true, arc_column: true, ..WriterOptions::default() };
+        let all =
+            WriterOptions { object_column: true, arc_column: true, deviation_column: true, ..WriterOptions::default() };
         assert_same(&read(written(&frames, all).as_slice()), &frames);
         let needed = WriterOptions::needed_for(&frames);
         assert_same(&read(written(&frames, needed).as_slice()), &frames);
@@ -122,7 +131,7 @@ proptest! {
     #[test]
     fn the_layout_of_the_file_does_not_matter(
         frames in sequence(),
-        order in Just((0..7).collect::<Vec<usize>>()).prop_shuffle(),
+        order in Just((0..8).collect::<Vec<usize>>()).prop_shuffle(),
         line_end in prop_oneof![Just("\n"), Just("\r\n")],
         noise in prop::collection::vec(any::<bool>(), 1..20),
         closed_last in any::<bool>(),

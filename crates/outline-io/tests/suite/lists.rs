@@ -39,13 +39,15 @@ struct Row {
     y: Vec<f64>,
     arc: Vec<i64>,
     contour: Vec<i64>,
+    deviation: Vec<f64>,
 }
 
 impl Row {
     fn of(frame: &OutlineFrame, names: &[String]) -> Self {
         let object = names.iter().position(|name| *name == frame.object).expect("a name") as u32;
-        let mut row =
-            Self { object, frame: frame.frame, time: frame.time, x: vec![], y: vec![], arc: vec![], contour: vec![] };
+        let deviation = frame.outline.deviations().into_iter().flatten().collect();
+        let (x, y, arc, contour) = (vec![], vec![], vec![], vec![]);
+        let mut row = Self { object, frame: frame.frame, time: frame.time, x, y, arc, contour, deviation };
         for (number, piece) in (0..).zip(frame.outline.pieces()) {
             for p in piece.points {
                 row.x.push(p.x);
@@ -71,17 +73,19 @@ fn read_in(rows: &[Row], chunk: usize, with_marks: bool) -> Result<Vec<Result<Ou
                 |pick: fn(&Row) -> &Vec<f64>| Owned::of(&rows.iter().map(|r| pick(r).clone()).collect::<Vec<_>>());
             let marks =
                 |pick: fn(&Row) -> &Vec<i64>| Owned::of(&rows.iter().map(|r| pick(r).clone()).collect::<Vec<_>>());
-            (lists(|r| &r.x), lists(|r| &r.y), marks(|r| &r.arc), marks(|r| &r.contour))
+            (lists(|r| &r.x), lists(|r| &r.y), marks(|r| &r.arc), marks(|r| &r.contour), lists(|r| &r.deviation))
         })
         .collect();
     let marks = |lists| if with_marks { Marks::OfPoints(lists) } else { Marks::None };
     let chunks = columns
         .iter()
-        .map(|(x, y, arc, contour)| ListChunk {
+        .map(|(x, y, arc, contour, deviation)| ListChunk {
             x: x.view(),
             y: y.view(),
             arc: marks(arc.view()),
             contour: marks(contour.view()),
+            // A chunk may have the column where others lack it.
+            deviation: Some(deviation.view()).filter(|lists| !lists.values.is_empty()),
         })
         .collect();
     let object: Vec<u32> = rows.iter().map(|row| row.object).collect();
@@ -99,6 +103,12 @@ fn square(half: f64, shift: f64) -> Vec<Point2<f64>> {
     [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Point2::new(x + shift, y)).to_vec()
 }
 
+/// With standard deviations of its points.
+fn stating(outline: Outline) -> Outline {
+    let stated = (1..=outline.point_count()).map(|point| 0.1 * point as f64).collect();
+    outline.with_deviations(stated).expect("positive numbers")
+}
+
 fn recording() -> Vec<OutlineFrame> {
     let arc = |shift: f64| OpenArc::new(square(1.0, shift)[..3].to_vec()).expect("an arc");
     let frames = (0..5_u64).flat_map(|k| {
@@ -114,6 +124,11 @@ fn recording() -> Vec<OutlineFrame> {
                     .into(),
             ),
         ];
+        // Some frames state standard deviations, as some programs do not.
+        let outlines = outlines.map(|(object, outline)| match k {
+            1 | 3 => (object, stating(outline)),
+            _ => (object, outline),
+        });
         outlines.map(|(object, outline)| OutlineFrame { frame: k, time: shift, object: object.to_owned(), outline })
     });
     frames.collect()
@@ -152,6 +167,7 @@ fn rows_that_are_arcs_or_contours_make_one_outline_also_over_the_end_of_a_chunk(
         y: Lists { offsets, values: &y.values },
         arc: Marks::None,
         contour: Marks::OfRows(contour),
+        deviation: None,
     };
     let table = |chunks| OutlineLists { names: &[], object: None, frame: &[7, 7], time: &[0.5, 0.5], chunks };
     let read: Vec<_> = table(vec![chunk(first, &[0]), chunk(second, &[1])]).outlines().expect("columns").collect();
@@ -202,6 +218,75 @@ fn mistakes_are_told_with_their_row_and_column() {
 }
 
 #[test]
+fn deviations_that_are_none_are_refused_with_row_and_column() {
+    use ReadErrorKind as Kind;
+    for row in [3, 4, 5] {
+        let column = Some(Column::Deviation);
+        let found = failure(|rows| rows[row].deviation[2] = 0.0);
+        assert!(
+            matches!(found, (at, of, Kind::NotPositive { value: 0.0 }) if at == row as u64 && of == column),
+            "{found:?}"
+        );
+        let found = failure(|rows| rows[row].deviation[2] = -1.0);
+        assert!(
+            matches!(found, (at, of, Kind::NotPositive { value: -1.0 }) if at == row as u64 && of == column),
+            "{found:?}"
+        );
+        let found = failure(|rows| rows[row].deviation[2] = f64::NAN);
+        assert!(matches!(found, (at, of, Kind::NotFinite { .. }) if at == row as u64 && of == column), "{found:?}");
+        let found = failure(|rows| rows[row].deviation[2] = f64::INFINITY);
+        assert!(matches!(found, (at, of, Kind::NotFinite { .. }) if at == row as u64 && of == column), "{found:?}");
+        let found = failure(|rows| rows[row].deviation[2] = 1e101);
+        assert!(matches!(found, (at, of, Kind::TooLarge { .. }) if at == row as u64 && of == column), "{found:?}");
+        let found = failure(|rows| rows[row].deviation.truncate(2));
+        assert!(matches!(found, (at, of, Kind::ListLength { .. }) if at == row as u64 && of == column), "{found:?}");
+        let found = failure(|rows| rows[row].deviation.push(1.0));
+        assert!(matches!(found, (at, of, Kind::ListLength { .. }) if at == row as u64 && of == column), "{found:?}");
+    }
+}
+
+#[test]
+fn an_outline_of_rows_of_which_some_state_deviations_is_left_out() {
+    let (x, y) = ([0.0, 1.0, 5.0, 5.0], [0.0, 0.0, 1.0, 2.0]);
+    let read = |offsets: &[i64], values: &[f64]| {
+        let chunk = ListChunk {
+            x: Lists { offsets: &[0, 2, 4], values: &x },
+            y: Lists { offsets: &[0, 2, 4], values: &y },
+            arc: Marks::OfRows(&[0, 1]),
+            contour: Marks::None,
+            deviation: Some(Lists { offsets, values }),
+        };
+        let table = OutlineLists { names: &[], object: None, frame: &[0, 0], time: &[0.0, 0.0], chunks: vec![chunk] };
+        table.outlines().expect("columns").next().expect("an outline")
+    };
+    let outline = read(&[0, 2, 4], &[0.1, 0.2, 0.3, 0.4]).expect("two arcs").outline;
+    assert!(outline.deviations().expect("deviations").eq([0.1, 0.2, 0.3, 0.4]));
+    assert!(read(&[0, 0, 0], &[]).expect("two arcs").outline.deviations().is_none());
+    for (offsets, values) in [([0, 2, 2], [0.1, 0.2]), ([0, 0, 2], [0.3, 0.4])] {
+        let error = read(&offsets, &values).expect_err("one arc states none");
+        assert!(error.is_recoverable(), "{error}");
+        assert!(error.to_string().ends_with("2 standard deviation(s) for 4 points"), "{error}");
+    }
+}
+
+#[test]
+fn lists_of_deviations_that_do_not_fit_the_rows_or_their_values_are_refused() {
+    let (x, y) = ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    let error = |offsets: &[i64]| {
+        let lists = |values| Lists { offsets: &[0, 3], values };
+        let deviation = Some(Lists { offsets, values: &[0.5; 3] });
+        let chunk = ListChunk { x: lists(&x), y: lists(&y), arc: Marks::None, contour: Marks::None, deviation };
+        let chunks = vec![chunk];
+        OutlineLists { names: &[], object: None, frame: &[0], time: &[0.0], chunks }.outlines().err()
+    };
+    assert_eq!(error(&[0, 3]), None);
+    let column = Column::Deviation;
+    assert_eq!(error(&[0, 0, 3]), Some(ColumnsError::Length { column, found: 2, expected: 1 }));
+    let (list, start, end, values) = (0, 0, 4, 3);
+    assert_eq!(error(&[0, 4]), Some(ColumnsError::Offsets { column, list, start, end, values }));
+}
+
+#[test]
 fn reading_goes_on_after_a_row_whose_points_are_no_outline() {
     let mut rows = rows();
     rows[3].y.fill(0.0);
@@ -217,7 +302,8 @@ fn columns_that_do_not_fit_together_are_refused() {
     let values = [0.0, 1.0, 0.0];
     let error = |x: &[i64], y: &[i64], rows: usize| {
         let lists = |offsets| Lists { offsets, values: &values };
-        let chunks = vec![ListChunk { x: lists(x), y: lists(y), arc: Marks::None, contour: Marks::None }];
+        let (arc, contour) = (Marks::None, Marks::None);
+        let chunks = vec![ListChunk { x: lists(x), y: lists(y), arc, contour, deviation: None }];
         let (frame, time) = (vec![0; rows], vec![0.0; rows]);
         OutlineLists { names: &[], object: None, frame: &frame, time: &time, chunks }.outlines().err()
     };
@@ -235,12 +321,12 @@ proptest! {
     #[test]
     fn no_lists_make_it_panic_or_run_on(
         rows in prop::collection::vec(
-            (0..3_u32, 0..4_u64, -1.0..2.0_f64, prop::collection::vec((-3.0..3.0_f64, -3.0..3.0_f64, -2..3_i64), 0..6), 0..3_usize), 0..20),
+            (0..3_u32, 0..4_u64, -1.0..2.0_f64, prop::collection::vec((-3.0..3.0_f64, -3.0..3.0_f64, -2..3_i64), 0..6), 0..3_usize, prop::collection::vec(-0.1..3.0_f64, 0..6)), 0..20),
         chunk in 1..5_usize,
     ) {
         let rows: Vec<Row> = rows
             .into_iter()
-            .map(|(object, frame, time, points, cut)| Row {
+            .map(|(object, frame, time, points, cut, deviation)| Row {
                 object,
                 frame,
                 time,
@@ -248,6 +334,7 @@ proptest! {
                 y: points.iter().skip(cut / 2).map(|p| p.1).collect(),
                 arc: points.iter().map(|p| p.2).collect(),
                 contour: points.iter().skip(cut).map(|p| p.2 - 1).collect(),
+                deviation,
             })
             .collect();
         prop_assert!(read_in(&rows, chunk, true).expect("columns").len() <= rows.len());

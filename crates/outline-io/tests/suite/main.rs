@@ -13,6 +13,8 @@ mod labels;
 mod lists;
 #[cfg(feature = "parquet")]
 mod parquet;
+#[cfg(feature = "parquet")]
+mod parquet_deviations;
 mod pictures_as_people_have_them;
 mod polygons;
 mod sequences;

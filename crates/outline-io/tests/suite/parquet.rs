@@ -12,22 +12,22 @@ use proptest::prelude::*;
 use crate::csv_round_trip::sequence;
 
 /// A file of tests/data/parquet; make.py there tells what made it.
-fn sample(name: &str) -> PathBuf {
+pub(crate) fn sample(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/parquet").join(name)
 }
 
-fn parquet_of(frames: &[OutlineFrame], options: WriterOptions) -> Vec<u8> {
+pub(crate) fn parquet_of(frames: &[OutlineFrame], options: WriterOptions) -> Vec<u8> {
     let mut writer = ParquetWriter::new(Vec::new(), options, &[]).expect("memory");
     frames.iter().for_each(|frame| writer.write(frame).expect("the columns are there"));
     writer.finish().expect("memory")
 }
 
-fn read(bytes: &[u8]) -> Result<Vec<OutlineFrame>, ReadError> {
+pub(crate) fn read(bytes: &[u8]) -> Result<Vec<OutlineFrame>, ReadError> {
     ParquetReader::from_bytes(bytes.to_vec(), "test")?.collect()
 }
 
 /// The outlines of the samples that are read.
-fn expected() -> Vec<OutlineFrame> {
+pub(crate) fn expected() -> Vec<OutlineFrame> {
     let outline = |points: &[(f64, f64)]| {
         Outline::closed(points.iter().map(|(x, y)| Point2::new(*x, *y)).collect()).expect("an outline")
     };
@@ -148,7 +148,9 @@ fn no_changed_byte_brings_the_reader_down() {
         &expected(),
         WriterOptions { arc_column: true, contour_column: true, ..WriterOptions::default() },
     )];
-    for name in ["good-arrow", "good-gzip", "good-zstd", "good-encodings", "good-polars", "good-points"] {
+    for name in
+        ["good-arrow", "good-gzip", "good-zstd", "good-encodings", "good-polars", "good-points", "deviations-arrow"]
+    {
         files.push(std::fs::read(sample(&format!("{name}.parquet"))).expect("a sample"));
     }
     for bytes in files {
@@ -256,7 +258,9 @@ proptest! {
         let options = WriterOptions::needed_for(&frames);
         let bits = |frames: &[OutlineFrame]| -> Vec<_> {
             let points = |frame: &OutlineFrame| {
-                frame.outline.points().map(|point| (point.x.to_bits(), point.y.to_bits())).collect::<Vec<_>>()
+                let coordinates = frame.outline.points().flat_map(|point| [point.x, point.y]);
+                let numbers = coordinates.chain(frame.outline.deviations().into_iter().flatten());
+                numbers.map(f64::to_bits).collect::<Vec<_>>()
             };
             frames.iter().map(|frame| (frame.object.clone(), frame.frame, frame.time.to_bits(), points(frame))).collect()
         };

@@ -45,9 +45,31 @@ pl.DataFrame({"object": ["left"] * 3, "frame": frame, "time": time, "x": x, "y":
     pl.col("object").cast(pl.Categorical), pl.col("frame").cast(pl.UInt32)
 ).write_parquet(folder / "good-polars.parquet", compression="zstd")
 
+# Standard deviations of the points of the first and the last outline.
+stated = [[0.125, 0.25, 0.5, 1.0], None, [0.0625, 0.125, 0.25, 0.5]]
+with_them = but(deviation=stated)
+arrow("deviations-arrow", with_them, row_group_size=2)
+arrow("deviations-types", but(deviation=pa.array(stated, pa.large_list(pa.float32()))), compression="gzip", data_page_version="2.0")
+arrow("deviations-shuffled", with_them.take([2, 0, 1]), row_group_size=1)
+arrow("deviations-empty-list", but(deviation=[stated[0], [], stated[2]]), compression="zstd")
+frames.assign(deviation=stated).to_parquet(folder / "deviations-pandas.parquet")
+pl.DataFrame(with_them.drop_columns(["note"])).write_parquet(folder / "deviations-polars.parquet", compression="zstd")
+by_point = [value for values, of in zip(stated, x) for value in values or [None] * len(of)]
+points.assign(deviation=pd.array(by_point, dtype=float)).to_parquet(folder / "deviations-points.parquet", index=False)
+pl.DataFrame(points.assign(deviation=by_point)).with_columns(pl.Series("deviation", by_point, strict=False)).write_parquet(folder / "deviations-points-polars.parquet")
+arrow("no-deviations-null", but(deviation=pa.nulls(3)))
+arrow("no-deviations-null-lists", but(deviation=pa.nulls(3, pa.list_(pa.float64()))))
+arrow("no-deviations-empty-lists", but(deviation=[[], None, []]))
+points.assign(deviation=None).to_parquet(folder / "no-deviations-null-points.parquet", index=False)
+
 # Open outlines: two arcs of an outline in one row, and in two.
 arrow("arcs-lists", pa.table({"frame": [0], "time": [0.0], "x": [[0.0, 1.0, 5.0, 5.0]], "y": [[0.0, 0.0, 1.0, 2.0]], "arc": [[0, 0, 1, 1]]}))
 arrow("arcs-rows", pa.table({"frame": [0, 0], "time": [0.0, 0.0], "x": [[5.0, 5.0], [0.0, 1.0]], "y": [[1.0, 2.0], [0.0, 0.0]], "arc": [1, 0]}))
+
+arcs = {"frame": [0, 0], "time": [0.0, 0.0], "x": [[0.0, 1.0], [5.0, 5.0]], "y": [[0.0, 0.0], [1.0, 2.0]], "arc": [0, 1]}
+arrow("deviations-arcs-rows", pa.table({**arcs, "deviation": [[0.1, 0.2], [0.3, 0.4]]}).take([1, 0]))
+arrow("deviations-arcs-lists", pa.table({"frame": [0], "time": [0.0], "x": [[0.0, 1.0, 5.0, 5.0]], "y": [[0.0, 0.0, 1.0, 2.0]], "arc": [[0, 0, 1, 1]],
+                                         "deviation": [[0.1, 0.2, 0.3, 0.4]]}))
 
 # Files that are refused.
 arrow("bad-null-list", but(x=[x[0], None, x[2]]))
@@ -71,3 +93,15 @@ arrow("bad-arc", but(arc=[0.5, 1.0, 2.0]))
 arrow("bad-time-order", but(time=[0.0, 0.3, 0.1]))
 arrow("bad-mixed-lists", but(y=[0.0, 1.0, 2.0]))
 arrow("degenerate", but(x=[x[0], [], x[2]], y=[y[0], [], y[2]]))
+for name, last in [("zero", [1.0, 0.0, 1.0, 1.0]), ("negative", [1.0, 1.0, 1.0, -0.5]), ("nan", [1.0, float("nan"), 1.0, 1.0]),
+                   ("infinite", [1.0, float("inf"), 1.0, 1.0]), ("huge", [1.0, 1e101, 1.0, 1.0]), ("null-value", [1.0, None, 1.0, 1.0]),
+                   ("short", [1.0] * 3), ("long", [1.0] * 5)]:
+    arrow(f"bad-deviations-{name}", but(deviation=[stated[0], None, last]))
+arrow("bad-deviations-text", but(deviation=[["0.1"] * 4, None, None]))
+arrow("bad-deviations-one", but(deviation=[0.1, 0.2, 0.3]))
+arrow("bad-deviations-nested", but(deviation=[[[0.1]]] * 3))
+arrow("bad-deviations-some-arcs", pa.table({**arcs, "deviation": [[0.1, 0.2], None]}))
+for name, values in [("zero", [1.0] * 5 + [0.0] * 6), ("nan", [1.0] * 5 + [float("nan")] * 6), ("list", [[1.0]] * 11), ("text", ["0.1"] * 11)]:
+    arrow(f"bad-deviations-points-{name}", pa.table({**pa.Table.from_pandas(points, preserve_index=False).to_pydict(), "deviation": values}))
+some = [1.0] * 5 + [None] + [1.0] * 5
+arrow("bad-deviations-some-points", pa.table({**pa.Table.from_pandas(points, preserve_index=False).to_pydict(), "deviation": some}))
