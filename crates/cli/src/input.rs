@@ -166,6 +166,15 @@ impl Input {
         self.pictures().is_some()
     }
 
+    /// Whether the outlines come from a table with standard deviations of points.
+    pub(crate) fn has_deviation_column(&self) -> bool {
+        match &self.source {
+            Source::Csv(outlines) => outlines.has_deviation_column(),
+            Source::File(outlines) => outlines.has_deviation_column(),
+            Source::Pictures(_) => false,
+        }
+    }
+
     /// What may be wrong with the input, before it is read.
     pub(crate) fn warnings(&self) -> Vec<String> {
         if matches!(&self.source, Source::File(file) if file.is_rate_assumed()) {

@@ -27,9 +27,10 @@ pub(crate) struct OutlineArgs {
     #[arg(long, short, value_name = "FILE", default_value = "-")]
     pub(crate) output: PathBuf,
 
-    /// Write the standard deviations of the points too, as column `deviation` of CSV
+    /// Write the standard deviations of the points too, as column `deviation`
     ///
-    /// They are known where edges are fitted in grey pictures. `identify` and `track` weigh the points by them.
+    /// They are known where edges are fitted in grey pictures. Those of a table are written in any case. `identify` and `track`
+    /// weigh the points by them.
     #[arg(long)]
     pub(crate) deviations: bool,
 

@@ -18,9 +18,6 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
         .map(AsRef::as_ref)
         .collect();
     refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
-    if args.deviations && TableFormat::of(&args.output) == TableFormat::Parquet {
-        return Err(Failure::unusable("--deviations: Parquet does not have them; write CSV"));
-    }
     // A pipe that nobody reads is waited for here, which the first signal ends.
     let mut sink = Sink::open(&args.output)?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted)?;
@@ -61,6 +58,8 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
     // What a file holds is not known before all of it has been read.
     let object_column = input.pictures().is_none_or(|pictures| pictures.options().follows_all());
     let contour_column = input.pictures().is_none_or(|pictures| pictures.options().traces_contours());
+    // A copy of a table says no less than the table.
+    let deviation_column = args.deviations || input.has_deviation_column();
     let comments = std::mem::take(&mut input.comments);
     let mut warnings = MissingWarnings::default();
     for item in input.by_ref() {
@@ -77,7 +76,7 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
                         arc_column: true,
                         object_column,
                         contour_column,
-                        deviation_column: args.deviations,
+                        deviation_column,
                         resolution: None,
                     };
                     match TableWriter::new(sink, TableFormat::of(&args.output), options, &comments) {

@@ -491,8 +491,11 @@ fn deviations_of_points_are_written_where_they_are_asked_for_and_weigh_the_point
         assert_eq!(point, plain);
         assert!(deviation.parse::<f64>().is_ok_and(|deviation| deviation > 0.0), "{row}");
     }
-    let omega = |outlines: &str| {
-        json(&succeed("identify - --json --quiet", outlines))["objects"][0]["parameters"]["omega"]["value"].clone()
-    };
-    assert_ne!(omega(&with_deviations), omega(&plain));
+    let identified = |outlines: &str| json(&succeed("identify - --json --quiet", outlines))["objects"].clone();
+    assert_ne!(identified(&with_deviations)[0]["parameters"]["omega"], identified(&plain)[0]["parameters"]["omega"]);
+    // Parquet has the same, to the last bit.
+    let parquet = folder.path().join("a.parquet").display().to_string();
+    succeed(&format!("outline {frames} --quiet --deviations --output {parquet}"), "");
+    let from_parquet = json(&succeed(&format!("identify {parquet} --json --quiet"), ""));
+    assert_eq!(from_parquet["objects"], identified(&with_deviations));
 }

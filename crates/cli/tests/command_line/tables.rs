@@ -48,6 +48,55 @@ fn outline_turns_a_file_into_another_format_with_all_it_says() {
 }
 
 #[test]
+fn deviations_of_a_table_stay_with_its_points_through_parquet_and_csv() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (first, parquet, again) = (path("a.csv"), path("b.parquet"), path("c.csv"));
+    let plain = succeed("simulate --points 60 --seconds 0.5 --noise 0.004 --occlusion 0.2", "");
+    // Points on one side are known less well; of some frames nothing is said.
+    let stating = |line: &str| {
+        let fields: Vec<f64> = line.split(',').filter_map(|field| field.parse().ok()).collect();
+        match fields[..] {
+            [] if line.starts_with('#') => line.to_owned(),
+            [] => format!("{line},deviation"),
+            [frame, ..] if frame as u64 % 3 == 2 => format!("{line},"),
+            [_, _, x, ..] => format!("{line},{}", 0.01 + 0.003 * x.abs()),
+            _ => panic!("{line}"),
+        }
+    };
+    let table: String = plain.lines().map(|line| stating(line) + "\n").collect();
+    std::fs::write(&first, &table).expect("a file");
+    succeed(&format!("outline {first} -o {parquet}"), "");
+    succeed(&format!("outline {parquet} -o {again}"), "");
+    for command in ["identify --json -q", "track -q", "identify --method adaptive --json -q"] {
+        let [from_first, from_parquet, from_again] =
+            [&first, &parquet, &again].map(|path| succeed(&format!("{command} {path}"), "").replace(path, "FILE"));
+        assert_eq!(from_first, from_parquet, "{command}");
+        assert_eq!(from_first, from_again, "{command}");
+    }
+    let without = path("plain.csv");
+    std::fs::write(&without, &plain).expect("a file");
+    assert_ne!(succeed(&format!("track -q {first}"), ""), succeed(&format!("track -q {without}"), ""));
+    let copied = std::fs::read_to_string(&again).expect("text");
+    let header = |text: &str| text.lines().find(|line| !line.starts_with('#')).map(str::to_owned);
+    assert_eq!(header(&copied).as_deref(), Some("frame,time,x,y,object,arc,contour,deviation"));
+    // A table without them is copied without, unless they are asked for.
+    let copied = succeed(&format!("outline {without}"), "");
+    assert_eq!(header(&copied).as_deref(), Some("frame,time,x,y,object,arc,contour"));
+    let empty = succeed(&format!("outline {without} --deviations"), "");
+    assert_eq!(header(&empty).as_deref(), Some("frame,time,x,y,object,arc,contour,deviation"));
+}
+
+#[test]
+fn bad_deviations_in_parquet_are_told_with_row_and_column() {
+    let path = sample("parquet/bad-deviations-negative.parquet");
+    let output = run(&format!("identify {path} -q"), "");
+    let message = "row 2: column deviation: -0.5 is not a standard deviation (a number above 0, or nothing)";
+    assert!(stderr(&output).ends_with(&format!("{message}\n")), "{}", stderr(&output));
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
 fn parquet_on_standard_input_and_damaged_parquet_are_told_on_one_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("a.parquet");
