@@ -25,18 +25,25 @@ enum Points<'py> {
     Lists(Vec<ChunkArrays<'py>>),
 }
 
-/// x, y, arc and contour (None for closed outlines of one contour).
+/// x, y, arc and contour (None for closed outlines of one contour), and standard deviation (NaN or None for none).
 #[derive(FromPyObject)]
 struct PointArrays<'py>(
     PyReadonlyArray1<'py, f64>,
     PyReadonlyArray1<'py, f64>,
     Option<PyReadonlyArray1<'py, i64>>,
     Option<PyReadonlyArray1<'py, i64>>,
+    Option<PyReadonlyArray1<'py, f64>>,
 );
 
-/// Lists of x and of y, arc and contour.
+/// Lists of x and of y, arc and contour, and lists of standard deviations.
 #[derive(FromPyObject)]
-struct ChunkArrays<'py>(ListArrays<'py, f64>, ListArrays<'py, f64>, Option<MarkArrays<'py>>, Option<MarkArrays<'py>>);
+struct ChunkArrays<'py>(
+    ListArrays<'py, f64>,
+    ListArrays<'py, f64>,
+    Option<MarkArrays<'py>>,
+    Option<MarkArrays<'py>>,
+    Option<ListArrays<'py, f64>>,
+);
 
 /// Offsets, and the values of all lists.
 #[derive(FromPyObject)]
@@ -61,10 +68,11 @@ impl TableArrays<'_> {
         let object = optional(object.as_ref())?;
         let (frame, time) = (frame.as_slice()?, time.as_slice()?);
         match points {
-            Points::OfRows(PointArrays(x, y, arc, contour)) => {
+            Points::OfRows(PointArrays(x, y, arc, contour, deviation)) => {
                 let (x, y) = (x.as_slice()?, y.as_slice()?);
                 let (arc, contour) = (optional(arc.as_ref())?, optional(contour.as_ref())?);
-                let columns = OutlineColumns { names, object, frame, time, x, y, arc, contour };
+                let deviation = optional(deviation.as_ref())?;
+                let columns = OutlineColumns { names, object, frame, time, x, y, arc, contour, deviation };
                 columns.outlines().map(TableOutlines::OfPoints).map_err(value_error)
             }
             Points::Lists(chunks) => {
@@ -78,8 +86,10 @@ impl TableArrays<'_> {
 
 impl ChunkArrays<'_> {
     fn view(&self) -> PyResult<ListChunk<'_>> {
-        let Self(x, y, arc, contour) = self;
-        Ok(ListChunk { x: x.view()?, y: y.view()?, arc: marks(arc.as_ref())?, contour: marks(contour.as_ref())? })
+        let Self(x, y, arc, contour, deviation) = self;
+        let (arc, contour) = (marks(arc.as_ref())?, marks(contour.as_ref())?);
+        let deviation = deviation.as_ref().map(ListArrays::view).transpose()?;
+        Ok(ListChunk { x: x.view()?, y: y.view()?, arc, contour, deviation })
     }
 }
 

@@ -17,3 +17,4 @@ moduli = np.abs(lines)
 by_label: dict[int, ff.Outline] = ff.outlines(masks[0])
 weights: dict[str, float] | None = motion_filter.dynamics
 recognised: dict[str, ff.Recognition | None] = ff.recognise(masks, {"square": np.eye(3)[:, :2]})
+stated: np.ndarray | None = ff.Outline(np.eye(3)[:, :2], deviations=[0.1, 0.2, 0.3]).deviations

@@ -95,9 +95,10 @@ def identify(
     data : masks or table
         Masks: an array of shape (frames, height, width), bool or integer labels with 0 for the ground, or any iterable of arrays of shape
         (height, width). Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
-        `frame`, `time`, `x`, `y` and optionally `object`, `arc` (the open piece of a partly hidden outline) and `contour` (boundary, holes
-        and marks of one body). Either one row per point, the rows of one outline following each other in the order of the contour; or
-        one row per outline, with lists of numbers in `x` and `y`, as in Parquet.
+        `frame`, `time`, `x`, `y` and optionally `object`, `arc` (the open piece of a partly hidden outline), `contour` (boundary, holes
+        and marks of one body) and `deviation` (standard deviation of the point along the normal of the contour, in the unit of `x` and
+        `y`). Either one row per point, the rows of one outline following each other in the order of the contour; or one row per
+        outline, with lists of numbers in `x`, `y` and `deviation`, as in Parquet.
     fps : float, optional
         Frames per second; needed for masks, and for tables without a column `time`.
     times : array_like, shape (frames,), optional

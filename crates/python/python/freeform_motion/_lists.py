@@ -39,8 +39,18 @@ def are_lists(column: Any) -> bool:
 def number_lists(column: Any, name: str) -> list[Lists]:
     """The lists of a column of coordinates, in the chunks that it has; float64."""
     chunks = []
-    for offsets, values in _chunks(column, name, null_lists=False):
+    for offsets, values in _chunks(column, name):
         if values.dtype.kind not in "iuf":
+            raise TypeError(f"column {name}: lists of real numbers are needed, these are of type {values.dtype}")
+        chunks.append((offsets, np.require(values, np.float64, ["C", "A"])))
+    return chunks
+
+
+def deviation_lists(column: Any, name: str) -> list[Lists]:
+    """The lists of a column of standard deviations; float64, and an empty list for a missing one."""
+    chunks = []
+    for offsets, values in _chunks(column, name, null_lists=True):
+        if values.dtype.kind not in "iuf" and values.size:
             raise TypeError(f"column {name}: lists of real numbers are needed, these are of type {values.dtype}")
         chunks.append((offsets, np.require(values, np.float64, ["C", "A"])))
     return chunks
@@ -49,7 +59,7 @@ def number_lists(column: Any, name: str) -> list[Lists]:
 def mark_lists(column: Any, name: str) -> list[Lists]:
     """The lists of a column of arcs or contours; whole numbers, -1 for none, and an empty list for a missing one."""
     chunks = []
-    for offsets, values in _chunks(column, name, null_lists=True):
+    for offsets, values in _chunks(column, name, null_lists=True, null_values=True):
         if values.dtype.kind not in "iuf" and values.size:
             raise TypeError(f"column {name}: lists of whole numbers are needed, these are of type {values.dtype}")
         with np.errstate(invalid="ignore"):
@@ -75,11 +85,12 @@ def rows_of(chunks: list[Lists]) -> list[int]:
     return [len(offsets) - 1 for offsets, _ in chunks]
 
 
-def _chunks(column: Any, name: str, *, null_lists: bool) -> list[Lists]:
+def _chunks(column: Any, name: str, *, null_lists: bool = False, null_values: bool = False) -> list[Lists]:
+    """The lists of a column, and whether they may be missing, or values within them."""
     library = library_of(column)
     if library == "pandas":
         if not hasattr(column.dtype, "pyarrow_dtype"):
-            return [_of_sequence(column.array, name, null_lists)]
+            return [_of_sequence(column.array, name, null_lists, null_values)]
         import pyarrow
 
         column, library = pyarrow.array(column.array), "pyarrow"
@@ -87,12 +98,12 @@ def _chunks(column: Any, name: str, *, null_lists: bool) -> list[Lists]:
         chunks = []
         first = 0
         for chunk in getattr(column, "chunks", [column]):
-            chunks.append(_of_arrow(chunk, name, first, null_lists))
+            chunks.append(_of_arrow(chunk, name, first, null_lists, null_values))
             first += len(chunk)
         return chunks
     if library == "polars":
-        return [_of_polars(column, name, null_lists)]
-    return [_of_sequence(column, name, null_lists)]
+        return [_of_polars(column, name, null_lists, null_values)]
+    return [_of_sequence(column, name, null_lists, null_values)]
 
 
 def _is_arrow_list(kind: Any) -> bool:
@@ -102,7 +113,7 @@ def _is_arrow_list(kind: Any) -> bool:
     return bool(types.is_list(kind) or any(is_kind(kind) for is_kind in others))
 
 
-def _of_arrow(array: Any, name: str, first: int, null_lists: bool) -> Lists:
+def _of_arrow(array: Any, name: str, first: int, null_lists: bool, null_values: bool) -> Lists:
     """Of one Arrow array whose first row has a number."""
     import pyarrow
     import pyarrow.compute
@@ -116,12 +127,12 @@ def _of_arrow(array: Any, name: str, first: int, null_lists: bool) -> Lists:
     else:
         # Of a slice, the offsets are those of the slice and the values those of the whole.
         offsets, values = array.offsets.to_numpy().astype(np.int64, copy=False), array.values
-    if values.null_count and not null_lists:
+    if values.null_count and not null_values:
         _refuse_nulls(values.is_null().to_numpy(zero_copy_only=False), offsets, name, first)
     return offsets, np.asarray(values.to_numpy(zero_copy_only=False))
 
 
-def _of_polars(series: Any, name: str, null_lists: bool) -> Lists:
+def _of_polars(series: Any, name: str, null_lists: bool, null_values: bool) -> Lists:
     import polars
 
     if isinstance(series.dtype, polars.Array):
@@ -132,25 +143,35 @@ def _of_polars(series: Any, name: str, null_lists: bool) -> Lists:
     values = series if series.len() and lengths.min() else series.filter(lengths > 0)
     values = values.explode()
     offsets = _offsets(lengths.to_numpy().astype(np.int64))
-    if values.null_count() and not null_lists:
+    if values.null_count() and not null_values:
         _refuse_nulls(values.is_null().to_numpy(), offsets, name, 0)
     return offsets, np.asarray(values.to_numpy())
 
 
-def _of_sequence(rows: Any, name: str, null_lists: bool) -> Lists:
+def _of_sequence(rows: Any, name: str, null_lists: bool, null_values: bool) -> Lists:
     """Of arrays or lists, one for each row."""
-    if null_lists:
+    if null_lists and null_values:
         rows = [row if hasattr(row, "__len__") else () for row in rows]
+    elif null_lists:
+        rows = [() if _is_null(row) else row for row in rows]
     try:
         lengths = np.fromiter(map(len, rows), dtype=np.int64, count=len(rows))
         values = np.concatenate(rows) if len(rows) else np.empty(0)
     except (TypeError, ValueError):
         raise _wrong_row(rows, name) from None
-    if values.ndim != 1 or values.dtype.kind not in "iuf" and values.size and not null_lists:
+    if values.ndim != 1 or values.dtype.kind not in "iuf" and values.size and not null_values:
         raise _wrong_row(rows, name)
-    if values.dtype.kind == "O" and null_lists:
+    if values.dtype.kind == "O" and null_values:
         values = np.array([-1 if value is None else value for value in values.tolist()])
     return _offsets(lengths), values
+
+
+def _is_null(value: Any) -> bool:
+    """Whether a value stands for a missing one: None, NaN or a mark of a library, which is not equal to itself either."""
+    if value is None or hasattr(value, "__len__"):
+        return value is None
+    equal = value == value
+    return not isinstance(equal, (bool, np.bool_)) or not equal
 
 
 def _wrong_row(rows: Any, name: str) -> ValueError | TypeError:

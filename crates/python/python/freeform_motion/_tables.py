@@ -8,17 +8,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._lists import Lists, are_lists, library_of, mark_lists, merged, number_lists, rows_of
+from ._lists import Lists, are_lists, deviation_lists, library_of, mark_lists, merged, number_lists, rows_of
 from ._native import Outline, Simulation
 
 REQUIRED = ("frame", "x", "y")
-ALL = ("object", "frame", "time", "x", "y", "arc", "contour")
+ALL = ("object", "frame", "time", "x", "y", "arc", "contour", "deviation")
 
 #: Arcs or contours of outlines of a chunk: None, one per row, or a list per row.
 Marks = NDArray[np.int64] | Lists | None
 
-#: x, y, arc and contour of each row.
-Points = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64] | None, NDArray[np.int64] | None]
+#: x, y, arc, contour and standard deviation of each row.
+Points = tuple[
+    NDArray[np.float64], NDArray[np.float64], NDArray[np.int64] | None, NDArray[np.int64] | None, NDArray[np.float64] | None
+]
+
+#: The same of the rows of a chunk, in lists.
+Chunk = tuple[Lists, Lists, Marks, Marks, Lists | None]
 
 #: What the native part takes: names, then object, frame and time of each row, then its point, or lists of them in chunks of rows.
 NativeTable = tuple[
@@ -26,7 +31,7 @@ NativeTable = tuple[
     NDArray[np.uint32] | None,
     NDArray[np.uint64],
     NDArray[np.float64],
-    Points | list[tuple[Lists, Lists, Marks, Marks]],
+    Points | list[Chunk],
 ]
 
 
@@ -48,7 +53,7 @@ def native_table(table: Any, columns: Mapping[str, str] | None, fps: float | Non
     table : pandas.DataFrame, polars.DataFrame, pyarrow.Table or mapping of arrays
         One row per point, or one row per outline with lists.
     columns : mapping of str to str, optional
-        Names of the columns where they are not `object`, `frame`, `time`, `x`, `y`, `arc` and `contour`.
+        Names of the columns where they are not `object`, `frame`, `time`, `x`, `y`, `arc`, `contour` and `deviation`.
     fps : float, optional
         Frames per second, where there is no column `time`.
     """
@@ -88,33 +93,54 @@ def native_table(table: Any, columns: Mapping[str, str] | None, fps: float | Non
         if absent.size:
             raise ValueError(f"row {absent[0]}, column object: the name is missing")
         names, codes = [str(value) for value in values], found.astype(np.uint32)
-    x, y, arc, contour = (find(name) for name in ("x", "y", "arc", "contour"))
+    x, y, arc, contour, deviation = (find(name) for name in ("x", "y", "arc", "contour", "deviation"))
+    if deviation is not None and not are_lists(deviation) and _is_missing(deviation):
+        deviation = None
     if are_lists(x) and are_lists(y):
-        return names, codes, frame, times, _list_chunks(x, y, arc, contour)
-    for name, column in (("x", x), ("y", y), ("arc", arc), ("contour", contour)):
+        return names, codes, frame, times, _list_chunks(x, y, arc, contour, deviation)
+    for name, column in (("x", x), ("y", y), ("arc", arc), ("contour", contour), ("deviation", deviation)):
         if column is not None and are_lists(column):
             raise ValueError(f"column {name} has lists, but column {'y' if name == 'x' else 'x'} has none")
-    points = _reals(x, "x"), _reals(y, "y"), _marks(arc), _marks(contour)
-    return names, codes, frame, times, points
+    stated = None if deviation is None else _reals(deviation, "deviation")
+    return names, codes, frame, times, (_reals(x, "x"), _reals(y, "y"), _marks(arc), _marks(contour), stated)
 
 
-def _list_chunks(x: Any, y: Any, arc: Any, contour: Any) -> list[tuple[Lists, Lists, Marks, Marks]]:
+def _list_chunks(x: Any, y: Any, arc: Any, contour: Any, deviation: Any) -> list[Chunk]:
     """Lists of points in chunks of rows, those of the columns where they agree."""
     lists = [number_lists(x, "x"), number_lists(y, "y")]
-    marks: list[Any] = [None, None]
+    # Arcs, contours and standard deviations.
+    others: list[Any] = [None, None, None]
     for position, (name, column) in enumerate((("arc", arc), ("contour", contour))):
         if column is not None and are_lists(column):
-            marks[position] = mark_lists(column, name)
-    of_lists = [chunks for chunks in (*lists, *marks) if chunks is not None]
+            others[position] = mark_lists(column, name)
+    if deviation is not None:
+        if not are_lists(deviation):
+            raise ValueError("column x has lists, but column deviation has none")
+        others[2] = deviation_lists(deviation, "deviation")
+    of_lists = [chunks for chunks in (*lists, *others) if chunks is not None]
     if any(rows_of(chunks) != rows_of(lists[0]) for chunks in of_lists):
         lists = [merged(chunks) for chunks in lists]
-        marks = [None if chunks is None else merged(chunks) for chunks in marks]
+        others = [None if chunks is None else merged(chunks) for chunks in others]
     ends = np.cumsum(rows_of(lists[0]))
-    for position, column in enumerate((arc, contour)):
-        if marks[position] is None:
+    for position, column in enumerate((arc, contour, None)):
+        if others[position] is None:
             of_rows = _marks(column)
-            marks[position] = [None] * len(ends) if of_rows is None else np.split(of_rows, ends)[: len(ends)]
-    return list(zip(*lists, *marks, strict=True))
+            others[position] = [None] * len(ends) if of_rows is None else np.split(of_rows, ends)[: len(ends)]
+    return list(zip(*lists, *others, strict=True))
+
+
+def _is_missing(column: Any) -> bool:
+    """Whether a column has nothing but missing values, so that its type says nothing."""
+    library = library_of(column)
+    if library in ("pyarrow", "polars"):
+        nulls = column.null_count if library == "pyarrow" else column.null_count()
+        return bool(nulls == len(column))
+    if library == "pandas":
+        return bool(column.isna().all())
+    array = np.asarray(column)
+    if array.dtype.kind == "f":
+        return bool(np.isnan(array).all())
+    return array.dtype.kind == "O" and array.ndim == 1 and all(value is None for value in array)
 
 
 def _marks(column: Any) -> NDArray[np.int64] | None:
@@ -252,8 +278,10 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
     Returns
     -------
     dict of ndarray
-        Columns `object`, `frame`, `time`, `x`, `y`; also `arc` if there are open outlines, -1 for closed ones, and `contour` if there are
-        outlines with several contours, -1 for the others. What `pandas.DataFrame`, `polars.DataFrame` and `pyarrow.table` take.
+        Columns `object`, `frame`, `time`, `x`, `y`; also `arc` if there are open outlines, -1 for closed ones, `contour` if there are
+        outlines with several contours, -1 for the others, and `deviation` if there are outlines with standard deviations of their points
+        (along the normal of the contour, in the unit of `x` and `y`), NaN for the others. What `pandas.DataFrame`, `polars.DataFrame` and
+        `pyarrow.table` take.
     """
     if isinstance(outlines, Simulation):
         outlines = (("0", frame.index, frame.time, frame.outline) for frame in outlines)
@@ -263,6 +291,7 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
     arcs: list[int] = []
     contours: list[int] = []
     pieces: list[NDArray[np.float64]] = []
+    deviations: list[NDArray[np.float64]] = []
     for name, frame, time, outline in outlines:
         found = outline.pieces
         for number, piece in enumerate(found):
@@ -272,6 +301,8 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
             arcs.append(-1 if outline.is_closed else number)
             contours.append(number if outline.is_closed and len(found) > 1 else -1)
             pieces.append(piece)
+        stated = outline.deviations
+        deviations.append(np.full(len(outline), np.nan) if stated is None else stated)
     lengths = [len(piece) for piece in pieces]
     points = np.concatenate(pieces) if pieces else np.empty((0, 2))
     table: dict[str, Any] = {
@@ -284,4 +315,7 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
     for column, marks in (("arc", arcs), ("contour", contours)):
         if any(mark >= 0 for mark in marks):
             table[column] = np.repeat(np.array(marks, dtype=np.int64), lengths)
+    deviation = np.concatenate(deviations) if deviations else np.empty(0)
+    if not np.isnan(deviation).all():
+        table["deviation"] = deviation
     return table
