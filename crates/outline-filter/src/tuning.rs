@@ -35,6 +35,8 @@ pub(crate) mod map {
     /// Most cells of a saved map: far more than [`MOST_TIMES_SEEN`] of [`MOST_CELLS`] make.
     #[cfg(feature = "serde")]
     pub(crate) const MOST_SAVED: usize = 1 << 20;
+    /// Share of the largest square of a lever below which the outline as a whole is not seen to move: rounding makes as much.
+    pub(crate) const UNSEEN_SHIFT: f64 = 1e-6;
     /// Points further than this many spacings beyond a known end belong to what is not known yet.
     pub(crate) const BEYOND_END: f64 = 0.75;
 }
@@ -280,8 +282,16 @@ pub(crate) mod registration {
     pub(crate) const TURNS: usize = 24;
     /// Points that the search is made with.
     pub(crate) const FEW_POINTS: usize = 80;
-    /// Share of the points, nearest first, that a pose is scored by: the rest may be hidden in the map or wrong.
-    pub(crate) const TRIMMED: f64 = 0.75;
+    /// Distance beyond which points count alike in the score of a pose, in radii: they may be hidden in the map or wrong. Trimming a share of
+    /// the points instead would leave out the pin of a disc, which alone tells its turn.
+    pub(crate) const FARTHEST: f64 = 0.1;
+    /// Deviation of the residuals that the first step of a search allows for, in radii: starts lie up to 7.5 degrees off, which is 0.13 at the
+    /// RMS radius, and Tukey's weights reach 4.7 deviations.
+    pub(crate) const WIDEST: f64 = 0.065;
+    /// As [`WIDEST`], of a refinement, which begins with what few points have found.
+    pub(crate) const WIDEST_REFINED: f64 = 0.01;
+    /// By which it falls from step to step: below the noise within the steps of a search.
+    pub(crate) const NARROWER: f64 = 0.5;
     /// Steps of the search for each start, at most.
     pub(crate) const SEARCH_STEPS: usize = 8;
     /// Largest step after which a pose has settled, normalised, in deviations of the noise: far less than what a pose is known to.
@@ -377,12 +387,6 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Variance of a pose that is measured against an outline learnt from the frames before, in that of one measured against a known outline: the
-    /// errors that they have in common do not average out. Measured: 1.75 squared.
-    pub(crate) const OF_LEARNT_OUTLINE: f64 = 3.0;
-    /// Factor of the stated variances of a constant velocity, which remembers all frames and adds up what errors of poses have in common.
-    /// Measured: deviations 1.75 times as large.
-    pub(crate) const IN_COMMON: f64 = 3.0;
     /// Probability of each change from one hypothesis to another in a frame: 0.17 % for all of them together.
     pub(crate) const TRANSITION: f64 = 0.000_15;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.

@@ -1,10 +1,11 @@
 //! The hypotheses in the size of the model.
-use freeform_riccati::MotionModel;
-use nalgebra::{Matrix3, Point2};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+use nalgebra::{Matrix3, Point2, SVector};
 
 use super::{
     centred::{CentredDeviations, CentredPose, Summary},
-    interacting::{InteractingHypotheses, Purpose},
+    combination::Purpose,
+    interacting::InteractingHypotheses,
     setting::{Dynamics, DynamicsWeights},
 };
 use crate::{map::NullDirection, update::PoseMeasurement};
@@ -63,6 +64,26 @@ impl DynamicsFilter {
     /// Takes what an accepted frame tells of the pose: the error of the reference pose.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
         of_any_size!(self, hypotheses => hypotheses.update(measured));
+    }
+
+    /// Takes it that the motion has changed as none of them tells.
+    pub(crate) fn take_change(&mut self) {
+        of_any_size!(self, hypotheses => hypotheses.take_change());
+    }
+
+    /// Takes it that the outline as a whole has moved, in the body frame, and with it what later poses are measured against.
+    pub(crate) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
+        of_any_size!(self, hypotheses => hypotheses.take_shift(shift));
+    }
+
+    /// A point of the outline in the body frame of the pose that is stated.
+    pub(crate) fn as_stated(&self, point: &Point2<f64>) -> Point2<f64> {
+        of_any_size!(self, hypotheses => hypotheses.as_stated(point))
+    }
+
+    /// The pose in which the outline as it is now lies where one in the pose given lay when they began.
+    pub(crate) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
+        of_any_size!(self, hypotheses => hypotheses.of_outline_now(pose))
     }
 
     /// Probabilities of the three kinds of dynamics.

@@ -1,9 +1,11 @@
 //! The hypotheses side by side.
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Matrix3, Point2, SVector};
 
 use super::{
-    centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary, carried, of_both},
+    centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
+    combination::centred,
+    common_error::CommonError,
     hypothesis::{CentredMeasurement, Course, Hypothesis, Step},
     innovations::InnovationSeries,
     mixing::mix,
@@ -11,15 +13,10 @@ use super::{
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;
-use crate::{
-    belief::StateMatrix,
-    map::NullDirection,
-    tuning::{dynamics as tuning, statement::REACH},
-    update::PoseMeasurement,
-};
+use crate::{map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
 
 /// Hypotheses at most.
-const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
+pub(super) const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
 
 type Weights = [f64; MOST];
 
@@ -28,28 +25,22 @@ type Weights = [f64; MOST];
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct InteractingHypotheses<const N: usize> {
-    model: MotionModel,
+    pub(super) model: MotionModel,
     setting: Dynamics,
-    hypotheses: Vec<Hypothesis<N>>,
+    pub(super) hypotheses: Vec<Hypothesis<N>>,
     /// In the same order; zeros behind them.
-    weights: Weights,
+    pub(super) weights: Weights,
     /// What the errors of all poses are taken from.
-    reference: CentredPose,
+    pub(super) reference: CentredPose,
     /// Variance of a pose as one frame tells it.
     pose_variance: CentredVector,
+    pub(super) common: CommonError,
     series: InnovationSeries<LARGEST>,
     /// Factor of the variance of a pose by the most probable hypothesis.
     shaking: f64,
     leads: bool,
-}
-
-/// What the hypotheses are taken together for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Purpose {
-    /// To say where the object is expected.
-    Prediction,
-    /// To say how well the motion is known.
-    Statement,
+    /// Whether the outline has been learnt from poses that a constant generator was not right for.
+    pub(super) has_changed: bool,
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
@@ -59,7 +50,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         model: MotionModel,
         setting: Dynamics,
         summary: &Summary,
-        middle: nalgebra::Point2<f64>,
+        middle: Point2<f64>,
         seconds: f64,
     ) -> Option<Self> {
         let k = model.parameter_count();
@@ -68,9 +59,11 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         let reference = CentredPose { pose: summary.pose, middle };
         let change = reference.about_middle(model);
-        let (mean, covariance) = centred(&change, summary, k);
+        let (mean, mut covariance) = centred(&change, summary, k);
         let pose_variance =
             CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
+        let common = CommonError::of_two_frames(model, &covariance, &reference);
+        common.take_off(&mut covariance, seconds);
         let courses = courses(setting);
         let mut filter = Self {
             model,
@@ -79,8 +72,10 @@ impl<const N: usize> InteractingHypotheses<N> {
             weights: [0.0; MOST],
             reference,
             pose_variance,
+            common,
             series: InnovationSeries::default(),
             shaking: 1.0,
+            has_changed: false,
             leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
         };
         for course in courses {
@@ -123,16 +118,18 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Moves all hypotheses on by a step, after mixing their states; `pose` is where the object is predicted otherwise.
     /// Whether the numbers allow it.
     pub(crate) fn predict(&mut self, pose: &CentredPose, seconds: f64, null: &[NullDirection]) -> bool {
-        let moved = CentredPose { pose: self.reference.pose, middle: pose.middle };
+        let middle = self.common.before(&pose.middle);
+        let (moved, pose) =
+            (CentredPose { pose: self.reference.pose, middle }, CentredPose { pose: pose.pose, middle });
         for hypothesis in &mut self.hypotheses {
             hypothesis.move_middle(self.model, &self.reference, &moved);
         }
         self.reference = moved;
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
         let step =
-            Step { model: self.model, seconds, from: &self.reference, to: pose, pose_variance: &self.pose_variance };
+            Step { model: self.model, seconds, from: &self.reference, to: &pose, pose_variance: &self.pose_variance };
         let possible = self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step));
-        self.reference = *pose;
+        self.reference = pose;
         self.hold(null);
         possible
     }
@@ -156,9 +153,10 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
-        let information = to.transpose() * measured.information * to / tuning::OF_LEARNT_OUTLINE;
+        let information = to.transpose() * measured.information * to;
         let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
-        let pulled = to.transpose() * measured.pulled / tuning::OF_LEARNT_OUTLINE;
+        let pulled = measured.pulled + measured.information * self.common.shift_in(&self.reference.pose);
+        let pulled = to.transpose() * pulled;
         let Some(deviation) =
             solved(&information, &CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 }), k)
         else {
@@ -193,7 +191,18 @@ impl<const N: usize> InteractingHypotheses<N> {
         let weight = self.weights().generator;
         if self.setting == Dynamics::Auto {
             self.leads = if self.leads { weight < tuning::LEADS_UNTIL } else { weight < tuning::LEADS_FROM };
+            self.has_changed |= self.leads;
         }
+    }
+
+    /// Takes it that the motion has changed as none of them tells.
+    pub(crate) fn take_change(&mut self) {
+        self.has_changed = true;
+    }
+
+    /// Takes it that the outline as a whole has moved, in the body frame, and with it what later poses are measured against.
+    pub(crate) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
+        self.common.take_shift(shift);
     }
 
     /// Probabilities of the three kinds of dynamics.
@@ -233,81 +242,18 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.shaking * (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
     }
 
-    /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
-    fn least_weight(&self) -> f64 {
-        let mut sorted = self.weights;
-        sorted.sort_unstable_by(f64::total_cmp);
-        let mut sum = 0.0;
-        sorted
-            .into_iter()
-            .find(|weight| {
-                sum += weight;
-                sum > tuning::LEFT_OUT
-            })
-            .unwrap_or(0.0)
+    /// A point of the outline in the body frame of the pose that is stated.
+    pub(crate) fn as_stated(&self, point: &Point2<f64>) -> Point2<f64> {
+        if self.leads || self.has_changed { self.common.before(point) } else { *point }
     }
 
-    /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
-    /// outline as well.
-    pub(crate) fn combined(&self, given: Option<&Summary>, purpose: Purpose) -> Option<Summary> {
-        let (model, k) = (self.model, self.model.parameter_count());
-        let change = self.reference.about_middle(model);
-        let of_given = match given {
-            None => None,
-            Some(summary) => {
-                let (mut mean, covariance) = centred(&change, summary, k);
-                let off = model.motion_between(&(summary.pose * self.reference.pose.try_inverse()?), 1.0)?;
-                let moved = change * SVector::<f64, MAX_PARAMETERS>::from(off);
-                (0..k).for_each(|j| mean[j] = moved[j]);
-                Some((mean, covariance))
-            }
-        };
-        let least = self.least_weight();
-        let of_given = of_given.as_ref();
-        let parts = || {
-            let weighted = self.hypotheses.iter().zip(&self.weights).filter(|(_, weight)| **weight >= least);
-            // Only what remembers much adds up the errors that poses have in common.
-            let wider = |course| match purpose {
-                Purpose::Statement if course == Course::ConstantVelocity => tuning::IN_COMMON,
-                _ => 1.0,
-            };
-            weighted.map(move |(hypothesis, weight)| match of_given {
-                Some((mean, covariance)) if hypothesis.course == Course::ConstantGenerator => {
-                    (*weight, mean, covariance, 1.0)
-                }
-                _ => (*weight, &hypothesis.mean, &hypothesis.covariance, wider(hypothesis.course)),
-            })
-        };
-        let sum: f64 = parts().map(|(weight, ..)| weight).sum();
-        // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
-        let mean = match of_given {
-            Some((mean, _)) => *mean,
-            _ => parts().fold(SVector::zeros(), |mean, (weight, x, ..)| mean + x * (weight / sum)),
-        };
-        let mut covariance = SMatrix::<f64, N, N>::zeros();
-        // Where one of them is stated, its interval reaches the others that are not left out.
-        let others = 1.0 - self.weights().generator / sum;
-        let reach = if of_given.is_some() && others > 0.0 { (REACH / others).max(1.0) } else { 1.0 };
-        for (weight, x, p, wider) in parts() {
-            for j in 0..2 * k {
-                for i in 0..2 * k {
-                    covariance[(i, j)] +=
-                        (weight / sum) * (wider * p[(i, j)] + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
-                }
-            }
-        }
-        let to = self.reference.about_origin(model)?;
-        let large =
-            |at: usize| SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 });
-        let (error, motion) = (to * large(0), to * large(1));
-        let pose = model.flow(&error.as_slice()[..k], 1.0).into_inner() * self.reference.pose;
-        let both = StateMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
-        let covariance = carried(&of_both(&to, k), &both, 2 * k);
-        pose.iter().all(|e| e.is_finite()).then_some(Summary { pose, motion: motion.into(), covariance })
+    /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.
+    pub(crate) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
+        self.common.of_outline_now(pose)
     }
 
     /// Takes another reference pose, near the one before.
-    pub(crate) fn take_reference(&mut self, pose: &nalgebra::Matrix3<f64>) -> bool {
+    pub(crate) fn take_reference(&mut self, pose: &Matrix3<f64>) -> bool {
         let to = CentredPose { pose: *pose, middle: self.reference.middle };
         let (model, k) = (self.model, self.model.parameter_count());
         let Some(inverse) = self.reference.pose.try_inverse() else { return false };
@@ -343,20 +289,6 @@ fn courses(setting: Dynamics) -> Vec<Course> {
     }
 }
 
-/// Motion and covariance of a summary about the middle.
-fn centred<const N: usize>(
-    change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
-    summary: &Summary,
-    k: usize,
-) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
-    let motion = change * SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
-    let mut mean = SVector::zeros();
-    (0..k).for_each(|j| mean[k + j] = motion[j]);
-    let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
-    let covariance = SMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
-    (mean, covariance)
-}
-
 /// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
 fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
     let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
@@ -385,6 +317,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             && is_finite(self.reference.pose.as_slice())
             && is_finite(self.reference.middle.coords.as_slice())
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
+            && self.common.is_sound(model)
             && self.series.is_sound()
             && (self.shaking == 1.0 || courses(self.setting).iter().any(|course| course.shaking() == self.shaking))
     }

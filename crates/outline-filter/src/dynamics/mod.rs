@@ -4,6 +4,8 @@
 //! The hypotheses share the measurement of a frame: what it tells of the pose, with the offsets of the outline eliminated. They carry no
 //! outline of their own.
 mod centred;
+mod combination;
+mod common_error;
 mod dynamics_filter;
 mod family;
 mod hypothesis;
@@ -13,8 +15,8 @@ mod mixing;
 mod setting;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
+pub(crate) use combination::Purpose;
 pub(crate) use dynamics_filter::DynamicsFilter;
 pub use family::WrongFamily;
 pub(crate) use family::{FamilyTests, LeftOutEstimate};
-pub(crate) use interacting::Purpose;
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};

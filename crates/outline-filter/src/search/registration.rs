@@ -14,7 +14,7 @@ use crate::{
 pub(crate) struct RegisteredPose {
     /// Body to image, normalised coordinates.
     pub(crate) pose: Matrix3<f64>,
-    /// Trimmed mean distance of the points from the map, normalised.
+    /// Mean distance of the points from the map, normalised; those far off count as if they were [`tuning::FARTHEST`] away.
     score: f64,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(crate) turn: f64,
@@ -53,14 +53,12 @@ pub(crate) fn register(
             starts.push(turn_between(turn, &middle(a, b), &middle(c, d)));
         }
     }
-    let found: Vec<RegisteredPose> = starts
-        .iter()
-        .map(|start| refined(track, &few, MotionModel::Rigid, &(start * pose), tuning::SEARCH_STEPS))
-        .collect();
+    let found: Vec<RegisteredPose> =
+        starts.iter().map(|start| refined(track, &few, MotionModel::Rigid, &(start * pose), Steps::SEARCH)).collect();
     let mut best = distinct(found);
     keep(&mut best, tuning::REFINED);
     // Some come together only with all points: one taken twice would keep another out.
-    let refine = |h: &RegisteredPose| refined(track, points, MotionModel::Rigid, &h.pose, tuning::REFINEMENT_STEPS);
+    let refine = |h: &RegisteredPose| refined(track, points, MotionModel::Rigid, &h.pose, Steps::REFINEMENT);
     best = distinct(best.iter().map(refine).collect());
     keep(&mut best, tuning::KEPT);
     if symmetry > 1
@@ -75,7 +73,7 @@ pub(crate) fn register(
             let is_there = |h: &RegisteredPose| wrapped(h.turn - turn).abs() < of_symmetry::SAME * pitch;
             if !best.iter().any(is_there) {
                 let start = track.turned(&first.pose, angle);
-                best.push(refined(track, points, MotionModel::Rigid, &start, tuning::REFINEMENT_STEPS));
+                best.push(refined(track, points, MotionModel::Rigid, &start, Steps::REFINEMENT));
             }
         }
         best.retain(|h| h.score.is_finite());
@@ -84,7 +82,7 @@ pub(crate) fn register(
         // More parameters start from fewer. They may also lead astray where arcs are missing, so that the rigid poses stay.
         let more = best.clone().into_iter().map(|found| {
             let models = MotionModel::ALL.into_iter().filter(|m| *m > MotionModel::Rigid && *m <= model);
-            models.fold(found, |h, model| refined(track, points, model, &h.pose, tuning::REFINEMENT_STEPS))
+            models.fold(found, |h, model| refined(track, points, model, &h.pose, Steps::REFINEMENT))
         });
         best.extend(more);
         best.retain(|h| h.score.is_finite());
@@ -95,6 +93,20 @@ pub(crate) fn register(
         found.turn = turn_of(&found.pose, pose);
     }
     best
+}
+
+/// How a start is followed.
+#[derive(Debug, Clone, Copy)]
+struct Steps {
+    most: usize,
+    /// Deviation of the residuals that the first step allows for, normalised. Where the median residual is small from the beginning, as on a
+    /// disc with a pin, the points that tell the turn are those that are far off.
+    widest: f64,
+}
+
+impl Steps {
+    const SEARCH: Self = Self { most: tuning::SEARCH_STEPS, widest: tuning::WIDEST };
+    const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
 }
 
 /// The best of those that are the same, for each.
@@ -131,7 +143,7 @@ fn refined(
     points: &[Point2<f64>],
     model: MotionModel,
     start: &Matrix3<f64>,
-    steps: usize,
+    steps: Steps,
 ) -> RegisteredPose {
     match model.parameter_count() {
         3 => refined_sized::<3>(track, points, model, start, steps),
@@ -146,7 +158,7 @@ fn refined_sized<const K: usize>(
     points: &[Point2<f64>],
     model: MotionModel,
     start: &Matrix3<f64>,
-    steps: usize,
+    steps: Steps,
 ) -> RegisteredPose
 where
     Const<K>: DimMin<Const<K>, Output = Const<K>>,
@@ -156,8 +168,8 @@ where
     let mut distances = Vec::with_capacity(points.len());
     let mut rows: Vec<(f64, SVector<f64, K>)> = Vec::with_capacity(points.len());
     let mut sizes = Vec::with_capacity(points.len());
-    let mut settled = false;
-    for step in 0..=steps {
+    let (mut settled, mut widest) = (false, steps.widest);
+    for step in 0..=steps.most {
         let Some(inverse) = pose.try_inverse() else { break };
         let null = map.null_directions(belief.model, &pose);
         distances.clear();
@@ -178,12 +190,15 @@ where
             }
             rows.push((residual, SVector::from_fn(|i, _| row[i])));
         }
-        if step == steps || settled {
+        if step == steps.most || settled {
             break;
         }
         sizes.clear();
         sizes.extend(rows.iter().map(|(r, _)| r.abs()));
-        let scale = tuning::TUKEY * MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
+        let of_points = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
+        let scale = tuning::TUKEY * of_points.max(widest);
+        let is_narrow = widest <= of_points;
+        widest *= tuning::NARROWER;
         let mut gram = SMatrix::<f64, K, K>::identity() * tuning::DAMPING;
         let mut right = SVector::<f64, K>::zeros();
         for (residual, row) in &rows {
@@ -202,11 +217,10 @@ where
             break;
         }
         pose = next;
-        settled = x.amax() < tuning::SETTLED * noise.sigma;
+        settled = is_narrow && x.amax() < tuning::SETTLED * noise.sigma;
     }
-    distances.sort_unstable_by(f64::total_cmp);
-    let kept = ((tuning::TRIMMED * distances.len() as f64) as usize).max(1).min(distances.len());
-    let score = if distances.is_empty() { f64::INFINITY } else { distances[..kept].iter().sum::<f64>() / kept as f64 };
+    let capped: f64 = distances.iter().map(|distance| distance.min(tuning::FARTHEST)).sum();
+    let score = if distances.is_empty() { f64::INFINITY } else { capped / distances.len() as f64 };
     let turn = turn_of(&pose, track.body_pose());
     RegisteredPose { pose, score, turn }
 }

@@ -59,6 +59,10 @@ impl MotionHistory {
             (self.contradiction, self.since_taken) = (None, 0.0);
             if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {
                 dynamics.update(measured);
+                dynamics.take_shift(&outcome.shift);
+                if self.change.is_seen() {
+                    dynamics.take_change();
+                }
             }
         } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error()) {
             self.contradiction = Some(pose / self.since_taken);

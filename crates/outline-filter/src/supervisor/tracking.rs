@@ -124,7 +124,8 @@ pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mu
 
 /// Puts a track where all hypotheses of dynamics together expect it; whether they do.
 fn lead(track: &mut Track, dynamics: &mut DynamicsFilter) -> bool {
-    let Some(expected) = dynamics.combined(None, Purpose::Prediction) else { return false };
+    let Some(mut expected) = dynamics.combined(None, Purpose::Prediction) else { return false };
+    expected.pose = dynamics.of_outline_now(&expected.pose);
     let is_taken = dynamics.take_reference(&expected.pose);
     if is_taken {
         track.expect(&expected);

@@ -1,7 +1,7 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
 use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point};
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, Matrix3, Point2};
 
 use super::Track;
 use crate::{
@@ -164,8 +164,8 @@ impl Track {
     }
 
     /// Velocity of the object's middle in a state of this track; `None` where it is not worth stating.
-    pub(crate) fn velocity_of_middle(&self, state: &MotionState) -> Option<PointVelocity> {
-        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.middle().coords));
+    pub(crate) fn velocity_of(&self, point: &Point2<f64>, state: &MotionState) -> Option<PointVelocity> {
+        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * point.coords));
         let span = self.belief.memory.shortest(self.belief.parameter_count());
         let unit = self.reference.time_unit;
         let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);

@@ -2,8 +2,8 @@ use std::sync::Arc;
 
 use freeform_curve_fit::Outline;
 use freeform_estimate::ProcessNoise;
-use freeform_riccati::{MotionModel, ParameterVector};
-use nalgebra::{Affine2, Matrix3, Projective2};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
 use super::first_pose::FirstPose;
 use crate::{
@@ -59,6 +59,8 @@ pub(crate) struct Outcome {
     pub(crate) innovation: PoseInnovation,
     /// What the frame tells of the pose by itself, if it shows the outline, taken or not.
     pub(crate) pose: Option<PoseMeasurement>,
+    /// By which it has moved the outline as a whole, in the body frame.
+    pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
     /// Of the frame given what was known before it; none unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
 }
@@ -149,6 +151,7 @@ impl Track {
                     verdict,
                     innovation: PoseInnovation::default(),
                     pose: None,
+                    shift: SVector::zeros(),
                     likelihood: NegativeLogLikelihood::default(),
                 };
             }
@@ -170,10 +173,12 @@ impl Track {
         let verdict = gate.verdict(&measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
+        let mut shift = SVector::zeros();
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
             self.frames += 1;
             self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
+            shift = self.common_shift(frame);
             if let Some(noise) = noise {
                 self.noise.take(noise / radius, measurement.weight);
             }
@@ -190,7 +195,7 @@ impl Track {
             }
         }
         let pose = measured.map(|measured| measured.over(variance));
-        Outcome { measurement, verdict, innovation, pose, likelihood }
+        Outcome { measurement, verdict, innovation, pose, shift, likelihood }
     }
 
     /// Takes the spread of a frame, used or not.

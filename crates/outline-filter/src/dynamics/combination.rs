@@ -1,0 +1,153 @@
+//! The hypotheses taken together.
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::{SMatrix, SVector};
+
+use super::{
+    centred::{Summary, carried, of_both, parts},
+    hypothesis::{Course, Hypothesis},
+    interacting::{InteractingHypotheses, MOST},
+};
+use crate::{
+    belief::StateMatrix,
+    tuning::{dynamics as tuning, statement::REACH},
+};
+
+/// What the hypotheses are taken together for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// To say where the object is expected.
+    Prediction,
+    /// To say how well the motion is known.
+    Statement,
+}
+
+/// A hypothesis that is not left out, as it is taken together with others: the velocity is that of the plane of the object where the middle
+/// of the reference pose is.
+#[derive(Debug, Clone, Copy)]
+struct Part<const N: usize> {
+    weight: f64,
+    mean: SVector<f64, N>,
+    covariance: SMatrix<f64, N, N>,
+    /// Whether its pose is measured against the outline, and is not known together with it.
+    is_measured: bool,
+    /// Whether the middle of the object accelerates, and no point aside.
+    accelerates: bool,
+}
+
+impl<const N: usize> InteractingHypotheses<N> {
+    /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
+    fn least_weight(&self) -> f64 {
+        let mut sorted = self.weights;
+        sorted.sort_unstable_by(f64::total_cmp);
+        let mut sum = 0.0;
+        sorted
+            .into_iter()
+            .find(|weight| {
+                sum += weight;
+                sum > tuning::LEFT_OUT
+            })
+            .unwrap_or(0.0)
+    }
+
+    /// Mean and covariance of what is given for a constant generator. Once the motion has changed, wrong poses have moved the outline that it
+    /// is known with.
+    fn of_generator(&self, given: &Summary) -> Option<(SVector<f64, N>, SMatrix<f64, N, N>)> {
+        let (model, change) = (self.model, self.reference.about_middle(self.model));
+        let k = model.parameter_count();
+        let (mut mean, covariance) = centred(&change, given, k);
+        let off = model.motion_between(&(given.pose * self.reference.pose.try_inverse()?), 1.0)?;
+        let shift = if self.has_changed { self.common.shift_in(&self.reference.pose) } else { SVector::zeros() };
+        let moved = change * (SVector::<f64, MAX_PARAMETERS>::from(off) + shift);
+        (0..k).for_each(|j| mean[j] = moved[j]);
+        Some((mean, covariance))
+    }
+
+    /// Mean and covariance of a hypothesis, whose own velocity is that of the middle where that is.
+    fn of_measured(&self, hypothesis: &Hypothesis<N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        let (model, k) = (self.model, self.model.parameter_count());
+        let (mut mean, rates) = (hypothesis.mean, hypothesis.rates(model));
+        let apart = hypothesis.mean.fixed_rows::<2>(k - 2).into_owned();
+        let mut velocity = mean.fixed_rows_mut::<2>(2 * k - 2);
+        velocity -= rates * apart;
+        let mut change = SMatrix::<f64, N, N>::identity();
+        change.fixed_view_mut::<2, 2>(2 * k - 2, k - 2).copy_from(&-rates);
+        for (j, basis) in model.basis().iter().enumerate().take(k - 2) {
+            change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&-(parts(basis).0 * apart));
+        }
+        (mean, carried(&change, &hypothesis.covariance, 2 * k))
+    }
+
+    /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
+    /// outline as well. The pose is counted from where the outline was when they began.
+    pub(crate) fn combined(&self, given: Option<&Summary>, purpose: Purpose) -> Option<Summary> {
+        let (model, k) = (self.model, self.model.parameter_count());
+        let of_generator = match given {
+            Some(given) => Some(self.of_generator(given)?),
+            None => None,
+        };
+        let least = self.least_weight();
+        let part = |number: usize| {
+            let (hypothesis, weight) = (self.hypotheses.get(number)?, self.weights[number]);
+            let is_generator = hypothesis.course == Course::ConstantGenerator;
+            (weight >= least).then(|| match of_generator.filter(|_| is_generator) {
+                Some((mean, covariance)) => {
+                    Part { weight, mean, covariance, is_measured: self.has_changed, accelerates: false }
+                }
+                None => {
+                    let (mean, covariance) = self.of_measured(hypothesis);
+                    let accelerates = matches!(hypothesis.course, Course::Accelerating { .. });
+                    Part { weight, mean, covariance, is_measured: true, accelerates }
+                }
+            })
+        };
+        let all: [Option<Part<N>>; MOST] = std::array::from_fn(part);
+        let all = || all.iter().flatten();
+        let sum: f64 = all().map(|part| part.weight).sum();
+        // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
+        let mean = match of_generator {
+            Some((mean, _)) => mean,
+            _ => all().fold(SVector::zeros(), |mean, part| mean + part.mean * (part.weight / sum)),
+        };
+        let mut covariance = SMatrix::<f64, N, N>::zeros();
+        // Where one of them is stated, its interval reaches the others that are not left out.
+        let others = 1.0 - self.weights().generator / sum;
+        let reach = if of_generator.is_some() && others > 0.0 { (REACH / others).max(1.0) } else { 1.0 };
+        let (mut measured, mut accelerated) = (0.0, 0.0);
+        for part in all() {
+            let (weight, x, p) = (part.weight / sum, &part.mean, &part.covariance);
+            measured += if part.is_measured { weight } else { 0.0 };
+            accelerated += if part.accelerates { weight } else { 0.0 };
+            for j in 0..2 * k {
+                for i in 0..2 * k {
+                    covariance[(i, j)] += weight * (p[(i, j)] + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
+                }
+            }
+        }
+        if purpose == Purpose::Statement {
+            let rates = parts(&model.generator(&mean.as_slice()[k..2 * k])).0;
+            self.common.add_to(&mut covariance, &self.reference, (measured, accelerated), &rates)?;
+        }
+        let to = self.reference.about_origin(model)?;
+        let large =
+            |at: usize| SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 });
+        let (error, motion) = (to * large(0), to * large(1));
+        let pose = model.flow(&error.as_slice()[..k], 1.0).into_inner() * self.reference.pose;
+        let both = StateMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { covariance[(i, j)] } else { 0.0 });
+        let covariance = carried(&of_both(&to, k), &both, 2 * k);
+        pose.iter().all(|e| e.is_finite()).then_some(Summary { pose, motion: motion.into(), covariance })
+    }
+}
+
+/// Motion and covariance of a summary about the middle.
+pub(super) fn centred<const N: usize>(
+    change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+    summary: &Summary,
+    k: usize,
+) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+    let motion = change * SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
+    let mut mean = SVector::zeros();
+    (0..k).for_each(|j| mean[k + j] = motion[j]);
+    let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
+    let covariance = SMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
+    (mean, covariance)
+}
