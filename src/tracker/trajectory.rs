@@ -161,7 +161,7 @@ fn report(parameter: &mut PoseParameter, scale: Option<CameraScale>, last_angle:
     let PoseParameter { name, value, standard_deviation } = parameter;
     // As a generator changes between image and space, so does a map.
     match (*name, scale.map(CameraScale::value)) {
-        ("angle", _) => {
+        ("angle", _) if value.is_finite() => {
             *value += std::f64::consts::TAU * ((*last_angle - *value) / std::f64::consts::TAU).round();
             *last_angle = *value;
         }

@@ -46,11 +46,11 @@ impl PoseHistory {
         let mut parameters = Vec::new();
         for parameter in state.pose_parameters() {
             let mut value = parameter.value;
-            if parameter.name == "angle" {
+            if parameter.name == "angle" && value.is_finite() {
                 value += TAU * ((self.last_angle - value) / TAU).round();
                 self.last_angle = value;
             }
-            let is_stated = shows_turn || matches!(parameter.name, "x" | "y");
+            let is_stated = shows_turn && value.is_finite() || matches!(parameter.name, "x" | "y");
             parameters.push(is_stated.then_some([value, parameter.standard_deviation]));
         }
         self.samples.push(PoseSample { time: state.time(), parameters });

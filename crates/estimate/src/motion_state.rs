@@ -18,6 +18,7 @@ pub struct MotionState {
     /// This covariance if the outline is known exactly.
     pub(crate) within: DMatrix<f64>,
     pub(crate) observable: [bool; MAX_PARAMETERS],
+    pub(crate) hidden: [bool; MAX_PARAMETERS],
 }
 
 /// One parameter of a pose with its standard deviation.
@@ -25,9 +26,9 @@ pub struct MotionState {
 pub struct PoseParameter {
     /// Name: see [`MotionState::pose_parameters`].
     pub name: &'static str,
-    /// Value.
+    /// Value; NaN where the outline does not show it, such as the turn of a circle.
     pub value: f64,
-    /// Its standard deviation.
+    /// Its standard deviation; infinite where the outline does not show it.
     pub standard_deviation: f64,
 }
 
@@ -62,13 +63,15 @@ pub struct NormalisedState {
     pub covariance_given_outline: DMatrix<f64>,
     /// Which parameters of the motion are observable.
     pub observable: [bool; MAX_PARAMETERS],
+    /// Rates that the outline does not show, such as that of the turn of a circle: nor does it show how far the object has turned.
+    pub hidden: [bool; MAX_PARAMETERS],
 }
 
 impl From<NormalisedState> for MotionState {
     fn from(state: NormalisedState) -> Self {
-        let NormalisedState { model, time, origin, radius, pose, motion, covariance, .. } = state;
-        let (within, observable) = (state.covariance_given_outline, state.observable);
-        Self { model, time, origin, radius, pose, motion, covariance, within, observable }
+        let NormalisedState { model, time, origin, radius, pose, motion, covariance, observable, hidden, .. } = state;
+        let within = state.covariance_given_outline;
+        Self { model, time, origin, radius, pose, motion, covariance, within, observable, hidden }
     }
 }
 
@@ -122,7 +125,7 @@ impl MotionState {
     /// The pose as numbers. First its linear part, rigid: `angle`; similarity: `scale`, `angle`; affine and projective: `m11`, `m12`,
     /// `m21`, `m22`; then `x` and `y`, where the centre of the first outline (the mean of its points) is now, image lengths;
     /// projective also `m31`, `m32` per length, at m33 = 1 and with that centre for origin. The angle is the turn since the first frame in rad
-    /// between -pi and pi, positive where omega is.
+    /// between -pi and pi, positive where omega is. What the outline does not show is NaN.
     #[must_use]
     pub fn pose_parameters(&self) -> Vec<PoseParameter> {
         let k = self.model.parameter_count();
@@ -165,6 +168,13 @@ impl MotionState {
                 .map(|(name, i, j)| entry(name, i, j, 1.0))
                 .to_vec(),
         };
+        // Of a rigid motion or a similarity every number has a rate of its own.
+        let is_one_by_one = self.model <= MotionModel::Similarity;
+        for (j, parameter) in list.iter_mut().enumerate() {
+            if if is_one_by_one { self.hidden[j] } else { self.hidden.contains(&true) } {
+                (parameter.value, parameter.standard_deviation) = (f64::NAN, f64::INFINITY);
+            }
+        }
         for (name, row, start) in [("x", 0, self.origin.x), ("y", 1, self.origin.y)] {
             let mut at = entry(name, row, 2, self.radius);
             at.value += start;

@@ -52,6 +52,7 @@ pub enum SmootherError {
 ///     covariance: variance * DMatrix::identity(6, 6),
 ///     covariance_given_outline: variance * DMatrix::identity(6, 6),
 ///     observable: [true; 8],
+///     hidden: [false; 8],
 /// };
 /// let states = [state(0.1, 1.4, 1e-2).into(), state(0.2, 1.5, 1e-6).into()];
 /// let smoothed = smooth(&states, &ProcessNoise::default())?;
@@ -119,5 +120,8 @@ fn take_back(state: &mut MotionState, next: &MotionState, process_noise: &Proces
     state.pose = state.model.flow(&correction.as_slice()[..k], 1.0).into_inner() * pose;
     (0..k).for_each(|j| state.motion[j] = next.motion[j] + correction[k + j]);
     state.covariance = 0.5 * (&covariance + covariance.transpose());
-    (0..MAX_PARAMETERS).for_each(|j| state.observable[j] |= next.observable[j]);
+    for j in 0..MAX_PARAMETERS {
+        state.observable[j] |= next.observable[j];
+        state.hidden[j] &= next.hidden[j];
+    }
 }

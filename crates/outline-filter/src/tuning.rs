@@ -105,6 +105,8 @@ pub(crate) mod null_space {
     /// As that, of a velocity in a direction that turns: what is not seen of a turn may be half a circle in a frame, so that this is
     /// rounding alone.
     pub(crate) const TURNS_WITH: f64 = 1e-6;
+    /// Share of the deviation of a velocity at the origin of the image that a rate which is not known may make: beyond, neither is known.
+    pub(crate) const HANGS_ON: f64 = 0.5;
     /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
     /// over the frames of a recording, and leaves seven digits to the solution.
     pub(crate) const HOLDING: f64 = 1e9;
@@ -387,6 +389,10 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
+    /// Variance of a pose that is measured against an outline learnt from the frames before, in that of one measured against a known outline.
+    /// Of points with independent errors it is 1; of edges in pictures, which err together in ways that are not measured, more. Measured
+    /// where a robot is followed through broken masks.
+    pub(crate) const OF_LEARNT_OUTLINE: f64 = 3.0;
     /// Probability of each change from one hypothesis to another in a frame: 0.17 % for all of them together.
     pub(crate) const TRANSITION: f64 = 0.000_15;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.

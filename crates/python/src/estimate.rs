@@ -213,13 +213,13 @@ impl PyMotionState {
     }
 
     /// The pose as numbers, in the order of the names. The angle is in radians between -pi and pi, positive where omega is; x and y say
-    /// where the centre of the first outline is now.
+    /// where the centre of the first outline is now. NaN where the outline does not show it, such as the angle of a circle.
     #[getter]
     fn pose_values<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, self.inner.pose_parameters().iter().map(|p| p.value).collect())
     }
 
-    /// Standard deviations of the pose parameters.
+    /// Standard deviations of the pose parameters; infinite where the outline does not show them.
     #[getter]
     fn pose_std<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, self.inner.pose_parameters().iter().map(|p| p.standard_deviation).collect())

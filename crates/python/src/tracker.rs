@@ -440,11 +440,13 @@ impl PyObjectResult {
     }
 
     fn __repr__(&self) -> String {
-        let ObjectResult { object, frames, frames_rejected, estimate, .. } = &self.inner;
+        let ObjectResult { object, frames, frames_rejected, estimate, warnings, .. } = &self.inner;
+        let codes: Vec<_> = warnings.iter().map(|warning| warning.code()).collect();
+        let codes = if codes.is_empty() { String::new() } else { format!(", warnings: {}", codes.join(", ")) };
         let estimate = estimate.map_or("no motion found".to_owned(), |estimate| {
             let estimate = PyEstimate::new(estimate, None);
             estimate.text()
         });
-        format!("ObjectResult({object:?}, {frames} frames, {frames_rejected} rejected, {estimate})")
+        format!("ObjectResult({object:?}, {frames} frames, {frames_rejected} rejected, {estimate}{codes})")
     }
 }

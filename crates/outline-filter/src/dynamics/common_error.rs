@@ -1,8 +1,10 @@
 //! What the measured poses of all frames have in common.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point};
-use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
 
 use super::centred::{CentredMatrix, CentredPose, LARGEST, as_map};
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 
 /// The outline as a whole lies where the first frame has shown it, with an error that all poses measured against it have in common: no
 /// number of frames takes it off a pose that is counted from the first. It goes along with the object.
@@ -13,38 +15,27 @@ use super::centred::{CentredMatrix, CentredPose, LARGEST, as_map};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct CommonError {
     model: MotionModel,
-    /// About the middle, when the second frame was seen.
+    /// About the middle, when the hypotheses began.
     covariance: CentredMatrix,
     /// Linear part of the pose then.
     linear: Matrix2<f64>,
-    /// By which the outline as a whole has moved since then, in the body frame.
+    /// Motion of the body frame by which the outline as a whole has moved since then.
     shift: SVector<f64, MAX_PARAMETERS>,
 }
 
 impl CommonError {
-    /// From what is believed after two frames: half of the covariance of the pose comes from the first.
-    pub(super) fn of_two_frames<const N: usize>(
+    /// From the covariance of pose and motion, and the one that both have if the outline is known exactly: what the outline adds to that of
+    /// the pose.
+    pub(super) fn of_outline<const N: usize>(
         model: MotionModel,
         covariance: &SMatrix<f64, N, N>,
+        given_outline: &SMatrix<f64, N, N>,
         reference: &CentredPose,
     ) -> Self {
         let k = model.parameter_count();
-        let half = CentredMatrix::from_fn(|i, j| if i < k && j < k { 0.5 * covariance[(i, j)] } else { 0.0 });
-        Self { model, covariance: half, linear: reference.linear(), shift: SVector::zeros() }
-    }
-
-    /// Takes it off a covariance of the error of the pose and of the motion over a step from the first frame. What is left is that of
-    /// the pose as it is measured, this error included, with which that of the motion is correlated.
-    pub(super) fn take_off<const N: usize>(&self, covariance: &mut SMatrix<f64, N, N>, seconds: f64) {
-        let k = self.model.parameter_count();
-        for i in 0..k {
-            for j in 0..k {
-                let common = self.covariance[(i, j)];
-                covariance[(i, j)] -= common;
-                covariance[(i, k + j)] -= common / seconds;
-                covariance[(k + i, j)] -= common / seconds;
-            }
-        }
+        let added = |i: usize, j: usize| covariance[(i, j)] - given_outline[(i, j)];
+        let covariance = CentredMatrix::from_fn(|i, j| if i < k && j < k { added(i, j) } else { 0.0 });
+        Self { model, covariance, linear: reference.linear(), shift: SVector::zeros() }
     }
 
     /// Its covariance about the middle in a pose.
@@ -86,16 +77,12 @@ impl CommonError {
         SVector::from_fn(|i, _| if i < k { (0..k).map(|j| change[i][j] * self.shift[j]).sum() } else { 0.0 })
     }
 
-    /// Where a point of the outline was in the body frame before it moved.
-    pub(super) fn before(&self, point: &Point2<f64>) -> Point2<f64> {
-        map_point(&self.back(), point)
-    }
-
     /// The pose in which the outline as it is now lies where it would have lain in the pose given before it moved.
     pub(super) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
         pose * self.back()
     }
 
+    /// The map of the body frame that takes the outline back to where it was.
     fn back(&self) -> Matrix3<f64> {
         let k = self.model.parameter_count();
         self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner()
@@ -103,65 +90,65 @@ impl CommonError {
 
     #[cfg(feature = "serde")]
     pub(super) fn is_sound(&self, model: MotionModel) -> bool {
-        let numbers = self.covariance.iter().chain(&self.linear).chain(&self.shift);
-        self.model == model && numbers.into_iter().all(|entry| entry.is_finite())
+        let numbers = || self.covariance.iter().chain(&self.linear).chain(&self.shift);
+        let is_in_bounds = numbers().all(|entry| entry.abs() <= StateFormat::LARGEST_NUMBER);
+        self.model == model && is_in_bounds && self.linear.try_inverse().is_some()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use freeform_riccati::map_point;
+    use nalgebra::Point2;
 
     fn reference() -> CentredPose {
         CentredPose { pose: Matrix3::identity(), middle: Point2::new(0.3, -0.2) }
     }
 
-    fn of_two_frames() -> SMatrix<f64, 9, 9> {
+    /// After two frames, a tenth of a second apart, whose poses have this covariance each; and the same with the outline given.
+    fn of_two_frames() -> [SMatrix<f64, 9, 9>; 2] {
         let one = SMatrix::<f64, 3, 3>::new(0.02, 0.001, 0.0, 0.001, 0.03, 0.002, 0.0, 0.002, 0.05);
-        let mut covariance = SMatrix::zeros();
-        for (row, column, factor) in [(0, 0, 2.0), (0, 3, 20.0), (3, 0, 20.0), (3, 3, 200.0)] {
-            covariance.fixed_view_mut::<3, 3>(row, column).copy_from(&(one * factor));
-        }
-        covariance
+        [2.0, 1.0].map(|times| {
+            let mut covariance = SMatrix::<f64, 9, 9>::zeros();
+            for (row, column, factor) in [(0, 0, 1.0), (0, 3, 10.0), (3, 0, 10.0), (3, 3, 100.0)] {
+                covariance.fixed_view_mut::<3, 3>(row, column).copy_from(&(one * factor * times));
+            }
+            covariance
+        })
+    }
+
+    fn common_error() -> CommonError {
+        let [covariance, given_outline] = of_two_frames();
+        CommonError::of_outline(MotionModel::Rigid, &covariance, &given_outline, &reference())
     }
 
     #[test]
-    fn what_is_left_of_two_frames_is_the_error_of_the_second_and_the_motion_between_both() {
-        let mut covariance = of_two_frames();
-        let one = covariance.fixed_view::<3, 3>(0, 0) * 0.5;
-        let common = CommonError::of_two_frames(MotionModel::Rigid, &covariance, &reference());
-        common.take_off(&mut covariance, 0.1);
-        assert!((covariance.fixed_view::<3, 3>(0, 0) - one).amax() < 1e-15);
-        // A step before, the error was that of the first frame alone, and independent of that of the second.
-        let mut step = SMatrix::<f64, 9, 9>::identity();
-        (0..3).for_each(|i| step[(i, 3 + i)] = -0.1);
-        let first = step * covariance * step.transpose();
-        assert!((first.fixed_view::<3, 3>(0, 0) - one).amax() < 1e-15);
-        assert!((step * covariance).fixed_view::<3, 3>(0, 0).amax() < 1e-15);
+    fn after_two_frames_it_is_the_error_of_the_first() {
+        let expected = of_two_frames()[1].fixed_view::<3, 3>(0, 0).into_owned();
+        assert!((common_error().covariance.fixed_view::<3, 3>(0, 0) - expected).amax() < 1e-15);
     }
 
     #[test]
     fn it_goes_along_with_the_object() {
-        let common = CommonError::of_two_frames(MotionModel::Rigid, &of_two_frames(), &reference());
-        let turned = CentredPose {
-            pose: MotionModel::Rigid.flow(&[-std::f64::consts::FRAC_PI_2, 3.0, 1.0], 1.0).into_inner(),
-            ..reference()
-        };
-        let [here, there] = [reference(), turned].map(|pose| common.covariance_in(&pose).expect("a pose"));
+        let quarter = MotionModel::Rigid.flow(&[-std::f64::consts::FRAC_PI_2, 3.0, 1.0], 1.0).into_inner();
+        let turned = CentredPose { pose: quarter, ..reference() };
+        let [here, there] = [reference(), turned].map(|pose| common_error().covariance_in(&pose).expect("a pose"));
         assert!((here[(0, 0)] - there[(0, 0)]).abs() < 1e-15);
         assert!((here[(1, 1)] - there[(2, 2)]).abs() < 1e-15 && (here[(2, 2)] - there[(1, 1)]).abs() < 1e-15);
     }
 
     #[test]
     fn a_pose_of_the_outline_that_has_moved_shows_its_points_where_they_were() {
-        let mut common = CommonError::of_two_frames(MotionModel::Rigid, &of_two_frames(), &reference());
+        let mut common = common_error();
+        let shift = [0.02, 0.01, -0.03];
         common.take_shift(&SVector::from([0.02, 0.01, -0.03, 0.0, 0.0, 0.0, 0.0, 0.0]));
         let pose = MotionModel::Rigid.flow(&[0.7, 0.2, 0.1], 1.0).into_inner();
         let point = Point2::new(0.4, 0.5);
-        let seen = map_point(&pose, &common.before(&point));
-        assert!((seen - map_point(&common.of_outline_now(&pose), &point)).norm() < 1e-15);
+        let moved = map_point(MotionModel::Rigid.flow(&shift, 1.0).matrix(), &point);
+        assert!((map_point(&common.of_outline_now(&pose), &moved) - map_point(&pose, &point)).norm() < 1e-15);
         let error = common.shift_in(&pose);
-        let moved = MotionModel::Rigid.flow(&error.as_slice()[..3], 1.0).into_inner() * common.of_outline_now(&pose);
-        assert!((moved - pose).amax() < 1e-3);
+        let counted = MotionModel::Rigid.flow(&error.as_slice()[..3], 1.0).into_inner() * common.of_outline_now(&pose);
+        assert!((counted - pose).amax() < 1e-3);
     }
 }

@@ -8,7 +8,7 @@ use super::{
     interacting::InteractingHypotheses,
     setting::{Dynamics, DynamicsWeights},
 };
-use crate::{map::NullDirection, update::PoseMeasurement};
+use crate::{belief::StateMatrix, map::NullDirection, update::PoseMeasurement};
 
 /// Hypotheses of how the motion goes on, for the models that have dynamics. Matrices have the size that a model needs: most of the work on
 /// larger ones would be on zeros.
@@ -32,12 +32,12 @@ macro_rules! of_any_size {
 }
 
 impl DynamicsFilter {
-    /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
+    /// Begins with what is believed of an object after a step of so many seconds, and the covariance of that if the outline is known. `None` for models without dynamics of their own
     /// (projective), and numbers that do not allow it.
     pub(crate) fn begin(
         model: MotionModel,
         setting: Dynamics,
-        summary: &Summary,
+        summary: (&Summary, &StateMatrix),
         middle: Point2<f64>,
         seconds: f64,
     ) -> Option<Self> {
@@ -76,12 +76,7 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.take_shift(shift));
     }
 
-    /// A point of the outline in the body frame of the pose that is stated.
-    pub(crate) fn as_stated(&self, point: &Point2<f64>) -> Point2<f64> {
-        of_any_size!(self, hypotheses => hypotheses.as_stated(point))
-    }
-
-    /// The pose in which the outline as it is now lies where one in the pose given lay when they began.
+    /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.
     pub(crate) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
         of_any_size!(self, hypotheses => hypotheses.of_outline_now(pose))
     }

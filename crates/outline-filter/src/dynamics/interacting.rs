@@ -13,7 +13,7 @@ use super::{
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;
-use crate::{map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
+use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
 
 /// Hypotheses at most.
 pub(super) const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
@@ -39,7 +39,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     /// Factor of the variance of a pose by the most probable hypothesis.
     shaking: f64,
     leads: bool,
-    /// Whether the outline has been learnt from poses that a constant generator was not right for.
+    /// Whether others than a constant generator have led, or the motion has changed: wrong poses have moved the outline then.
     pub(super) has_changed: bool,
 }
 
@@ -49,7 +49,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn begin(
         model: MotionModel,
         setting: Dynamics,
-        summary: &Summary,
+        (summary, given_outline): (&Summary, &StateMatrix),
         middle: Point2<f64>,
         seconds: f64,
     ) -> Option<Self> {
@@ -60,10 +60,14 @@ impl<const N: usize> InteractingHypotheses<N> {
         let reference = CentredPose { pose: summary.pose, middle };
         let change = reference.about_middle(model);
         let (mean, mut covariance) = centred(&change, summary, k);
+        // Poses are followed as they are measured, against the outline as it is.
+        let (_, measured) = centred::<N>(&change, &Summary { covariance: *given_outline, ..*summary }, k);
+        let common = CommonError::of_outline(model, &covariance, &measured, &reference);
+        for (i, j) in (0..2 * k).flat_map(|i| (0..k).map(move |j| (i, j))) {
+            (covariance[(i, j)], covariance[(j, i)]) = (measured[(i, j)], measured[(j, i)]);
+        }
         let pose_variance =
             CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
-        let common = CommonError::of_two_frames(model, &covariance, &reference);
-        common.take_off(&mut covariance, seconds);
         let courses = courses(setting);
         let mut filter = Self {
             model,
@@ -118,18 +122,16 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Moves all hypotheses on by a step, after mixing their states; `pose` is where the object is predicted otherwise.
     /// Whether the numbers allow it.
     pub(crate) fn predict(&mut self, pose: &CentredPose, seconds: f64, null: &[NullDirection]) -> bool {
-        let middle = self.common.before(&pose.middle);
-        let (moved, pose) =
-            (CentredPose { pose: self.reference.pose, middle }, CentredPose { pose: pose.pose, middle });
+        let moved = CentredPose { pose: self.reference.pose, middle: pose.middle };
         for hypothesis in &mut self.hypotheses {
             hypothesis.move_middle(self.model, &self.reference, &moved);
         }
         self.reference = moved;
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
         let step =
-            Step { model: self.model, seconds, from: &self.reference, to: &pose, pose_variance: &self.pose_variance };
+            Step { model: self.model, seconds, from: &self.reference, to: pose, pose_variance: &self.pose_variance };
         let possible = self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step));
-        self.reference = pose;
+        self.reference = *pose;
         self.hold(null);
         possible
     }
@@ -153,10 +155,10 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
-        let information = to.transpose() * measured.information * to;
+        let information = to.transpose() * measured.information * to / tuning::OF_LEARNT_OUTLINE;
         let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
         let pulled = measured.pulled + measured.information * self.common.shift_in(&self.reference.pose);
-        let pulled = to.transpose() * pulled;
+        let pulled = to.transpose() * pulled / tuning::OF_LEARNT_OUTLINE;
         let Some(deviation) =
             solved(&information, &CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 }), k)
         else {
@@ -240,11 +242,6 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn widening(&self) -> f64 {
         let k = self.model.parameter_count();
         self.shaking * (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
-    }
-
-    /// A point of the outline in the body frame of the pose that is stated.
-    pub(crate) fn as_stated(&self, point: &Point2<f64>) -> Point2<f64> {
-        if self.leads || self.has_changed { self.common.before(point) } else { *point }
     }
 
     /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.

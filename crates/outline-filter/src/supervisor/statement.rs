@@ -150,10 +150,7 @@ impl MotionFilter {
         if self.hypotheses.are_doubtful() || self.unstated().is_some() {
             return None;
         }
-        let track = self.track.as_ref()?;
-        let middle = track.centred_pose().middle;
-        let middle = self.history.dynamics.as_ref().map_or(middle, |dynamics| dynamics.as_stated(&middle));
-        track.velocity_of(&middle, &self.state()?)
+        self.track.as_ref()?.velocity_of_middle(&self.state()?)
     }
 
     /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not

@@ -1,7 +1,7 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
 use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point};
-use nalgebra::{DMatrix, Matrix3, Point2};
+use nalgebra::{DMatrix, Matrix3, SVector, Vector2};
 
 use super::Track;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
     tuning::{
         hypotheses::DIFFERENT,
-        null_space::{TAKES_PART, TURNS_WITH},
+        null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
         supervisor::STEPS_KNOWN,
     },
     update::{hold, with_hold},
@@ -67,8 +67,11 @@ impl Track {
     pub(crate) fn begun_dynamics(&self, setting: Dynamics) -> Option<DynamicsFilter> {
         let belief = &self.belief;
         let null = self.map.null_directions(belief.model, &belief.pose);
-        let summary = self.summary_by(&with_hold(&belief.marginal, hold(belief, &self.map, &null).as_ref()))?;
-        DynamicsFilter::begin(belief.model, setting, &summary, self.map.middle(), belief.memory.step)
+        let hold = hold(belief, &self.map, &null);
+        let summary = self.summary_by(&with_hold(&belief.marginal, hold.as_ref()))?;
+        let given_outline = with_hold(&belief.information.with_outline_given(), hold.as_ref());
+        let given_outline = self.summary_by(&given_outline)?.covariance;
+        DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), self.map.middle(), belief.memory.step)
     }
 
     /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number.
@@ -128,7 +131,23 @@ impl Track {
                 estimate = estimate.with_unobservable(j);
             }
         }
-        Some(estimate)
+        // A velocity at the origin hangs on a rate that is not known by how far that moves the middle of the object.
+        let middle = map_point(&(to_image * summary.pose), &self.map.middle());
+        let kinds = model.parameter_kinds();
+        let is_known = |j: usize| estimate.parameters().nth(j).is_some_and(|parameter| parameter.value.is_some());
+        let unknown = |j: &usize| kinds[*j] == ParameterKind::Rate && !is_known(*j);
+        let mut carried = Vector2::<f64>::zeros();
+        for j in (0..k).filter(unknown) {
+            let by_rate = model.basis()[j].fixed_view::<2, 2>(0, 0) * middle.coords * deviations[j];
+            carried = carried.zip_map(&by_rate, |a, b| a.max(b.abs()));
+        }
+        let first = kinds.iter().position(|kind| *kind == ParameterKind::Velocity).unwrap_or(k);
+        let hangs = |j: &usize| {
+            let component = carried.get(j.wrapping_sub(first)).copied().unwrap_or(0.0);
+            kinds[*j] == ParameterKind::Velocity && component > HANGS_ON * deviations[*j]
+        };
+        let hanging: Vec<usize> = (0..k).filter(hangs).collect();
+        Some(hanging.into_iter().fold(estimate, MotionEstimate::with_unobservable))
     }
 
     /// Pose and motion with their joint covariance at a time in the unit of the track, with the parameters marked that `observable` says nothing is known of.
@@ -159,13 +178,14 @@ impl Track {
                 belief.covariance_of(&belief.information.with_outline_given(), variance)?,
             ),
             observable,
+            hidden: self.hidden_rates(),
         };
         Some(state.into())
     }
 
     /// Velocity of the object's middle in a state of this track; `None` where it is not worth stating.
-    pub(crate) fn velocity_of(&self, point: &Point2<f64>, state: &MotionState) -> Option<PointVelocity> {
-        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * point.coords));
+    pub(crate) fn velocity_of_middle(&self, state: &MotionState) -> Option<PointVelocity> {
+        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.middle().coords));
         let span = self.belief.memory.shortest(self.belief.parameter_count());
         let unit = self.reference.time_unit;
         let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
@@ -199,6 +219,20 @@ impl Track {
     fn is_worth(&self, deviation: f64, span: f64, displacement: f64) -> bool {
         let memory = &self.belief.memory;
         is_worth(deviation, span.max(memory.span.min(STEPS_KNOWN * memory.step)), displacement)
+    }
+
+    /// Rates that take part in a motion about the middle which the outline does not show.
+    fn hidden_rates(&self) -> [bool; MAX_PARAMETERS] {
+        let (model, at) = (self.belief.model, self.centred_pose());
+        let (change, kinds) = (at.about_middle(model), model.parameter_kinds());
+        let mut hidden = [false; MAX_PARAMETERS];
+        for null in self.map.null_directions(model, &self.belief.pose) {
+            let centred = change * SVector::<f64, MAX_PARAMETERS>::from(null.direction);
+            let least = TAKES_PART * centred.amax();
+            let takes_part = |j: usize| kinds.get(j) == Some(&ParameterKind::Rate) && centred[j].abs() > least;
+            hidden.iter_mut().enumerate().for_each(|(j, hidden)| *hidden |= takes_part(j));
+        }
+        hidden
     }
 
     /// Parameters, in image units, that take part in a motion which the outline does not show. The velocity at the origin of the image is

@@ -6,6 +6,7 @@ mod filter_observability;
 mod filter_support;
 mod known_outline;
 mod mask_rounding;
+mod moving_poses;
 mod plane;
 mod point_deviations;
 mod recorded;

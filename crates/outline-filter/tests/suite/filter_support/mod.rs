@@ -1,9 +1,9 @@
 //! Simulated frames, and filters that have taken them.
 use freeform_outline_filter::{FilterSettings, MotionFilter};
 use freeform_riccati::MotionModel;
-use freeform_sim_camera::{BuiltInShape, Camera, Frame, Motion, Sampling, Scene, SequenceLength, Settings, Simulator};
+use freeform_sim_camera::{Camera, Frame, Motion, Sampling, Scene, SequenceLength, Settings, Shape, Simulator};
 
-pub(crate) fn frames_of(shape: BuiltInShape, motion: impl Into<Motion>, settings: Settings) -> Vec<Frame> {
+pub(crate) fn frames_of(shape: impl Into<Shape>, motion: impl Into<Motion>, settings: Settings) -> Vec<Frame> {
     let scene = Scene::new(shape, motion, Camera::default());
     Simulator::new(scene, settings).expect("good settings").frames().collect()
 }
