@@ -56,7 +56,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         let k = model.parameter_count();
         let (mut mean, covariance) = centred(&change, given, k);
         let off = model.motion_between(&(given.pose * self.reference.pose.try_inverse()?), 1.0)?;
-        let shift = if self.has_changed { self.common.shift_in(&self.reference.pose) } else { SVector::zeros() };
+        let shift = if self.outline_has_moved { self.common.shift_in(&self.reference.pose) } else { SVector::zeros() };
         let moved = change * (SVector::<f64, MAX_PARAMETERS>::from(off) + shift);
         (0..k).for_each(|j| mean[j] = moved[j]);
         Some((mean, covariance))
@@ -91,7 +91,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             let is_generator = hypothesis.course == Course::ConstantGenerator;
             (weight >= least).then(|| match of_generator.filter(|_| is_generator) {
                 Some((mean, covariance)) => {
-                    Part { weight, mean, covariance, is_measured: self.has_changed, accelerates: false }
+                    Part { weight, mean, covariance, is_measured: self.outline_has_moved, accelerates: false }
                 }
                 None => {
                     let (mean, covariance) = self.of_measured(hypothesis);

@@ -32,8 +32,8 @@ macro_rules! of_any_size {
 }
 
 impl DynamicsFilter {
-    /// Begins with what is believed of an object after a step of so many seconds, and the covariance of that if the outline is known. `None` for models without dynamics of their own
-    /// (projective), and numbers that do not allow it.
+    /// Begins with what is believed of an object after a step of so many seconds, and the covariance of that if the outline is known. `None`
+    /// for models without dynamics of their own (projective), and numbers that do not allow it.
     pub(crate) fn begin(
         model: MotionModel,
         setting: Dynamics,

@@ -39,8 +39,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     /// Factor of the variance of a pose by the most probable hypothesis.
     shaking: f64,
     leads: bool,
-    /// Whether others than a constant generator have led, or the motion has changed: wrong poses have moved the outline then.
-    pub(super) has_changed: bool,
+    /// Whether wrong poses have moved the outline: others than a constant generator have led, or the motion has changed.
+    pub(super) outline_has_moved: bool,
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
@@ -79,7 +79,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             common,
             series: InnovationSeries::default(),
             shaking: 1.0,
-            has_changed: false,
+            outline_has_moved: false,
             leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
         };
         for course in courses {
@@ -193,13 +193,13 @@ impl<const N: usize> InteractingHypotheses<N> {
         let weight = self.weights().generator;
         if self.setting == Dynamics::Auto {
             self.leads = if self.leads { weight < tuning::LEADS_UNTIL } else { weight < tuning::LEADS_FROM };
-            self.has_changed |= self.leads;
+            self.outline_has_moved |= self.leads;
         }
     }
 
     /// Takes it that the motion has changed as none of them tells.
     pub(crate) fn take_change(&mut self) {
-        self.has_changed = true;
+        self.outline_has_moved = true;
     }
 
     /// Takes it that the outline as a whole has moved, in the body frame, and with it what later poses are measured against.

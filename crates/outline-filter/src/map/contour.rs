@@ -1,4 +1,6 @@
 //! From the noisy points of one frame to places and normals along the contour, robust against outliers.
+use std::ops::RangeInclusive;
+
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 use crate::tuning::{contour as tuning, measurement::MEDIAN_TO_DEVIATION};
@@ -86,13 +88,15 @@ impl Contour {
         half_window.min((self.points.len() / tuning::PARTS).max(*tuning::HALF_WINDOWS.end()))
     }
 
-    /// Places every `spacing` along the smoothed contour.
+    /// Places every `spacing` along the smoothed contour. Windows that are wider than normals usually need are narrower where they would cut
+    /// off what stands out, such as the pin of a disc, which alone shows its turn.
     pub(crate) fn resampled(&mut self, sigma: f64, half_window: usize, spacing: f64) -> Option<SmoothPiece> {
         let half_window = self.no_wider(half_window);
-        self.mark_outliers(half_window, sigma);
+        let usual = self.half_window_for(sigma, tuning::NORMAL_NOISE).min(half_window);
+        self.mark_outliers(usual, sigma);
         let mut fits: Vec<LocalFit> = (0..self.points.len())
             .filter(|i| !self.outlier[*i])
-            .filter_map(|i| self.local_fit(i, half_window))
+            .filter_map(|i| self.widest_fit(i, usual..=half_window, sigma))
             .collect();
         if fits.len() < 3 {
             return None;
@@ -214,10 +218,48 @@ impl Contour {
                 residual.is_none_or(|r| r > tuning::OUTLYING * sigma)
             })
             .collect();
+        let marks = self.without_long_runs(marks);
         // A window that smooths corners away must not take half the contour for outliers.
         if marks.iter().filter(|mark| **mark).count() * 4 < marks.len() {
             self.outlier = marks;
         }
+    }
+
+    /// Marks but those of more points in a row than outliers are found in, that are as close together as others: what stands out sharply, such
+    /// as a pin, is off every line through the points beside it.
+    fn without_long_runs(&self, mut marks: Vec<bool>) -> Vec<bool> {
+        let n = marks.len();
+        let Some(first) = (0..n).find(|i| !marks[*i]) else { return marks };
+        let farthest = tuning::OF_RUN * self.median_step();
+        let mut run = Vec::new();
+        for i in (first..=first + n).map(|i| i % n) {
+            if marks[i] {
+                run.push(i);
+                continue;
+            }
+            let is_close = |i: &usize| {
+                self.neighbour(*i, 1).is_none_or(|next| (self.points[next] - self.points[*i]).norm() <= farthest)
+            };
+            if run.len() > tuning::MEDIAN_HALF_WINDOW && run.iter().filter(|i| is_close(i)).count() * 4 > 3 * run.len()
+            {
+                run.iter().for_each(|i| marks[*i] = false);
+            }
+            run.clear();
+        }
+        marks
+    }
+
+    /// Local quadratic over the wider of two windows, if the place agrees with that over the narrower one (Lepski 1991).
+    fn widest_fit(&self, i: usize, half_windows: RangeInclusive<usize>, sigma: f64) -> Option<LocalFit> {
+        let wide = self.local_fit(i, *half_windows.end())?;
+        if half_windows.start() == half_windows.end() {
+            return Some(wide);
+        }
+        let Some(narrow) = self.local_fit(i, *half_windows.start()) else { return Some(wide) };
+        let noise = sigma * (1.0 - narrow.residual_variance).max(0.0).sqrt();
+        let apart = narrow.tangent.try_normalize(1e-12)?.perp(&(wide.position - narrow.position)).abs();
+        let agrees = apart <= tuning::OUTLYING * noise;
+        Some(if agrees { wide } else { narrow })
     }
 
     /// Least-squares quadratic of position against the number of the point, over the point and the nearest neighbours on either side that

@@ -6,18 +6,14 @@ use super::Track;
 use crate::{measurement::Frame, tuning::map::UNSEEN_SHIFT};
 
 impl Track {
-    /// The motion of the body frame that moves the cells as the frame just taken has moved their offsets, by least squares; the points of
-    /// the frame on each cell are its weight. `frame` has the cells as they were.
+    /// The motion of the body frame that moves the outline as the frame just taken has moved the offsets of its cells, by least squares; what
+    /// is known of a cell is its weight, so that what frames move here and there adds up to what it is all together.
     pub(super) fn common_shift(&self, frame: &Frame) -> SVector<f64, MAX_PARAMETERS> {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let (mut squares, mut right) =
             (SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros(), SVector::<f64, MAX_PARAMETERS>::zeros());
-        let [before, after] = [&frame.cells, &self.belief.information.cells].map(|cells| cells.own());
-        for (number, cell) in self.map.cells().iter().enumerate() {
-            let weight = after[number] - before[number];
-            if weight <= 0.0 {
-                continue;
-            }
+        let information = self.belief.information.cells.own();
+        for (number, (cell, &weight)) in self.map.cells().iter().zip(information).enumerate() {
             let h = model.normal_velocities(&cell.centre, &cell.normal);
             for i in 0..k {
                 right[i] += weight * h[i] * frame.shifts[number];

@@ -179,6 +179,7 @@ impl Track {
             ),
             observable,
             hidden: self.hidden_rates(),
+            middle: self.map.middle(),
         };
         Some(state.into())
     }

@@ -81,7 +81,7 @@ fn the_turn_of_a_disc_with_a_pin_or_a_notch_is_found_wherever_it_is() {
 }
 
 #[test]
-fn the_angle_of_a_circle_is_not_stated_while_its_place_is() {
+fn the_angle_of_a_circle_is_not_stated_and_its_place_as_far_as_an_unseen_turn_leaves_it() {
     let path = Trajectory::new(Point2::origin(), 2.0, Vector2::new(0.4, 0.0), Dynamics::Velocity).expect("finite");
     let motion = Motion::varying(move |t| path.motion(t));
     let mut run = filter(MotionModel::Rigid);
@@ -90,5 +90,9 @@ fn the_angle_of_a_circle_is_not_stated_while_its_place_is() {
     }
     let [angle, x, y] = run.state().expect("a state").pose_parameters()[..] else { panic!("three numbers") };
     assert!(angle.value.is_nan() && angle.standard_deviation.is_infinite(), "{angle:?}");
-    assert!((x.value - 0.4 * 29.0 / 30.0).abs() < 0.01 && y.value.abs() < 0.01, "{x:?} {y:?}");
+    // The mean of the points of the first outline is beside the middle by chance, and turns about it.
+    for (at, expected) in [(x, 0.4 * 29.0 / 30.0), (y, 0.0)] {
+        let (error, stated) = ((at.value - expected).abs(), at.standard_deviation);
+        assert!(error < 2.5 * stated && stated < 0.05, "{at:?}");
+    }
 }
