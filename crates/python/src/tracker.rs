@@ -441,7 +441,7 @@ impl PyObjectResult {
 
     fn __repr__(&self) -> String {
         let ObjectResult { object, frames, frames_rejected, estimate, warnings, .. } = &self.inner;
-        let codes: Vec<_> = warnings.iter().map(|warning| warning.code()).collect();
+        let codes: Vec<_> = warnings.iter().map(Warning::code).collect();
         let codes = if codes.is_empty() { String::new() } else { format!(", warnings: {}", codes.join(", ")) };
         let estimate = estimate.map_or("no motion found".to_owned(), |estimate| {
             let estimate = PyEstimate::new(estimate, None);

@@ -13,6 +13,15 @@ import freeform_motion as ff
 
 SQUARE = np.array([[0.0, 0], [2, 0], [2, 2], [0, 2]])
 STATED = np.array([0.1, 0.2, 0.3, 0.4])
+#: What makes a table of each library of a dict of columns.
+TABLES = {"dict": dict, "pandas": pandas.DataFrame, "polars": polars.DataFrame, "pyarrow": pyarrow.table}
+
+
+def squares(count):
+    """So many frames of a square that rests, with one row per outline."""
+    frames = list(range(count))
+    points = {"x": [[0.0, 4.0, 4.0, 0.0]] * count, "y": [[0.0, 0.0, 4.0, 4.0]] * count}
+    return {"frame": frames, "time": [0.1 * frame for frame in frames], **points}
 
 
 def test_an_outline_states_the_deviations_of_its_points_or_none():
@@ -223,7 +232,7 @@ def test_an_outline_table_has_the_column_if_any_outline_has_deviations(outlines)
     pyarrow.nulls(3, pyarrow.list_(pyarrow.float64())), pyarrow.array([[], None, []]), polars.Series([[], None, []], dtype=polars.List(polars.Float64)),
 ])
 def test_a_column_of_nothing_but_missing_values_states_no_deviations(nothing):
-    rows = {"frame": [0, 1, 2], "time": [0.0, 0.1, 0.2], "x": [[0.0, 4.0, 4.0, 0.0]] * 3, "y": [[0.0, 0.0, 4.0, 4.0]] * 3}
+    rows = squares(3)
     assert repr(ff.identify({**rows, "deviation": nothing})[0]) == repr(ff.identify(rows)[0])
 
 
@@ -243,13 +252,11 @@ BAD_LISTS = {
 }
 
 
-@pytest.mark.parametrize("library", ["dict", "pandas", "polars", "pyarrow"])
+@pytest.mark.parametrize("library", TABLES)
 @pytest.mark.parametrize("fault", BAD_LISTS)
 def test_lists_of_deviations_that_break_the_rules_are_refused_with_row_and_column(library, fault):
     value, error, message = BAD_LISTS[fault]
-    rows = {"frame": [0, 1, 2], "time": [0.0, 0.1, 0.2], "x": [[0.0, 4.0, 4.0, 0.0]] * 3, "y": [[0.0, 0.0, 4.0, 4.0]] * 3}
-    rows["deviation"] = [None, value, STATED.tolist()]
-    table = {"dict": dict, "pandas": pandas.DataFrame, "polars": polars.DataFrame, "pyarrow": pyarrow.table}[library](rows)
+    table = TABLES[library]({**squares(3), "deviation": [None, value, STATED.tolist()]})
     for take in ff.identify, ff.track:
         with pytest.raises(error, match=message):
             take(table)
@@ -264,15 +271,13 @@ def test_lists_of_deviations_that_break_the_rules_are_refused_with_row_and_colum
     ],
 )
 def test_a_column_of_deviations_that_does_not_fit_lists_is_refused(deviation, error, message):
-    rows = {"frame": [0, 1, 2], "time": [0.0, 0.1, 0.2], "x": [[0.0, 4.0, 4.0, 0.0]] * 3, "y": [[0.0, 0.0, 4.0, 4.0]] * 3}
-    rows["deviation"] = deviation
-    for table in rows, pandas.DataFrame(rows), polars.DataFrame(rows), pyarrow.table(rows):
+    for table in (as_table({**squares(3), "deviation": deviation}) for as_table in TABLES.values()):
         with pytest.raises(error, match=message):
             ff.identify(table)
 
 
 def test_a_number_among_lists_of_deviations_and_a_column_of_another_length_are_refused():
-    rows = {"frame": [0, 1], "time": [0.0, 0.1], "x": [[0.0, 4.0, 4.0, 0.0]] * 2, "y": [[0.0, 0.0, 4.0, 4.0]] * 2}
+    rows = squares(2)
     for table in ({**rows, "deviation": [STATED, 0.1]}, pandas.DataFrame({**rows, "deviation": [STATED, 0.1]})):
         with pytest.raises(ValueError, match="row 1, column deviation: the list is missing"):
             ff.identify(table)

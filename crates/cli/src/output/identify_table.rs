@@ -3,8 +3,8 @@ use std::io::{self, Write};
 use freeform_motion::estimate::PlaneEstimate;
 use freeform_motion::outline_io::readable;
 use freeform_motion::riccati::{ParameterKind, PlaneMotion};
-use freeform_motion::significant;
 use freeform_motion::tracker::{MotionFamily, ObjectResult};
+use freeform_motion::{Warning, significant};
 
 use super::aligned::write_aligned;
 use super::number::with_deviation;
@@ -20,21 +20,13 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &M
     let model = result.motion;
     let truth = truth.and_then(|truth| Some((truth, truth.parameters_in(model)?)));
     let found = result.parameters().unwrap_or_default();
-    let is_ambiguous = |name| {
-        result.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(name))
-            || result.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(name))
-    };
     let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
     let names = model.parameter_names().iter().zip(model.units()).zip(model.parameter_kinds());
     let mut rows: Vec<Vec<String>> = names
         .enumerate()
         .map(|(index, ((name, unit), kind))| {
             let parameter = found.get(index);
-            let unknown = match parameter {
-                Some(_) if is_ambiguous(name) => "ambiguous",
-                Some(_) => "unobservable",
-                None => "-",
-            };
+            let unknown = parameter.map_or("-", |_| in_place_of_value(result, name));
             let unit = if *kind == ParameterKind::Velocity { unit_of_b(unit) } else { unit };
             let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
             row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
@@ -66,15 +58,29 @@ pub(crate) fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &M
     rows
 }
 
+/// What stands in place of a value that is not stated: `ambiguous`; `unobservable` where the outlines do not show it; `unknown` where they do, but
+/// it is not known well enough, or no longer.
+fn in_place_of_value(result: &ObjectResult, name: &str) -> &'static str {
+    let names = |parameters: &[&str]| parameters.contains(&name);
+    let is_ambiguous = result.ambiguity.as_ref().is_some_and(|turns| names(&turns.parameters))
+        || result.plane_ambiguity.as_ref().is_some_and(|planes| names(&planes.parameters));
+    let is_hidden = result.warnings.iter().any(|warning| match warning {
+        Warning::NotObservable { parameters }
+        | Warning::RotationNotObservable { parameters }
+        | Warning::PlaneHardlyMoves { parameters } => names(parameters),
+        _ => false,
+    });
+    match (is_ambiguous, is_hidden) {
+        (true, _) => "ambiguous",
+        (_, true) => "unobservable",
+        _ => "unknown",
+    }
+}
+
 /// The normal of a plane at the first frame, two rows; its z is 1.
 fn normal_rows(result: &ObjectResult, truth: Option<PlaneMotion>) -> [Vec<String>; 2] {
     let normal = result.plane.as_deref().and_then(PlaneEstimate::normal);
-    let is_ambiguous = result.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&"normal"));
-    let unknown = match &result.plane {
-        Some(_) if is_ambiguous => "ambiguous",
-        Some(_) => "unobservable",
-        None => "-",
-    };
+    let unknown = result.plane.as_ref().map_or("-", |_| in_place_of_value(result, "normal"));
     [("normal x", 0), ("normal y", 1)].map(|(name, i)| {
         let known = normal.map(|normal| (normal.value[i], Some(normal.covariance[(i, i)].max(0.0).sqrt())));
         row([name, unknown, "1"], known, truth.map(|truth| truth.normal[i]))
@@ -205,8 +211,10 @@ mod tests {
             covariance: Matrix2::new(1e-6, 0.0, 0.0, 4e-6),
         };
         let ambiguity = Ambiguity { turn: -0.9, rival_turns: vec![0.7], parameters: vec!["omega"] };
+        let hidden = vec![Warning::NotObservable { parameters: vec!["omega"] }];
         let results = [
             ObjectResult { velocity: Some(velocity), ..result(Some(estimate)) },
+            ObjectResult { warnings: hidden, ..result(Some(estimate.with_unobservable(0))) },
             result(Some(estimate.with_unobservable(0))),
             ObjectResult { ambiguity: Some(ambiguity), ..result(Some(estimate.with_unobservable(0))) },
             result(None),

@@ -36,21 +36,11 @@ def are_lists(column: Any) -> bool:
     return isinstance(present, (list, tuple)) or isinstance(present, np.ndarray) and present.ndim > 0
 
 
-def number_lists(column: Any, name: str) -> list[Lists]:
-    """The lists of a column of coordinates, in the chunks that it has; float64."""
+def number_lists(column: Any, name: str, *, may_be_missing: bool = False) -> list[Lists]:
+    """The lists of a column of real numbers, in the chunks that it has; float64, and an empty list for one that is missing if it may be."""
     chunks = []
-    for offsets, values in _chunks(column, name):
-        if values.dtype.kind not in "iuf":
-            raise TypeError(f"column {name}: lists of real numbers are needed, these are of type {values.dtype}")
-        chunks.append((offsets, np.require(values, np.float64, ["C", "A"])))
-    return chunks
-
-
-def deviation_lists(column: Any, name: str) -> list[Lists]:
-    """The lists of a column of standard deviations; float64, and an empty list for a missing one."""
-    chunks = []
-    for offsets, values in _chunks(column, name, null_lists=True):
-        if values.dtype.kind not in "iuf" and values.size:
+    for offsets, values in _chunks(column, name, null_lists=may_be_missing):
+        if values.dtype.kind not in "iuf" and not (may_be_missing and values.size == 0):
             raise TypeError(f"column {name}: lists of real numbers are needed, these are of type {values.dtype}")
         chunks.append((offsets, np.require(values, np.float64, ["C", "A"])))
     return chunks

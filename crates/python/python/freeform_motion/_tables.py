@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._lists import Lists, are_lists, deviation_lists, library_of, mark_lists, merged, number_lists, rows_of
+from ._lists import Lists, are_lists, library_of, mark_lists, merged, number_lists, rows_of
 from ._native import Outline, Simulation
 
 REQUIRED = ("frame", "x", "y")
@@ -116,7 +116,7 @@ def _list_chunks(x: Any, y: Any, arc: Any, contour: Any, deviation: Any) -> list
     if deviation is not None:
         if not are_lists(deviation):
             raise ValueError("column x has lists, but column deviation has none")
-        others[2] = deviation_lists(deviation, "deviation")
+        others[2] = number_lists(deviation, "deviation", may_be_missing=True)
     of_lists = [chunks for chunks in (*lists, *others) if chunks is not None]
     if any(rows_of(chunks) != rows_of(lists[0]) for chunks in of_lists):
         lists = [merged(chunks) for chunks in lists]
