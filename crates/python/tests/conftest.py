@@ -3,12 +3,21 @@
 import os
 
 import numpy as np
+import pandas
+import polars
+import pyarrow
 import pytest
 
 import freeform_motion as ff
 
 # Pictures are drawn without a screen.
 os.environ.setdefault("MPLBACKEND", "Agg")
+
+
+@pytest.fixture(params=["dict", "pandas", "polars", "pyarrow"])
+def as_table(request):
+    """What makes a table of each library of a dict of columns."""
+    return {"dict": dict, "pandas": pandas.DataFrame, "polars": polars.DataFrame, "pyarrow": pyarrow.table}[request.param]
 
 
 @pytest.fixture(scope="session")

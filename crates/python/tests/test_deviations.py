@@ -13,8 +13,6 @@ import freeform_motion as ff
 
 SQUARE = np.array([[0.0, 0], [2, 0], [2, 2], [0, 2]])
 STATED = np.array([0.1, 0.2, 0.3, 0.4])
-#: What makes a table of each library of a dict of columns.
-TABLES = {"dict": dict, "pandas": pandas.DataFrame, "polars": polars.DataFrame, "pyarrow": pyarrow.table}
 
 
 def squares(count):
@@ -252,11 +250,10 @@ BAD_LISTS = {
 }
 
 
-@pytest.mark.parametrize("library", TABLES)
 @pytest.mark.parametrize("fault", BAD_LISTS)
-def test_lists_of_deviations_that_break_the_rules_are_refused_with_row_and_column(library, fault):
+def test_lists_of_deviations_that_break_the_rules_are_refused_with_row_and_column(as_table, fault):
     value, error, message = BAD_LISTS[fault]
-    table = TABLES[library]({**squares(3), "deviation": [None, value, STATED.tolist()]})
+    table = as_table({**squares(3), "deviation": [None, value, STATED.tolist()]})
     for take in ff.identify, ff.track:
         with pytest.raises(error, match=message):
             take(table)
@@ -270,10 +267,10 @@ def test_lists_of_deviations_that_break_the_rules_are_refused_with_row_and_colum
         ([[[0.1]] * 4] * 3, (ValueError, TypeError), "column deviation"),
     ],
 )
-def test_a_column_of_deviations_that_does_not_fit_lists_is_refused(deviation, error, message):
-    for table in (as_table({**squares(3), "deviation": deviation}) for as_table in TABLES.values()):
-        with pytest.raises(error, match=message):
-            ff.identify(table)
+def test_a_column_of_deviations_that_does_not_fit_lists_is_refused(as_table, deviation, error, message):
+    table = as_table({**squares(3), "deviation": deviation})
+    with pytest.raises(error, match=message):
+        ff.identify(table)
 
 
 def test_a_number_among_lists_of_deviations_and_a_column_of_another_length_are_refused():

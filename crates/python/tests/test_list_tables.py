@@ -161,13 +161,11 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("library", ["dict", "pandas", "polars", "pyarrow"])
 @pytest.mark.parametrize("fault", BAD)
-def test_lists_that_break_the_rules_are_refused_with_row_and_column(library, fault):
+def test_lists_that_break_the_rules_are_refused_with_row_and_column(as_table, fault):
     name, value, error, message = BAD[fault]
     rows = {"frame": [0, 1, 2], "time": [0.0, 0.1, 0.2], "x": [OUTLINE.tolist()] * 3, "y": [[0.0, 0.0, 4.0, 4.0]] * 3}
-    rows = spoiled(rows, name, 1, value)
-    table = {"dict": dict, "pandas": pandas.DataFrame, "polars": polars.DataFrame, "pyarrow": pyarrow.table}[library](rows)
+    table = as_table(spoiled(rows, name, 1, value))
     for take in ff.identify, ff.track:
         with pytest.raises(error, match=message):
             take(table)
