@@ -176,14 +176,15 @@ impl MotionState {
         };
         // Of a rigid motion or a similarity every number has a rate of its own.
         let is_one_by_one = self.model <= MotionModel::Similarity;
-        for (j, parameter) in list.iter_mut().enumerate() {
-            if if is_one_by_one { self.hidden[j] } else { self.hidden.contains(&true) } {
+        let is_any_hidden = self.hidden.contains(&true);
+        for (parameter, rate_is_hidden) in list.iter_mut().zip(self.hidden) {
+            if rate_is_hidden || is_any_hidden && !is_one_by_one {
                 (parameter.value, parameter.standard_deviation) = (f64::NAN, f64::INFINITY);
             }
         }
         // Turned about the middle by any angle a point moves by sqrt(2) times its distance, root mean square over both coordinates.
         let lever = self.radius * (g.fixed_view::<2, 2>(0, 0) * self.middle.coords).norm();
-        let by_unseen_turn = if self.hidden.contains(&true) { lever } else { 0.0 };
+        let by_unseen_turn = if is_any_hidden { lever } else { 0.0 };
         for (name, row, start) in [("x", 0, self.origin.x), ("y", 1, self.origin.y)] {
             let mut at = entry(name, row, 2, self.radius);
             at.value += start;

@@ -54,6 +54,8 @@ pub(crate) mod contour {
     /// Distance of points in a row, in mean distances, up to which they are a piece of the outline rather than outliers: independent points
     /// are 3 apart once in twenty times.
     pub(crate) const OF_RUN: f64 = 3.0;
+    /// Share of the points of such a row that are no further from the next: a single step over a gap is no sign of outliers.
+    pub(crate) const CLOSE_OF_RUN: f64 = 0.75;
     /// Deviation of a normal's direction that the window is chosen for, rad: its cosine is then within 0.2 %.
     pub(crate) const NORMAL_NOISE: f64 = 0.05;
     /// As [`NORMAL_NOISE`], for the pilot regression.

@@ -79,13 +79,8 @@ impl CommonError {
 
     /// The pose in which the outline as it is now lies where it would have lain in the pose given before it moved.
     pub(super) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
-        pose * self.back()
-    }
-
-    /// The map of the body frame that takes the outline back to where it was.
-    fn back(&self) -> Matrix3<f64> {
         let k = self.model.parameter_count();
-        self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner()
+        pose * self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner()
     }
 
     #[cfg(feature = "serde")]

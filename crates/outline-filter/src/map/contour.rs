@@ -240,8 +240,8 @@ impl Contour {
             let is_close = |i: &usize| {
                 self.neighbour(*i, 1).is_none_or(|next| (self.points[next] - self.points[*i]).norm() <= farthest)
             };
-            if run.len() > tuning::MEDIAN_HALF_WINDOW && run.iter().filter(|i| is_close(i)).count() * 4 > 3 * run.len()
-            {
+            let close = run.iter().filter(|i| is_close(i)).count();
+            if run.len() > tuning::MEDIAN_HALF_WINDOW && close as f64 > tuning::CLOSE_OF_RUN * run.len() as f64 {
                 run.iter().for_each(|i| marks[*i] = false);
             }
             run.clear();

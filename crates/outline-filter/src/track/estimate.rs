@@ -1,7 +1,7 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
 use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point};
-use nalgebra::{DMatrix, Matrix3, SVector, Vector2};
+use nalgebra::{DMatrix, Matrix3, Point2, SVector, Vector2};
 
 use super::Track;
 use crate::{
@@ -131,22 +131,8 @@ impl Track {
                 estimate = estimate.with_unobservable(j);
             }
         }
-        // A velocity at the origin hangs on a rate that is not known by how far that moves the middle of the object.
         let middle = map_point(&(to_image * summary.pose), &self.map.middle());
-        let kinds = model.parameter_kinds();
-        let is_known = |j: usize| estimate.parameters().nth(j).is_some_and(|parameter| parameter.value.is_some());
-        let unknown = |j: &usize| kinds[*j] == ParameterKind::Rate && !is_known(*j);
-        let mut carried = Vector2::<f64>::zeros();
-        for j in (0..k).filter(unknown) {
-            let by_rate = model.basis()[j].fixed_view::<2, 2>(0, 0) * middle.coords * deviations[j];
-            carried = carried.zip_map(&by_rate, |a, b| a.max(b.abs()));
-        }
-        let first = kinds.iter().position(|kind| *kind == ParameterKind::Velocity).unwrap_or(k);
-        let hangs = |j: &usize| {
-            let component = carried.get(j.wrapping_sub(first)).copied().unwrap_or(0.0);
-            kinds[*j] == ParameterKind::Velocity && component > HANGS_ON * deviations[*j]
-        };
-        let hanging: Vec<usize> = (0..k).filter(hangs).collect();
+        let hanging = hanging_velocities(&estimate, &middle, &deviations);
         Some(hanging.into_iter().fold(estimate, MotionEstimate::with_unobservable))
     }
 
@@ -262,6 +248,20 @@ impl Track {
         }
         blind
     }
+}
+
+/// Velocities at the origin of the image that hang on a rate which is not known, by how far that moves the middle of the object.
+fn hanging_velocities(estimate: &MotionEstimate, middle: &Point2<f64>, deviations: &[f64]) -> Vec<usize> {
+    let model = estimate.model();
+    let (k, kinds) = (model.parameter_count(), model.parameter_kinds());
+    let mut carried = Vector2::<f64>::zeros();
+    let rates = estimate.parameters().enumerate().filter(|(j, _)| kinds[*j] == ParameterKind::Rate);
+    for (j, _) in rates.filter(|(_, parameter)| parameter.value.is_none()) {
+        let by_rate = model.basis()[j].fixed_view::<2, 2>(0, 0) * middle.coords * deviations[j];
+        carried = carried.zip_map(&by_rate, |a, b| a.max(b.abs()));
+    }
+    let velocities = (0..k).filter(|j| kinds[*j] == ParameterKind::Velocity).zip(&carried);
+    velocities.filter(|(j, carried)| **carried > HANGS_ON * deviations[*j]).map(|(j, _)| j).collect()
 }
 
 /// Standard deviations of a covariance.
