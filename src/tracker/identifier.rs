@@ -7,6 +7,7 @@ use freeform_estimate::{MotionEstimate, MotionState, PlaneEstimate, PointVelocit
 use freeform_outline_filter::{
     Ambiguity, DynamicsWeights, KnownOutline, MotionFilter, Phase, PlaneAmbiguity, PlaneFilter, Unstated,
 };
+use nalgebra::DMatrix;
 
 #[cfg(feature = "serde")]
 use super::resting::{RestingError, RestingFilter, StateFile};
@@ -119,6 +120,14 @@ impl Identifier {
             Self::Plane(_) => None,
             #[cfg(feature = "serde")]
             Self::Resting(_) => None,
+        }
+    }
+
+    /// Covariance of the motion in the order of its parameters, image units, if the method gives it and the motion is known at the end.
+    pub(super) fn covariance(&self) -> Option<DMatrix<f64>> {
+        match self {
+            Self::Filter(object) => object.filter.estimate().and_then(|_| object.filter.covariance()),
+            _ => None,
         }
     }
 

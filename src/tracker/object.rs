@@ -215,6 +215,13 @@ impl TrackedObject {
             frames_rejected: self.rejected,
             first_rejection: self.rejections.first().cloned(),
             estimate,
+            covariance: estimate.and_then(|estimate| {
+                let image = identifier.covariance()?;
+                Some(match self.scale {
+                    Some(scale) => scale.covariance_in_space(estimate.model(), &image),
+                    None => image,
+                })
+            }),
             plane: identifier.plane().map(Box::new),
             velocity: velocity.filter(freeform_estimate::PointVelocity::is_finite),
             ambiguity: identifier.ambiguity(),

@@ -1,5 +1,6 @@
 use freeform_estimate::{MotionEstimate, ParameterEstimate, PlaneEstimate, PointVelocity};
 use freeform_outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
+use nalgebra::DMatrix;
 
 use super::{family::MotionFamily, settings::Method};
 use crate::Warning;
@@ -23,6 +24,9 @@ pub struct ObjectResult {
     /// The last known motion, in space if a camera scale is given. All numbers are finite. `None` if no motion was found,
     /// and for a plane in space.
     pub estimate: Option<MotionEstimate>,
+    /// Covariance of the parameters of `estimate`, k by k in their order, as if those that are not stated were known. `None` where the
+    /// method gives none, and for a plane in space.
+    pub covariance: Option<DMatrix<f64>>,
     /// The last known motion of a plane in space.
     pub plane: Option<Box<PlaneEstimate>>,
     /// Velocity of the middle of the object in the last frame, in space if a camera scale is given (motion filter). It may be known while

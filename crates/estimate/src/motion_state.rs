@@ -5,6 +5,7 @@ use crate::{motion_estimate::MotionEstimate, process_noise::ProcessNoise};
 
 /// Pose and motion of an object at one time, with their joint covariance.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MotionState {
     pub(crate) model: MotionModel,
     pub(crate) time: f64,

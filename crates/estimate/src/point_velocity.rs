@@ -5,6 +5,7 @@ use crate::motion_state::MotionState;
 
 /// Velocity of a point of the object at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PointVelocity {
     /// Position of the point at that time, image coordinates.
     pub point: Point2<f64>,

@@ -11,6 +11,11 @@ use crate::trace_settings::{MASK_SIGMA, Smoothing, TraceSettings};
 /// Grey value of the pixels of an object in its window.
 const SET: u8 = 255;
 
+/// Labels of a mask from which on grey values are suspected, and the mean length of their runs in pixels below which most of them have to
+/// be. Grey values change from pixel to pixel, at a smoothed edge or in noise; labels of objects do not.
+const MANY_LABELS: usize = 16;
+const SHORT_RUN: usize = 2;
+
 /// A labelled mask, as segmentation programs give it: every pixel holds the label of the object that it belongs to, 0 or less for the
 /// ground.
 #[derive(Debug, Clone, Copy)]
@@ -20,13 +25,27 @@ pub struct LabelMask<'a> {
     height: usize,
 }
 
-/// Half-open bounds of the pixels of a label.
+/// An object of a [`LabelMask`].
+#[derive(Debug)]
+pub struct TracedLabel {
+    /// Its label.
+    pub label: i64,
+    /// The outline of its largest part, or what is wrong with it.
+    pub outline: Result<TracedOutline, TraceError>,
+    /// Pixels of its next largest part of at least the smallest area, which is left out; 0 if there is none.
+    pub next_part: u64,
+}
+
+/// Half-open bounds of the pixels of a label, and how they lie.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     left: usize,
     right: usize,
     top: usize,
     bottom: usize,
+    pixels: usize,
+    /// Runs of pixels that follow each other in a row.
+    runs: usize,
 }
 
 impl<'a> LabelMask<'a> {
@@ -52,21 +71,23 @@ impl<'a> LabelMask<'a> {
     /// // A square of 10 by 10 pixels with the label 7, the upper left one at column 5 and row 8.
     /// let labels: Vec<i64> = (0..30 * 40).map(|i| if (5..15).contains(&(i % 40)) && (8..18).contains(&(i / 40)) { 7 } else { 0 }).collect();
     /// let outlines = LabelMask::new(&labels, 40, 30)?.trace(&TraceSettings::default())?;
-    /// let (label, square) = &outlines[0];
-    /// let centre = square.as_ref().expect("a square").centre;
-    /// assert_eq!(*label, 7);
+    /// let centre = outlines[0].outline.as_ref().expect("a square").centre;
+    /// assert_eq!(outlines[0].label, 7);
     /// assert!((centre - nalgebra::Point2::new(10.0, 30.0 - 13.0)).norm() < 1e-3);
     /// # Ok::<(), freeform_outline_io::TraceError>(())
     /// ```
     ///
     /// # Errors
-    /// A setting out of range. What is wrong with the outline of one label stands in its place.
-    #[expect(clippy::type_complexity, reason = "a list of results with their labels")]
-    pub fn trace(&self, settings: &TraceSettings) -> Result<Vec<(i64, Result<TracedOutline, TraceError>)>, TraceError> {
+    /// A setting out of range, and grey values in place of labels. What is wrong with the outline of one label stands in its place.
+    pub fn trace(&self, settings: &TraceSettings) -> Result<Vec<TracedLabel>, TraceError> {
         settings.check()?;
         let bounds = self.bounds();
-        let count = bounds.len();
-        Ok(bounds.into_iter().map(|(label, bounds)| (label, self.trace_one(label, bounds, settings, count))).collect())
+        let labels = bounds.len();
+        let scattered = bounds.values().filter(|bounds| bounds.pixels < SHORT_RUN * bounds.runs).count();
+        if labels >= MANY_LABELS && 2 * scattered > labels {
+            return Err(TraceError::GreyValues { scattered, labels });
+        }
+        Ok(bounds.into_iter().map(|(label, bounds)| self.trace_one(label, bounds, settings, labels)).collect())
     }
 
     fn bounds(&self) -> BTreeMap<i64, Bounds> {
@@ -77,23 +98,26 @@ impl<'a> LabelMask<'a> {
                 let (left, right) = (column, column + run.len());
                 column = right;
                 if run[0] > 0 {
-                    let found = all.entry(run[0]).or_insert(Bounds { left, right, top: row, bottom: row + 1 });
+                    let found = all.entry(run[0]).or_insert(Bounds {
+                        left,
+                        right,
+                        top: row,
+                        bottom: row + 1,
+                        pixels: 0,
+                        runs: 0,
+                    });
                     found.left = found.left.min(left);
                     found.right = found.right.max(right);
                     found.bottom = row + 1;
+                    found.pixels += run.len();
+                    found.runs += 1;
                 }
             }
         }
         all
     }
 
-    fn trace_one(
-        &self,
-        label: i64,
-        bounds: Bounds,
-        settings: &TraceSettings,
-        object_count: usize,
-    ) -> Result<TracedOutline, TraceError> {
+    fn trace_one(&self, label: i64, bounds: Bounds, settings: &TraceSettings, object_count: usize) -> TracedLabel {
         let sigma = match settings.smoothing {
             Smoothing::Automatic => MASK_SIGMA,
             Smoothing::Gaussian(sigma) => sigma,
@@ -106,15 +130,22 @@ impl<'a> LabelMask<'a> {
         let part = GrayImage::from_fn((right - left) as u32, (bottom - top) as u32, |x, y| {
             Luma([if is_set(x, y) { SET } else { 0 }])
         });
-        let objects = Objects::of(&part, |value| value == SET, settings.minimum_area, 1)?;
-        let mask = objects.into_masks(margin).next().ok_or(TraceError::NoPixels)?;
-        let values = mask.filled.iter().map(|filled| f32::from(u8::from(*filled))).collect();
-        let mut field = Field { width: mask.width, height: mask.height, values };
-        if sigma > 0.0 {
-            field.blur(sigma);
-        }
-        let window = Window { left: left + mask.left, top: top + mask.top, field: &field, level: 0.5, edges: None };
-        let seen = window.outline(self.height as u32, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
-        Ok(seen.traced(mask.pixel_count, object_count, 0.5))
+        let parts = match Objects::of(&part, |value| value == SET, settings.minimum_area, 2) {
+            Ok(parts) => parts,
+            Err(error) => return TracedLabel { label, outline: Err(error), next_part: 0 },
+        };
+        let next_part = parts.pixel_counts().nth(1).unwrap_or(0);
+        let of_largest = || {
+            let mask = parts.into_masks(margin).next().ok_or(TraceError::NoPixels)?;
+            let values = mask.filled.iter().map(|filled| f32::from(u8::from(*filled))).collect();
+            let mut field = Field { width: mask.width, height: mask.height, values };
+            if sigma > 0.0 {
+                field.blur(sigma);
+            }
+            let window = Window { left: left + mask.left, top: top + mask.top, field: &field, level: 0.5, edges: None };
+            let seen = window.outline(self.height as u32, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
+            Ok(seen.traced(mask.pixel_count, object_count, 0.5))
+        };
+        TracedLabel { label, outline: of_largest(), next_part }
     }
 }

@@ -118,7 +118,7 @@ pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
 pub use identity::{Identities, Selection};
 pub use image::GrayImage;
-pub use labels::LabelMask;
+pub use labels::{LabelMask, TracedLabel};
 pub use outline_columns::{ColumnOutlines, OutlineColumns};
 pub use outline_file::{OutlineFile, TableFormat, TableWriter};
 pub use outline_lists::{ListChunk, ListOutlines, Lists, Marks, OutlineLists};

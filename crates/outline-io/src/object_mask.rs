@@ -68,6 +68,11 @@ impl Objects {
         Ok(Self { count, largest, columns, rows })
     }
 
+    /// Pixels of each of those that were asked for, the largest first.
+    pub(crate) fn pixel_counts(&self) -> impl Iterator<Item = u64> {
+        self.largest.iter().map(|(pixels, _)| *pixels)
+    }
+
     /// The objects, each in a window that reaches `margin` pixels beyond it, as far as the picture goes.
     pub(crate) fn into_masks(self, margin: usize) -> impl Iterator<Item = ObjectMask> {
         let Self { largest, columns, rows, .. } = self;

@@ -158,6 +158,17 @@ pub enum TraceError {
     /// A picture of no pixels.
     #[error("the picture has no pixels")]
     NoPixels,
+    /// Labels that change from pixel to pixel.
+    #[error(
+        "{scattered} of {labels} labels are scattered pixels: these are grey values and no labels; make a mask of the picture first, such as \
+         picture > level"
+    )]
+    GreyValues {
+        /// Labels of which hardly two pixels are side by side.
+        scattered: usize,
+        /// All labels.
+        labels: usize,
+    },
     /// All pixels have one grey value.
     #[error("no object: every pixel has the grey value {value}")]
     Uniform {

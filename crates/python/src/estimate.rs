@@ -5,14 +5,18 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use serde::{Deserialize, Serialize};
 
 use crate::arrays::{array_of_matrix, array_of_matrix3, array2, point};
+use crate::pickled::{Pickled, Reduced};
 
 /// One parameter of a motion.
 #[pyclass(frozen, name = "Parameter", module = "freeform_motion")]
 #[derive(Debug)]
 pub(crate) struct PyParameter {
     inner: ParameterEstimate,
+    /// Which it is one of.
+    of: PyEstimate,
 }
 
 #[pymethods]
@@ -53,6 +57,10 @@ impl PyParameter {
         self.inner.systematic_deviation
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (PyEstimate, &'static str))> {
+        Ok((py.import("operator")?.getattr("getitem")?, (self.of.clone(), self.inner.name)))
+    }
+
     fn __repr__(&self) -> String {
         text(&self.inner)
     }
@@ -71,10 +79,14 @@ fn text(parameter: &ParameterEstimate) -> String {
 
 /// An identified motion: one value per parameter of its model, and how well each is known.
 #[pyclass(frozen, name = "Estimate", module = "freeform_motion")]
-#[derive(Debug)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct PyEstimate {
     inner: MotionEstimate,
     covariance: Option<DMatrix<f64>>,
+}
+
+impl Pickled for PyEstimate {
+    const KIND: ([u8; 4], &'static str) = (*b"esti", "Estimate");
 }
 
 impl PyEstimate {
@@ -160,7 +172,7 @@ impl PyEstimate {
         let found = self.inner.parameters().find(|parameter| parameter.name == name);
         let names = || self.inner.model().parameter_names().join(", ");
         found
-            .map(|inner| PyParameter { inner })
+            .map(|inner| PyParameter { inner, of: self.clone() })
             .ok_or_else(|| PyKeyError::new_err(format!("{name:?} is none of {}", names())))
     }
 
@@ -172,6 +184,15 @@ impl PyEstimate {
         Ok(self.names(py)?.try_iter()?.into_any())
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().reduced(&slf.get_type())
+    }
+
+    #[staticmethod]
+    fn _restored(bytes: &[u8]) -> PyResult<Self> {
+        Self::of_bytes(bytes)
+    }
+
     fn __repr__(&self) -> String {
         format!("Estimate({})", self.text())
     }
@@ -179,9 +200,19 @@ impl PyEstimate {
 
 /// Pose and motion of an object at one time, with their joint covariance, in the image.
 #[pyclass(frozen, name = "MotionState", module = "freeform_motion")]
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct PyMotionState {
     pub(crate) inner: MotionState,
+}
+
+impl Pickled for PyMotionState {
+    const KIND: ([u8; 4], &'static str) = (*b"moti", "MotionState");
+}
+
+/// Covariance of the motion of a state, shape (k, k), image units.
+pub(crate) fn motion_covariance(state: &MotionState) -> DMatrix<f64> {
+    let k = state.model().parameter_count();
+    state.covariance().view((k, k), (k, k)).into_owned()
 }
 
 #[pymethods]
@@ -195,9 +226,7 @@ impl PyMotionState {
     /// The motion at that time, with its covariance.
     #[getter]
     fn estimate(&self) -> PyEstimate {
-        let k = self.inner.model().parameter_count();
-        let covariance = self.inner.covariance().view((k, k), (k, k)).into_owned();
-        PyEstimate::new(self.inner.motion(), Some(covariance))
+        PyEstimate::new(self.inner.motion(), Some(motion_covariance(&self.inner)))
     }
 
     /// The map of the image from the first outline to its present place, in homogeneous coordinates, shape (3, 3).
@@ -262,6 +291,15 @@ impl PyMotionState {
         Ok(PyPointVelocity { inner: self.inner.velocity_of(&point(first)?) })
     }
 
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().reduced(&slf.get_type())
+    }
+
+    #[staticmethod]
+    fn _restored(bytes: &[u8]) -> PyResult<Self> {
+        Self::of_bytes(bytes)
+    }
+
     fn __repr__(&self) -> String {
         let pose = self.inner.pose_parameters();
         let pose: Vec<String> = pose.iter().map(|p| format!("{} = {}", p.name, significant(p.value, 6))).collect();
@@ -271,9 +309,13 @@ impl PyMotionState {
 
 /// Velocity of a point of the object at one time.
 #[pyclass(frozen, name = "PointVelocity", module = "freeform_motion")]
-#[derive(Debug)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct PyPointVelocity {
     pub(crate) inner: PointVelocity,
+}
+
+impl Pickled for PyPointVelocity {
+    const KIND: ([u8; 4], &'static str) = (*b"velo", "PointVelocity");
 }
 
 #[pymethods]
@@ -300,6 +342,15 @@ impl PyPointVelocity {
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         array2(py, 2, 2, |i, j| self.inner.covariance[(i, j)])
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().reduced(&slf.get_type())
+    }
+
+    #[staticmethod]
+    fn _restored(bytes: &[u8]) -> PyResult<Self> {
+        Self::of_bytes(bytes)
     }
 
     fn __repr__(&self) -> String {

@@ -1,7 +1,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use freeform_motion::outline_io::{
-    Clipping, Identities, LabelMask, Selection, Smoothing, TraceError, TraceSettings, TracedOutline,
+    Clipping, Identities, LabelMask, Selection, Smoothing, TraceError, TraceSettings, TracedLabel, TracedOutline,
 };
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -27,8 +27,12 @@ pub(crate) struct PyLabelTracer {
     naming: Naming,
 }
 
-/// Objects with their outlines, and objects without one with the reason.
-type Traced = (Vec<(i64, PyOutline)>, Vec<(i64, String)>);
+/// Share of the largest part of a label from which on its next largest part may as well be an object: which of them is the largest may
+/// change from mask to mask.
+const LIKE_SIZE: f64 = 0.5;
+
+/// Objects with their outlines, objects without one with the reason, and what is to be said of labels in several parts.
+type Traced = (Vec<(i64, PyOutline)>, Vec<(i64, String)>, Option<String>);
 
 #[pymethods]
 impl PyLabelTracer {
@@ -83,7 +87,7 @@ impl PyLabelTracer {
         #[pyo3(from_py_with = whole)] frame: u64,
         labels: PyReadonlyArray2<'_, i64>,
     ) -> PyResult<Traced> {
-        let &[height, width] = labels.shape() else { return Ok((Vec::new(), Vec::new())) };
+        let &[height, width] = labels.shape() else { return Ok((Vec::new(), Vec::new(), None)) };
         if !labels.is_c_contiguous() {
             return Err(PyValueError::new_err("the rows of the labels do not follow each other"));
         }
@@ -96,33 +100,45 @@ impl PyLabelTracer {
     fn objects(&self, frame: u64, mask: LabelMask<'_>) -> Result<Traced, TraceError> {
         let mut found = Vec::new();
         let mut refused = Vec::new();
-        for (label, traced) in mask.trace(&self.settings)? {
-            match traced {
-                Ok(traced) => found.push((label, traced)),
+        let mut in_parts = None;
+        for TracedLabel { label, outline, next_part } in mask.trace(&self.settings)? {
+            match outline {
+                Ok(traced) => {
+                    let largest = traced.pixel_count;
+                    if next_part as f64 > LIKE_SIZE * largest as f64 && in_parts.is_none() {
+                        in_parts = Some(format!(
+                            "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next_part} pixels \
+                             is not; for several objects give each a label of its own, as scipy.ndimage.label or skimage.measure.label do, \
+                             and link=\"places\""
+                        ));
+                    }
+                    found.push((label, traced));
+                }
                 // Specks are no objects.
                 Err(TraceError::TooSmall { .. }) => {}
                 Err(error) => refused.push((label, format!("frame {frame}, label {label}: {error}"))),
             }
         }
-        match &self.naming {
-            Naming::Labels => Ok((with_outlines(found), refused)),
-            Naming::Places(identities) => {
-                found.sort_by_key(|(_, traced)| std::cmp::Reverse(traced.pixel_count));
-                let traced: Vec<TracedOutline> = found.into_iter().map(|(_, traced)| traced).collect();
-                if traced.is_empty() {
-                    return Ok((Vec::new(), Vec::new()));
-                }
-                let mut identities = identities.lock().unwrap_or_else(PoisonError::into_inner);
-                match identities.assign(frame, traced) {
-                    Ok(named) => {
-                        Ok((with_outlines(named.into_iter().map(|(name, traced)| (name as i64, traced))), Vec::new()))
-                    }
-                    // Nobody is where the object should be: its frame is missing.
-                    Err(_) => Ok((Vec::new(), Vec::new())),
-                }
-            }
-        }
+        Ok(match &self.naming {
+            Naming::Labels => (with_outlines(found), refused, in_parts),
+            Naming::Places(identities) => (with_outlines(in_places(identities, frame, found)), Vec::new(), in_parts),
+        })
     }
+}
+
+/// The objects by the names that they keep; none where nobody is where the object should be.
+fn in_places(
+    identities: &Mutex<Identities>,
+    frame: u64,
+    mut found: Vec<(i64, TracedOutline)>,
+) -> Vec<(i64, TracedOutline)> {
+    found.sort_by_key(|(_, traced)| std::cmp::Reverse(traced.pixel_count));
+    let traced: Vec<TracedOutline> = found.into_iter().map(|(_, traced)| traced).collect();
+    if traced.is_empty() {
+        return Vec::new();
+    }
+    let named = identities.lock().unwrap_or_else(PoisonError::into_inner).assign(frame, traced);
+    named.map_or_else(|_| Vec::new(), |named| named.into_iter().map(|(name, traced)| (name as i64, traced)).collect())
 }
 
 fn with_outlines(traced: impl IntoIterator<Item = (i64, TracedOutline)>) -> Vec<(i64, PyOutline)> {

@@ -13,7 +13,9 @@ mod label_tracer;
 mod line_identifier;
 mod motion_filter;
 mod names;
+mod object_result;
 mod outline;
+mod pickled;
 mod pipeline;
 mod plane;
 mod polynomial;
@@ -43,6 +45,8 @@ mod _native {
     #[pymodule_export]
     use crate::motion_filter::{PyFilterStep, PyMotionFilter};
     #[pymodule_export]
+    use crate::object_result::PyObjectResult;
+    #[pymodule_export]
     use crate::outline::PyOutline;
     #[pymodule_export]
     use crate::pipeline::PyPipeline;
@@ -57,5 +61,5 @@ mod _native {
     #[pymodule_export]
     use crate::simulation::{PySimulatedFrame, PySimulation, simulate};
     #[pymodule_export]
-    use crate::tracker::{PyObjectResult, PyObservation, PyResultWarning, PyTracker};
+    use crate::tracker::{PyObservation, PyResultWarning, PyTracker};
 }

@@ -8,7 +8,19 @@ use freeform_motion::tracker::Method;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::{unknown_name, value_error};
+use crate::errors::{type_error, unknown_name, value_error};
+
+/// The name of an object: a string, or a whole number such as a label.
+pub(crate) fn object_name(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    match value.extract() {
+        Ok(name) => Ok(name),
+        Err(_) if value.extract::<i64>().is_ok() => Ok(value.str()?.to_string()),
+        Err(_) => Err(type_error(format!(
+            "object: a string or a whole number is needed, this is {}",
+            value.get_type().name()?
+        ))),
+    }
+}
 
 pub(crate) fn motion_model(name: &str) -> PyResult<MotionModel> {
     let found = MotionModel::ALL.into_iter().find(|model| model.to_string() == name);

@@ -2,17 +2,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::tracker::{MethodSettings, ObjectPhase, ObjectResult, Observation};
+use freeform_motion::tracker::{MethodSettings, ObjectPhase, Observation};
 use freeform_motion::{Tracker, TrackerSettings, Warning};
-use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyBytes;
+use serde::{Deserialize, Serialize};
 
 use crate::errors::{value_error, whole};
-use crate::estimate::{PyEstimate, PyMotionState, PyPointVelocity};
+use crate::estimate::{PyEstimate, PyMotionState, motion_covariance};
 use crate::motion_filter::FilterArguments;
-use crate::names::{camera_scale, dynamics_weights, method, motion_model};
+use crate::names::{camera_scale, method, motion_model, object_name};
+use crate::object_result::PyObjectResult;
 use crate::outline::outline_of;
+use crate::pickled::{Pickled, Reduced};
 use crate::plane::rectification;
 
 /// Identifies the motion of many objects from their outlines. Memory does not grow with the number of frames.
@@ -87,8 +89,8 @@ impl PyTracker {
     ///
     /// Parameters
     /// ----------
-    /// object : str
-    ///     Name of the object.
+    /// object : str or int
+    ///     Name of the object; a whole number such as a label stands for its digits.
     /// frame : int
     ///     Number of the frame, 0 or more.
     /// time : float
@@ -108,22 +110,25 @@ impl PyTracker {
     fn push(
         &self,
         py: Python<'_>,
-        object: String,
+        #[pyo3(from_py_with = object_name)] object: String,
         #[pyo3(from_py_with = whole)] frame: u64,
         time: f64,
         outline: &Bound<'_, PyAny>,
     ) -> PyResult<PyObservation> {
         let outline = OutlineFrame { frame, time, object, outline: outline_of(outline)? };
-        let inner = py.detach(|| self.lock().push(&outline));
-        Ok(PyObservation { inner })
+        let (inner, scale) = py.detach(|| {
+            let mut tracker = self.lock();
+            (tracker.push(&outline), tracker.settings().scale)
+        });
+        Ok(PyObservation { inner, scale })
     }
 
     /// Records a frame of an object whose points are no outline. It counts as rejected.
     ///
     /// Parameters
     /// ----------
-    /// object : str
-    ///     Name of the object.
+    /// object : str or int
+    ///     Name of the object; a whole number such as a label stands for its digits.
     /// frame : int
     ///     Number of the frame, 0 or more.
     /// reason : str
@@ -135,12 +140,12 @@ impl PyTracker {
     fn reject(
         &self,
         py: Python<'_>,
-        object: &str,
+        #[pyo3(from_py_with = object_name)] object: String,
         #[pyo3(from_py_with = whole)] frame: u64,
         reason: String,
     ) -> PyObservation {
-        let inner = py.detach(|| self.lock().reject(object, frame, reason));
-        PyObservation { inner }
+        let inner = py.detach(|| self.lock().reject(&object, frame, reason));
+        PyObservation { inner, scale: None }
     }
 
     /// The result for each object so far, in the order in which they first appeared.
@@ -149,7 +154,7 @@ impl PyTracker {
     /// -------
     /// list of ObjectResult
     fn results(&self) -> Vec<PyObjectResult> {
-        self.lock().results().into_iter().map(|inner| PyObjectResult { inner }).collect()
+        self.lock().results().into_iter().map(Into::into).collect()
     }
 
     /// Names of the objects so far, in the order in which they first appeared.
@@ -240,22 +245,41 @@ impl PyTracker {
 
 /// Something that a user should know of a result.
 #[pyclass(frozen, name = "ResultWarning", module = "freeform_motion", get_all)]
-#[derive(Debug)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct PyResultWarning {
     /// A name that is the same in every version.
-    code: &'static str,
+    code: String,
     /// A sentence for people.
     message: String,
 }
 
 impl From<&Warning> for PyResultWarning {
     fn from(warning: &Warning) -> Self {
-        Self { code: warning.code(), message: warning.to_string() }
+        Self { code: warning.code().to_owned(), message: warning.to_string() }
     }
+}
+
+impl PyResultWarning {
+    pub(crate) fn code(&self) -> &str {
+        &self.code
+    }
+}
+
+impl Pickled for PyResultWarning {
+    const KIND: ([u8; 4], &'static str) = (*b"warn", "ResultWarning");
 }
 
 #[pymethods]
 impl PyResultWarning {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        slf.get().reduced(&slf.get_type())
+    }
+
+    #[staticmethod]
+    fn _restored(bytes: &[u8]) -> PyResult<Self> {
+        Self::of_bytes(bytes)
+    }
+
     fn __str__(&self) -> &str {
         &self.message
     }
@@ -270,6 +294,8 @@ impl PyResultWarning {
 #[derive(Debug)]
 pub(crate) struct PyObservation {
     pub(crate) inner: Observation,
+    /// Camera scale of the tracker.
+    scale: Option<CameraScale>,
 }
 
 #[pymethods]
@@ -313,7 +339,15 @@ impl PyObservation {
     /// The motion estimated after the frame, in space if a camera scale is given; None if it is not known.
     #[getter]
     fn estimate(&self) -> Option<PyEstimate> {
-        self.inner.estimate.map(|estimate| PyEstimate::new(estimate, None))
+        let Observation { estimate, state, .. } = &self.inner;
+        let image = state.as_ref().map(motion_covariance);
+        estimate.map(|estimate| {
+            let covariance = image.map(|image| match self.scale {
+                Some(scale) => scale.covariance_in_space(estimate.model(), &image),
+                None => image,
+            });
+            PyEstimate::new(estimate, covariance)
+        })
     }
 
     /// Pose and motion in the image with their joint covariance (motion filter), the last known ones.
@@ -352,101 +386,5 @@ impl PyObservation {
             None => format!("Observation({object:?}, frame {frame}, accepted)"),
             Some(rejection) => format!("Observation(rejected: {rejection})"),
         }
-    }
-}
-
-/// The result for an object after all its frames so far.
-#[pyclass(frozen, name = "ObjectResult", module = "freeform_motion")]
-#[derive(Debug)]
-pub(crate) struct PyObjectResult {
-    inner: ObjectResult,
-}
-
-#[pymethods]
-impl PyObjectResult {
-    /// Name of the object.
-    #[getter]
-    fn object(&self) -> &str {
-        &self.inner.object
-    }
-
-    /// `filter` or `adaptive`.
-    #[getter]
-    fn method(&self) -> &'static str {
-        self.inner.method.name()
-    }
-
-    /// The motion model.
-    #[getter]
-    fn motion(&self) -> String {
-        self.inner.motion.to_string()
-    }
-
-    /// Number of frames, rejected ones included.
-    #[getter]
-    fn frames(&self) -> usize {
-        self.inner.frames
-    }
-
-    /// Frames that were not used.
-    #[getter]
-    fn frames_rejected(&self) -> usize {
-        self.inner.frames_rejected
-    }
-
-    /// Why the first of them was not used.
-    #[getter]
-    fn first_rejection(&self) -> Option<String> {
-        self.inner.first_rejection.as_ref().map(ToString::to_string)
-    }
-
-    /// The last known motion, in space if a camera scale is given; None if no motion was found.
-    #[getter]
-    fn estimate(&self) -> Option<PyEstimate> {
-        self.inner.estimate.map(|estimate| PyEstimate::new(estimate, None))
-    }
-
-    /// Velocity of the middle of the object in the last frame, in space if a camera scale is given (motion filter).
-    #[getter]
-    fn velocity(&self) -> Option<PyPointVelocity> {
-        self.inner.velocity.map(|inner| PyPointVelocity { inner })
-    }
-
-    /// Other turns in radians, anticlockwise if y points up, that explain the outlines as well, shape (n,); empty where there is none.
-    #[getter]
-    fn rival_turns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let turns = self.inner.ambiguity.as_ref().map_or(&[][..], |ambiguity| &ambiguity.rival_turns);
-        PyArray1::from_slice(py, turns)
-    }
-
-    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; empty where there is
-    /// none.
-    #[getter]
-    fn aliases<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.inner.aliases)
-    }
-
-    /// Probabilities of the hypotheses of dynamics, `generator`, `velocity` and `accelerating`, which sum up to 1 (motion filter); None
-    /// where they are not told.
-    #[getter]
-    fn dynamics<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        self.inner.dynamics.map(|weights| dynamics_weights(py, &weights)).transpose()
-    }
-
-    /// What a user should know, causes before consequences: each with a `code` for programs and a `message` for people.
-    #[getter]
-    fn warnings(&self) -> Vec<PyResultWarning> {
-        self.inner.warnings.iter().map(Into::into).collect()
-    }
-
-    fn __repr__(&self) -> String {
-        let ObjectResult { object, frames, frames_rejected, estimate, warnings, .. } = &self.inner;
-        let codes: Vec<_> = warnings.iter().map(Warning::code).collect();
-        let codes = if codes.is_empty() { String::new() } else { format!(", warnings: {}", codes.join(", ")) };
-        let estimate = estimate.map_or("no motion found".to_owned(), |estimate| {
-            let estimate = PyEstimate::new(estimate, None);
-            estimate.text()
-        });
-        format!("ObjectResult({object:?}, {frames} frames, {frames_rejected} rejected, {estimate}{codes})")
     }
 }

@@ -76,7 +76,7 @@ def test_times_that_do_not_increase_leave_the_filter_as_it_was(bird, time):
         (lambda: ff.simulate(affine=[0] * 6, projective=[0] * 8), ValueError, "not both"),
         (lambda: ff.fit(SQUARE * 9, normalise="none"), ValueError, "is none of similarity, affine"),
         (lambda: ff.Tracker().push("a", -1, 0.0, SQUARE), ValueError, "a whole number from 0 is needed"),
-        (lambda: ff.Tracker().push(1, 0, 0.0, SQUARE), TypeError, "str"),
+        (lambda: ff.Tracker().push(1.5, 0, 0.0, SQUARE), TypeError, "a string or a whole number is needed, this is float"),
         (lambda: ff.Pipeline(law="best"), ValueError, "is none of structured, filtered, printed, drem"),
         (lambda: ff.fit(SQUARE * 9, degree=3), ValueError, "degree 3 is not one of 2, 4, 6, 8"),
         (lambda: ff.fit(SQUARE * 9, method="4l"), ValueError, "is none of bounded, gs3l, 3l"),

@@ -80,9 +80,9 @@ def test_frames_without_the_object_are_no_frames_of_it(masks):
         (lambda m: ff.identify(m), ValueError, "fps: a positive number"),
         (lambda m: ff.identify(m, fps=-1), ValueError, "fps: a positive number"),
         (lambda m: ff.identify(m, fps=30, times=[0]), ValueError, "not both"),
-        (lambda m: ff.identify(m, times=[0, 1]), ValueError, "one number for each mask"),
+        (lambda m: ff.identify(m, times=[0, 1]), ValueError, "one number for each frame"),
         (lambda m: ff.identify(iter(m), times=[0, 1]), ValueError, "there is none for mask 2"),
-        (lambda m: ff.identify(m, times=np.zeros(30)), ValueError, None),
+        (lambda m: ff.identify(m, times=np.zeros(30)), ValueError, "0.0 of frame 1 does not follow 0.0 of frame 0"),
         (lambda m: ff.identify(m[0], fps=30), ValueError, r"shape \(frames, height, width\) is needed"),
         (lambda m: ff.identify(m * 0.5, fps=30), TypeError, "mask 0: labels are whole numbers"),
         (lambda m: ff.identify([m], fps=30), ValueError, r"mask 0: shape \(height, width\) is needed"),
@@ -98,9 +98,28 @@ def test_frames_without_the_object_are_no_frames_of_it(masks):
     ],
 )
 def test_wrong_masks_and_options_are_refused(masks, call, error, message):
-    if message is None:
-        # Times that do not increase make rejected frames, as in any recording.
-        assert call(masks)[0].frames_rejected == 29
-        return
     with pytest.raises(error, match=message):
         call(masks)
+
+
+def test_two_bodies_under_one_label_are_warned_of_once(masks):
+    two = np.concatenate([masks, masks], axis=2) > 0
+    with pytest.warns(UserWarning, match="give each a label of its own") as told:
+        ff.identify(two, fps=30)
+    assert len(told) == 1 and "frame 0, label 1" in str(told[0].message) and told[0].filename == __file__
+    with pytest.warns(UserWarning, match="label 1: the largest part"):
+        ff.outlines(two[0])
+
+
+def test_grey_pictures_are_not_taken_for_labels(masks):
+    grey = blurred(masks[0] * 255.0)
+    with pytest.raises(ValueError, match="these are grey values and no labels"):
+        ff.identify([grey.astype(np.uint8)] * 3, fps=30)
+    assert ff.outlines(masks[0] * np.uint8(255)).keys() == {255}
+
+
+def blurred(picture):
+    """The mean of 5 by 5 pixels."""
+    padded = np.pad(picture, 2)
+    height, width = picture.shape
+    return sum(padded[i : i + height, j : j + width] for i in range(5) for j in range(5)) / 25

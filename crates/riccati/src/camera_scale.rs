@@ -1,8 +1,9 @@
-use nalgebra::Matrix3;
+use nalgebra::{DMatrix, Matrix3};
 
 use crate::{
     error::DynamicsError,
     motion::{AffineMotion, ProjectiveMotion, RigidMotion, SimilarityMotion},
+    motion_model::MotionModel,
 };
 
 /// Scale `f / Z0` of a scaled orthographic camera, `x = (f / Z0) X`, `y = (f / Z0) Y` (equation 23).
@@ -58,6 +59,14 @@ impl CameraScale {
         space.fixed_view_mut::<2, 1>(0, 2).unscale_mut(self.0);
         space.fixed_view_mut::<1, 2>(2, 0).scale_mut(self.0);
         space
+    }
+
+    /// Covariance in space of the parameters of a motion, k by k in the order of the model, from that in the image.
+    #[must_use]
+    pub fn covariance_in_space(self, model: MotionModel, image: &DMatrix<f64>) -> DMatrix<f64> {
+        let ones = vec![1.0; model.parameter_count()];
+        let factors = model.parameters_of(&self.generator_in_space(&model.generator(&ones)));
+        DMatrix::from_fn(image.nrows(), image.ncols(), |i, j| factors[i] * image[(i, j)] * factors[j])
     }
 }
 

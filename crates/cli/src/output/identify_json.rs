@@ -284,6 +284,7 @@ mod tests {
             frames_rejected: 1,
             first_rejection: None,
             estimate: Some(estimate.with_unobservable(0).in_space(CameraScale::new(0.1).expect("a scale"))),
+            covariance: None,
             velocity: None,
             ambiguity: None,
             plane: None,

@@ -175,6 +175,7 @@ mod tests {
             frames_rejected: 1,
             first_rejection: None,
             estimate: Some(estimate),
+            covariance: None,
             velocity: None,
             ambiguity: None,
             plane: None,

@@ -1,8 +1,8 @@
 //! Outlines of labelled masks.
 use freeform_curve_fit::Outline;
 use freeform_outline_io::{
-    Clipping, GrayImage, Identities, LabelMask, Selection, Smoothing, TraceError, TraceSettings, TracedOutline,
-    trace_mask,
+    Clipping, GrayImage, Identities, LabelMask, Selection, Smoothing, TraceError, TraceSettings, TracedLabel,
+    TracedOutline, trace_mask,
 };
 use image::Luma;
 
@@ -21,7 +21,7 @@ fn egg(x: f64, y: f64) -> bool {
 
 fn trace(labels: &[i64], settings: &TraceSettings) -> Vec<(i64, TracedOutline)> {
     let traced = LabelMask::new(labels, WIDTH, HEIGHT).expect("a mask").trace(settings).expect("settings");
-    traced.into_iter().map(|(label, traced)| (label, traced.expect("an outline"))).collect()
+    traced.into_iter().map(|traced| (traced.label, traced.outline.expect("an outline"))).collect()
 }
 
 #[test]
@@ -61,6 +61,32 @@ fn of_a_label_in_parts_the_largest_is_traced_with_its_holes_filled() {
 }
 
 #[test]
+fn of_a_label_in_parts_the_size_of_the_next_largest_is_told() {
+    let disc = |x: f64, y: f64, radius: f64| (x - 95.0).hypot(y - 70.0) < radius;
+    for (radius, expected) in [(0.0, 0..1), (1.0, 0..1), (6.0, 100..120)] {
+        let mask = labels(|x, y| i64::from(egg(x, y) || disc(x, y, radius)));
+        let traced = LabelMask::new(&mask, WIDTH, HEIGHT).expect("a mask").trace(&TraceSettings::default());
+        let next = traced.expect("settings")[0].next_part;
+        assert!(expected.contains(&next), "radius {radius}: {next} pixels");
+    }
+}
+
+#[test]
+fn grey_values_are_not_taken_for_labels_and_many_small_objects_are() {
+    let smoothed_edge = labels(|x, y| ((30.0 - (x - 60.0).hypot(y - 45.0)) * 40.0 + 128.0).clamp(0.0, 255.0) as i64);
+    let of_grey = LabelMask::new(&smoothed_edge, WIDTH, HEIGHT).expect("a mask").trace(&TraceSettings::default());
+    assert!(
+        matches!(of_grey, Err(TraceError::GreyValues { scattered, labels }) if 2 * scattered > labels),
+        "{of_grey:?}"
+    );
+    // Specks of 2 by 2 pixels, 4 apart.
+    let specks =
+        labels(|x, y| if x % 4.0 < 2.0 && y % 4.0 < 2.0 { 1 + (x / 4.0) as i64 + 30 * (y / 4.0) as i64 } else { 0 });
+    let of_specks = LabelMask::new(&specks, WIDTH, HEIGHT).expect("a mask").trace(&TraceSettings::default());
+    assert!(of_specks.expect("labels").len() > 500);
+}
+
+#[test]
 fn a_label_at_the_edge_is_told_and_left_open_where_asked_for() {
     let mask = labels(|x, y| i64::from(x.hypot(y - 45.0) < 20.0));
     let closed = trace(&mask, &TraceSettings::default()).remove(0).1;
@@ -76,7 +102,7 @@ fn masks_without_pixels_or_of_another_size_and_small_labels_are_refused() {
     let mask = labels(|x, y| i64::from((x - 20.0).hypot(y - 20.0) < 1.0));
     let traced =
         LabelMask::new(&mask, WIDTH, HEIGHT).expect("a mask").trace(&TraceSettings::default()).expect("settings");
-    assert!(matches!(traced[..], [(1, Err(TraceError::TooSmall { needed: 9, .. }))]));
+    assert!(matches!(traced[..], [TracedLabel { label: 1, outline: Err(TraceError::TooSmall { needed: 9, .. }), .. }]));
     let settings = TraceSettings { pixel_size: 0.0, ..TraceSettings::default() };
     assert!(matches!(
         LabelMask::new(&mask, WIDTH, HEIGHT).expect("a mask").trace(&settings),

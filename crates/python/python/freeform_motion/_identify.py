@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ._masks import check_masks, split_tracing, times_of, traced, tracer_of
 from ._native import LabelTracer, ObjectResult, Observation, Recorder, Tracker, identify_table, track_table
+from ._outline_lists import is_outline_list, outlines_by_frame, simulated_times
 from ._progress import progress_bar
 from ._tables import kind_of, native_table, table_like, with_names
 
@@ -36,6 +37,9 @@ class Identification(Sequence[ObjectResult]):
                 if result.object == key:
                     return result
             raise KeyError(f"{key!r} is none of {', '.join(self.objects)}")
+        if not -len(self) <= key < len(self):
+            hint = f"; names are strings: [{str(key)!r}]" if str(key) in self.objects else ""
+            raise IndexError(f"position {key} of {len(self)} object(s){hint}")
         return self._results[key]
 
     def __len__(self) -> int:
@@ -92,17 +96,17 @@ def identify(
 
     Parameters
     ----------
-    data : masks or table
+    data : masks, outlines or table
         Masks: an array of shape (frames, height, width), bool or integer labels with 0 for the ground, or any iterable of arrays of shape
-        (height, width). Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
+        (height, width). Outlines: a list with an `Outline` for each frame, or with a dict of outlines by object, as from `outlines`. Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
         `frame`, `time`, `x`, `y` and optionally `object`, `arc` (the open piece of a partly hidden outline), `contour` (boundary, holes
         and marks of one body) and `deviation` (standard deviation of the point along the normal of the contour, in the unit of `x` and
         `y`). Either one row per point, the rows of one outline following each other in the order of the contour; or one row per
         outline, with lists of numbers in `x`, `y` and `deviation`, as in Parquet.
     fps : float, optional
-        Frames per second; needed for masks, and for tables without a column `time`.
+        Frames per second; needed for masks and outlines, and for tables without a column `time`.
     times : array_like, shape (frames,), optional
-        Times of the masks in seconds, instead of `fps`.
+        Times of the masks or outlines in seconds, instead of `fps`.
     columns : mapping of str to str, optional
         Names of the columns of a table where they are others.
     motion, method, scale
@@ -136,12 +140,12 @@ def identify(
     True
     """
     kind = kind_of(data)
-    tracer, tracker = _split(options, kind, times, motion=motion, method=method, scale=scale)
-    if tracer is None:
+    tracer, tracker = _split(options, data, kind, times, motion=motion, method=method, scale=scale)
+    if kind is not None:
         with progress_bar(progress, None) as advance:
             identify_table(tracker, native_table(data, columns, fps), advance)
     else:
-        for _ in _follow_masks(tracker, data, fps, times, tracer, progress):
+        for _ in _follow(tracker, data, fps, times, tracer, progress):
             pass
     return Identification(tracker.results())
 
@@ -171,7 +175,7 @@ def track(
     Returns
     -------
     table
-        Of the kind of `data`, a dict of arrays for masks. One row per object and frame, in the order of the data: `object`, `frame`,
+        Of the kind of `data`, a dict of arrays for masks and outlines. One row per object and frame, in the order of the data: `object`, `frame`,
         `time`, `phase`, `accepted`; the pose (motion filter), for a rigid motion `angle`, `x` and `y`, each with its `_std`; the motion, for
         a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up where an object was given up and begun anew, with
         another first outline. NaN where something is not known. Angles are in radians since the first frame and continuous; x and y say
@@ -183,50 +187,75 @@ def track(
         As `identify`; also a motion that changes, if it is to be smoothed.
     """
     kind = kind_of(data)
-    tracer, tracker = _split(options, kind, times, motion=motion, method=method, scale=scale)
-    if tracer is None:
+    tracer, tracker = _split(options, data, kind, times, motion=motion, method=method, scale=scale)
+    if kind is not None:
         with progress_bar(progress, None) as advance:
             found = track_table(tracker, native_table(data, columns, fps), smooth, advance)
     else:
         recorder = Recorder()
-        for observation in _follow_masks(tracker, data, fps, times, tracer, progress):
+        for observation in _follow(tracker, data, fps, times, tracer, progress):
             recorder.take(observation)
         found = recorder.columns(tracker, smooth)
     return table_like(kind or "mapping", with_names(found, tracker.objects))
 
 
 def _split(
-    options: dict[str, Any], kind: str | None, times: Any, **arguments: Any
+    options: dict[str, Any], data: Any, kind: str | None, times: Any, **arguments: Any
 ) -> tuple[LabelTracer | None, Tracker]:
-    """What traces masks, where the data are no table, and what follows the outlines."""
+    """What traces masks, where the data are masks, and what follows the outlines."""
     tracing, settings = split_tracing(options)
     if kind is not None:
         only_for_masks(tracing, times)
-        return None, Tracker(**arguments, **settings)
-    tracer = tracer_of(tracing)
-    # In another plane pixels have another size everywhere.
-    if settings.get("rectify") is None and "edge_uncertainty" not in settings:
-        settings.setdefault("mask_pixel", tracer.pixel)
-    return tracer, Tracker(**arguments, **settings)
+    elif is_outline_list(data):
+        only_for_masks(tracing, found="outlines")
+    else:
+        tracer = tracer_of(tracing)
+        # In another plane pixels have another size everywhere.
+        if settings.get("rectify") is None and "edge_uncertainty" not in settings:
+            settings.setdefault("mask_pixel", tracer.pixel)
+        return tracer, Tracker(**arguments, **settings)
+    return None, Tracker(**arguments, **settings)
 
 
-def only_for_masks(tracing: dict[str, Any], times: Any = None) -> None:
-    """Refuses options of masks where the data are a table."""
+def only_for_masks(tracing: dict[str, Any], times: Any = None, found: str = "a table") -> None:
+    """Refuses options of masks where the data are something else."""
     given = [*tracing, *(["times"] if times is not None else [])]
     if given:
-        raise TypeError(f"{', '.join(given)}: only for masks, but the data are a table")
+        raise TypeError(f"{', '.join(given)}: only for masks, but the data are {found}")
+
+
+def _follow(
+    tracker: Tracker,
+    data: Any,
+    fps: float | None,
+    times: Any,
+    tracer: LabelTracer | None,
+    progress: bool | None,
+) -> Iterator[Observation]:
+    """Follows the objects of masks, or of outlines where there is no tracer."""
+    if tracer is None:
+        if fps is None and times is None:
+            times = simulated_times(data)
+        yield from _follow_outlines(tracker, data, times_of(data, fps, times), progress)
+    else:
+        check_masks(data)
+        yield from _follow_masks(tracker, data, times_of(data, fps, times), tracer, progress)
+
+
+def _follow_outlines(
+    tracker: Tracker, data: Any, seconds: Iterator[float], progress: bool | None
+) -> Iterator[Observation]:
+    with progress_bar(progress, len(data)) as advance:
+        for frame, (time, found) in enumerate(zip(seconds, outlines_by_frame(data))):
+            for name, outline in found:
+                yield tracker.push(name, frame, time, outline)
+            if advance is not None:
+                advance(1)
 
 
 def _follow_masks(
-    tracker: Tracker,
-    masks: Any,
-    fps: float | None,
-    times: Any,
-    tracer: LabelTracer,
-    progress: bool | None,
+    tracker: Tracker, masks: Any, seconds: Iterator[float], tracer: LabelTracer, progress: bool | None
 ) -> Iterator[Observation]:
-    check_masks(masks)
-    seconds = times_of(masks, fps, times)
     known: set[int] = set()
     for frame, (found, refused) in enumerate(traced(masks, tracer, progress)):
         time = next(seconds, None)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sized
 from typing import Any
 
@@ -79,16 +81,28 @@ def outlines(
         smoothing=smoothing,
         clipping=clipping,
     )
-    found, refused = tracer.trace(0, label_array(labels))
+    found, refused, in_parts = tracer.trace(0, label_array(labels))
+    if in_parts is not None:
+        _warn(in_parts.partition(", ")[2])
     if refused:
         raise ValueError(refused[0][1].partition(", ")[2])
     return dict(found)
 
 
+def _warn(message: str) -> None:
+    """Warns where this package was called."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, stacklevel=level)
+
+
 def label_array(labels: Any, frame: int | None = None) -> NDArray[np.int64]:
     """Labels as the native part takes them."""
-    array = np.asarray(labels)
     place = "mask" if frame is None else f"mask {frame}"
+    if isinstance(labels, (Outline, Mapping)):
+        raise TypeError(f"{place}: a mask is needed, this is {type(labels).__name__}; a recording of outlines is a list of them")
+    array = np.asarray(labels)
     if array.ndim != 2:
         raise ValueError(f"{place}: shape (height, width) is needed, this is {array.shape}")
     if array.dtype.kind not in "biu":
@@ -120,25 +134,35 @@ def traced(
     masks: Iterable[Any], tracer: LabelTracer, progress: bool | None
 ) -> Iterator[tuple[list[tuple[int, Outline]], list[tuple[int, str]]]]:
     """The objects of every mask with their outlines, and those without one with the reason."""
+    is_told = False
     with progress_bar(progress, len(masks) if isinstance(masks, Sized) else None) as advance:
         for frame, mask in enumerate(masks):
-            yield tracer.trace(frame, label_array(mask, frame))
+            found, refused, in_parts = tracer.trace(frame, label_array(mask, frame))
+            if in_parts is not None and not is_told:
+                _warn(in_parts)
+                is_told = True
+            yield found, refused
             if advance is not None:
                 advance(1)
 
 
 def times_of(masks: Any, fps: float | None, times: Any) -> Iterator[float]:
-    """The time of each mask."""
+    """The time of each mask or outline."""
     if times is not None:
         if fps is not None:
             raise ValueError("give fps or times, not both")
         array = np.asarray(times, dtype=np.float64)
         if array.ndim != 1 or hasattr(masks, "__len__") and len(masks) != len(array):
-            count = f" for {len(masks)} masks" if hasattr(masks, "__len__") else ""
-            raise ValueError(f"times: one number for each mask is needed, this is of shape {array.shape}{count}")
+            count = f" for {len(masks)} frames" if hasattr(masks, "__len__") else ""
+            raise ValueError(f"times: one number for each frame is needed, this is of shape {array.shape}{count}")
+        if not np.isfinite(array).all():
+            raise ValueError(f"times: that of frame {int(np.argmin(np.isfinite(array)))} is not finite")
+        if (np.diff(array) <= 0).any():
+            frame = int(np.argmax(np.diff(array) <= 0)) + 1
+            raise ValueError(f"times: {array[frame]} of frame {frame} does not follow {array[frame - 1]} of frame {frame - 1}")
         return iter(array.tolist())
     if fps is None or not (np.isfinite(fps) and fps > 0):
-        raise ValueError(f"fps: a positive number of masks per second is needed (or times), this is {fps}")
+        raise ValueError(f"fps: a positive number of frames per second is needed (or times), this is {fps}")
     rate = float(fps)
     return (frame / rate for frame in _count())
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from ._identify import only_for_masks
 from ._masks import check_masks, split_tracing, traced, tracer_of
 from ._native import Evidence, Outline, Recogniser, Recognition, outlines_of_table
+from ._outline_lists import is_outline_list, outlines_by_frame
 from ._tables import kind_of, native_table
 
 
@@ -26,7 +27,7 @@ def recognise(
     Parameters
     ----------
     data, columns, progress
-        Masks or a table, as of `identify`; times are not needed.
+        Masks, outlines or a table, as of `identify`; times are not needed.
     known : Recogniser or mapping of str to Outline
         The known outlines by their names.
     **options
@@ -75,6 +76,11 @@ def _outlines(
         only_for_masks(tracing)
         # Times do not matter.
         yield from outlines_of_table(native_table(data, columns, 1.0))
+        return
+    if is_outline_list(data):
+        only_for_masks(tracing, found="outlines")
+        for of_frame in outlines_by_frame(data):
+            yield from of_frame
         return
     check_masks(data)
     for found, _ in traced(data, tracer_of(tracing), progress):

@@ -1,0 +1,110 @@
+"""What is told of an object: with covariances, by its name, and taken from one process to another."""
+
+import operator
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+
+import freeform_motion as ff
+
+
+def again(value):
+    return pickle.loads(pickle.dumps(value))
+
+
+def test_results_of_a_recording_come_back_from_another_process(table):
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        there = pool.submit(ff.identify, table).result()
+    here = ff.identify(table)
+    assert repr(there) == repr(here) and there.objects == here.objects
+    for ours, expected in zip(there, here, strict=True):
+        np.testing.assert_array_equal(ours.estimate.values, expected.estimate.values)
+        np.testing.assert_array_equal(ours.estimate.covariance, expected.estimate.covariance)
+        np.testing.assert_array_equal(ours.velocity.covariance, expected.velocity.covariance)
+        assert [w.code for w in ours.warnings] == [w.code for w in expected.warnings]
+        assert ours.dynamics == expected.dynamics
+
+
+def test_states_parameters_and_warnings_can_be_pickled(bird):
+    motion_filter = ff.MotionFilter(edge_uncertainty=0.01)
+    for frame in bird:
+        motion_filter.step(frame.time, frame.outline)
+    state, omega = again(motion_filter.state), again(motion_filter.estimate["omega"])
+    np.testing.assert_array_equal(state.covariance, motion_filter.state.covariance)
+    np.testing.assert_array_equal(state.predicted(2.0).pose, motion_filter.state.predicted(2.0).pose)
+    assert repr(omega) == repr(motion_filter.estimate["omega"]) and omega.std_systematic > 0
+    square = ff.identify(ff.simulate("square", seconds=1.0))[0]
+    assert square.warnings and [str(w) for w in again(square).warnings] == [str(w) for w in square.warnings]
+    assert str(again(square.warnings[0])) == str(square.warnings[0])
+    np.testing.assert_array_equal(again(square).aliases, square.aliases)
+
+
+@pytest.mark.parametrize("kind", ["Estimate", "MotionState", "PointVelocity", "ObjectResult", "ResultWarning"])
+@pytest.mark.parametrize("data", [b"", b"no result of anything", bytes(40)])
+def test_bytes_that_are_no_result_are_refused(kind, data):
+    with pytest.raises(ValueError):
+        operator.attrgetter(f"{kind}._restored")(ff)(data)
+
+
+@pytest.mark.parametrize("scale", [None, 0.1])
+def test_estimates_of_trackers_have_the_covariance_that_their_deviations_come_from(bird, scale):
+    tracker = ff.Tracker("affine", scale=scale)
+    for frame in bird:
+        observation = tracker.push("bird", frame.index, frame.time, frame.outline)
+    for estimate in (tracker.results()[0].estimate, observation.estimate):
+        np.testing.assert_allclose(np.sqrt(np.diag(estimate.covariance)), estimate.std, rtol=1e-9)
+        assert (np.abs(np.linalg.eigvalsh(estimate.covariance)) > 0).all() and estimate.covariance.shape == (6, 6)
+    motion_filter = ff.MotionFilter("affine")
+    for frame in bird:
+        motion_filter.step(frame.time, frame.outline)
+    factors = np.array([1, 1, 1, 1, 1 / (scale or 1), 1 / (scale or 1)])
+    expected = motion_filter.estimate.covariance * np.outer(factors, factors)
+    np.testing.assert_allclose(tracker.results()[0].estimate.covariance, expected, rtol=1e-9)
+
+
+def test_objects_are_named_by_labels_too(bird):
+    tracker = ff.Tracker()
+    for frame in bird:
+        tracker.push(7, frame.index, frame.time, frame.outline)
+    tracker.reject(7, 30, "frame 30: nothing there")
+    assert tracker.objects == ["7"] and tracker.results()[0].frames == 31
+    with pytest.raises(TypeError, match="object: a string or a whole number is needed, this is float"):
+        tracker.push(7.0, 31, 2.0, bird[0].outline)
+
+
+def test_a_label_that_is_no_position_is_answered_with_the_name(bird):
+    results = ff.identify([{7: frame.outline} for frame in bird], fps=30)
+    assert results["7"].frames == 30
+    with pytest.raises(IndexError, match=r"position 7 of 1 object\(s\); names are strings: \['7'\]"):
+        results[7]
+
+
+def test_a_list_of_outlines_is_a_recording(bird):
+    outlines = [frame.outline for frame in bird]
+    expected = ff.identify(ff.outline_table(bird))[0].estimate
+    for data, times in [(outlines, {"fps": 30}), (bird, {}), (list(bird), {}), (outlines, {"times": [f.time for f in bird]})]:
+        np.testing.assert_array_equal(ff.identify(data, **times)[0].estimate.values, expected.values)
+    two = ff.track([{"left": one, 3: other} for one, other in zip(outlines, reversed(outlines), strict=True)], fps=30)
+    assert set(two["object"]) == {"left", "3"} and len(two["time"]) == 60
+    known = {name: ff.simulate(name).true_outline() for name in ("bird", "phone", "hat")}
+    assert ff.recognise(outlines, known)["0"].name == "bird"
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda o: ff.identify(o), ValueError, "a positive number of frames per second"),
+        (lambda o: ff.identify(o, fps=30, smoothing=2.0), TypeError, "smoothing: only for masks, but the data are outlines"),
+        (lambda o: ff.identify([{"a": 1}], fps=30), TypeError, "frame 0, object a: an Outline is needed, this is int"),
+        (lambda o: ff.identify(iter(o), fps=30), TypeError, "a recording of outlines is a list of them"),
+        (lambda o: ff.identify(o[:3], times=[0.0, 0.1, 0.1]), ValueError, "0.1 of frame 2 does not follow 0.1 of frame 1"),
+        (lambda o: ff.identify(o[:3], times=[0.0, np.nan, 0.1]), ValueError, "that of frame 1 is not finite"),
+        (lambda o: ff.identify(o[:3], times=[0.0, 0.1]), ValueError, "one number for each frame"),
+    ],
+)
+def test_lists_of_outlines_are_looked_at(bird, call, error, words):
+    with pytest.raises(error, match=words):
+        call([frame.outline for frame in bird])
