@@ -59,6 +59,7 @@ mod supervisor;
 mod track;
 mod tuning;
 mod update;
+mod vectors;
 
 pub use batch::{BatchError, BatchEstimate, estimate_batch};
 pub use dynamics::{Dynamics, DynamicsWeights, UnknownDynamics, WrongFamily};

@@ -72,6 +72,9 @@ pub(crate) mod contour {
     pub(crate) const LARGEST_FINE: usize = 120;
     /// Residuals of a regression that a point took part in are divided by their deviation, no less than this share of a variance.
     pub(crate) const LEAST_RESIDUAL_VARIANCE: f64 = 0.05;
+    /// Sizes within these shares of a guess of their median are put in order to find it: a quarter of them, four deviations of the median
+    /// of a few hundred on either side.
+    pub(crate) const ABOUT: [f64; 2] = [0.75, 1.33];
     /// Points whose residuals keep less of their variance than this tell nothing of the noise.
     pub(crate) const TELLING_RESIDUAL_VARIANCE: f64 = 0.1;
 }
@@ -215,6 +218,8 @@ pub(crate) mod likelihood {
     /// Mean square of the residuals, in that of the best pose, from which on another is far worse at a first look, and is not measured: far
     /// beyond what any comparison asks for.
     pub(crate) const FAR_WORSE: f64 = 6.0;
+    /// Points that a first look is at: the mean of their squares is known to a fifth.
+    pub(crate) const ROUGHLY: usize = 100;
     /// Points that turns are compared by; more of them would not decide more.
     pub(crate) const ENOUGH_POINTS: usize = 2000;
 }
@@ -258,6 +263,9 @@ pub(crate) mod update {
     /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
     /// that once in a million frames.
     pub(crate) const SUDDEN: f64 = 25.0;
+    /// Share of the smallest agreement from which a frame may show the outline where a motion that has changed has taken it: that of two lines
+    /// which cross, one of them held where it was expected.
+    pub(crate) const PARTLY_THERE: f64 = 0.5;
 }
 
 /// Remapping: the map cut anew from several frames.
@@ -301,8 +309,15 @@ pub(crate) mod registration {
     pub(crate) const NARROWER: f64 = 0.5;
     /// Steps of the search for each start, at most.
     pub(crate) const SEARCH_STEPS: usize = 8;
-    /// Largest step after which a pose has settled, normalised, in deviations of the noise: far less than what a pose is known to.
-    pub(crate) const SETTLED: f64 = 0.01;
+    /// Steps after which searches that have come together are made once.
+    pub(crate) const FIRST_STEPS: usize = 4;
+    /// As [`WIDEST`], after these.
+    pub(crate) const WIDEST_FURTHER: f64 = WIDEST * NARROWER * NARROWER * NARROWER * NARROWER;
+    /// Distance of the matrices of poses that have come together: a fiftieth of the turn that starts are apart.
+    pub(crate) const TOGETHER: f64 = 0.005;
+    /// Largest step after which a pose has settled, normalised, in deviations of the noise: less than what a pose is known to, and than what
+    /// the linearisations that follow settle to.
+    pub(crate) const SETTLED: f64 = 0.03;
     /// Steps of the refinement of the best, at most.
     pub(crate) const REFINEMENT_STEPS: usize = 15;
     /// Poses that are refined.
@@ -394,13 +409,14 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Variance of a pose that is measured against an outline learnt from the frames before, in that of one measured against a known outline:
-    /// errors of the outline depend on each other from frame to frame, and edges in pictures err together in ways that are not measured.
-    /// Measured: with 1, deviations are half as wide and hold as well, but over 900 frames of a constant motion, and where a robot is followed
-    /// through broken masks, sudden accelerations are seen that are not there.
-    pub(crate) const OF_LEARNT_OUTLINE: f64 = 3.0;
-    /// Probability of each change from one hypothesis to another in a frame: 0.17 % for all of them together.
-    pub(crate) const TRANSITION: f64 = 0.000_15;
+    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: a change in 60,000 frames. With a hundred
+    /// times as much every sequence of a thousand frames was found to show a change by chance; a real one is seen a frame or two later.
+    pub(crate) const LEAVES_CONSTANT: f64 = 0.000_001_5;
+    /// As that, of a motion that changes already: most of those go on to.
+    pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
+    /// How often a change is that a camera begins to shake, in one to a certain motion: cameras that do shake from the start. A motion that changes
+    /// slowly looks for some frames like one seen by a camera that shakes.
+    pub(crate) const BEGINS_TO_SHAKE: f64 = 0.01;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
     pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.046;
@@ -409,9 +425,10 @@ pub(crate) mod dynamics {
     pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
     /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
     pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
-    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some
-    /// sixty frames, fourteen, three, and none; the last are those of bodies that are pushed.
-    pub(crate) const LEVELS: [f64; 6] = [1e-9, 1e-5, 1e-1, 1e3, 1e5, 1e7];
+    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some forty
+    /// frames, fourteen, four, and none; the last are those of bodies that are pushed. Between levels ten thousand times apart a body that swings
+    /// has none that fits: deviations were half of the errors there.
+    pub(crate) const LEVELS: [f64; 6] = [1e-8, 1e-5, 1e-2, 1e1, 1e4, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;
     /// As these, where the velocity of the middle alone changes.
@@ -515,6 +532,8 @@ pub(crate) mod statement {
     /// Standard deviation of a side of a mask, in pixels: that of rounding, 1 / sqrt(12), where the side lies along the rows or columns. Sides
     /// that lie across them are off by less.
     pub(crate) const ROUNDING: f64 = 0.289;
+    /// Tangent of the angle to the rows or columns within which points of a side are rounded together: by less than a pixel over ten.
+    pub(crate) const ALONG_PIXELS: f64 = 0.1;
     /// Share of the frames rejected beyond which what the others say is no motion of the object.
     pub(crate) const MOST_REJECTED: f64 = 0.4;
     /// Fewest frames rejected that say so.

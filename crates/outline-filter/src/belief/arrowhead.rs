@@ -3,6 +3,7 @@ use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 use nalgebra::{SMatrix, SVector};
 
 use super::OffsetInformation;
+use crate::vectors::vectorised;
 
 /// Pose error and motion parameters of the largest model.
 pub(crate) const STATE: usize = 2 * MAX_PARAMETERS;
@@ -50,7 +51,15 @@ impl Arrowhead {
         for (row, moved) in self.dense.iter_mut().zip(&columns) {
             row[..S].copy_from_slice(moved);
         }
-        self.cells.all_mut::<S>().1.iter_mut().for_each(transform);
+        let couplings = self.cells.all_mut::<S>().1;
+        vectorised(
+            #[inline(always)]
+            || {
+                for coupling in couplings.iter_mut() {
+                    self::transform::<K, S>(coupling, inverse, product);
+                }
+            },
+        );
     }
 
     /// Information of pose and motion with the offsets eliminated, `L - sum c c' / o`; unit diagonal beyond the state.
@@ -87,6 +96,7 @@ pub(crate) fn moved_marginal(
 }
 
 /// `v <- F^-T v`.
+#[inline(always)]
 fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &ParameterMatrix, product: &ParameterMatrix) {
     let mut moved = [0.0; S];
     moved[K..].copy_from_slice(&v[K..]);
@@ -101,20 +111,26 @@ fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &Paramet
 
 /// Subtracts `c c' / o` of every cell.
 fn eliminate<const S: usize>(cells: &OffsetInformation, sum: &mut [[f64; STATE]; STATE]) {
-    // A sum of the size of the model fits where the processor is fastest; that of the largest one does not.
-    let mut taken = [[0.0; S]; S];
-    for (coupling, own) in cells.rows::<S>().iter().zip(cells.own()) {
-        if *own <= 0.0 {
-            continue;
-        }
-        let inverse = 1.0 / own;
-        for i in 0..S {
-            let factor = coupling[i] * inverse;
-            for j in 0..S {
-                taken[i][j] += factor * coupling[j];
+    let taken = vectorised(
+        #[inline(always)]
+        || {
+            // A sum of the size of the model fits where the processor is fastest; that of the largest one does not.
+            let mut taken = [[0.0; S]; S];
+            for (coupling, own) in cells.rows::<S>().iter().zip(cells.own()) {
+                if *own <= 0.0 {
+                    continue;
+                }
+                let inverse = 1.0 / own;
+                for i in 0..S {
+                    let factor = coupling[i] * inverse;
+                    for j in 0..S {
+                        taken[i][j] += factor * coupling[j];
+                    }
+                }
             }
-        }
-    }
+            taken
+        },
+    );
     for (row, taken) in sum.iter_mut().zip(&taken) {
         row.iter_mut().zip(taken).for_each(|(entry, taken)| *entry -= taken);
     }

@@ -33,11 +33,12 @@ impl OffsetInformation {
     }
 
     /// Between pose and motion, and the offset of each cell: as many entries as there are.
+    #[cfg(test)]
     pub(crate) fn couplings(&self) -> impl ExactSizeIterator<Item = &[f64]> {
         self.coupling.chunks_exact(self.size)
     }
 
-    /// [`couplings`](Self::couplings) in the size S that they have.
+    /// Between pose and motion, and the offset of each cell, in the size S that they have.
     pub(crate) fn rows<const S: usize>(&self) -> &[[f64; S]] {
         debug_assert_eq!(S, self.size);
         self.coupling.as_chunks().0

@@ -2,7 +2,7 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use crate::{belief::StateMatrix, prediction::centred_change};
+use crate::{belief::StateMatrix, prediction::centred_change, vectors::vectorised};
 
 /// Most parameters of a model that dynamics are told for, those of affine motion.
 pub(crate) const LARGEST: usize = 6;
@@ -105,28 +105,67 @@ pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N
 }
 
 fn carried_sized<const N: usize, const S: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
+    let mut carried = SMatrix::<f64, N, N>::zeros();
+    vectorised(
+        #[inline(always)]
+        || carry::<N, S>(f, p, &mut carried),
+    );
+    carried
+}
+
+#[inline(always)]
+fn carry<const N: usize, const S: usize>(
+    f: &SMatrix<f64, N, N>,
+    p: &SMatrix<f64, N, N>,
+    carried: &mut SMatrix<f64, N, N>,
+) {
     // By columns `P F'` and then `(F P) F'`. Most entries of a transition are zero.
-    let by_columns = |p: &[[f64; S]; S]| {
-        let mut product = [[0.0; S]; S];
-        for (i, column) in product.iter_mut().enumerate() {
-            for (l, p) in p.iter().enumerate() {
-                let factor = f[(i, l)];
-                if factor != 0.0 {
-                    (0..S).for_each(|row| column[row] += factor * p[row]);
-                }
+    let mut entries = [[0_u8; S]; S];
+    let mut counts = [0; S];
+    for i in 0..S {
+        for l in 0..S {
+            entries[i][counts[i]] = l as u8;
+            counts[i] += usize::from(f[(i, l)] != 0.0);
+        }
+    }
+    let mut whole = [[0.0; S]; S];
+    for j in 0..S {
+        for i in 0..S {
+            whole[j][i] = p[(i, j)];
+        }
+    }
+    let right = by_columns(f, &whole, (&entries, &counts));
+    let mut left = [[0.0; S]; S];
+    for j in 0..S {
+        for i in 0..S {
+            left[j][i] = right[i][j];
+        }
+    }
+    let both = by_columns(f, &left, (&entries, &counts));
+    for j in 0..S {
+        for i in 0..S {
+            carried[(i, j)] = both[j][i];
+        }
+    }
+}
+
+/// `P F'` by columns, with the numbers of the entries of each row of F that are not zero.
+#[inline(always)]
+fn by_columns<const N: usize, const S: usize>(
+    f: &SMatrix<f64, N, N>,
+    p: &[[f64; S]; S],
+    (entries, counts): (&[[u8; S]; S], &[usize; S]),
+) -> [[f64; S]; S] {
+    let mut product = [[0.0; S]; S];
+    for (i, column) in product.iter_mut().enumerate() {
+        for l in &entries[i][..counts[i]] {
+            let (factor, of_p) = (f[(i, usize::from(*l))], &p[usize::from(*l)]);
+            for row in 0..S {
+                column[row] += factor * of_p[row];
             }
         }
-        product
-    };
-    let whole: [[f64; S]; S] = std::array::from_fn(|j| std::array::from_fn(|i| p[(i, j)]));
-    let right = by_columns(&whole);
-    let left: [[f64; S]; S] = std::array::from_fn(|j| std::array::from_fn(|i| right[i][j]));
-    let both = by_columns(&left);
-    let mut carried = SMatrix::<f64, N, N>::zeros();
-    for (j, column) in both.iter().enumerate() {
-        (0..S).for_each(|i| carried[(i, j)] = column[i]);
     }
-    carried
+    product
 }
 
 /// Linear part of a generator and its velocity.

@@ -61,9 +61,9 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.predict(pose, seconds, null))
     }
 
-    /// Takes what an accepted frame tells of the pose: the error of the reference pose.
-    pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
-        of_any_size!(self, hypotheses => hypotheses.update(measured));
+    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the middle.
+    pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
+        of_any_size!(self, hypotheses => hypotheses.update(measured, off));
     }
 
     /// Takes it that the motion has changed as none of them tells.

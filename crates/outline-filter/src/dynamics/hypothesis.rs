@@ -2,7 +2,7 @@
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
 
-use crate::tuning::dynamics as tuning;
+use crate::{tuning::dynamics as tuning, vectors::vectorised};
 
 use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts};
 
@@ -77,7 +77,7 @@ pub(super) struct CentredMeasurement {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Innovation {
     pub(super) log_likelihood: f64,
-    /// Measured less predicted, about the middle, in its own standard deviations.
+    /// Score of the pose, about the middle, in its own standard deviations.
     pub(super) standardised: CentredVector,
 }
 
@@ -267,7 +267,6 @@ impl<const N: usize> Hypothesis<N> {
     where
         Const<K>: DimMin<Const<K>, Output = Const<K>>,
     {
-        let n = self.size();
         let information = measurement.information.fixed_view::<K, K>(0, 0) / self.course.shaking();
         let predicted = self.covariance.fixed_view::<K, K>(0, 0).into_owned();
         let off = measurement.deviation.fixed_rows::<K>(0) - self.mean.fixed_rows::<K>(0);
@@ -280,29 +279,55 @@ impl<const N: usize> Hypothesis<N> {
         if !(determinant > 0.0 && squared.is_finite()) {
             return None;
         }
-        // By columns of the covariance of all entries with the pose.
-        let columns = self.covariance.fixed_columns::<K>(0).into_owned();
-        self.mean += columns * pulled;
-        let gain = columns * weight;
-        for j in 0..n {
-            for i in 0..=j {
-                let less: f64 =
-                    (0..K).map(|l| 0.5 * (gain[(i, l)] * columns[(j, l)] + gain[(j, l)] * columns[(i, l)])).sum();
-                let left = self.covariance[(i, j)] - less;
-                (self.covariance[(i, j)], self.covariance[(j, i)]) = (left, left);
-            }
-        }
+        vectorised(
+            #[inline(always)]
+            || self.take_gain::<K>(&pulled, &weight),
+        );
+        // The score, S^-1 off with S the covariance of the innovation, has the covariance S^-1: also where S is not finite.
         let mut standardised = CentredVector::zeros();
         for j in 0..K {
-            // The variance of one entry, that of the measurement taken by itself.
-            let own = information[(j, j)];
-            if own > 0.0 {
-                standardised[j] = off[j] / (1.0 / own + predicted[(j, j)]).sqrt();
-            }
+            standardised[j] = if weight[(j, j)] > 0.0 { pulled[j] / weight[(j, j)].sqrt() } else { 0.0 };
         }
         // The density of the innovation, without the factor that all hypotheses share.
         let log_likelihood = -0.5 * (determinant.ln() + K as f64 * self.course.shaking().ln() + squared);
         Some(Innovation { log_likelihood, standardised })
+    }
+
+    /// Takes a step, given as what pulls the pose, and the information that it comes with.
+    #[inline(always)]
+    fn take_gain<const K: usize>(&mut self, pulled: &SVector<f64, K>, weight: &SMatrix<f64, K, K>) {
+        // Of all entries with the pose.
+        let columns: [[f64; N]; K] = std::array::from_fn(|l| std::array::from_fn(|i| self.covariance[(i, l)]));
+        let mut gain = [[0.0; N]; K];
+        for l in 0..K {
+            for (m, column) in columns.iter().enumerate() {
+                let weight = weight[(m, l)];
+                for i in 0..N {
+                    gain[l][i] += column[i] * weight;
+                }
+            }
+            for (mean, entry) in self.mean.iter_mut().zip(columns[l]) {
+                *mean += entry * pulled[l];
+            }
+        }
+        for j in 0..self.size() {
+            let mut less = [0.0; N];
+            for l in 0..K {
+                let (by_gain, by_column) = (0.5 * columns[l][j], 0.5 * gain[l][j]);
+                for i in 0..N {
+                    less[i] += gain[l][i] * by_gain + by_column * columns[l][i];
+                }
+            }
+            for (i, less) in less.into_iter().enumerate() {
+                self.covariance[(i, j)] -= less;
+            }
+        }
+        // What is rounded in one half only would grow from frame to frame.
+        for j in 0..N {
+            for i in 0..j {
+                self.covariance[(j, i)] = self.covariance[(i, j)];
+            }
+        }
     }
 
     /// Takes it that nothing happens in a direction that the outline does not show, given with its dual.

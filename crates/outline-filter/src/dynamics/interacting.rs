@@ -151,19 +151,17 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
-    /// Takes what an accepted frame tells of the pose: the error of the reference pose.
-    pub(crate) fn update(&mut self, measured: &PoseMeasurement) {
+    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the middle.
+    pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
-        let information = to.transpose() * measured.information * to / tuning::OF_LEARNT_OUTLINE;
+        let information = to.transpose() * measured.information * to;
         let information = CentredMatrix::from_fn(|i, j| if i < k && j < k { information[(i, j)] } else { 0.0 });
         let pulled = measured.pulled + measured.information * self.common.shift_in(&self.reference.pose);
-        let pulled = to.transpose() * pulled / tuning::OF_LEARNT_OUTLINE;
-        let Some(deviation) =
-            solved(&information, &CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 }), k)
-        else {
-            return;
-        };
+        let pulled = to.transpose() * pulled;
+        let pulled = CentredVector::from_fn(|i, _| if i < k { pulled[i] } else { 0.0 });
+        let Some(deviation) = solved(&information, &pulled, k) else { return };
+        let Some(information) = less_known(information, off) else { return };
         for j in 0..k {
             let own = information[(j, j)];
             let variance = if own > 0.0 { (1.0 / own).min(tuning::LARGEST_VARIANCE) } else { tuning::LARGEST_VARIANCE };
@@ -286,6 +284,16 @@ fn courses(setting: Dynamics) -> Vec<Course> {
     }
 }
 
+/// Information on a pose that is off, besides, by these deviations: (W^-1 + C)^-1 = (I + W C)^-1 W.
+fn less_known(information: CentredMatrix, off: &CentredDeviations) -> Option<CentredMatrix> {
+    if off.iter().all(|deviation| *deviation == 0.0) {
+        return Some(information);
+    }
+    let covariance = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| off[i] * off[i]));
+    let less = (CentredMatrix::identity() + information * covariance).lu().solve(&information)?;
+    Some(0.5 * (less + less.transpose()))
+}
+
 /// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
 fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
     let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
@@ -317,5 +325,22 @@ impl<const N: usize> InteractingHypotheses<N> {
             && self.common.is_sound(model)
             && self.series.is_sound()
             && (self.shaking == 1.0 || courses(self.setting).iter().any(|course| course.shaking() == self.shaking))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_besides_takes_information_away_also_where_there_is_none() {
+        let mut information = CentredMatrix::zeros();
+        (information[(0, 0)], information[(1, 1)], information[(0, 1)], information[(1, 0)]) = (4.0, 9.0, 1.0, 1.0);
+        assert_eq!(less_known(information, &CentredDeviations::zeros()), Some(information));
+        let less = less_known(information, &CentredDeviations::from_element(0.5)).expect("a solution");
+        let known = |m: &CentredMatrix| m.fixed_view::<2, 2>(0, 0).try_inverse().expect("two parameters are known");
+        let added = known(&less) - known(&information);
+        assert!((added - nalgebra::Matrix2::identity() * 0.25).amax() < 1e-12, "{added}");
+        assert_eq!(less.view((2, 2), (LARGEST - 2, LARGEST - 2)).amax(), 0.0);
     }
 }

@@ -6,7 +6,7 @@ use super::{
     centred::{CentredVector, parts},
     hypothesis::{Course, Hypothesis},
 };
-use crate::tuning::dynamics as tuning;
+use crate::{tuning::dynamics as tuning, vectors::vectorised};
 
 /// Mean and covariance of all hypotheses together, as one course or another has its state.
 struct Pooled<const N: usize> {
@@ -18,28 +18,32 @@ struct Pooled<const N: usize> {
 
 /// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
 ///
-/// The change has the same probability between any two, so that every mixture has two parts: the hypothesis itself, and all together.
+/// The probability of a change is that the one course is left, times the share of changes that lead to the other, so that every mixture has
+/// two parts: the hypothesis itself, and all that have changed together.
 pub(super) fn mix<const N: usize>(
     hypotheses: &mut [Hypothesis<N>],
     weights: &mut [f64],
     model: MotionModel,
     (pose_variance, seconds): (&CentredVector, f64),
 ) {
-    let (count, k) = (hypotheses.len(), N / 3);
-    if count < 2 {
+    let k = N / 3;
+    if hypotheses.len() < 2 {
         return;
     }
-    let stays = 1.0 - tuning::TRANSITION * (count - 1) as f64;
     let pooled = [Accelerations::All, Accelerations::OfVelocity]
         .map(|accelerations| Pooled::of(hypotheses, weights, accelerations, model));
-    let all: f64 = weights.iter().sum();
+    let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
+    let shares: f64 = hypotheses.iter().map(|hypothesis| arriving(hypothesis.course)).sum();
     for (hypothesis, weight) in hypotheses.iter_mut().zip(weights) {
         let of_all = match Accelerations::of(hypothesis.course) {
             Accelerations::OfVelocity => &pooled[1],
             Accelerations::All | Accelerations::None => &pooled[0],
         };
-        let total = tuning::TRANSITION * all + (stays - tuning::TRANSITION) * *weight;
-        let [changed, own] = [tuning::TRANSITION * all / total, (stays - tuning::TRANSITION) * *weight / total];
+        // Of what has changed, this hypothesis takes its own part back.
+        let stays = *weight * (1.0 - shares * leaving(hypothesis.course));
+        let taken = all * arriving(hypothesis.course);
+        let total = taken + stays;
+        let [changed, own] = [taken / total, stays / total];
         let n = hypothesis.size();
         // What a course has alone is as it was, or nothing is known of it.
         let shared = if hypothesis.course == Course::ConstantVelocity { 2 * k } else { n };
@@ -48,13 +52,22 @@ pub(super) fn mix<const N: usize>(
             *apart = of_all.mean[i] - hypothesis.mean[i];
             hypothesis.mean[i] += changed * *apart;
         }
-        for j in 0..n {
-            for i in 0..n {
-                let entry = &mut hypothesis.covariance[(i, j)];
-                let of_all = if i < shared && j < shared { of_all.covariance[(i, j)] } else { 0.0 };
-                *entry = changed * of_all + own * (*entry + changed * apart[i] * apart[j]);
-            }
-        }
+        let covariance = &mut hypothesis.covariance;
+        vectorised(
+            #[inline(always)]
+            || {
+                for j in 0..n {
+                    let by_column = changed * apart[j];
+                    // What lies beyond the entries in use is none, in all of them.
+                    let of_all_counts = if j < shared { changed } else { 0.0 };
+                    for i in 0..N {
+                        let of_all = if i < shared { of_all_counts * of_all.covariance[(i, j)] } else { 0.0 };
+                        let entry = &mut covariance[(i, j)];
+                        *entry = of_all + own * (*entry + by_column * apart[i]);
+                    }
+                }
+            },
+        );
         let unknown = if shared < n { 1.0 } else { of_all.without };
         if n > 2 * k {
             hypothesis.add_unknown(model, (pose_variance, seconds), changed * unknown);
@@ -63,12 +76,36 @@ pub(super) fn mix<const N: usize>(
     }
 }
 
+/// Probability, in a step, that a course is left for a certain other one.
+fn leaving(course: Course) -> f64 {
+    match course {
+        Course::ConstantGenerator | Course::ConstantVelocity => tuning::LEAVES_CONSTANT,
+        Course::Accelerating { .. } | Course::Shaken { .. } => tuning::LEAVES_CHANGING,
+    }
+}
+
+/// How often a change leads to a course, in that to one that is not [`Course::Shaken`].
+fn arriving(course: Course) -> f64 {
+    match course {
+        Course::Shaken { .. } => tuning::BEGINS_TO_SHAKE,
+        Course::ConstantGenerator | Course::ConstantVelocity | Course::Accelerating { .. } => 1.0,
+    }
+}
+
+/// The hypotheses, each with the probability that the motion was of this course and has left it for a certain other.
+fn changing<'a, const N: usize>(
+    hypotheses: &'a [Hypothesis<N>],
+    weights: &'a [f64],
+) -> impl Iterator<Item = (&'a Hypothesis<N>, f64)> {
+    hypotheses.iter().zip(weights).map(|(hypothesis, weight)| (hypothesis, weight * leaving(hypothesis.course)))
+}
+
 impl<const N: usize> Pooled<N> {
     fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], accelerations: Accelerations, model: MotionModel) -> Self {
         let k = N / 3;
-        let all: f64 = weights.iter().sum();
+        let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
         let mut pooled = Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), without: 0.0 };
-        let sources = || hypotheses.iter().zip(weights).filter(|(_, weight)| **weight > tuning::LEAST_SHARE * all);
+        let sources = || changing(hypotheses, weights).filter(|(_, weight)| *weight > tuning::LEAST_SHARE * all);
         let sum: f64 = sources().map(|(_, weight)| weight).sum();
         for (source, weight) in sources() {
             pooled.mean += accelerations.mean_of(source, model) * (weight / sum);
@@ -77,12 +114,20 @@ impl<const N: usize> Pooled<N> {
             let share = weight / sum;
             let apart = accelerations.mean_of(source, model) - pooled.mean;
             let known = if accelerations.are_part_of(source.course) { 3 * k } else { 2 * k };
-            for j in 0..3 * k {
-                for i in 0..3 * k {
-                    let own = if i < known && j < known { source.covariance[(i, j)] } else { 0.0 };
-                    pooled.covariance[(i, j)] += share * (own + apart[i] * apart[j]);
-                }
-            }
+            let covariance = &mut pooled.covariance;
+            vectorised(
+                #[inline(always)]
+                || {
+                    for j in 0..N {
+                        let by_column = share * apart[j];
+                        let of_own = if j < known { share } else { 0.0 };
+                        for i in 0..N {
+                            let own = if i < known { of_own * source.covariance[(i, j)] } else { 0.0 };
+                            covariance[(i, j)] += own + by_column * apart[i];
+                        }
+                    }
+                },
+            );
             pooled.without += if known < 3 * k { share } else { 0.0 };
         }
         if accelerations == Accelerations::OfVelocity {
@@ -140,5 +185,40 @@ impl Accelerations {
             Course::Accelerating { .. } => {}
         }
         mean
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constant_motions_are_left_more_rarely_than_changing_ones() {
+        let courses = [
+            Course::ConstantGenerator,
+            Course::ConstantVelocity,
+            Course::Shaken { deviations: 4.0 },
+            Course::Accelerating { level: 1e-1, rates: true },
+            Course::Accelerating { level: 1e3, rates: false },
+        ];
+        let of = |course| Hypothesis::<9> { course, mean: SVector::zeros(), covariance: SMatrix::identity() };
+        // Of each course in turn, all of the probability: what it has lost after a step, and that all others have it.
+        let left = courses.map(|course| {
+            let mut hypotheses = courses.map(of);
+            let mut weights = courses.map(|other| f64::from(u8::from(other == course)));
+            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1));
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
+            assert!(weights.iter().all(|weight| *weight > 0.0), "{weights:?}");
+            if course != courses[2] {
+                assert!(
+                    courses.iter().zip(weights).all(|(other, weight)| *other == course || weight >= weights[2]),
+                    "{weights:?}"
+                );
+            }
+            courses.iter().zip(weights).filter(|(other, _)| **other != course).map(|(_, weight)| weight).sum::<f64>()
+        });
+        let [generator, velocity, shaken, middle, high] = left;
+        assert!(generator == velocity && middle == high, "{left:?}");
+        assert!(generator > 0.0 && 50.0 * generator < middle.min(shaken), "{left:?}");
     }
 }

@@ -3,6 +3,10 @@ use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
+use super::{
+    medians::{median, median_of_nine},
+    plain_regression::PlainRegression,
+};
 use crate::tuning::{contour as tuning, measurement::MEDIAN_TO_DEVIATION};
 
 /// A place on the contour: position and unit normal.
@@ -20,12 +24,12 @@ pub(crate) struct SmoothPiece {
 }
 
 /// Local quadratic at one point.
-#[derive(Debug, Clone, Copy)]
-struct LocalFit {
-    position: Point2<f64>,
-    tangent: Vector2<f64>,
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct LocalFit {
+    pub(super) position: Point2<f64>,
+    pub(super) tangent: Vector2<f64>,
     /// Variance of the point's residual in units of the noise: below one if the point took part.
-    residual_variance: f64,
+    pub(super) residual_variance: f64,
 }
 
 /// Points of one piece with what is found of them.
@@ -34,11 +38,13 @@ pub(crate) struct Contour {
     points: Vec<Point2<f64>>,
     closed: bool,
     outlier: Vec<bool>,
+    plain: PlainRegression,
 }
 
 impl Contour {
     pub(crate) fn new(points: Vec<Point2<f64>>, closed: bool) -> Self {
-        let mut contour = Self { outlier: vec![false; points.len()], points, closed };
+        let plain = PlainRegression::default();
+        let mut contour = Self { outlier: vec![false; points.len()], points, closed, plain };
         contour.mark_gross_outliers();
         contour
     }
@@ -94,10 +100,7 @@ impl Contour {
         let half_window = self.no_wider(half_window);
         let usual = self.half_window_for(sigma, tuning::NORMAL_NOISE).min(half_window);
         self.mark_outliers(usual, sigma);
-        let mut fits: Vec<LocalFit> = (0..self.points.len())
-            .filter(|i| !self.outlier[*i])
-            .filter_map(|i| self.widest_fit(i, usual..=half_window, sigma))
-            .collect();
+        let mut fits: Vec<LocalFit> = self.widest_fits(usual..=half_window, sigma).into_iter().flatten().collect();
         if fits.len() < 3 {
             return None;
         }
@@ -136,8 +139,9 @@ impl Contour {
     }
 
     /// Length of the contour, smoothed.
-    pub(crate) fn smooth_length(&self, half_window: usize) -> f64 {
+    pub(crate) fn smooth_length(&mut self, half_window: usize) -> f64 {
         let half_window = self.no_wider(half_window);
+        self.prepare(half_window);
         let fits = (0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| self.local_fit(i, half_window));
         let (mut length, mut before, mut first) = (0.0, None, None);
         for LocalFit { position, .. } in fits {
@@ -157,7 +161,12 @@ impl Contour {
     fn neighbour(&self, i: usize, offset: isize) -> Option<usize> {
         let n = self.points.len() as isize;
         let k = i as isize + offset;
-        if self.closed { Some(k.rem_euclid(n) as usize) } else { (0..n).contains(&k).then_some(k as usize) }
+        if (0..n).contains(&k) {
+            return Some(k as usize);
+        }
+        // Less than a round off, where a remainder would be most of the work.
+        let k = if k < 0 { k + n } else { k - n };
+        self.closed.then(|| if (0..n).contains(&k) { k as usize } else { k.rem_euclid(n) as usize })
     }
 
     fn median_step(&self) -> f64 {
@@ -176,18 +185,21 @@ impl Contour {
         }
         let m = tuning::MEDIAN_HALF_WINDOW as isize;
         let mut distances = Vec::with_capacity(n);
-        let (mut xs, mut ys) = (Vec::new(), Vec::new());
         for i in 0..n {
-            xs.clear();
-            ys.clear();
-            // At an open end the window slides inwards; its median stands off along the contour, which the scale allows for.
-            for offset in -m..=m {
-                if let Some(j) = self.neighbour(i, offset) {
-                    xs.push(self.points[j].x);
-                    ys.push(self.points[j].y);
-                }
-            }
-            let middle = Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0));
+            let is_within = (m as usize..n - m as usize).contains(&i);
+            let middle = if is_within || self.closed {
+                // Of so few a network finds the middle without a branch.
+                let at: [usize; 2 * tuning::MEDIAN_HALF_WINDOW + 1] = std::array::from_fn(|j| {
+                    let k = i + n + j - m as usize;
+                    if is_within { i + j - m as usize } else { k % n }
+                });
+                Point2::new(median_of_nine(at.map(|j| self.points[j].x)), median_of_nine(at.map(|j| self.points[j].y)))
+            } else {
+                // At an open end the window slides inwards; its median stands off along the contour, which the scale allows for.
+                let near = || (-m..=m).filter_map(|offset| self.neighbour(i, offset)).map(|j| &self.points[j]);
+                let [mut xs, mut ys]: [Vec<f64>; 2] = [near().map(|p| p.x).collect(), near().map(|p| p.y).collect()];
+                Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0))
+            };
             distances.push((self.points[i] - middle).norm());
         }
         let scale = median(&mut distances.clone()).unwrap_or(0.0);
@@ -203,7 +215,8 @@ impl Contour {
         Some(tangent.perp(&(self.points[i] - fit.position)).abs() / deviation)
     }
 
-    fn residual_scale(&self, half_window: usize) -> Option<f64> {
+    fn residual_scale(&mut self, half_window: usize) -> Option<f64> {
+        self.prepare(half_window);
         let residuals = (0..self.points.len()).filter(|i| !self.outlier[*i]).filter_map(|i| {
             let fit = self.local_fit(i, half_window)?;
             (fit.residual_variance > tuning::TELLING_RESIDUAL_VARIANCE).then(|| self.residual(i, &fit)).flatten()
@@ -212,6 +225,7 @@ impl Contour {
     }
 
     fn mark_outliers(&mut self, half_window: usize, sigma: f64) {
+        self.prepare(half_window);
         let marks: Vec<bool> = (0..self.points.len())
             .map(|i| {
                 let residual = self.local_fit(i, half_window).and_then(|fit| self.residual(i, &fit));
@@ -249,22 +263,34 @@ impl Contour {
         marks
     }
 
-    /// Local quadratic over the wider of two windows, if the place agrees with that over the narrower one (Lepski 1991).
-    fn widest_fit(&self, i: usize, half_windows: RangeInclusive<usize>, sigma: f64) -> Option<LocalFit> {
-        let wide = self.local_fit(i, *half_windows.end())?;
-        if half_windows.start() == half_windows.end() {
-            return Some(wide);
+    /// Local quadratics at the points that are no outliers, over the wider of two windows where the place agrees with that over the narrower
+    /// one (Lepski 1991).
+    fn widest_fits(&mut self, half_windows: RangeInclusive<usize>, sigma: f64) -> Vec<Option<LocalFit>> {
+        let (narrowest, widest) = half_windows.into_inner();
+        let mut fits_over = |half_window| -> Vec<Option<LocalFit>> {
+            self.prepare(half_window);
+            let inliers = (0..self.points.len()).filter(|i| !self.outlier[*i]);
+            inliers.map(|i| self.local_fit(i, half_window)).collect()
+        };
+        let wide = fits_over(widest);
+        if narrowest == widest {
+            return wide;
         }
-        let Some(narrow) = self.local_fit(i, *half_windows.start()) else { return Some(wide) };
-        let noise = sigma * (1.0 - narrow.residual_variance).max(0.0).sqrt();
-        let apart = narrow.tangent.try_normalize(1e-12)?.perp(&(wide.position - narrow.position)).abs();
-        let agrees = apart <= tuning::OUTLYING * noise;
-        Some(if agrees { wide } else { narrow })
+        wide.into_iter().zip(fits_over(narrowest)).map(|(wide, narrow)| wider_if_alike(wide?, narrow, sigma)).collect()
+    }
+
+    /// Prepares the regressions with a window, which [`local_fit`](Self::local_fit) is to be asked for next.
+    fn prepare(&mut self, half_window: usize) {
+        self.plain.prepare(&self.points, self.closed, half_window);
+        self.plain.count_outliers(&self.outlier, self.closed);
     }
 
     /// Least-squares quadratic of position against the number of the point, over the point and the nearest neighbours on either side that
     /// are not outliers.
     fn local_fit(&self, i: usize, half_window: usize) -> Option<LocalFit> {
+        if let Some(fit) = self.plain.at(i, half_window) {
+            return Some(fit);
+        }
         let w = half_window as isize;
         let (origin, width) = (self.points[i], w as f64);
         let mut sums = Sums::default();
@@ -298,6 +324,14 @@ impl Contour {
             residual_variance: if self.outlier[i] { 1.0 } else { 1.0 - inverse[(0, 0)] },
         })
     }
+}
+
+/// The regression over the wider window if its place is that of the narrower one as far as noise goes.
+fn wider_if_alike(wide: LocalFit, narrow: Option<LocalFit>, sigma: f64) -> Option<LocalFit> {
+    let Some(narrow) = narrow else { return Some(wide) };
+    let noise = sigma * (1.0 - narrow.residual_variance).max(0.0).sqrt();
+    let apart = narrow.tangent.try_normalize(1e-12)?.perp(&(wide.position - narrow.position)).abs();
+    Some(if apart <= tuning::OUTLYING * noise { wide } else { narrow })
 }
 
 /// Sums over the points of a local regression.
@@ -340,17 +374,50 @@ pub(super) fn direction_variance(noise: f64, half_window: usize) -> f64 {
     3.0 * noise * noise / (w * (w + 1.0) * (2.0 * w + 1.0))
 }
 
-/// Median, the upper one of two; reorders the list.
-pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
-    if values.is_empty() {
-        return None;
-    }
-    let middle = values.len() / 2;
-    Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
 /// Whether a contour may be smoothed over so many points to either side.
 #[cfg(feature = "serde")]
 pub(super) fn is_half_window(points: usize) -> bool {
     (*tuning::HALF_WINDOWS.start()..=tuning::LARGEST_FINE).contains(&points)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn regressions_of_all_points_together_are_those_of_single_points() {
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        for (count, closed, half_window) in
+            [(200, true, 4), (203, false, 9), (9, true, 4), (401, true, 30), (70, false, 2)]
+        {
+            let points = (0..count).map(|i| {
+                let t = std::f64::consts::TAU * 0.9 * f64::from(i) / f64::from(count);
+                let mut noise = || -> f64 { StandardNormal.sample(&mut rng) };
+                let far = if i % 97 == 30 { 0.3 } else { 0.01 };
+                Point2::new(t.cos() + far * noise(), 0.7 * t.sin() + far * noise())
+            });
+            let mut together = Contour::new(points.collect(), closed);
+            let alone = together.clone();
+            together.prepare(half_window);
+            let mut compared = 0;
+            for i in 0..together.len() {
+                let (Some(found), Some(expected)) =
+                    (together.local_fit(i, half_window), alone.local_fit(i, half_window))
+                else {
+                    assert_eq!(together.local_fit(i, half_window), alone.local_fit(i, half_window));
+                    continue;
+                };
+                assert!((found.position - expected.position).norm() < 1e-12, "{count} {i}");
+                assert!((found.tangent - expected.tangent).norm() < 1e-12, "{count} {i}");
+                assert!((found.residual_variance - expected.residual_variance).abs() < 1e-12, "{count} {i}");
+                compared += usize::from(together.plain.at(i, half_window).is_some());
+            }
+            // An outlier is in the windows of many.
+            assert!(8 * compared > together.len() || count < 10, "{count}: {compared}");
+        }
+    }
 }

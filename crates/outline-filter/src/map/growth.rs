@@ -30,8 +30,7 @@ impl OutlineMap {
         if self.cells.len() == first_new {
             return None;
         }
-        let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
-        self.field.build(&centres, self.spacing);
+        self.prepare_association();
         Some(first_new)
     }
 

@@ -1,14 +1,18 @@
 //! The outline in the body frame: cells along it, how they follow each other, which is nearest to a point, and what they do not show.
+mod association;
 mod centring;
 mod chains;
 mod contour;
 mod growth;
+mod medians;
 mod nearest_field;
 mod null_space;
 mod outline_map;
+mod plain_regression;
 mod redrawing;
 
 pub(crate) use chains::{CellPoint, has_common_places};
-pub(crate) use contour::{Contour, median};
+pub(crate) use contour::Contour;
+pub(crate) use medians::{median, median_about};
 pub(crate) use null_space::{NullDirection, TurnEvidence};
 pub(crate) use outline_map::{Cell, OutlineMap, Resolution};

@@ -3,7 +3,8 @@ use nalgebra::{Point2, Vector2};
 
 use crate::tuning::map::FIELD_PIXELS;
 
-const NONE: u32 = u32::MAX;
+/// From this number on doubles are whole numbers.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 /// A picture of the body frame in which every pixel holds the number of a place near it.
 #[derive(Debug, Clone, Default)]
@@ -16,7 +17,8 @@ pub(crate) struct NearestField {
 }
 
 impl NearestField {
-    /// Fills the picture: places seed their pixels, then the nearest is handed on from neighbour to neighbour.
+    /// Fills the picture, row by row. The square of the distance from a place is, but for a square that all of them share, a line over the
+    /// pixels of a row: the nearest places are those whose lines are lowest somewhere.
     pub(crate) fn build(&mut self, places: &[Point2<f64>], spacing: f64) {
         let Some(first) = places.first() else {
             self.nearest.clear();
@@ -35,17 +37,28 @@ impl NearestField {
         let pixels = |length: f64| ((length + 2.0 * margin) / pixel).ceil() as usize + 1;
         (self.width, self.height) = (pixels(high.x - low.x), pixels(high.y - low.y));
         self.nearest.clear();
-        self.nearest.resize(self.width * self.height, NONE);
-        for (number, p) in places.iter().enumerate() {
-            let pixel = self.pixel_of(p);
-            self.offer(pixel, number as u32, places);
-        }
-        for _ in 0..2 {
-            for index in 0..self.nearest.len() {
-                self.take_from_neighbours(index, places, [(-1, 0), (-1, -1), (0, -1), (1, -1)]);
+        self.nearest.resize(self.width * self.height, 0);
+        // In pixels, from the centre of the first one.
+        let in_pixels = |p: &Point2<f64>| (p - self.origin) * self.per_length - Vector2::repeat(0.5);
+        let mut places: Vec<(Vector2<f64>, u32)> = places.iter().map(in_pixels).zip(0..).collect();
+        places.sort_unstable_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+        let mut lowest: Vec<Line> = Vec::with_capacity(places.len());
+        for (row, pixels) in self.nearest.chunks_exact_mut(self.width).enumerate() {
+            lowest.clear();
+            for (p, number) in &places {
+                let across = p.y - row as f64;
+                take_line(
+                    &mut lowest,
+                    Line { x: p.x, at_none: p.x * p.x + across * across, from: 0.0, number: *number },
+                );
             }
-            for index in (0..self.nearest.len()).rev() {
-                self.take_from_neighbours(index, places, [(1, 0), (1, 1), (0, 1), (-1, 1)]);
+            let mut lines = lowest.iter().copied().peekable();
+            let mut number = 0;
+            for (column, pixel) in pixels.iter_mut().enumerate() {
+                while let Some(line) = lines.next_if(|line| line.from <= column as f64) {
+                    number = line.number;
+                }
+                *pixel = number;
             }
         }
     }
@@ -58,37 +71,90 @@ impl NearestField {
         Some(self.nearest[self.pixel_of(p)] as usize)
     }
 
+    /// What a pixel holds; there are pixels.
+    #[inline(always)]
+    pub(super) fn at(&self, pixel: u32) -> usize {
+        self.nearest[pixel as usize] as usize
+    }
+
+    /// Pixels of places, one for each: as [`lookup`](Self::lookup) takes them, several side by side.
+    #[inline(always)]
+    pub(super) fn pixels(&self, place: impl Fn(usize) -> Point2<f64>, pixels: &mut [u32]) {
+        let (most_x, most_y) = ((self.width - 1) as f64, (self.height - 1) as f64);
+        let width = self.width as f64;
+        // NaN becomes 0.
+        let within = |length: f64, most: f64| {
+            let length = length * self.per_length;
+            let length = if length > 0.0 { length } else { 0.0 };
+            (if length < most { length } else { most }).floor()
+        };
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            let p = place(i);
+            let number = within(p.y - self.origin.y, most_y) * width + within(p.x - self.origin.x, most_x);
+            // The last bits of a number that small, whose unit is the last of them.
+            *pixel = (number + WHOLE).to_bits() as u32;
+        }
+    }
+
     fn pixel_of(&self, p: &Point2<f64>) -> usize {
         // Pixels of the border stand for what lies beyond; NaN becomes 0.
         let within =
             |length: f64, count: usize| (length * self.per_length).clamp(0.0, (count - 1) as f64) as u32 as usize;
         within(p.y - self.origin.y, self.height) * self.width + within(p.x - self.origin.x, self.width)
     }
+}
 
-    fn centre(&self, index: usize) -> Point2<f64> {
-        let (row, column) = (index / self.width, index % self.width);
-        self.origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) / self.per_length
-    }
+/// The square of the distance from a place along a row of pixels, less the square of the column.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    /// Column of the place; the line falls by twice as much from one column to the next.
+    x: f64,
+    /// In the first column.
+    at_none: f64,
+    /// Column from which on no line before it is lower.
+    from: f64,
+    number: u32,
+}
 
-    fn offer(&mut self, pixel: usize, number: u32, places: &[Point2<f64>]) {
-        let centre = self.centre(pixel);
-        let distance = |n: u32| (places[n as usize] - centre).norm_squared();
-        let now = self.nearest[pixel];
-        if now == NONE || distance(number) < distance(now) {
-            self.nearest[pixel] = number;
-        }
-    }
-
-    fn take_from_neighbours(&mut self, index: usize, places: &[Point2<f64>], offsets: [(isize, isize); 4]) {
-        let (row, column) = ((index / self.width) as isize, (index % self.width) as isize);
-        for (dx, dy) in offsets {
-            let (x, y) = (column + dx, row + dy);
-            if x < 0 || y < 0 || x >= self.width as isize || y >= self.height as isize {
-                continue;
+/// Takes a line that falls no slower than those before it, and drops those that are then lowest nowhere.
+fn take_line(lowest: &mut Vec<Line>, line: Line) {
+    while let Some(last) = lowest.last() {
+        let apart = line.x - last.x;
+        if apart > 0.0 {
+            let from = 0.5 * (line.at_none - last.at_none) / apart;
+            if from > last.from {
+                lowest.push(Line { from, ..line });
+                return;
             }
-            let number = self.nearest[y as usize * self.width + x as usize];
-            if number != NONE && number != self.nearest[index] {
-                self.offer(index, number, places);
+        } else if line.at_none >= last.at_none {
+            return;
+        }
+        lowest.pop();
+    }
+    lowest.push(Line { from: 0.0, ..line });
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn every_pixel_holds_the_place_nearest_to_its_centre(
+            places in prop::collection::vec((-1.0_f64..1.0, -0.5_f64..0.5), 1..40), spacing in 0.02_f64..0.3,
+        ) {
+            // Places in a row and in a column too.
+            let mut places: Vec<_> = places.into_iter().map(|(x, y)| Point2::new(x, y)).collect();
+            places.extend([Point2::new(0.25, 0.25), Point2::new(0.25, -0.25), Point2::new(-0.25, 0.25)]);
+            let mut field = NearestField::default();
+            field.build(&places, spacing);
+            for (index, number) in field.nearest.iter().enumerate() {
+                let (row, column) = (index / field.width, index % field.width);
+                let centre = field.origin + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) / field.per_length;
+                let least = places.iter().map(|p| (p - centre).norm()).fold(f64::INFINITY, f64::min);
+                prop_assert!((places[*number as usize] - centre).norm() < least + 1e-9);
             }
         }
     }

@@ -1,6 +1,6 @@
 use nalgebra::{Point2, Vector2};
 
-use super::{Contour, nearest_field::NearestField, null_space::NullSpace};
+use super::{Contour, association::Bisectors, nearest_field::NearestField, null_space::NullSpace};
 use crate::tuning::map as tuning;
 
 /// A stretch of the outline in the body frame.
@@ -22,6 +22,9 @@ pub(crate) struct OutlineMap {
     pub(super) cells: Vec<Cell>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) field: NearestField,
+    /// Of each cell.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) bisectors: Vec<Bisectors>,
     /// Length of a cell.
     pub(super) spacing: f64,
     /// Of the regression that places and normals come from, in points.
@@ -41,6 +44,7 @@ impl OutlineMap {
         let map = Self {
             cells: Vec::new(),
             field: NearestField::default(),
+            bisectors: Vec::new(),
             spacing,
             half_window,
             step,
@@ -74,26 +78,6 @@ impl OutlineMap {
         self.field.lookup(q).map(|near| self.nearest_from(near, q))
     }
 
-    /// The cell nearest to a body point, from one near it.
-    #[inline(always)]
-    pub(crate) fn nearest_from(&self, near: usize, q: &Point2<f64>) -> usize {
-        let mut number = near;
-        let mut distance = (self.cells[number].centre - q).norm_squared();
-        loop {
-            let mut better = number;
-            for neighbour in self.cells[number].neighbours {
-                let d = (self.cells[neighbour].centre - q).norm_squared();
-                if d < distance {
-                    (better, distance) = (neighbour, d);
-                }
-            }
-            if better == number {
-                return number;
-            }
-            number = better;
-        }
-    }
-
     /// Whether a body point lies beyond a known end of the outline, its nearest cell given.
     #[inline(always)]
     pub(crate) fn is_beyond_end(&self, number: usize, q: &Point2<f64>) -> bool {
@@ -120,7 +104,7 @@ impl OutlineMap {
             cell.normal.dot(&(nalgebra::center(&a, &b) - cell.centre)).abs()
         });
         // Over a chord of two cells: a quarter of it is left at the ends of one.
-        super::median(&mut bends.collect::<Vec<_>>()).unwrap_or(0.0)
+        super::medians::median(&mut bends.collect::<Vec<_>>()).unwrap_or(0.0)
     }
 }
 
@@ -177,8 +161,7 @@ impl OutlineMap {
             && in_body.iter().flatten().chain(frame).all(within)
             && middle.iter().all(|coordinate| coordinate.is_finite());
         if is_sound {
-            let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
-            self.field.build(&centres, self.spacing);
+            self.prepare_association();
         }
         is_sound
     }

@@ -20,8 +20,7 @@ impl OutlineMap {
         let reach = self.reach(noise);
         let normals: Vec<Vector2<f64>> = (0..map.cells.len()).map(|number| map.normal_across(number, reach)).collect();
         map.cells.iter_mut().zip(normals).for_each(|(cell, normal)| cell.normal = normal);
-        let centres: Vec<_> = map.cells.iter().map(|cell| cell.centre).collect();
-        map.field.build(&centres, map.spacing);
+        map.prepare_association();
         Arc::new(map)
     }
 
@@ -123,6 +122,7 @@ mod tests {
         OutlineMap {
             cells,
             field: NearestField::default(),
+            bisectors: Vec::new(),
             spacing,
             half_window: 2,
             step: spacing,

@@ -1,8 +1,8 @@
 //! Which cell each point of a frame belongs to.
-use freeform_riccati::{is_affine, map_point_by};
-use nalgebra::{Matrix3, Point2, Vector3};
+use freeform_riccati::{is_affine, map_point};
+use nalgebra::{Matrix3, Point2};
 
-use super::{Frame, Measurement, NoiseModel};
+use super::{Counted, Frame, Measurement, NoiseModel};
 use crate::{
     belief::Belief,
     map::{NullDirection, OutlineMap},
@@ -40,14 +40,17 @@ impl View<'_> {
             frame.measurements.clear();
             frame.measurements.resize(frame.points.len(), Measurement::NOTHING);
         }
-        if is_affine(&inverse) {
-            self.measure_by::<true>(frame, &inverse, half_window, null, pass);
+        let counts_alike = frame.deviations.ratios().is_none() && self.noise.counted == Counted::Alike;
+        if counts_alike && is_affine(&inverse) {
+            self.measure_side_by_side(frame, &inverse, half_window, null, pass);
         } else {
-            self.measure_by::<false>(frame, &inverse, half_window, null, pass);
+            self.measure_one_by_one(frame, &inverse, half_window, null, pass);
         }
     }
 
-    fn measure_by<const AFFINE: bool>(
+    /// The plain way, one point after the other, for all maps and weights. Most frames go
+    /// [side by side](Self::measure_side_by_side); a test compares the two.
+    pub(crate) fn measure_one_by_one(
         &self,
         frame: &mut Frame,
         inverse: &Matrix3<f64>,
@@ -55,9 +58,9 @@ impl View<'_> {
         null: &[NullDirection],
         pass: Pass,
     ) {
-        let Frame { points, measurements, values, shifts, pieces, places, deviations, .. } = frame;
+        let Frame { points, measurements, values, shifts, pieces, places, deviations, columns, .. } = frame;
         places.clear();
-        let in_body = |p: &Point2<f64>| map_point_by::<AFFINE>(inverse, p);
+        let in_body = |p: &Point2<f64>| map_point(inverse, p);
         if half_window == 0 {
             places.extend(points.iter().map(in_body));
         } else {
@@ -67,21 +70,28 @@ impl View<'_> {
                 self.associate(measurements, |i, _| places[i]);
                 places.clear();
                 for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
-                    self.distance::<AFFINE>(measurement, p, inverse, shifts);
+                    self.distance(measurement, p, inverse, shifts);
                 }
                 self.weigh(measurements, values, deviations, pass);
             }
             for piece in pieces.iter() {
                 let range = piece.range();
-                let of_piece = (&points[range.clone()], &measurements[range]);
-                mean_of_neighbours(of_piece, piece.closed, half_window, |place| places.push(in_body(&place)));
+                let (points, measurements) = (&points[range.clone()], &measurements[range]);
+                let weighted = |i: usize| {
+                    let (p, weight) = (&points[i], measurements[i].weight);
+                    [weight * p.x, weight * p.y, weight]
+                };
+                let take = |i: usize, mean: Option<Point2<f64>>| places.push(in_body(&mean.unwrap_or(points[i])));
+                mean_of_neighbours(points.len(), weighted, piece.closed, half_window, take);
             }
         }
         // The means where the points count, the points where they do not.
         self.associate(measurements, |i, m| if m.weight > 0.0 { places[i] } else { in_body(&points[i]) });
-        self.keep_to_sides(measurements, pieces, places, half_window);
+        columns.take_cells(measurements);
+        self.keep_to_sides(columns.numbers_and_weights(), pieces, places, half_window);
+        columns.hand_cells_back(measurements);
         for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
-            let normal = self.distance::<AFFINE>(measurement, p, inverse, shifts);
+            let normal = self.distance(measurement, p, inverse, shifts);
             self.linearise(measurement, p, &normal, null);
         }
         self.weigh(measurements, values, deviations, pass);
@@ -89,7 +99,7 @@ impl View<'_> {
 
     /// Points on either side whose mean says which cell a point belongs to: enough for the noise to be small against a cell, and few
     /// against the outline.
-    fn half_window_of_places(&self, pose: &Matrix3<f64>, frame: &Frame) -> usize {
+    pub(crate) fn half_window_of_places(&self, pose: &Matrix3<f64>, frame: &Frame) -> usize {
         let scale = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let noise = self.noise.sigma * frame.deviations.typical();
         let needed = (noise / (scale * self.map.spacing() * tuning::PLACE_NOISE)).powi(2);
@@ -114,39 +124,49 @@ impl View<'_> {
     }
 }
 
-/// Mean of the neighbours of every point along a piece of the contour, weighted, the point itself included.
-fn mean_of_neighbours(
-    (points, measurements): (&[Point2<f64>], &[Measurement]),
+/// Mean of the neighbours of every point along a piece of the contour, the point itself included; none where they count for nothing.
+/// `weighted` are the coordinates of the points times their weights, and these.
+#[inline(always)]
+pub(super) fn mean_of_neighbours(
+    count: usize,
+    weighted: impl Fn(usize) -> [f64; 3],
     closed: bool,
     half_window: usize,
-    mut take: impl FnMut(Point2<f64>),
+    mut take: impl FnMut(usize, Option<Point2<f64>>),
 ) {
-    let count = points.len();
     let w = half_window.min((count - 1) / 2);
-    let weighted = |i: usize| (measurements[i].weight * points[i].coords).push(measurements[i].weight);
     // Less than two rounds on, where a remainder would be most of the work.
     let at = |i: usize| weighted(if i < count { i } else { i - count });
-    let mut sum = Vector3::zeros();
+    let mut sum = [0.0; 3];
+    let change = |sum: &mut [f64; 3], more: [f64; 3], less: [f64; 3]| {
+        for c in 0..3 {
+            sum[c] += more[c] - less[c];
+        }
+    };
+    let none = [0.0; 3];
     if closed {
         // The window of the first point reaches back over the end.
-        (count - w..=count + w).for_each(|i| sum += at(i));
+        (count - w..=count + w).for_each(|i| change(&mut sum, at(i), none));
     } else {
-        sum += at(0);
+        change(&mut sum, at(0), none);
     }
-    for (i, point) in points.iter().enumerate() {
+    for i in 0..count {
         if i > 0 && closed {
-            sum += at(i + w) - at(i + count - w - 1);
+            change(&mut sum, at(i + w), at(i + count - w - 1));
         } else if i > 0 {
             // Symmetric windows, narrower towards the ends: a lopsided mean lies off along the contour.
             let (before, now) = (w.min(i - 1).min(count - i), w.min(i).min(count - 1 - i));
-            sum = if now > before {
-                sum + at(2 * i - 1) + at(2 * i)
+            if now > before {
+                change(&mut sum, at(2 * i - 1), none);
+                change(&mut sum, at(2 * i), none);
             } else if now < before {
-                sum - at(i - 1 - before) - at(i - before)
+                change(&mut sum, none, at(i - 1 - before));
+                change(&mut sum, none, at(i - before));
             } else {
-                sum + at(i + now) - at(i - 1 - before)
-            };
+                change(&mut sum, at(i + now), at(i - 1 - before));
+            }
         }
-        take(if sum.z > 1e-3 { Point2::from(sum.xy() * (1.0 / sum.z)) } else { *point });
+        let [x, y, weight] = sum;
+        take(i, (weight > 1e-3).then(|| Point2::new(x * (1.0 / weight), y * (1.0 / weight))));
     }
 }

@@ -2,7 +2,7 @@ use freeform_curve_fit::Outline;
 use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Point2};
 
-use super::{Measurement, PointDeviations};
+use super::{Columns, Measurement, PointDeviations};
 use crate::{belief::OffsetInformation, map::Contour};
 
 /// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius, and the unit of time.
@@ -72,6 +72,8 @@ pub(crate) struct Frame {
     pub(crate) weighted: Vec<(f64, f64)>,
     /// What the points state of themselves.
     pub(crate) deviations: PointDeviations,
+    /// What is found of the points, by columns.
+    pub(crate) columns: Columns,
 }
 
 impl Frame {
@@ -85,13 +87,16 @@ impl Frame {
         let mut stated = outline.deviations();
         for piece in outline.pieces() {
             let start = points.len();
+            points.reserve(piece.points.len());
+            let mut last = None;
             for p in piece.points {
                 let p = Point2::from((p - origin) * scale);
                 let stated = stated.as_mut().and_then(Iterator::next);
-                if points.len() == start || points.last() != Some(&p) {
+                if last != Some(p) {
                     points.push(p);
                     stated.into_iter().for_each(|stated| deviations.push(stated));
                 }
+                last = Some(p);
             }
             while piece.closed && points.len() > start + 1 && points.last() == Some(&points[start]) {
                 points.pop();

@@ -97,6 +97,7 @@ impl View<'_> {
     /// Mean square of the distances of points from the cells nearest to them in a pose, in units of the noise.
     fn rough_mean_square(&self, frame: &Frame, pose: &Matrix3<f64>) -> f64 {
         let (points, ratios) = (&frame.points, frame.deviations.ratios());
+        let stride = points.len().div_ceil(tuning::ROUGHLY).max(1);
         let (map, offsets) = (self.map, &self.belief.offsets);
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
         let length = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
@@ -115,7 +116,9 @@ impl View<'_> {
             let ratio = ratios.map_or(1.0, |ratios| ratios[i]);
             (scale * distance / ratio).powi(2).min(tuning::LARGEST * tuning::LARGEST)
         };
-        points.iter().enumerate().map(square).sum::<f64>() / points.len() as f64
+        let looked_at = points.iter().enumerate().step_by(stride);
+        let count = looked_at.len() as f64;
+        looked_at.map(square).sum::<f64>() / count
     }
 
     fn innovations(&self, frame: &Frame) -> impl ExactSizeIterator<Item = Option<f64>> {

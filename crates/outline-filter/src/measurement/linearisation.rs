@@ -1,5 +1,5 @@
 //! The distance of a point from its cell, its Jacobian, and its weight.
-use freeform_riccati::{MAX_PARAMETERS, ParameterVector, map_point_by, pull_back_by};
+use freeform_riccati::{MAX_PARAMETERS, ParameterVector, map_point, pull_back};
 use nalgebra::{Matrix3, Point2, Vector2};
 
 use super::{Counted, NO_CELL, Pass, PointDeviations, View};
@@ -24,15 +24,14 @@ pub(crate) struct Measurement {
 }
 
 impl Measurement {
-    pub(super) const NOTHING: Self =
+    pub(crate) const NOTHING: Self =
         Self { cell: NO_CELL, residual: 0.0, by_offset: 0.0, jacobian: [0.0; MAX_PARAMETERS], weight: 0.0 };
 }
 
 impl View<'_> {
     /// Distance `z = n . (g^-1 p - c) - d` of an image point from the outline on the normal of its cell, brought to image lengths.
     /// Returns the normal of the outline in the image.
-    #[inline(always)]
-    pub(super) fn distance<const AFFINE: bool>(
+    pub(super) fn distance(
         &self,
         measurement: &mut Measurement,
         p: &Point2<f64>,
@@ -45,10 +44,10 @@ impl View<'_> {
             return Vector2::zeros();
         }
         let cell = &self.map.cells()[number];
-        let q = map_point_by::<AFFINE>(inverse, p);
+        let q = map_point(inverse, p);
         let z = cell.normal.dot(&(q - cell.centre)) - self.belief.offsets[number] - shifts[number];
         // A unit step along the image normal moves the body point by |D' n| along n.
-        let pulled = pull_back_by::<AFFINE>(inverse, p, &q, &cell.normal);
+        let pulled = pull_back(inverse, p, &q, &cell.normal);
         measurement.by_offset = 1.0 / pulled.norm();
         measurement.residual = z * measurement.by_offset;
         pulled * measurement.by_offset
@@ -106,21 +105,14 @@ impl View<'_> {
         pass: Pass,
     ) {
         let noise = self.noise;
-        let mut scale = noise.sigma;
-        let limit = tuning::FULL_WEIGHT * scale;
+        let limit = tuning::FULL_WEIGHT * noise.sigma;
         let near = measurements.iter().enumerate().filter(|(i, m)| m.residual.abs() < limit * expected(*i, m)).count();
-        let mut share = 1.0;
+        let (mut scale, mut share) = (noise.sigma, 1.0);
         if (near as f64) < tuning::NEAR_ENOUGH * measurements.len() as f64 {
             values.clear();
             let known = measurements.iter().enumerate().filter(|(_, m)| m.cell != NO_CELL);
             values.extend(known.map(|(i, m)| m.residual.abs() / expected(i, m)));
-            scale = scale.max(tuning::MEDIAN_TO_DEVIATION * median(values).unwrap_or(0.0));
-            if pass == Pass::Again {
-                // A frame with more noise than most counts for less. A prediction that is off by more than the noise, though, must not
-                // lose the points it has to be corrected by.
-                scale = scale.min(noise.tolerated());
-                share = (noise.sigma / scale).powi(2);
-            }
+            (scale, share) = self.scale_of_wide_frame(values, pass);
         }
         let scale = 1.0 / scale;
         for (i, measurement) in measurements.iter_mut().enumerate() {
@@ -139,6 +131,21 @@ impl View<'_> {
                 _ => 0.0,
             } * share
                 / (variance * ratio * ratio);
+        }
+    }
+
+    /// The deviation that points are weighted by, and what they count for, where too few of the residuals, whose sizes are given, are small.
+    pub(super) fn scale_of_wide_frame(&self, sizes: &mut [f64], pass: Pass) -> (f64, f64) {
+        let noise = self.noise;
+        let scale = noise.sigma.max(tuning::MEDIAN_TO_DEVIATION * median(sizes).unwrap_or(0.0));
+        match pass {
+            Pass::First => (scale, 1.0),
+            // A frame with more noise than most counts for less. A prediction that is off by more than the noise, though, must not lose the
+            // points it has to be corrected by.
+            Pass::Again => {
+                let scale = scale.min(noise.tolerated());
+                (scale, (noise.sigma / scale).powi(2))
+            }
         }
     }
 }

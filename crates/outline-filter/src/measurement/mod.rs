@@ -6,6 +6,7 @@ mod linearisation;
 mod noise;
 mod normal_consistency;
 mod point_deviations;
+mod side_by_side;
 mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
@@ -14,3 +15,4 @@ pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;
 pub(crate) use noise::{Counted, NoiseModel, Rounding, Tolerance, correlation_of, spread};
 pub(crate) use point_deviations::{PointDeviations, weighted_median};
+pub(crate) use side_by_side::Columns;

@@ -2,7 +2,10 @@
 use freeform_curve_fit::{Outline, Piece};
 
 use super::{Frame, NO_CELL, variance_inflation::VarianceInflation};
-use crate::{map::median, tuning::noise as tuning};
+use crate::{
+    map::{median, median_about},
+    tuning::{measurement::MEDIAN_TO_DEVIATION, noise as tuning, statement::ROUNDING},
+};
 
 /// Whether a frame may show more noise than the contour of the first, none having been compared yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,6 +54,11 @@ pub(crate) struct Rounding {
 }
 
 impl Rounding {
+    /// Deviation of a side along the rows or columns of a mask, whose points are off together, normalised.
+    pub(crate) fn of_side(&self) -> f64 {
+        self.deviation * (ROUNDING / tuning::ROUNDED_POINT)
+    }
+
     pub(crate) const NONE: Self = Self { deviation: 0.0, shared_by: 1.0 };
 
     /// Of an outline of masks whose pixels have a size, both in image lengths; a radius of that outline is to be 1.
@@ -140,6 +148,7 @@ impl NoiseModel {
     }
 
     /// Takes a squared residual of a cell in units of the noise of its point, which counts for a share of a good one.
+    #[inline(always)]
     pub(crate) fn take_residual(&mut self, cell: usize, square: f64, share: f64) {
         self.inflation[cell].take(square, share);
     }
@@ -211,14 +220,18 @@ pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>) -> Option<f64> {
     (2.0 * stretches > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
 }
 
-/// Robust deviation of all residuals, as if all points were good ones; infinite where there are none.
-pub(crate) fn spread(frame: &mut Frame) -> f64 {
+/// Robust deviation of all residuals, as if all points were good ones, which is expected to be `noise`; infinite where there are none.
+pub(crate) fn spread(frame: &mut Frame, noise: f64) -> f64 {
     let Frame { measurements, values, deviations, .. } = frame;
     let ratios = deviations.ratios();
-    let known = measurements.iter().enumerate().filter(|(_, m)| m.cell != NO_CELL);
-    values.clear();
-    values.extend(known.map(|(i, m)| m.residual.abs() / ratios.map_or(1.0, |ratios| ratios[i])));
-    median(values).map_or(f64::INFINITY, |m| crate::tuning::measurement::MEDIAN_TO_DEVIATION * m)
+    values.resize(measurements.len(), 0.0);
+    let mut known = 0;
+    for (i, m) in measurements.iter().enumerate() {
+        values[known] = m.residual.abs() / ratios.map_or(1.0, |ratios| ratios[i]);
+        known += usize::from(m.cell != NO_CELL);
+    }
+    values.truncate(known);
+    median_about(noise / MEDIAN_TO_DEVIATION, values).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m)
 }
 
 #[cfg(feature = "serde")]

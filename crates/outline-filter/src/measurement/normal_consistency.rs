@@ -1,7 +1,7 @@
 //! Normal-consistency check: which side of a thin part a point belongs to.
 use nalgebra::Point2;
 
-use super::{Measurement, NO_CELL, Piece, View};
+use super::{Piece, View};
 use crate::{map::OutlineMap, tuning::measurement as tuning};
 
 /// A piece of the contour with the cells found for its points, and the window that tells its direction.
@@ -35,13 +35,13 @@ impl Course<'_> {
     }
 
     /// The cell nearest to point i that its neighbours lead to and that runs the right way.
-    fn cell_on_side(&self, measurements: &[Measurement], i: usize, sign: f64) -> Option<usize> {
+    fn cell_on_side(&self, of_points: &Numbered<'_>, i: usize, sign: f64) -> Option<usize> {
         let q = self.places[i];
         let led_to = [false, true].into_iter().filter_map(|forth| {
             let near = (1..=tuning::FURTHEST_NEIGHBOUR * self.reach).map_while(|steps| self.beside(i, steps, forth));
-            let mut known = near.filter(|j| is_known(&measurements[*j]));
-            let start = known.find(|j| sign * self.along(*j, measurements[*j].cell) > 0.0)?;
-            let cell = self.map.nearest_from(measurements[start].cell, &q);
+            let mut known = near.filter_map(|j| Some((j, of_points.known(j)?)));
+            let (_, start) = known.find(|(j, cell)| sign * self.along(*j, *cell) > 0.0)?;
+            let cell = self.map.nearest_from(start, &q);
             (sign * self.along(i, cell) > 0.0 && !self.map.is_beyond_end(cell, &q)).then_some(cell)
         });
         let distance = |cell: &usize| (self.map.cells()[*cell].centre - q).norm_squared();
@@ -49,8 +49,20 @@ impl Course<'_> {
     }
 }
 
-fn is_known(measurement: &Measurement) -> bool {
-    measurement.cell != NO_CELL && measurement.weight > 0.0
+/// Points with the numbers of their cells, of which there are so many, and their weights.
+struct Numbered<'a> {
+    numbers: &'a mut [u32],
+    weights: &'a [f64],
+    cells: usize,
+}
+
+impl Numbered<'_> {
+    /// The cell of a point that counts.
+    #[inline(always)]
+    fn known(&self, i: usize) -> Option<usize> {
+        let number = self.numbers[i] as usize;
+        (number < self.cells && self.weights[i] > 0.0).then_some(number)
+    }
 }
 
 impl View<'_> {
@@ -61,31 +73,43 @@ impl View<'_> {
     /// falls less than it should as the pose comes nearer, and the information would be overrated.
     pub(super) fn keep_to_sides(
         &self,
-        measurements: &mut [Measurement],
+        (numbers, weights): (&mut [u32], &[f64]),
         pieces: &[Piece],
         places: &[Point2<f64>],
         half_window: usize,
     ) {
         let reach = half_window.max(tuning::FEWEST_NEIGHBOURS);
         for piece in pieces {
-            let measurements = &mut measurements[piece.range()];
+            let (numbers, weights) = (&mut numbers[piece.range()], &weights[piece.range()]);
+            let of_points = Numbered { numbers, weights, cells: self.map.cells().len() };
             let course = Course { map: self.map, places: &places[piece.range()], closed: piece.closed, reach };
-            if measurements.len() <= 2 * reach {
+            let count = weights.len();
+            if count <= 2 * reach {
                 continue;
             }
             let (mut forth, mut total) = (0usize, 0usize);
-            for (i, measurement) in measurements.iter().enumerate().filter(|(_, r)| is_known(r)) {
-                forth += usize::from(course.along(i, measurement.cell) > 0.0);
-                total += 1;
+            // Most have all of their neighbours.
+            for i in reach..count - reach {
+                if let Some(cell) = of_points.known(i) {
+                    let chord = course.places[i + reach] - course.places[i - reach];
+                    forth += usize::from(self.map.cells()[cell].normal.perp(&chord) > 0.0);
+                    total += 1;
+                }
+            }
+            for i in (0..reach).chain(count - reach..count) {
+                if let Some(cell) = of_points.known(i) {
+                    forth += usize::from(course.along(i, cell) > 0.0);
+                    total += 1;
+                }
             }
             let (most, sign) = if 2 * forth > total { (forth, 1.0) } else { (total - forth, -1.0) };
             if most == total || (most as f64) < tuning::SURE_DIRECTION * total as f64 {
                 continue;
             }
-            for i in 0..measurements.len() {
-                let cell = measurements[i].cell;
-                if is_known(&measurements[i]) && sign * course.along(i, cell) < 0.0 {
-                    measurements[i].cell = course.cell_on_side(measurements, i, sign).unwrap_or(cell);
+            for i in 0..count {
+                let Some(cell) = of_points.known(i) else { continue };
+                if sign * course.along(i, cell) < 0.0 {
+                    of_points.numbers[i] = course.cell_on_side(&of_points, i, sign).unwrap_or(cell) as u32;
                 }
             }
         }

@@ -15,6 +15,7 @@ impl VarianceInflation {
     pub(super) const NEW: Self = Self { mean_square: 1.0, points: tuning::INFLATION_PRIOR_POINTS, variance: 1.0 };
 
     /// Takes one squared residual in units of the noise of its point, which counts for a share of a good one.
+    #[inline(always)]
     pub(super) fn take(&mut self, square: f64, share: f64) {
         self.points = (self.points + share).min(tuning::INFLATION_MEMORY);
         let square = square.min(tuning::INFLATION_CLIPPED * self.variance);

@@ -1,12 +1,15 @@
-use freeform_riccati::{MotionModel, map_point, pull_back};
+use freeform_riccati::{
+    MAX_PARAMETERS, MotionModel, ParameterVector, is_affine, map_point, map_point_by, pull_back_by,
+};
 use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::Landmarks;
 use crate::{
-    map::median,
+    map::{OutlineMap, median},
     measurement::View,
     track::{Track, turn_between, wrapped},
     tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning, symmetry as of_symmetry},
+    vectors::vectorised,
 };
 
 /// A pose that fits a frame.
@@ -53,8 +56,16 @@ pub(crate) fn register(
             starts.push(turn_between(turn, &middle(a, b), &middle(c, d)));
         }
     }
-    let found: Vec<RegisteredPose> =
-        starts.iter().map(|start| refined(track, &few, MotionModel::Rigid, &(start * pose), Steps::SEARCH)).collect();
+    let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
+    let mut begun: Vec<RegisteredPose> = Vec::with_capacity(starts.len());
+    for start in &starts {
+        let found = search(&(start * pose), Steps::FIRST);
+        // Searches that have come together go on together.
+        if !begun.iter().any(|other| (other.pose - found.pose).norm() < tuning::TOGETHER) {
+            begun.push(found);
+        }
+    }
+    let found = begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect();
     let mut best = distinct(found);
     keep(&mut best, tuning::REFINED);
     // Some come together only with all points: one taken twice would keep another out.
@@ -105,7 +116,10 @@ struct Steps {
 }
 
 impl Steps {
-    const SEARCH: Self = Self { most: tuning::SEARCH_STEPS, widest: tuning::WIDEST };
+    /// Of a search, until searches may have come together...
+    const FIRST: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST };
+    /// ...and from there on.
+    const FURTHER: Self = Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
     const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
 }
 
@@ -165,33 +179,32 @@ where
 {
     let View { map, belief, noise } = track.view();
     let mut pose = *start;
-    let mut distances = Vec::with_capacity(points.len());
-    let mut rows: Vec<(f64, SVector<f64, K>)> = Vec::with_capacity(points.len());
+    let mut numbers = vec![0; points.len()];
+    let mut rows: Vec<(f64, [f64; K])> = vec![(0.0, [0.0; K]); points.len()];
     let mut sizes = Vec::with_capacity(points.len());
-    let (mut settled, mut widest) = (false, steps.widest);
-    for step in 0..=steps.most {
+    let mut widest = steps.widest;
+    for _ in 0..steps.most {
         let Some(inverse) = pose.try_inverse() else { break };
-        let null = map.null_directions(belief.model, &pose);
-        distances.clear();
-        rows.clear();
-        for p in points {
-            let q = map_point(&inverse, p);
-            let Some(number) = map.nearest(&q) else { continue };
-            let cell = &map.cells()[number];
-            let from = q - (cell.centre + belief.offsets[number] * cell.normal);
-            distances.push(from.norm());
-            let pulled = pull_back(&inverse, p, &q, &cell.normal);
-            let slope = 1.0 / pulled.norm();
-            let residual = cell.normal.dot(&from) * slope;
-            let normal = pulled * slope;
-            let mut row = model.normal_velocities(&(p - residual * normal), &normal);
-            if model == belief.model {
-                null.iter().for_each(|direction| direction.project_out(&mut row));
+        let null = if model == belief.model { map.null_directions(model, &pose) } else { Vec::new() };
+        let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
+        let (numbers, all) = (numbers.as_mut_slice(), rows.as_mut_slice());
+        vectorised(
+            #[inline(always)]
+            || match (model, is_affine(&inverse)) {
+                (MotionModel::Rigid, true) => {
+                    seen.linearise::<true, K>(numbers, all, |p, n| MotionModel::Rigid.normal_velocities(p, n));
+                }
+                (_, true) => seen.linearise::<true, K>(numbers, all, |p, n| model.normal_velocities(p, n)),
+                (_, false) => seen.linearise::<false, K>(numbers, all, |p, n| model.normal_velocities(p, n)),
+            },
+        );
+        for direction in &null {
+            for (_, row) in &mut rows {
+                let mut jacobian = [0.0; MAX_PARAMETERS];
+                jacobian[..K].copy_from_slice(row);
+                direction.project_out(&mut jacobian);
+                row.copy_from_slice(&jacobian[..K]);
             }
-            rows.push((residual, SVector::from_fn(|i, _| row[i])));
-        }
-        if step == steps.most || settled {
-            break;
         }
         sizes.clear();
         sizes.extend(rows.iter().map(|(r, _)| r.abs()));
@@ -199,30 +212,98 @@ where
         let scale = tuning::TUKEY * of_points.max(widest);
         let is_narrow = widest <= of_points;
         widest *= tuning::NARROWER;
-        let mut gram = SMatrix::<f64, K, K>::identity() * tuning::DAMPING;
-        let mut right = SVector::<f64, K>::zeros();
-        for (residual, row) in &rows {
-            let u = residual / scale;
-            if u.abs() < 1.0 {
-                let weight = (1.0 - u * u).powi(2);
-                let weighted = weight * row;
-                gram += weighted * row.transpose();
-                right += *residual * weighted;
-            }
-        }
+        let rows = rows.as_slice();
+        let (gram, right) = vectorised(
+            #[inline(always)]
+            || weighted_sums(rows, 1.0 / scale),
+        );
+        let gram = SMatrix::<f64, K, K>::from_fn(|i, j| gram[i][j] + if i == j { tuning::DAMPING } else { 0.0 });
         let Some(factor) = gram.cholesky() else { break };
-        let x = factor.solve(&right);
+        let x = factor.solve(&SVector::from(right));
         let next = model.flow(x.as_slice(), 1.0).into_inner() * pose;
         if !next.iter().all(|e| e.is_finite()) || next.determinant().abs() < 1e-6 {
             break;
         }
         pose = next;
-        settled = is_narrow && x.amax() < tuning::SETTLED * noise.sigma;
+        if is_narrow && x.amax() < tuning::SETTLED * noise.sigma {
+            break;
+        }
     }
-    let capped: f64 = distances.iter().map(|distance| distance.min(tuning::FARTHEST)).sum();
-    let score = if distances.is_empty() { f64::INFINITY } else { capped / distances.len() as f64 };
+    let score = mean_distance(track, points, &pose);
     let turn = turn_of(&pose, track.body_pose());
     RegisteredPose { pose, score, turn }
+}
+
+/// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.
+struct Seen<'a> {
+    points: &'a [Point2<f64>],
+    inverse: &'a Matrix3<f64>,
+    map: &'a OutlineMap,
+    offsets: &'a [f64],
+}
+
+impl Seen<'_> {
+    /// Residuals of all points and their derivatives, which `velocities` tell.
+    #[inline(always)]
+    fn linearise<const AFFINE: bool, const K: usize>(
+        &self,
+        numbers: &mut [u32],
+        rows: &mut [(f64, [f64; K])],
+        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
+    ) {
+        let Self { points, inverse, map, offsets } = self;
+        map.associate_all(
+            #[inline(always)]
+            |i| map_point_by::<AFFINE>(inverse, &points[i]),
+            numbers,
+        );
+        let cells = map.cells();
+        for ((p, number), row) in points.iter().zip(numbers).zip(rows) {
+            let q = map_point_by::<AFFINE>(inverse, p);
+            let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
+            let distance = cell.normal.x * (q.x - cell.centre.x) + cell.normal.y * (q.y - cell.centre.y) - offset;
+            let pulled = pull_back_by::<AFFINE>(inverse, p, &q, &cell.normal);
+            let slope = 1.0 / (pulled.x * pulled.x + pulled.y * pulled.y).sqrt();
+            let (residual, normal) = (distance * slope, pulled * slope);
+            let along = velocities(&(p - residual * normal), &normal);
+            row.0 = residual;
+            row.1.copy_from_slice(&along[..K]);
+        }
+    }
+}
+
+/// Normal equations with Tukey's weights, for the inverse of their scale.
+#[inline(always)]
+fn weighted_sums<const K: usize>(rows: &[(f64, [f64; K])], scale: f64) -> ([[f64; K]; K], [f64; K]) {
+    let (mut gram, mut right) = ([[0.0; K]; K], [0.0; K]);
+    for (residual, row) in rows {
+        let u = residual * scale;
+        let kept = 1.0 - u * u;
+        let weight = if kept > 0.0 { kept * kept } else { 0.0 };
+        for i in 0..K {
+            let weighted = weight * row[i];
+            right[i] += residual * weighted;
+            for j in 0..K {
+                gram[i][j] += weighted * row[j];
+            }
+        }
+    }
+    (gram, right)
+}
+
+/// Mean distance of points from the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away.
+fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>) -> f64 {
+    let View { map, belief, .. } = track.view();
+    let Some(inverse) = pose.try_inverse() else { return f64::INFINITY };
+    let (mut sum, mut count) = (0.0, 0.0);
+    for p in points {
+        let q = map_point(&inverse, p);
+        if let Some(number) = map.nearest(&q) {
+            sum += (q - map.outline_at(number, &belief.offsets)).norm().min(tuning::FARTHEST);
+            count += 1.0;
+        }
+    }
+    if count > 0.0 { sum / count } else { f64::INFINITY }
 }
 
 /// Turn of a pose from the one before.

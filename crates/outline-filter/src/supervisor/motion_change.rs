@@ -58,7 +58,7 @@ impl MotionHistory {
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
             if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {
-                dynamics.update(measured);
+                dynamics.update(measured, &outcome.rounding);
                 dynamics.take_shift(&outcome.shift);
                 if self.change.is_seen() {
                     dynamics.take_change();

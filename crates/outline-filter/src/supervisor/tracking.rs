@@ -4,7 +4,7 @@ use crate::{
     dynamics::{DynamicsFilter, Purpose},
     measurement::Frame,
     track::{Comparison, Outcome, Track},
-    tuning::update::SUDDEN,
+    tuning::update::{PARTLY_THERE, SUDDEN},
     update::Gate,
 };
 
@@ -85,8 +85,10 @@ fn measured(
         }
     }
     let innovation = outcome.innovation;
-    if !outcome.is_accepted() && known != Known::Nothing && is_there && innovation.fisher[0] > 0.0 {
-        // If the outline is there, but for the second time (or beyond doubt) not where it was going, the motion has changed.
+    let is_partly_there = outcome.measurement.agreement >= PARTLY_THERE * settings.smallest_agreement;
+    if !outcome.is_accepted() && known != Known::Nothing && is_partly_there && innovation.fisher[0] > 0.0 {
+        // If the outline is there, but for the second time (or beyond doubt) not where it was going, the motion has changed. Held to where it was
+        // going, it agrees in part: in the end it must agree like any other.
         let mut changed = track.clone();
         changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
         let found = changed.update(frame, &anywhere, comparison);

@@ -11,6 +11,9 @@ mod known_outline;
 mod left_out;
 mod outline;
 mod remapping;
+mod rounding;
+#[cfg(test)]
+mod side_by_side;
 #[cfg(test)]
 mod sides;
 #[expect(clippy::module_inception, reason = "the module holds the type that the layer is about")]

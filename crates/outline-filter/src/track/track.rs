@@ -8,7 +8,7 @@ use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 use super::first_pose::FirstPose;
 use crate::{
     belief::Belief,
-    dynamics::{CentredPose, FamilyTests, Summary},
+    dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
     map::{NullDirection, OutlineMap, TurnEvidence},
     measurement::{
         Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of,
@@ -59,6 +59,8 @@ pub(crate) struct Outcome {
     pub(crate) innovation: PoseInnovation,
     /// What the frame tells of the pose by itself, if it shows the outline, taken or not.
     pub(crate) pose: Option<PoseMeasurement>,
+    /// What that is off by as masks are rounded, besides: deviations about the middle, normalised.
+    pub(crate) rounding: CentredDeviations,
     /// By which it has moved the outline as a whole, in the body frame.
     pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
     /// Of the frame given what was known before it; none unless asked for.
@@ -151,6 +153,7 @@ impl Track {
                     verdict,
                     innovation: PoseInnovation::default(),
                     pose: None,
+                    rounding: CentredDeviations::zeros(),
                     shift: SVector::zeros(),
                     likelihood: NegativeLogLikelihood::default(),
                 };
@@ -195,7 +198,7 @@ impl Track {
             }
         }
         let pose = measured.map(|measured| measured.over(variance));
-        Outcome { measurement, verdict, innovation, pose, shift, likelihood }
+        Outcome { measurement, verdict, innovation, pose, rounding: self.rounding_of_pose(), shift, likelihood }
     }
 
     /// Takes the spread of a frame, used or not.

@@ -4,6 +4,7 @@ use crate::{
     belief::Belief,
     measurement::{Frame, NoiseModel},
     prediction::ShapeNoise,
+    vectors::vectorised,
 };
 
 /// Takes a proposal and the information of its frame, and what the frame says of the noise and of the shape.
@@ -22,11 +23,18 @@ pub(crate) fn commit(
     // The buffer holds the cells as they were.
     shape.compare_innovations(belief, &frame.shifts, &frame.cells, noise);
     let units = 1.0 / (noise.sigma * noise.sigma);
-    let ratios = frame.deviations.ratios();
-    for (i, m) in frame.measurements.iter().enumerate().filter(|(_, m)| m.weight > 0.0) {
-        if let Some(factor) = without_leverage(m, belief.information.cells.own()[m.cell]) {
-            let share = ratios.map_or(1.0, |ratios| (ratios[i] * ratios[i]).recip());
-            noise.take_residual(m.cell, m.residual * m.residual * units * factor * share, share);
-        }
-    }
+    let (ratios, own) = (frame.deviations.ratios(), belief.information.cells.own());
+    vectorised(
+        #[inline(always)]
+        || {
+            for (i, m) in frame.measurements.iter().enumerate() {
+                if m.weight > 0.0
+                    && let Some(factor) = without_leverage(m, own[m.cell])
+                {
+                    let share = ratios.map_or(1.0, |ratios| (ratios[i] * ratios[i]).recip());
+                    noise.take_residual(m.cell, m.residual * m.residual * units * factor * share, share);
+                }
+            }
+        },
+    );
 }

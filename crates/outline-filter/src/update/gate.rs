@@ -3,7 +3,7 @@ use std::fmt;
 
 use super::solve::Proposal;
 use crate::{
-    map::median,
+    map::median_about,
     measurement::{Frame, Measurement, NO_CELL, View, spread, weighted_median},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, update as tuning},
 };
@@ -131,16 +131,17 @@ impl View<'_> {
         innovation: f64,
         radius: f64,
     ) -> FrameMeasurement {
-        let spread = spread(frame);
+        let spread = spread(frame, self.noise.sigma);
         let Frame { measurements, values, weighted, cells, deviations, .. } = frame;
         let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
-        // Points that count for next to nothing need not agree.
-        let (mut known, mut agreeing, mut new, mut new_points) = (0.0, 0.0, 0.0, 0usize);
         let (ratios, widest) = (deviations.ratios(), deviations.widest());
         let limit = |ratio: f64| (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());
         let alike = limit(1.0);
-        values.clear();
+        // Points that count for next to nothing need not agree.
+        let (mut known, mut agreeing, mut new, mut new_points) = (0.0, 0.0, 0.0, 0usize);
+        values.resize(measurements.len(), 0.0);
         weighted.clear();
+        let mut told = 0;
         for (i, m) in measurements.iter().enumerate() {
             let (ratio, share, tolerance) = match ratios {
                 None => (1.0, 1.0, alike),
@@ -152,20 +153,22 @@ impl View<'_> {
                 continue;
             }
             known += share;
-            if m.residual.abs() < tolerance {
-                agreeing += share;
-            }
-            if let Some(factor) = without_leverage(m, cells.own()[m.cell]).filter(|_| m.weight > 0.0) {
-                let size = m.residual.abs() * factor.sqrt();
-                match ratios {
-                    None => values.push(size),
-                    Some(_) => weighted.push((size / ratio, share)),
-                }
+            agreeing += if m.residual.abs() < tolerance { share } else { 0.0 };
+            let factor = without_leverage(m, cells.own()[m.cell]);
+            let size = m.residual.abs() * factor.unwrap_or(0.0).sqrt();
+            let is_told = factor.is_some() && m.weight > 0.0;
+            if ratios.is_none() {
+                values[told] = size;
+                told += usize::from(is_told);
+            } else if is_told {
+                weighted.push((size / ratio, share));
             }
         }
+        values.truncate(told);
         let enough = (values.len() + weighted.len()) * 4 > measurements.len();
         // Points count by their weights: what those that count most scatter by must not hide behind others that say too much of theirs.
-        let middle = if weighted.is_empty() { median(values) } else { weighted_median(weighted) };
+        let guess = self.noise.sigma / MEDIAN_TO_DEVIATION;
+        let middle = if weighted.is_empty() { median_about(guess, values) } else { weighted_median(weighted) };
         let typical = deviations.typical();
         let noise = middle.filter(|_| enough).map(|m| MEDIAN_TO_DEVIATION * m * radius * typical);
         let total = known + new / tuning::NEW_POINTS_PER_POINT;
@@ -178,6 +181,7 @@ impl View<'_> {
 
 /// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is;
 /// `None` where that share is too large to tell.
+#[inline(always)]
 pub(super) fn without_leverage(measurement: &Measurement, own: f64) -> Option<f64> {
     let of_point = measurement.weight * measurement.by_offset * measurement.by_offset;
     (of_point < tuning::LARGEST_LEVERAGE * own).then(|| own / (own - of_point))

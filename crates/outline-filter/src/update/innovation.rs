@@ -1,14 +1,10 @@
 //! What a frame says of the pose beyond what was predicted, and what that says of how fast the motion changes.
-use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{Point2, SMatrix, SVector};
+use nalgebra::{Point2, SMatrix};
 
 use crate::{
     belief::{Belief, StateMatrix, StateVector},
     prediction::{ByKind, centred_change, kind_index},
 };
-
-type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
-type PoseVector = SVector<f64, MAX_PARAMETERS>;
 
 /// Innovation of the pose in one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -33,56 +29,69 @@ impl Belief {
         middle: &Point2<f64>,
         variance: f64,
     ) -> PoseInnovation {
-        let k = self.information.k;
-        let innovation = || {
-            let (before, after) = (pose_information(before, k)?, pose_information(after, k)?);
-            let (p, p_after) = (inverse(&before)?, inverse(&after)?);
-            let step = PoseVector::from_fn(|i, _| if i < k { state[i] } else { 0.0 });
-            let gained = p - p_after;
-            // Directions that the frame does not show have no step either.
-            let regular = gained + PoseMatrix::from_diagonal(&(p.diagonal() * 1e-9));
-            let squared = step.dot(&(inverse(&regular)? * step)) / variance;
-            let weighted = before * step / variance.sqrt();
-            let by_change = centred_change(self.model, &self.pose, middle)?;
-            // Of the pose by unit changes of the motion, over the last step.
-            let (slope, curvature) =
-                (by_change.transpose() * weighted, by_change.transpose() * before * gained * before * by_change);
-            let growth = self.memory.step.powi(3) / variance;
-            let mut all = PoseInnovation { squared, ..PoseInnovation::default() };
-            let kinds = || self.model.parameter_kinds().iter().map(|kind| kind_index(*kind)).enumerate();
-            for (i, of_i) in kinds() {
-                all.gradient[of_i] += 0.5 * growth * (slope[i] * slope[i] - curvature[(i, i)]);
-                for (j, of_j) in kinds() {
-                    let fisher = 0.5 * growth * growth * curvature[(i, j)] * curvature[(i, j)];
-                    all.fisher_of_both += fisher;
-                    all.fisher[of_i] += if of_i == of_j { fisher } else { 0.0 };
-                }
-            }
-            let is_finite = all.gradient.iter().chain(&all.fisher).all(|e| e.is_finite());
-            (squared >= 0.0 && is_finite && all.fisher.iter().all(|f| *f > 0.0)).then_some(all)
+        let innovation = match self.information.k {
+            3 => self.sized_innovation::<3>([before, after], state, middle, variance),
+            4 => self.sized_innovation::<4>([before, after], state, middle, variance),
+            6 => self.sized_innovation::<6>([before, after], state, middle, variance),
+            _ => self.sized_innovation::<8>([before, after], state, middle, variance),
         };
-        innovation().unwrap_or_default()
+        innovation.unwrap_or_default()
+    }
+
+    fn sized_innovation<const K: usize>(
+        &self,
+        marginals: [&StateMatrix; 2],
+        state: &StateVector,
+        middle: &Point2<f64>,
+        variance: f64,
+    ) -> Option<PoseInnovation> {
+        let [before, after] = marginals.map(pose_information::<K>);
+        let (before, after) = (before?, after?);
+        let (p, p_after) = (inverse(&before)?, inverse(&after)?);
+        let step = state.fixed_rows::<K>(0).into_owned();
+        let gained = p - p_after;
+        // Directions that the frame does not show have no step either.
+        let regular = gained + SMatrix::from_diagonal(&(p.diagonal() * 1e-9));
+        let squared = step.dot(&(inverse(&regular)? * step)) / variance;
+        let weighted = before * step / variance.sqrt();
+        let by_change = centred_change(self.model, &self.pose, middle)?.fixed_view::<K, K>(0, 0).into_owned();
+        // Of the pose by unit changes of the motion, over the last step.
+        let by_change_before = before * by_change;
+        let (slope, curvature) =
+            (by_change.transpose() * weighted, by_change_before.transpose() * gained * by_change_before);
+        let growth = self.memory.step.powi(3) / variance;
+        let mut all = PoseInnovation { squared, ..PoseInnovation::default() };
+        let kinds = || self.model.parameter_kinds().iter().map(|kind| kind_index(*kind)).enumerate();
+        for (i, of_i) in kinds() {
+            all.gradient[of_i] += 0.5 * growth * (slope[i] * slope[i] - curvature[(i, i)]);
+            for (j, of_j) in kinds() {
+                let fisher = 0.5 * growth * growth * curvature[(i, j)] * curvature[(i, j)];
+                all.fisher_of_both += fisher;
+                all.fisher[of_i] += if of_i == of_j { fisher } else { 0.0 };
+            }
+        }
+        let is_finite = all.gradient.iter().chain(&all.fisher).all(|e| e.is_finite());
+        (squared >= 0.0 && is_finite && all.fisher.iter().all(|f| *f > 0.0)).then_some(all)
     }
 }
 
-/// Information of the pose with the motion eliminated; unit diagonal beyond the parameters.
-fn pose_information(marginal: &StateMatrix, k: usize) -> Option<PoseMatrix> {
-    let block = |r: usize, c: usize| {
-        PoseMatrix::from_fn(|i, j| {
-            if i < k && j < k { marginal[(r + i, c + j)] } else { f64::from(u8::from(i == j && r == c)) }
-        })
-    };
-    let (pose, cross, motion) = (block(0, 0), block(0, k), block(k, k));
-    let cross = PoseMatrix::from_fn(|i, j| if i < k && j < k { cross[(i, j)] } else { 0.0 });
+/// Information of the pose with the motion eliminated.
+fn pose_information<const K: usize>(marginal: &StateMatrix) -> Option<SMatrix<f64, K, K>> {
+    let block = |row: usize, column: usize| marginal.fixed_view::<K, K>(row, column).into_owned();
+    let (pose, cross, motion) = (block(0, 0), block(0, K), block(K, K));
     Some(pose - cross * inverse(&motion)? * cross.transpose())
 }
 
 /// Inverse of a positive definite matrix, scaled to unit diagonal on the way.
-fn inverse(matrix: &PoseMatrix) -> Option<PoseMatrix> {
-    let scale = matrix.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 });
-    let scaled = PoseMatrix::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
-    let inverse = (scaled + PoseMatrix::identity() * 1e-12).cholesky()?.inverse();
-    Some(PoseMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+fn inverse<const K: usize>(matrix: &SMatrix<f64, K, K>) -> Option<SMatrix<f64, K, K>> {
+    let scale: [f64; K] = std::array::from_fn(|i| {
+        let entry = matrix[(i, i)];
+        if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 }
+    });
+    let mut scaled = SMatrix::<f64, K, K>::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+    (0..K).for_each(|i| scaled[(i, i)] += 1e-12);
+    let inverse = scaled.cholesky()?.inverse();
+    Some(SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! The normal equations of a frame, added to the information, and the offsets eliminated from them.
+
 use crate::{
     belief::{Arrowhead, StateVector},
     measurement::{Frame, Measurement},
+    vectors::vectorised,
 };
 
 /// Adds the measurements to the information; returns the right-hand side of pose and motion, and leaves those of the offsets in the frame.
@@ -22,42 +24,83 @@ fn accumulate_sized<const K: usize, const S: usize>(
     work: &mut Arrowhead,
     state: &StateVector,
 ) -> StateVector {
+    let step: [f64; K] = std::array::from_fn(|i| state[i]);
     let (own, coupling) = work.cells.all_mut::<S>();
-    let mut right = StateVector::zeros();
+    let Frame { measurements, shifts, right, .. } = frame;
+    let of_points = (measurements.as_slice(), shifts.as_slice());
+    let (dense, of_state) = vectorised(
+        #[inline(always)]
+        || add_points::<K, S>(of_points, &step, (&mut *own, &mut *coupling), right),
+    );
+    for (sum, row) in work.dense.iter_mut().zip(&dense) {
+        sum.iter_mut().zip(row).for_each(|(s, d)| *s += d);
+    }
+    StateVector::from_fn(|i, _| of_state.get(i).copied().unwrap_or(0.0))
+}
+
+/// Adds points to the information on their cells and to its right-hand sides; returns what they add to pose and motion.
+#[inline(always)]
+fn add_points<const K: usize, const S: usize>(
+    (measurements, shifts): (&[Measurement], &[f64]),
+    step: &[f64; K],
+    (own, coupling): (&mut [f64], &mut [[f64; S]]),
+    right_of_cells: &mut [f64],
+) -> ([[f64; K]; K], [f64; K]) {
+    let mut right = [0.0; K];
     let mut dense = [[0.0; K]; K];
-    for Measurement { cell, residual, by_offset, jacobian, weight } in &frame.measurements {
+    // Short rows are summed up to their diagonal, long ones as whole vectors.
+    let first = |i: usize| if K < 6 { i } else { 0 };
+    for Measurement { cell, residual, by_offset, jacobian, weight } in measurements {
         if *weight == 0.0 {
             continue;
         }
-        let mut along = 0.0;
-        (0..K).for_each(|i| along += jacobian[i] * state[i]);
-        let target = residual + along + by_offset * frame.shifts[*cell];
+        let mut target = residual + by_offset * shifts[*cell];
+        for i in 0..K {
+            target += jacobian[i] * step[i];
+        }
         let row = &mut coupling[*cell];
         let weighted = weight * by_offset;
         for i in 0..K {
             let wi = weight * jacobian[i];
-            for j in 0..K {
+            for j in first(i)..K {
                 dense[i][j] += wi * jacobian[j];
             }
             right[i] += wi * target;
             row[i] += weighted * jacobian[i];
         }
         own[*cell] += weighted * by_offset;
-        frame.right[*cell] += weighted * target;
+        right_of_cells[*cell] += weighted * target;
     }
-    for (sum, row) in work.dense.iter_mut().zip(&dense) {
-        sum.iter_mut().zip(row).for_each(|(s, d)| *s += d);
-    }
-    right
+    // What has not been summed is in the other half.
+    let dense = std::array::from_fn(|i| std::array::from_fn(|j| if j < first(i) { dense[j][i] } else { dense[i][j] }));
+    (dense, right)
 }
 
 /// Right-hand side with the offsets eliminated.
-pub(super) fn reduce(work: &Arrowhead, right_of_cells: &[f64], mut right: StateVector) -> StateVector {
-    for ((coupling, own), r) in work.cells.couplings().zip(work.cells.own()).zip(right_of_cells) {
-        if *own > 0.0 && *r != 0.0 {
-            let factor = r / own;
-            right.iter_mut().zip(coupling).for_each(|(right, coupling)| *right -= factor * coupling);
-        }
+pub(super) fn reduce(work: &Arrowhead, right_of_cells: &[f64], right: StateVector) -> StateVector {
+    match work.k {
+        3 => reduce_sized::<6>(work, right_of_cells, right),
+        4 => reduce_sized::<8>(work, right_of_cells, right),
+        6 => reduce_sized::<12>(work, right_of_cells, right),
+        _ => reduce_sized::<16>(work, right_of_cells, right),
     }
+}
+
+fn reduce_sized<const S: usize>(work: &Arrowhead, right_of_cells: &[f64], mut right: StateVector) -> StateVector {
+    let taken = vectorised(
+        #[inline(always)]
+        || {
+            let mut taken = [0.0; S];
+            for ((coupling, own), r) in work.cells.rows::<S>().iter().zip(work.cells.own()).zip(right_of_cells) {
+                // Nothing is told where nothing is known.
+                let factor = if *own > 0.0 { r / own } else { 0.0 };
+                for i in 0..S {
+                    taken[i] += factor * coupling[i];
+                }
+            }
+            taken
+        },
+    );
+    right.iter_mut().zip(taken).for_each(|(right, taken)| *right -= taken);
     right
 }

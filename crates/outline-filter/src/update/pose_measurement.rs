@@ -7,6 +7,7 @@ use crate::{
     belief::{Belief, OffsetInformation},
     measurement::Frame,
     tuning::dynamics::LARGEST_VARIANCE,
+    vectors::vectorised,
 };
 
 /// In normalised coordinates, of the error of the predicted pose, on the left; the outline taken as known before the frame.
@@ -42,19 +43,29 @@ impl PoseMeasurement {
         }
         let [own, own_before] = [&frame.cells, &before.cells].map(OffsetInformation::own);
         let [coupling, coupling_before] = [&frame.cells, &before.cells].map(OffsetInformation::rows::<S>);
-        for (number, right) in frame.right.iter().enumerate() {
-            if own[number] <= own_before[number] {
-                continue;
-            }
-            let inverse = 1.0 / own[number];
-            let mut added = [0.0; K];
-            (0..K).for_each(|i| added[i] = coupling[number][i] - coupling_before[number][i]);
-            for i in 0..K {
-                let factor = added[i] * inverse;
-                pulled[i] -= factor * right;
-                (0..K).for_each(|j| information[i][j] -= factor * added[j]);
-            }
-        }
+        vectorised(
+            #[inline(always)]
+            || {
+                let of_cells = own.iter().zip(own_before).zip(coupling.iter().zip(coupling_before));
+                for (((own, own_before), (coupling, coupling_before)), right) in of_cells.zip(&frame.right) {
+                    if own <= own_before {
+                        continue;
+                    }
+                    let inverse = 1.0 / own;
+                    let mut added = [0.0; K];
+                    for i in 0..K {
+                        added[i] = coupling[i] - coupling_before[i];
+                    }
+                    for i in 0..K {
+                        let factor = added[i] * inverse;
+                        pulled[i] -= factor * right;
+                        for j in 0..K {
+                            information[i][j] -= factor * added[j];
+                        }
+                    }
+                }
+            },
+        );
         Self {
             information: SMatrix::from_fn(|i, j| {
                 if i < K && j < K { 0.5 * (information[i][j] + information[j][i]) } else { 0.0 }

@@ -15,6 +15,7 @@ use crate::{
     measurement::Frame,
     prediction::ErrorTransition,
     tuning::family as tuning,
+    vectors::vectorised,
 };
 
 /// Motions that may be left out: growth, stretch, skew, two of perspective, that of rows which are read one after the other, and three of a
@@ -70,15 +71,17 @@ struct Instant {
 
 impl Instant {
     /// Displacement of a cell along its normal in the body frame by a unit of each motion, and how far an error of the pose moves it.
-    fn displacement(&self, cell: &Cell, offset: f64) -> (LeftOutVector, Point2<f64>, Vector2<f64>) {
+    #[inline(always)]
+    fn displacement(&self, cell: &Cell, offset: f64) -> ([f64; LEFT_OUT], Point2<f64>, Vector2<f64>) {
         let p = map_point(&self.pose, &(cell.centre + offset * cell.normal));
         // A step of the image along n moves the body point by as much along the normal of the cell.
         let n = self.of_normals * cell.normal;
         let along = n.dot(&p.coords);
         // A row is seen later the further down it is; the outline has moved on meanwhile.
-        let velocity = self.generator * p.to_homogeneous();
+        let g = &self.generator;
+        let velocity = Vector2::new(g.m11 * p.x + g.m12 * p.y + g.m13, g.m21 * p.x + g.m22 * p.y + g.m23);
         let square = p.coords.norm_squared();
-        let mut all = LeftOutVector::from([
+        let mut all = [
             self.elapsed * n.dot(&(p - self.middle)),
             n.x * p.x - n.y * p.y,
             n.x * p.y + n.y * p.x,
@@ -88,8 +91,10 @@ impl Instant {
             square * along,
             2.0 * p.x * along + square * n.x,
             2.0 * p.y * along + square * n.y,
-        ]);
-        all.iter_mut().zip(self.is_had).filter(|(_, had)| *had).for_each(|(d, _)| *d = 0.0);
+        ];
+        for (displacement, is_had) in all.iter_mut().zip(self.is_had) {
+            *displacement = if is_had { 0.0 } else { *displacement };
+        }
         (all, p, n)
     }
 }
@@ -125,7 +130,8 @@ impl Sensitivity {
         };
         let k = belief.parameter_count();
         for (cell, offset) in map.cells().iter().zip(&belief.offsets).skip(self.offsets.len()) {
-            let (mut displacement, p, n) = at.displacement(cell, *offset);
+            let (displacement, p, n) = at.displacement(cell, *offset);
+            let mut displacement = LeftOutVector::from(displacement);
             let by_pose = belief.model.normal_velocities(&p, &n);
             (0..k).for_each(|i| displacement -= self.state.row(i).transpose() * by_pose[i]);
             self.offsets.push(displacement);
@@ -161,55 +167,64 @@ impl Sensitivity {
     ) -> Option<LeftOutScore> {
         let at = self.instant(belief, pose, map)?;
         let of_pose: [[f64; LEFT_OUT]; K] = std::array::from_fn(|i| std::array::from_fn(|l| self.state[(i, l)]));
-        let mut sums = Sums::<K>::NOTHING;
+        let mut sums = Sums::<K, S>::NOTHING;
         let [with, before] = [&frame.cells, &belief.information.cells];
         let (coupling, coupling_before) = (with.rows::<S>(), before.rows::<S>());
         let (with, before) = (with.own(), before.own());
-        let mut right = [[0.0; LEFT_OUT]; STATE];
         let mut left = std::mem::take(&mut frame.values);
         left.clear();
-        for (number, cell) in map.cells().iter().enumerate() {
-            let (with, before, coupling) = (with[number], before[number], &coupling[number]);
-            let own = with - before;
-            if own <= 0.0 {
-                left.extend([0.0; LEFT_OUT]);
-                continue;
-            }
-            let added: [f64; K] = std::array::from_fn(|i| coupling[i] - coupling_before[number][i]);
-            let (whole, ..) = at.displacement(cell, belief.offsets[number]);
-            let mut of_cell: [f64; LEFT_OUT] = (whole - self.offsets[number]).into();
-            for (row, added) in of_pose.iter().zip(&added) {
-                let factor = added / own;
-                of_cell.iter_mut().zip(row).for_each(|(left, state)| *left -= factor * state);
-            }
-            if before > 0.0 {
-                let share = before / with;
-                sums.add(&of_cell, (&added, own, frame.right[number]), share);
-                sums.whole += share * own * whole.component_mul(&whole);
-            }
-            for (i, row) in right.iter_mut().enumerate().take(S) {
-                let direct = if i < K { added[i] } else { 0.0 };
-                let factor = repeats * (direct - coupling[i] * own / with);
-                row.iter_mut().zip(&of_cell).for_each(|(right, left)| *right += factor * left);
-            }
-            let share = repeats * own / with;
-            left.extend(of_cell.map(|left| left * share));
-        }
-        // The estimates move as such residuals would move them.
-        let right = SMatrix::<f64, STATE, LEFT_OUT>::from_fn(|i, l| right[i][l]);
-        if let Some(steps) = scaled_solution(marginal, &right, K) {
-            let by_entry: [[f64; LEFT_OUT]; STATE] = std::array::from_fn(|i| std::array::from_fn(|l| steps[(i, l)]));
-            let of_cells = self.offsets.iter_mut().zip(left.chunks(LEFT_OUT));
-            for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
-                if *with > 0.0 {
-                    let mut along = [0.0; LEFT_OUT];
-                    for (row, coupling) in by_entry.iter().zip(coupling) {
-                        along.iter_mut().zip(row).for_each(|(along, step)| *along += coupling * step);
+        left.resize(with.len() * LEFT_OUT, 0.0);
+        vectorised(
+            #[inline(always)]
+            || {
+                let of_cells = map.cells().iter().zip(&belief.offsets).zip(&self.offsets);
+                let known = with.iter().zip(before).zip(coupling.iter().zip(coupling_before)).zip(&frame.right);
+                let left = left.as_chunks_mut::<LEFT_OUT>().0;
+                for ((((cell, offset), taken_in), left), (((with, before), (coupling, coupling_before)), right)) in
+                    of_cells.zip(left).zip(known)
+                {
+                    let own = with - before;
+                    if own > 0.0 {
+                        let whole = at.displacement(cell, *offset).0;
+                        let mut added = [0.0; K];
+                        for i in 0..K {
+                            added[i] = coupling[i] - coupling_before[i];
+                        }
+                        let of_cell =
+                            OfCell { with: *with, before: *before, own, right: *right, coupling, added: &added };
+                        *left = sums
+                            .add(&whole, taken_in.as_slice(), &of_pose, &of_cell)
+                            .map(|l| l * (repeats * own / with));
                     }
-                    let moved = offset.iter_mut().zip(left).zip(&along);
-                    moved.for_each(|((offset, left), along)| *offset += left - along / with);
                 }
-            }
+            },
+        );
+        // The estimates move as such residuals would move them.
+        let right =
+            SMatrix::<f64, STATE, LEFT_OUT>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
+        if let Some(steps) = scaled_solution(marginal, &right, K) {
+            let by_entry: [[f64; LEFT_OUT]; S] = std::array::from_fn(|i| std::array::from_fn(|l| steps[(i, l)]));
+            vectorised(
+                #[inline(always)]
+                || {
+                    let of_cells = self.offsets.iter_mut().zip(left.as_chunks::<LEFT_OUT>().0);
+                    for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
+                        if *with > 0.0 {
+                            let mut along = [0.0; LEFT_OUT];
+                            for (row, coupling) in by_entry.iter().zip(coupling) {
+                                for l in 0..LEFT_OUT {
+                                    along[l] += coupling * row[l];
+                                }
+                            }
+                            let inverse = 1.0 / with;
+                            let offset = offset.as_mut_slice();
+                            for l in 0..LEFT_OUT {
+                                offset[l] += left[l] - along[l] * inverse;
+                            }
+                        }
+                    }
+                },
+            );
             for l in 0..LEFT_OUT {
                 (0..S).for_each(|i| self.state[(i, l)] += steps[(i, l)]);
             }
@@ -236,39 +251,91 @@ impl Sensitivity {
     }
 }
 
+/// What is known of a cell with a frame and without it, and what the frame adds: the information `own`, its right-hand side, and K entries
+/// of the coupling.
+struct OfCell<'a, const K: usize, const S: usize> {
+    with: f64,
+    before: f64,
+    own: f64,
+    right: f64,
+    coupling: &'a [f64; S],
+    added: &'a [f64; K],
+}
+
 /// Sums over the cells of a frame, the offsets eliminated.
-struct Sums<const K: usize> {
+struct Sums<const K: usize, const S: usize> {
     information: [[f64; LEFT_OUT]; LEFT_OUT],
-    score: LeftOutVector,
+    score: [f64; LEFT_OUT],
     /// Squares of the displacements with what pose and outline have taken in.
-    whole: LeftOutVector,
+    whole: [f64; LEFT_OUT],
     /// With the pose.
     with_pose: [[f64; LEFT_OUT]; K],
     weight: f64,
+    /// What pose and motion are moved by.
+    right: [[f64; LEFT_OUT]; S],
 }
 
-impl<const K: usize> Sums<K> {
+impl<const K: usize, const S: usize> Sums<K, S> {
     const NOTHING: Self = Self {
         information: [[0.0; LEFT_OUT]; LEFT_OUT],
-        score: LeftOutVector::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; 1])),
-        whole: LeftOutVector::from_array_storage(nalgebra::ArrayStorage([[0.0; LEFT_OUT]; 1])),
+        score: [0.0; LEFT_OUT],
+        whole: [0.0; LEFT_OUT],
         with_pose: [[0.0; LEFT_OUT]; K],
         weight: 0.0,
+        right: [[0.0; LEFT_OUT]; S],
     };
 
-    /// Adds a cell of which a `share` of the information was known before, with the coupling, the information and the right-hand side that
-    /// the frame adds.
-    fn add(&mut self, left: &[f64; LEFT_OUT], (coupling, own, right): (&[f64; K], f64, f64), share: f64) {
-        let shared = left.map(|left| share * left);
-        for (row, shared) in self.information.iter_mut().zip(&shared) {
-            let of_own = shared * own;
-            row.iter_mut().zip(left).for_each(|(sum, left)| *sum += of_own * left);
+    /// Adds a cell that is displaced by `whole`, of which its offset and the pose have taken some in; returns what is left.
+    #[inline(always)]
+    fn add(
+        &mut self,
+        whole: &[f64; LEFT_OUT],
+        taken_in: &[f64],
+        of_pose: &[[f64; LEFT_OUT]; K],
+        cell: &OfCell<'_, K, S>,
+    ) -> [f64; LEFT_OUT] {
+        let OfCell { with, before, own, right, coupling, added } = *cell;
+        let mut left = [0.0; LEFT_OUT];
+        for l in 0..LEFT_OUT {
+            left[l] = whole[l] - taken_in[l];
         }
-        for (row, coupling) in self.with_pose.iter_mut().zip(coupling) {
-            row.iter_mut().zip(&shared).for_each(|(sum, shared)| *sum += shared * coupling);
+        let inverse = 1.0 / own;
+        for (row, added) in of_pose.iter().zip(added) {
+            let factor = added * inverse;
+            for l in 0..LEFT_OUT {
+                left[l] -= factor * row[l];
+            }
         }
-        self.score.iter_mut().zip(&shared).for_each(|(sum, shared)| *sum += shared * right);
-        self.weight += own;
+        let by_known = own / with;
+        for (i, row) in self.right.iter_mut().enumerate() {
+            let direct = if i < K { added[i] } else { 0.0 };
+            let factor = direct - coupling[i] * by_known;
+            for l in 0..LEFT_OUT {
+                row[l] += factor * left[l];
+            }
+        }
+        if before > 0.0 {
+            // Only what was known before can be compared with.
+            let share = before / with;
+            let shared = left.map(|left| share * left);
+            for (row, shared) in self.information.iter_mut().zip(&shared) {
+                let of_own = shared * own;
+                for l in 0..LEFT_OUT {
+                    row[l] += of_own * left[l];
+                }
+            }
+            for (row, added) in self.with_pose.iter_mut().zip(added) {
+                for l in 0..LEFT_OUT {
+                    row[l] += shared[l] * added;
+                }
+            }
+            for l in 0..LEFT_OUT {
+                self.score[l] += shared[l] * right;
+                self.whole[l] += share * own * whole[l] * whole[l];
+            }
+            self.weight += own;
+        }
+        left
     }
 
     /// The pose eliminated.
@@ -283,7 +350,7 @@ impl<const K: usize> Sums<K> {
         let mut information = LeftOutMatrix::from_fn(|a, b| {
             self.information[a.max(b)][a.min(b)] - with_pose.column(a).dot(&explained.column(b))
         });
-        let mut score = self.score - explained.transpose() * pose.pulled;
+        let mut score = LeftOutVector::from(self.score) - explained.transpose() * pose.pulled;
         // What has been taken in is known to some percent.
         for l in 0..LEFT_OUT {
             if information[(l, l)] > tuning::LEFT * self.whole[l] {

@@ -10,6 +10,7 @@ use crate::{
     map::NullDirection,
     measurement::{Frame, NO_CELL, Pass, View},
     tuning::update as tuning,
+    vectors::vectorised,
 };
 
 /// What a frame asks for: a step of pose and motion, and the information with the frame. That of the offsets, and their corrections, are in
@@ -88,20 +89,49 @@ impl View<'_> {
 impl Frame {
     /// Offsets that go with a solution for pose and motion, and what it leaves of the residuals.
     fn take_step(&mut self, cells: &OffsetInformation, step: &StateVector, state: &StateVector, k: usize) {
-        self.values.clear();
-        let of_cells = cells.own().iter().zip(cells.couplings());
-        for ((shift, (own, coupling)), right) in self.shifts.iter_mut().zip(of_cells).zip(&self.right) {
-            let before = *shift;
-            if *own > 0.0 {
-                let along: f64 = coupling.iter().zip(state.iter()).map(|(coupling, state)| coupling * state).sum();
-                *shift = (right - along) / own;
-            }
-            self.values.push(*shift - before);
+        match k {
+            3 => self.take_step_sized::<3, 6>(cells, step, state),
+            4 => self.take_step_sized::<4, 8>(cells, step, state),
+            6 => self.take_step_sized::<6, 12>(cells, step, state),
+            _ => self.take_step_sized::<8, 16>(cells, step, state),
         }
-        for measurement in self.measurements.iter_mut().filter(|m| m.cell != NO_CELL) {
-            let along: f64 = (0..k).map(|i| measurement.jacobian[i] * step[i]).sum();
-            measurement.residual -= along + measurement.by_offset * self.values[measurement.cell];
-        }
+    }
+
+    fn take_step_sized<const K: usize, const S: usize>(
+        &mut self,
+        cells: &OffsetInformation,
+        step: &StateVector,
+        state: &StateVector,
+    ) {
+        let step: [f64; K] = std::array::from_fn(|i| step[i]);
+        let state: [f64; S] = std::array::from_fn(|i| state[i]);
+        let Self { measurements, shifts, right, values, .. } = self;
+        values.resize(shifts.len(), 0.0);
+        vectorised(
+            #[inline(always)]
+            || {
+                let of_cells = cells.own().iter().zip(cells.rows::<S>()).zip(right.iter());
+                for ((shift, value), ((own, coupling), right)) in shifts.iter_mut().zip(values.iter_mut()).zip(of_cells)
+                {
+                    let mut along = 0.0;
+                    for i in 0..S {
+                        along += coupling[i] * state[i];
+                    }
+                    let moved = if *own > 0.0 { (right - along) / own } else { *shift };
+                    *value = moved - *shift;
+                    *shift = moved;
+                }
+                for measurement in measurements.iter_mut() {
+                    if measurement.cell != NO_CELL {
+                        let mut along = measurement.by_offset * values[measurement.cell];
+                        for (slope, step) in measurement.jacobian.iter().zip(step) {
+                            along += slope * step;
+                        }
+                        measurement.residual -= along;
+                    }
+                }
+            },
+        );
     }
 }
 

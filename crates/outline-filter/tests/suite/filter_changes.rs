@@ -20,6 +20,28 @@ fn a_change_of_motion_is_noticed_and_the_new_motion_found() {
     }
 }
 
+/// With changes expected a hundred times as often, chance hides one motion in two for some frames.
+#[test]
+fn a_motion_that_stays_for_thousands_of_frames_is_known_in_each_of_them() {
+    let motion = RigidMotion { omega: 1.2, b1: -0.3, b2: 0.4 };
+    for (shape, seed) in [(BuiltInShape::Bird, 0), (BuiltInShape::Glider, 1), (BuiltInShape::Phone, 2)] {
+        let simulated = Settings { fps: 100.0, points: 200, ..settings(2000, seed) };
+        let mut run = filter(MotionModel::Rigid);
+        for frame in frames_of(shape, AffineMotion::from(motion), simulated) {
+            run.step(frame.time, &frame.outline).expect("increasing times");
+            if frame.index < 100 {
+                continue;
+            }
+            let estimate = run.estimate().expect("an estimate");
+            let omega = estimate.parameters().next().expect("omega");
+            let stated = omega.value.zip(omega.standard_deviation);
+            let (value, deviation) = stated.unwrap_or_else(|| panic!("{shape}: unknown in frame {}", frame.index));
+            assert!(deviation < 0.01, "{shape}, frame {}: {deviation}", frame.index);
+            assert!((value - motion.omega).abs() < 5.0 * deviation, "{shape}, frame {}: {value}", frame.index);
+        }
+    }
+}
+
 #[test]
 fn process_noise_lets_the_filter_follow_a_motion_that_drifts() {
     let drifting = |t: f64| AffineMotion::from(RigidMotion { omega: 1.0 + 0.5 * t, b1: 0.2, b2: -0.1 });

@@ -1,0 +1,93 @@
+//! The cells nearest to many places at once.
+use nalgebra::{Point2, Vector2};
+
+use super::{Cell, OutlineMap};
+
+/// Where the neighbours of a cell are nearer than the cell itself: beyond the line halfway to each.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bisectors {
+    across: [Vector2<f64>; 2],
+    at: [f64; 2],
+    neighbours: [u32; 2],
+    is_end: bool,
+}
+
+impl Bisectors {
+    /// Of a cell; an end has itself for a neighbour, which is nowhere nearer.
+    fn of(number: usize, cells: &[Cell]) -> Self {
+        let Cell { centre, neighbours, .. } = &cells[number];
+        let others = neighbours.map(|neighbour| cells[neighbour].centre);
+        Self {
+            across: others.map(|other| 2.0 * (other - centre)),
+            at: others.map(|other| other.coords.norm_squared() - centre.coords.norm_squared()),
+            neighbours: neighbours.map(|neighbour| neighbour as u32),
+            is_end: neighbours.contains(&number),
+        }
+    }
+
+    /// The neighbour that is nearer to a place, if one is; of both the nearest.
+    #[inline(always)]
+    fn nearer(&self, q: &Point2<f64>) -> Option<usize> {
+        let beyond = |side: usize| {
+            let across = &self.across[side];
+            across.x * q.x + across.y * q.y - self.at[side]
+        };
+        let [a, b] = [beyond(0), beyond(1)];
+        if !(a > 0.0 || b > 0.0) {
+            return None;
+        }
+        Some(self.neighbours[usize::from(b > a)] as usize)
+    }
+}
+
+impl OutlineMap {
+    /// Prepares what the cells nearest to places are found by; to be called whenever cells have changed.
+    pub(super) fn prepare_association(&mut self) {
+        let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
+        self.field.build(&centres, self.spacing);
+        self.bisectors.clear();
+        self.bisectors.extend((0..self.cells.len()).map(|number| Bisectors::of(number, &self.cells)));
+    }
+
+    /// The cell nearest to a body point, from one near it.
+    #[inline(always)]
+    pub(crate) fn nearest_from(&self, near: usize, q: &Point2<f64>) -> usize {
+        let mut number = near;
+        // No more steps than cells: a place that is equally far from all of them might be handed round by rounding.
+        for _ in 0..self.bisectors.len() {
+            match self.bisectors[number].nearer(q) {
+                Some(nearer) => number = nearer,
+                None => break,
+            }
+        }
+        number
+    }
+
+    /// Numbers of the cells nearest to places, one for each; that of no cell is the number of cells, where a place lies beyond a known end
+    /// of the outline or there are no cells.
+    #[inline(always)]
+    pub(crate) fn associate(&self, place: impl Fn(usize) -> Point2<f64>, numbers: &mut [u32]) {
+        self.associate_all(&place, numbers);
+        let none = self.cells.len() as u32;
+        for (i, number) in numbers.iter_mut().enumerate().filter(|_| none > 0) {
+            let nearest = *number as usize;
+            if self.bisectors[nearest].is_end && self.is_beyond_end(nearest, &place(i)) {
+                *number = none;
+            }
+        }
+    }
+
+    /// As [`associate`](Self::associate), of places beyond ends too.
+    #[inline(always)]
+    pub(crate) fn associate_all(&self, place: impl Fn(usize) -> Point2<f64>, numbers: &mut [u32]) {
+        if self.cells.is_empty() {
+            numbers.fill(0);
+            return;
+        }
+        // A first look at all of them waits for none; which way to go from there cannot be foreseen.
+        self.field.pixels(&place, numbers);
+        for (i, number) in numbers.iter_mut().enumerate() {
+            *number = self.nearest_from(self.field.at(*number), &place(i)) as u32;
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Medians.
+use crate::{tuning::contour::ABOUT, vectors::vectorised};
+
+/// Median, the upper one of two; reorders the list.
+pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+    if values.is_empty() {
+        return None;
+    }
+    let middle = values.len() / 2;
+    Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Middle one of nine, by the exchanges of J. L. Smith's network (Implementing median filters in XC4000E FPGAs, 1996).
+pub(super) fn median_of_nine(mut values: [f64; 9]) -> f64 {
+    for (a, b) in [
+        (1, 2),
+        (4, 5),
+        (7, 8),
+        (0, 1),
+        (3, 4),
+        (6, 7),
+        (1, 2),
+        (4, 5),
+        (7, 8),
+        (0, 3),
+        (5, 8),
+        (4, 7),
+        (3, 6),
+        (1, 4),
+        (2, 5),
+        (4, 7),
+        (4, 2),
+        (6, 4),
+        (4, 2),
+    ] {
+        let (x, y) = (values[a], values[b]);
+        (values[a], values[b]) = if x < y { (x, y) } else { (y, x) };
+    }
+    values[4]
+}
+
+/// As [`median`], of sizes of which most are expected to be about a guess or below it: only those about it are put in order, the others are
+/// counted.
+pub(crate) fn median_about(guess: f64, sizes: &mut Vec<f64>) -> Option<f64> {
+    let (low, high) = (ABOUT[0] * guess, ABOUT[1] * guess);
+    let middle = sizes.len() / 2;
+    let all = sizes.as_slice();
+    let [below, within] = vectorised(
+        #[inline(always)]
+        || {
+            let mut counts = [0.0; 2];
+            for size in all {
+                counts[0] += if *size < low { 1.0 } else { 0.0 };
+                counts[1] += if *size < high { 1.0 } else { 0.0 };
+            }
+            counts.map(|count| count as usize)
+        },
+    );
+    if !(below..within).contains(&middle) {
+        return median(sizes);
+    }
+    let mut kept = 0;
+    for i in 0..sizes.len() {
+        let size = sizes[i];
+        sizes[kept] = size;
+        kept += usize::from(size >= low && size < high);
+    }
+    sizes.truncate(kept);
+    Some(*sizes.select_nth_unstable_by(middle - below, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution as _, StandardNormal};
+
+    use super::*;
+
+    #[test]
+    fn the_network_finds_the_median_of_nine() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        for _ in 0..1000 {
+            let mut values: [f64; 9] = std::array::from_fn(|_| StandardNormal.sample(&mut rng));
+            values[3] = values[7];
+            assert_eq!(Some(median_of_nine(values)), median(&mut values));
+        }
+    }
+
+    #[test]
+    fn the_median_about_a_guess_is_the_median_whatever_the_guess() {
+        let mut rng = ChaCha8Rng::seed_from_u64(6);
+        for count in [0, 1, 2, 7, 100, 401] {
+            let sizes: Vec<f64> = (0..count)
+                .map(|_| {
+                    let x: f64 = StandardNormal.sample(&mut rng);
+                    x.abs()
+                })
+                .collect();
+            for guess in [0.0, 0.3, 0.6745, 1.5, f64::INFINITY, f64::NAN] {
+                assert_eq!(median_about(guess, &mut sizes.clone()), median(&mut sizes.clone()), "{count} {guess}");
+            }
+        }
+    }
+}

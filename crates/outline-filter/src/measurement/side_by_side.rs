@@ -1,0 +1,314 @@
+//! Points measured side by side in the lanes of the processor, without branches: affine poses, and points that count alike.
+//!
+//! In one pose a cell is a straight line in the image. What the points need to know of it is found once for each cell.
+use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by};
+use nalgebra::{Matrix3, Point2, Vector2};
+
+use super::{Frame, Measurement, NO_CELL, Pass, View, association::mean_of_neighbours};
+use crate::{map::NullDirection, tuning::measurement as tuning, vectors::vectorised};
+
+/// Points that are measured side by side.
+const LANES: usize = 4;
+
+type Lanes = [f64; LANES];
+
+/// The outline at a cell in the image of one frame.
+#[derive(Debug, Clone, Copy)]
+struct CellLine {
+    normal: Vector2<f64>,
+    /// Where it lies along the normal.
+    at: f64,
+    by_offset: f64,
+    /// Of the points of the cell, over that of the noise: the inverse deviation, and its square.
+    inverse_deviation: f64,
+    share: f64,
+}
+
+impl CellLine {
+    /// Of a point without a cell: it has no distance and does not count.
+    const NONE: Self =
+        Self { normal: Vector2::new(0.0, 0.0), at: 0.0, by_offset: 0.0, inverse_deviation: 1.0, share: 0.0 };
+}
+
+/// Numbers of the points of a frame, by columns; buffers that are reused from frame to frame.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Columns {
+    /// The points in the body frame.
+    own_places: Vec<Point2<f64>>,
+    /// Coordinates in the body frame times weights, and these.
+    weighted: Vec<[f64; 3]>,
+    /// Of the cells; the number of cells for none.
+    numbers: Vec<u32>,
+    residuals: Vec<f64>,
+    weights: Vec<f64>,
+    /// Of every cell, and one for none.
+    lines: Vec<CellLine>,
+}
+
+impl View<'_> {
+    /// As [`measure_one_by_one`](Self::measure_one_by_one), which a test compares it with.
+    pub(crate) fn measure_side_by_side(
+        &self,
+        frame: &mut Frame,
+        inverse: &Matrix3<f64>,
+        half_window: usize,
+        null: &[NullDirection],
+        pass: Pass,
+    ) {
+        let map = self.map;
+        let Frame { points, measurements, values, shifts, pieces, places, columns, .. } = frame;
+        let count = points.len();
+        let Columns { own_places, weighted, numbers, residuals, weights, lines } = columns;
+        numbers.resize(count, 0);
+        residuals.resize(count, 0.0);
+        weights.clear();
+        weights.extend(measurements.iter().map(|m| m.weight));
+        own_places.resize(count, Point2::origin());
+        places.resize(count, Point2::origin());
+        weighted.resize(count, [0.0; 3]);
+        lines.resize(map.cells().len() + 1, CellLine::NONE);
+        // Slices are near at hand in a loop, vectors are looked up each time.
+        let (own_places, places, weighted) =
+            (own_places.as_mut_slice(), places.as_mut_slice(), weighted.as_mut_slice());
+        let (numbers, residuals, weights) = (numbers.as_mut_slice(), residuals.as_mut_slice(), weights.as_mut_slice());
+        let (points, lines) = (points.as_slice(), lines.as_mut_slice());
+        vectorised(
+            #[inline(always)]
+            || {
+                take_lines(self, inverse, shifts, lines);
+                for (place, p) in own_places.iter_mut().zip(points.iter()) {
+                    *place = map_point_by::<true>(inverse, p);
+                }
+            },
+        );
+        if half_window == 0 {
+            places.copy_from_slice(own_places);
+            vectorised(
+                #[inline(always)]
+                || map.associate(|i| places[i], numbers),
+            );
+        } else {
+            if pass == Pass::First {
+                // What the points count with in the means.
+                vectorised(
+                    #[inline(always)]
+                    || map.associate(|i| own_places[i], numbers),
+                );
+                self.weigh_side_by_side((points, numbers, lines), (residuals, weights), values, pass);
+            }
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (weighted, (q, weight)) in weighted.iter_mut().zip(own_places.iter().zip(weights.iter())) {
+                        *weighted = [weight * q.x, weight * q.y, *weight];
+                    }
+                    for piece in pieces.iter() {
+                        let range = piece.range();
+                        let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
+                        let places = &mut places[range];
+                        mean_of_neighbours(
+                            weighted.len(),
+                            #[inline(always)]
+                            |i| weighted[i],
+                            piece.closed,
+                            half_window,
+                            #[inline(always)]
+                            |i, mean| places[i] = mean.unwrap_or(own[i]),
+                        );
+                    }
+                    // The means where the points count, the points where they do not.
+                    map.associate(|i| if weights[i] > 0.0 { places[i] } else { own_places[i] }, numbers);
+                },
+            );
+        }
+        self.keep_to_sides((numbers, weights), pieces, places, half_window);
+        self.weigh_side_by_side((points, numbers, lines), (residuals, weights), values, pass);
+        let found = Found { points, numbers, residuals, weights, lines };
+        vectorised(
+            #[inline(always)]
+            || match self.belief.model {
+                MotionModel::Rigid => found.hand_over(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n)),
+                MotionModel::Similarity => {
+                    found.hand_over(measurements, |p, n| MotionModel::Similarity.normal_velocities(p, n));
+                }
+                MotionModel::Affine => {
+                    found.hand_over(measurements, |p, n| MotionModel::Affine.normal_velocities(p, n));
+                }
+                MotionModel::Projective => {
+                    found.hand_over(measurements, |p, n| MotionModel::Projective.normal_velocities(p, n));
+                }
+            },
+        );
+        for direction in null {
+            measurements.iter_mut().for_each(|m| direction.project_out(&mut m.jacobian));
+        }
+    }
+
+    /// Residuals, and Tukey's weights.
+    fn weigh_side_by_side(
+        &self,
+        (points, numbers, lines): (&[Point2<f64>], &[u32], &[CellLine]),
+        (residuals, weights): (&mut [f64], &mut [f64]),
+        values: &mut Vec<f64>,
+        pass: Pass,
+    ) {
+        let limit = tuning::FULL_WEIGHT * self.noise.sigma;
+        let near = vectorised(
+            #[inline(always)]
+            || take_residuals((points, numbers, lines), residuals, limit),
+        );
+        let (mut scale, mut share) = (self.noise.sigma, 1.0);
+        if (near as f64) < tuning::NEAR_ENOUGH * points.len() as f64 {
+            values.clear();
+            let none = (lines.len() - 1) as u32;
+            let known = residuals.iter().zip(numbers).filter(|(_, number)| **number != none);
+            values.extend(known.map(|(residual, _)| residual.abs()));
+            (scale, share) = self.scale_of_wide_frame(values, pass);
+        }
+        vectorised(
+            #[inline(always)]
+            || take_weights((residuals, numbers, lines), weights, 1.0 / scale, share),
+        );
+    }
+}
+
+/// What every cell is to the points in a pose, given by its inverse, with corrections of the offsets.
+#[inline(always)]
+fn take_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &mut [CellLine]) {
+    let (cells, offsets) = (view.map.cells(), &view.belief.offsets);
+    let (origin, away) = (Point2::origin(), map_point_by::<true>(inverse, &Point2::origin()));
+    for (number, (line, ((cell, offset), shift))) in
+        lines.iter_mut().zip(cells.iter().zip(offsets).zip(shifts)).enumerate()
+    {
+        // A unit step along the image normal moves the body point by |D' n| along n.
+        let pulled = pull_back_by::<true>(inverse, &origin, &away, &cell.normal);
+        let by_offset = 1.0 / pulled.norm();
+        let at = cell.normal.dot(&(cell.centre - away)) + offset + shift;
+        let share = 1.0 / view.noise.inflation(number);
+        *line = CellLine {
+            normal: pulled * by_offset,
+            at: at * by_offset,
+            by_offset,
+            inverse_deviation: share.sqrt(),
+            share,
+        };
+    }
+    lines[cells.len()] = CellLine::NONE;
+}
+
+/// Distances of points from the lines of their cells; how many of them are below a limit.
+#[inline(always)]
+fn take_residuals(
+    (points, numbers, lines): (&[Point2<f64>], &[u32], &[CellLine]),
+    residuals: &mut [f64],
+    limit: f64,
+) -> usize {
+    let distance = |p: &Point2<f64>, line: &CellLine| line.normal.x * p.x + line.normal.y * p.y - line.at;
+    let mut near = [0.0; LANES];
+    let (chunks, rest) = residuals.as_chunks_mut::<LANES>();
+    let (points, last_points) = points.as_chunks::<LANES>();
+    let (numbers, last_numbers) = numbers.as_chunks::<LANES>();
+    for ((residuals, points), numbers) in chunks.iter_mut().zip(points).zip(numbers) {
+        let lines: [&CellLine; LANES] = std::array::from_fn(|lane| &lines[numbers[lane] as usize]);
+        let [x, y, at]: [Lanes; 3] =
+            [lines.map(|line| line.normal.x), lines.map(|line| line.normal.y), lines.map(|line| line.at)];
+        for lane in 0..LANES {
+            let residual = x[lane] * points[lane].x + y[lane] * points[lane].y - at[lane];
+            residuals[lane] = residual;
+            near[lane] += if residual.abs() < limit { 1.0 } else { 0.0 };
+        }
+    }
+    let mut all: f64 = near.iter().sum();
+    for ((residual, p), number) in rest.iter_mut().zip(last_points).zip(last_numbers) {
+        *residual = distance(p, &lines[*number as usize]);
+        all += if residual.abs() < limit { 1.0 } else { 0.0 };
+    }
+    all as usize
+}
+
+/// Tukey's weights of residuals, by the inverse of their deviation; `share` is what all points count for.
+#[inline(always)]
+fn take_weights(
+    (residuals, numbers, lines): (&[f64], &[u32], &[CellLine]),
+    weights: &mut [f64],
+    scale: f64,
+    share: f64,
+) {
+    let by_excess = 1.0 / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT);
+    let weight = |residual: f64, inverse_deviation: f64, of_cell: f64| {
+        let size = residual.abs() * (inverse_deviation * scale);
+        let excess = (size - tuning::FULL_WEIGHT) * by_excess;
+        let beyond = if excess > 0.0 { excess } else { 0.0 };
+        let kept = 1.0 - beyond * beyond;
+        (if excess < 1.0 { kept * kept } else { 0.0 }) * share * of_cell
+    };
+    let (chunks, rest) = weights.as_chunks_mut::<LANES>();
+    let (residuals, last_residuals) = residuals.as_chunks::<LANES>();
+    let (numbers, last_numbers) = numbers.as_chunks::<LANES>();
+    for ((weights, residuals), numbers) in chunks.iter_mut().zip(residuals).zip(numbers) {
+        let lines: [&CellLine; LANES] = std::array::from_fn(|lane| &lines[numbers[lane] as usize]);
+        let [inverse, of_cell]: [Lanes; 2] = [lines.map(|line| line.inverse_deviation), lines.map(|line| line.share)];
+        for lane in 0..LANES {
+            weights[lane] = weight(residuals[lane], inverse[lane], of_cell[lane]);
+        }
+    }
+    for ((found, residual), number) in rest.iter_mut().zip(last_residuals).zip(last_numbers) {
+        let line = &lines[*number as usize];
+        *found = weight(*residual, line.inverse_deviation, line.share);
+    }
+}
+
+/// What has been found of the points of a frame.
+struct Found<'a> {
+    points: &'a [Point2<f64>],
+    numbers: &'a [u32],
+    residuals: &'a [f64],
+    weights: &'a [f64],
+    lines: &'a [CellLine],
+}
+
+impl Found<'_> {
+    /// Makes measurements of it, with the normal velocities that each parameter of the pose error gives the feet of the points.
+    #[inline(always)]
+    fn hand_over(
+        &self,
+        measurements: &mut [Measurement],
+        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
+    ) {
+        let none = (self.lines.len() - 1) as u32;
+        let of_points = self.points.iter().zip(self.numbers).zip(self.residuals.iter().zip(self.weights));
+        for (measurement, ((p, number), (residual, weight))) in measurements.iter_mut().zip(of_points) {
+            let line = &self.lines[*number as usize];
+            let foot = p - *residual * line.normal;
+            *measurement = Measurement {
+                cell: if *number == none { NO_CELL } else { *number as usize },
+                residual: *residual,
+                by_offset: line.by_offset,
+                jacobian: velocities(&foot, &line.normal),
+                weight: *weight,
+            };
+        }
+    }
+}
+
+impl Columns {
+    /// Takes the cells of measurements, and their weights.
+    pub(super) fn take_cells(&mut self, measurements: &[Measurement]) {
+        self.numbers.clear();
+        self.numbers.extend(measurements.iter().map(|m| if m.cell == NO_CELL { u32::MAX } else { m.cell as u32 }));
+        self.weights.clear();
+        self.weights.extend(measurements.iter().map(|m| m.weight));
+    }
+
+    /// The numbers of the cells, to be changed, and the weights.
+    pub(super) fn numbers_and_weights(&mut self) -> (&mut [u32], &[f64]) {
+        (&mut self.numbers, &self.weights)
+    }
+
+    /// Gives measurements their cells back.
+    pub(super) fn hand_cells_back(&self, measurements: &mut [Measurement]) {
+        for (measurement, number) in measurements.iter_mut().zip(&self.numbers).filter(|(m, _)| m.cell != NO_CELL) {
+            measurement.cell = *number as usize;
+        }
+    }
+}
