@@ -5,6 +5,7 @@ pub const SERIES: usize = 6;
 
 /// What a curve looks like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Look {
     /// A solid line.
     Line,
@@ -32,6 +33,7 @@ pub enum Look {
 
 /// Points of one meaning, in one or more connected runs.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Curve {
     /// Stands in the legend, unless it is empty.
     pub name: String,
@@ -43,6 +45,7 @@ pub struct Curve {
 
 /// One pair of axes.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Panel {
     /// Stands over it; may be empty.
     pub title: String,
@@ -69,6 +72,7 @@ pub struct Panel {
 
 /// Panels of equal size, row by row.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Figure {
     /// Over all panels; none if empty.
     pub title: String,

@@ -11,12 +11,28 @@ use crate::{
 /// Rotation, shear and growth are the same in the image and in space; velocities scale by `f / Z0` (equation 24, which in
 /// the paper has lost the vector that its matrix multiplies), projective terms c1, c2 by its inverse.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "f64", into = "f64"))]
 pub struct CameraScale(f64);
 
 impl Default for CameraScale {
     /// 1: space and image coordinates are the same.
     fn default() -> Self {
         Self(1.0)
+    }
+}
+
+impl TryFrom<f64> for CameraScale {
+    type Error = DynamicsError;
+
+    fn try_from(focal_length_over_distance: f64) -> Result<Self, DynamicsError> {
+        Self::new(focal_length_over_distance)
+    }
+}
+
+impl From<CameraScale> for f64 {
+    fn from(scale: CameraScale) -> Self {
+        scale.0
     }
 }
 

@@ -9,6 +9,7 @@ use crate::{
 ///
 /// Positive omega turns clockwise in a y-up frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidMotion {
     /// Angular velocity in rad/s.
     pub omega: f64,
@@ -34,6 +35,7 @@ impl RigidMotion {
 
 /// Constant similarity motion `x' = sigma x + omega y + b1`, `y' = -omega x + sigma y + b2` in the fixed image frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SimilarityMotion {
     /// Rate of growth in 1/s: lengths scale with `exp(sigma t)`.
     pub sigma: f64,
@@ -66,6 +68,7 @@ impl SimilarityMotion {
 
 /// Constant affine motion `x' = a1 x + a2 y + b1`, `y' = a3 x + a4 y + b2` in the fixed image frame (equation 4).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AffineMotion {
     /// `dx'/dx` in 1/s.
     pub a1: f64,
@@ -100,6 +103,7 @@ impl AffineMotion {
 ///
 /// A multiple of the identity moves no point; taking 0 for the last entry fixes that freedom.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProjectiveMotion {
     /// Entry (1, 1) of the generator in 1/s.
     pub a1: f64,

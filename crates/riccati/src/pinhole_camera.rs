@@ -13,9 +13,36 @@ use crate::error::DynamicsError;
 /// # Ok::<(), freeform_riccati::DynamicsError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "WrittenCamera", into = "WrittenCamera"))]
 pub struct PinholeCamera {
     focal: f64,
     principal: Point2<f64>,
+}
+
+/// A camera as it is written: what is read is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "PinholeCamera")]
+struct WrittenCamera {
+    focal: f64,
+    principal: Point2<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl From<PinholeCamera> for WrittenCamera {
+    fn from(PinholeCamera { focal, principal }: PinholeCamera) -> Self {
+        Self { focal, principal }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<WrittenCamera> for PinholeCamera {
+    type Error = DynamicsError;
+
+    fn try_from(WrittenCamera { focal, principal }: WrittenCamera) -> Result<Self, DynamicsError> {
+        Self::new(focal, principal)
+    }
 }
 
 impl PinholeCamera {

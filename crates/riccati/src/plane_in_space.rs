@@ -25,6 +25,7 @@ const EDGE_ON: f64 = 1e-6;
 /// assert!((seen - Point2::new(0.3 * cos + 0.1 * sin, 0.1 * cos - 0.3 * sin)).norm() < 1e-15);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneMotion {
     /// Angular velocity w in rad/s.
     pub angular_velocity: Vector3<f64>,

@@ -25,6 +25,7 @@ const POSE_STREAM: u64 = u64::MAX;
 
 /// Two frames a second apart and far from each other, and how they are seen.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AcquisitionSetting {
     /// What reports call it.
     pub name: String,
@@ -44,6 +45,7 @@ pub struct AcquisitionSetting {
 
 /// What was found of the poses in one setting.
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Acquisition {
     /// Where the runs were made.
     pub setting: AcquisitionSetting,
@@ -53,6 +55,7 @@ pub struct Acquisition {
 
 /// How often the second pose was found: the turn to 6 degrees and the centre to a tenth of the diameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Found {
     /// Runs in which it was.
     pub found: usize,

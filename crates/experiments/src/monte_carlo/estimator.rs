@@ -9,6 +9,7 @@ use crate::baseline::{AreaMomentEstimator, RegistrationEstimator};
 
 /// A method of identification that is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method {
     /// The motion filter, with its default settings.
     Filter,

@@ -48,6 +48,7 @@ impl Effort<'_> {
 
 /// What was found in one setting.
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Evaluation {
     /// Where the runs were made.
     pub setting: Setting,
@@ -57,6 +58,7 @@ pub struct Evaluation {
 
 /// What one method found.
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MethodResult<T> {
     /// The method.
     pub method: Method,

@@ -18,6 +18,7 @@ const OF_PLANE: [&str; PlaneMotion::PARAMETERS] = ["wx", "wy", "wz", "vx", "vy",
 
 /// A plane that moves in space before a camera; lengths in the picture are pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneScene {
     /// Its motion, with the normal at the first frame.
     pub motion: PlaneMotion,
@@ -29,6 +30,7 @@ pub struct PlaneScene {
 
 /// One way to simulate sequences, and what is identified in them.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Setting {
     /// What reports call it.
     pub name: String,

@@ -28,6 +28,7 @@ pub(super) struct Cell {
 
 /// What all runs of one or several shapes say together. `None` where they say nothing.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// Runs in all.
     pub runs: usize,
@@ -49,6 +50,7 @@ pub struct Statistics {
 
 /// What all runs say of one parameter, in its unit. `None` where they say nothing.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ParameterStatistics {
     /// Root mean square error.
     pub rmse: Option<f64>,

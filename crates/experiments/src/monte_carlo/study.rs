@@ -27,6 +27,7 @@ pub struct Study {
 
 /// What was found by all runs of a [`Study`].
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
     /// Names of the shapes.
     pub shapes: Vec<String>,

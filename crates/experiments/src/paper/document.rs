@@ -2,6 +2,7 @@ use crate::figure::Figure;
 
 /// What belongs together: figures and tables under a heading.
 #[derive(Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Section {
     /// Its heading.
     pub heading: String,
@@ -12,11 +13,13 @@ pub struct Section {
     /// Its tables.
     pub tables: Vec<Table>,
     /// Rows of the table of final errors, which all sections share.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) findings: Vec<Vec<String>>,
 }
 
 /// A figure and the numbers in it.
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Drawing {
     /// A name as of a file, without extension.
     pub name: String,
@@ -30,6 +33,7 @@ pub struct Drawing {
 
 /// Rows of text and numbers under heads.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Table {
     /// A name as of a file, without extension; empty for the data of a drawing.
     pub name: String,

@@ -36,6 +36,7 @@ use crate::ExperimentError;
 
 /// What is to be reproduced, and how much of it.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reproduction {
     /// The figures and tables, in the order of the page.
     pub parts: Vec<Part>,

@@ -5,6 +5,7 @@ use crate::ExperimentError;
 
 /// A figure of the paper, or what goes beyond it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Part {
     /// Fig. 1: the ten objects and their quartics.
     Objects,

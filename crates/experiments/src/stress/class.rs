@@ -2,6 +2,7 @@ use std::fmt;
 
 /// What is unusual about the sequences of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Class {
     /// Nothing: independent errors and a constant generator.
     Plain,

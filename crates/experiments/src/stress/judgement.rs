@@ -26,6 +26,7 @@ const NEARER: f64 = 0.1;
 
 /// Something that is stated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quantity {
     /// Angular velocity.
     Omega,

@@ -5,6 +5,7 @@ use crate::ExperimentError;
 
 /// A way to make sequences.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Kind {
     /// What is unusual about them.
     pub class: Class,
@@ -12,6 +13,7 @@ pub struct Kind {
     pub name: String,
     /// What it is, in a line.
     pub explanation: String,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) recipe: Recipe,
 }
 

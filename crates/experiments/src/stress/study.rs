@@ -26,6 +26,7 @@ pub struct StressStudy {
 
 /// What came of a [`StressStudy`].
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StressReport {
     /// Sequences of each kind.
     pub runs: usize,
@@ -41,6 +42,7 @@ pub struct StressReport {
 
 /// What came of one kind.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct KindReport {
     /// The kind.
     pub kind: Kind,

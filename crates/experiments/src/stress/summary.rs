@@ -5,6 +5,7 @@ const HALF_INTERVAL: f64 = 1.96;
 
 /// What the runs of a kind, a class or the whole study say. Shares are from 0 to 1, `None` of nothing.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Summary {
     /// Number of runs.
     pub runs: usize,
@@ -27,6 +28,7 @@ pub struct Summary {
 
 /// What the runs say of one quantity.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct QuantitySummary {
     /// Which.
     pub quantity: Quantity,
