@@ -2,7 +2,7 @@
 # # A stream that is interrupted and goes on
 #
 # A filter keeps the whole of what it knows in constant memory, and `to_bytes` writes it down. What is restored from the bytes goes on to the
-# last bit: in another process, on another machine, on another day. This notebook interrupts a stream and compares.
+# last bit: in another process, on another machine with a processor of the same kind, on another day. This notebook interrupts a stream and compares.
 
 # %%
 import pickle

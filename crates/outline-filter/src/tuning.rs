@@ -35,6 +35,9 @@ pub(crate) mod map {
     /// Most cells of a saved map: far more than [`MOST_TIMES_SEEN`] of [`MOST_CELLS`] make.
     #[cfg(feature = "serde")]
     pub(crate) const MOST_SAVED: usize = 1 << 20;
+    /// How far the square of a saved normal may be from 1: far above rounding, far below anything that would show.
+    #[cfg(feature = "serde")]
+    pub(crate) const UNIT_NORMAL: f64 = 1e-6;
     /// Share of the largest square of a lever below which the outline as a whole is not seen to move: rounding makes as much.
     pub(crate) const UNSEEN_SHIFT: f64 = 1e-6;
     /// Points further than this many spacings beyond a known end belong to what is not known yet.
@@ -409,8 +412,8 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: a change in 60,000 frames. With a hundred
-    /// times as much every sequence of a thousand frames was found to show a change by chance; a real one is seen a frame or two later.
+    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 70,000 frames.
+    /// With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a frame or two later.
     pub(crate) const LEAVES_CONSTANT: f64 = 0.000_001_5;
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;

@@ -211,7 +211,10 @@ mod tests {
             assert!(weights.iter().all(|weight| *weight > 0.0), "{weights:?}");
             if course != courses[2] {
                 assert!(
-                    courses.iter().zip(weights).all(|(other, weight)| *other == course || weight >= weights[2]),
+                    courses
+                        .iter()
+                        .zip(weights)
+                        .all(|(other, weight)| *other == course || *other == courses[2] || weight > 50.0 * weights[2]),
                     "{weights:?}"
                 );
             }
@@ -220,5 +223,36 @@ mod tests {
         let [generator, velocity, shaken, middle, high] = left;
         assert!(generator == velocity && middle == high, "{left:?}");
         assert!(generator > 0.0 && 50.0 * generator < middle.min(shaken), "{left:?}");
+    }
+
+    #[test]
+    fn what_is_mixed_has_the_moments_of_the_mixture_that_it_stands_for() {
+        type State = SVector<f64, 9>;
+        let of = |level: f64, mean: f64, variance: f64| Hypothesis::<9> {
+            course: Course::Accelerating { level, rates: true },
+            mean: State::from_fn(|i, _| mean * (1.0 + i as f64)),
+            covariance: SMatrix::from_fn(|i, j| if i == j { variance + i as f64 } else { 0.1 * variance }),
+        };
+        let before = [of(1e-5, 0.3, 1.0), of(1e-2, -0.2, 2.0), of(1e1, 1.0, 0.5)];
+        let weights_before = [0.5, 0.3, 0.2];
+        let (mut after, mut weights) = (before.clone(), weights_before);
+        mix(&mut after, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1));
+        let change = tuning::LEAVES_CHANGING;
+        for (j, mixed) in after.iter().enumerate() {
+            // Equation 68: of hypothesis i comes what has left it for j, and of j itself what has stayed.
+            let parts: [f64; 3] =
+                std::array::from_fn(|i| weights_before[i] * if i == j { 1.0 - 2.0 * change } else { change });
+            let sum: f64 = parts.iter().sum();
+            let mean = (0..3).map(|i| parts[i] / sum * before[i].mean).sum::<State>();
+            let spread = |i: usize| {
+                let apart = before[i].mean - mean;
+                parts[i] / sum * (before[i].covariance + apart * apart.transpose())
+            };
+            assert!((weights[j] - sum).abs() < 1e-12, "{j}");
+            assert!((mixed.mean - mean).amax() < 1e-12, "{j}");
+            assert!((mixed.covariance - (0..3).map(spread).sum::<SMatrix<f64, 9, 9>>()).amax() < 1e-11, "{j}");
+            // Which it would not have without a change.
+            assert!((mixed.mean - before[j].mean).amax() > 1e-5, "{j}");
+        }
     }
 }

@@ -148,7 +148,9 @@ impl OutlineMap {
         let count = self.cells.len();
         let within = |value: &f64| value.abs() <= tuning::FARTHEST;
         let is_cell = |cell: &Cell| {
-            cell.centre.iter().chain(&cell.normal).all(within) && cell.neighbours.iter().all(|number| *number < count)
+            cell.centre.iter().all(within)
+                && (cell.normal.norm_squared() - 1.0).abs() < tuning::UNIT_NORMAL
+                && cell.neighbours.iter().all(|number| *number < count)
         };
         let NullSpace { in_body, frame, middle, .. } = &self.null_space;
         let is_sound = (3..=tuning::MOST_SAVED).contains(&count)

@@ -1,5 +1,7 @@
 //! Noise of the points: how much there is, whether it is correlated along the contour, and how much more of it corners have.
 use freeform_curve_fit::{Outline, Piece};
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 
 use super::{Frame, NO_CELL, variance_inflation::VarianceInflation};
 use crate::{
@@ -244,6 +246,7 @@ impl NoiseModel {
             && [self.weight, self.floor, self.rounding.deviation, self.rounding.shared_by, ratio, frames]
                 .iter()
                 .all(|number| number.is_finite() && *number >= 0.0)
+            && self.level.count < StateFormat::MOST_COUNTED
             && !self.level.frames.iter().any(|spread| spread.is_nan())
             && self.inflation.len() == cells
             && self.inflation.iter().all(VarianceInflation::is_sound)

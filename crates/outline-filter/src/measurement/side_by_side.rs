@@ -1,4 +1,4 @@
-//! Points measured side by side in the lanes of the processor, without branches: affine poses, and points that count alike.
+//! Points measured side by side in the lanes of the processor, with few branches: affine poses, and points that count alike.
 //!
 //! In one pose a cell is a straight line in the image. What the points need to know of it is found once for each cell.
 use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by};

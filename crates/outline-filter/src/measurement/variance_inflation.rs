@@ -30,7 +30,12 @@ impl VarianceInflation {
 impl VarianceInflation {
     /// Whether its numbers can be worked with.
     pub(super) fn is_sound(&self) -> bool {
-        self.mean_square.is_finite() && self.points.is_finite() && self.variance.is_finite() && self.variance >= 1.0
+        let of_prior = tuning::INFLATION_PRIOR_POINTS;
+        self.mean_square.is_finite()
+            && self.mean_square >= 0.0
+            && (of_prior..=tuning::INFLATION_MEMORY.max(of_prior)).contains(&self.points)
+            && self.variance.is_finite()
+            && self.variance >= 1.0
     }
 }
 

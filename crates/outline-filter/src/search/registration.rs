@@ -279,7 +279,11 @@ fn weighted_sums<const K: usize>(rows: &[(f64, [f64; K])], scale: f64) -> ([[f64
     for (residual, row) in rows {
         let u = residual * scale;
         let kept = 1.0 - u * u;
-        let weight = if kept > 0.0 { kept * kept } else { 0.0 };
+        // Points that do not count are left out: their rows may be no numbers, which nothing multiplied by zero takes back.
+        if kept.is_nan() || kept <= 0.0 {
+            continue;
+        }
+        let weight = kept * kept;
         for i in 0..K {
             let weighted = weight * row[i];
             right[i] += residual * weighted;
@@ -310,4 +314,19 @@ fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>) -> 
 fn turn_of(pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
     let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
     (step[(1, 0)] - step[(0, 1)]).atan2(step[(0, 0)] + step[(1, 1)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::weighted_sums;
+
+    #[test]
+    fn points_that_do_not_count_add_nothing_even_where_they_are_no_numbers() {
+        let good = [(0.1, [1.0, 0.5, -0.2]), (-0.3, [0.4, 1.0, 0.7])];
+        let sums = weighted_sums(&good, 1.0);
+        for bad in [(f64::NAN, [1.0; 3]), (f64::INFINITY, [1.0; 3]), (2.0, [f64::NAN; 3]), (1.0, [f64::INFINITY; 3])] {
+            assert_eq!(weighted_sums(&[good[0], bad, good[1]], 1.0), sums, "{bad:?}");
+        }
+        assert!(sums.1.iter().all(|sum| *sum != 0.0), "{sums:?}");
+    }
 }

@@ -198,7 +198,8 @@ impl Track {
             }
         }
         let pose = measured.map(|measured| measured.over(variance));
-        Outcome { measurement, verdict, innovation, pose, rounding: self.rounding_of_pose(), shift, likelihood }
+        let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
+        Outcome { measurement, verdict, innovation, pose, rounding, shift, likelihood }
     }
 
     /// Takes the spread of a frame, used or not.

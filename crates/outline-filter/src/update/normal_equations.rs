@@ -48,7 +48,7 @@ fn add_points<const K: usize, const S: usize>(
 ) -> ([[f64; K]; K], [f64; K]) {
     let mut right = [0.0; K];
     let mut dense = [[0.0; K]; K];
-    // Short rows are summed up to their diagonal, long ones as whole vectors.
+    // Short rows are summed from their diagonal on, long ones as whole vectors.
     let first = |i: usize| if K < 6 { i } else { 0 };
     for Measurement { cell, residual, by_offset, jacobian, weight } in measurements {
         if *weight == 0.0 {
