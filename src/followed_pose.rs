@@ -3,6 +3,8 @@ use freeform_curve_fit::{ClosedOutline, Normalisation, OpenArc, OpenOutline, Out
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::{Matrix3, Point2, Projective2, SMatrix, SVector, Vector2};
 
+use crate::regular_map::is_regular;
+
 /// Points of the reference at most; more would not place a part of the outline any better.
 const REFERENCE_POINTS: usize = 400;
 /// Points of an outline that are placed on the reference at most.
@@ -57,7 +59,7 @@ impl FollowedPose {
         let coordinates = points.iter().map(|p| p.coords).chain(normals.iter().copied());
         self.model == model
             && time.is_finite()
-            && crate::regular_map::is_regular(image_from_working.matrix())
+            && is_regular(image_from_working.matrix())
             && (1..=REFERENCE_POINTS).contains(&points.len())
             && points.len() == normals.len()
             && { coordinates }.all(|v| v.iter().all(|c| c.is_finite()))
@@ -73,13 +75,15 @@ impl FollowedPose {
     pub(crate) fn found(&self, outline: &Outline, flow: &Projective2<f64>) -> Projective2<f64> {
         let guesses = [self.image_from_working, flow * self.image_from_working];
         let misfit = |pose: &Projective2<f64>| self.match_all(pose, outline).1;
-        let mut pose = if misfit(&guesses[1]) < misfit(&guesses[0]) { guesses[1] } else { guesses[0] };
+        let is_moved = is_regular(guesses[1].matrix()) && misfit(&guesses[1]) < misfit(&guesses[0]);
+        let mut pose = guesses[usize::from(is_moved)];
         for _ in 0..STEPS {
             let (matches, median) = self.match_all(&pose, outline);
             let step = correction(self.model, &matches, ROBUST_MEDIANS * median.max(ROUNDING));
             let Some(corrected) = step.and_then(nalgebra::Transform::try_inverse) else { break };
             let next = pose * corrected;
-            if next.try_inverse().is_none() {
+            // Of an outline that has become a line or a point nothing could be followed on.
+            if !is_regular(next.matrix()) {
                 break;
             }
             pose = next;

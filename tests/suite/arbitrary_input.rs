@@ -172,6 +172,7 @@ fn what_the_targets_in_fuzz_have_found_stays_mended() {
     {
         crate::checks::saved_state(b"=J#=J#9J\xf52");
         crate::checks::saved_state(&[0x96, 0xb7, 0xa9]);
+        crate::checks::saved_state(&[0xbd, 0x02, 0xc2]);
     }
     // A list of 1.2 billion truth values in 60 bytes, through which the library counted for seconds.
     #[cfg(feature = "parquet")]
