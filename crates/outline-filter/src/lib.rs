@@ -15,7 +15,7 @@
 //! | `prediction` | step, process noise, shape process noise |
 //! | `map` | cells, contour, nearest-cell field, null directions |
 //! | `belief` | pose, motion, offsets, arrowhead information matrix |
-//! | `tuning` | every constant once, with its reason |
+//! | `tuning` | every constant once, with its reason: of the outline, of a frame, of searches, of motion, of the plane |
 //!
 //! `docs/motion-filter.md` of the repository derives the equations, each with its code and test.
 //!

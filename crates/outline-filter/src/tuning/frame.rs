@@ -1,0 +1,135 @@
+//! Constants of a frame: its points, their noise, and what is solved and gated.
+
+/// Points of a frame against the map.
+pub(crate) mod measurement {
+    /// Residuals up to this many deviations count in full...
+    pub(crate) const FULL_WEIGHT: f64 = 3.0;
+    /// ...and beyond this many not at all, with the biweight of Beaton and Tukey (1974) between.
+    pub(crate) const NO_WEIGHT: f64 = 6.0;
+    /// With this share of the points near the prediction, their spread need not be looked at before they are weighted.
+    pub(crate) const NEAR_ENOUGH: f64 = 0.75;
+    /// Deviation that the place of a point along the outline may have, in spacings.
+    pub(crate) const PLACE_NOISE: f64 = 0.13;
+    /// Share of all points that the mean is taken over at most: a wider mean would cut corners.
+    pub(crate) const WIDEST_WINDOW: f64 = 0.04;
+    /// Fewest points on either side that the direction of the contour is told from.
+    pub(crate) const FEWEST_NEIGHBOURS: usize = 2;
+    /// Share of the points whose cells must run the same way along the contour: most, or nothing can be said of the rest.
+    pub(crate) const SURE_DIRECTION: f64 = 0.8;
+    /// Points before and after one that are looked at for the side it is on, in windows.
+    pub(crate) const FURTHEST_NEIGHBOUR: usize = 8;
+    /// From the median of absolute values to the deviation of Gaussian noise, 1 / 0.6745.
+    pub(crate) const MEDIAN_TO_DEVIATION: f64 = 1.4826;
+}
+
+/// Noise of the points.
+pub(crate) mod noise {
+    /// Smallest deviation of the noise that is reckoned with: far below what any picture tells, and far above rounding.
+    pub(crate) const SMALLEST: f64 = 1e-9;
+    /// What straight cells leave of an outline where it bends most, in spacings: noise is not told from it below.
+    pub(crate) const CELL_ERROR: f64 = 0.03;
+    /// Share of the sagitta over a chord of two cells that is left at the ends of one.
+    pub(crate) const SAGITTA_LEFT: f64 = 0.25;
+    /// Frames that the running mean of the noise looks back on.
+    pub(crate) const MEMORY: f64 = 200.0;
+    /// Weight of the first frame's noise in that mean, in frames: it comes from one contour alone.
+    pub(crate) const FIRST_WEIGHT: f64 = 0.5;
+    /// Frames whose spread is looked back on to tell a bad frame.
+    pub(crate) const FRAMES: usize = 9;
+    /// A frame with so many times the noise of most does not show the known outline, however well the map is bent to it.
+    pub(crate) const LARGEST_RATIO: f64 = 1.8;
+    /// Nor does one with more than this: outlines of different objects differ by more.
+    pub(crate) const LARGEST: f64 = 0.05;
+    /// As [`LARGEST`], while no frame has been compared with another.
+    pub(crate) const LARGEST_AT_FIRST: f64 = 0.03;
+    /// Stretches that the contour is cut into to see whether its errors are correlated.
+    pub(crate) const STRETCHES: usize = 24;
+    /// Fewest points of a stretch whose mean tells something of correlation.
+    pub(crate) const FEWEST_IN_STRETCH: usize = 3;
+    /// Frames that the correlation is averaged over.
+    pub(crate) const CORRELATION_MEMORY: f64 = 50.0;
+    /// Deviations of its estimate by which a correlation must be larger than none.
+    pub(crate) const CORRELATION_SIGNIFICANT: f64 = 2.0;
+    /// Deviation of a point of a mask, in pixels: measured on discs of 10 to 60 pixels in radius, smoothed by a pixel (`trace_mask`).
+    pub(crate) const ROUNDED_POINT: f64 = 0.15;
+    /// Length of a mask's contour that is off together, in pixels: the integral of the correlation that smoothing by a pixel leaves, 2 sqrt(pi).
+    pub(crate) const ROUNDED_TOGETHER: f64 = 3.54;
+    /// Noise below this many spacings is never too much: exact points leave what the cells do not follow.
+    pub(crate) const NEVER_TOO_MUCH: f64 = 0.1;
+    /// Points that the assumption of the usual noise of a cell is worth.
+    pub(crate) const INFLATION_PRIOR_POINTS: f64 = 8.0;
+    /// Deviations of its estimate by which the variance of a cell's points must be larger than that of the noise.
+    pub(crate) const INFLATION_SIGNIFICANT: f64 = 2.0;
+    /// Squared residual, in units of the variance known, beyond which a point may be an outlier and counts no more than that.
+    pub(crate) const INFLATION_CLIPPED: f64 = 9.0;
+    /// Points of a cell that are remembered.
+    pub(crate) const INFLATION_MEMORY: f64 = 400.0;
+}
+
+/// Deviations that points state of themselves.
+pub(crate) mod deviations {
+    /// Share of the points of a frame that are good ones, by the least deviations that are stated: no point counts for more than these.
+    pub(crate) const GOOD_SHARE: f64 = 0.1;
+    /// What the deviation of good points is multiplied by at least when a frame states less: one frame alone is hardly believed.
+    pub(crate) const LARGEST_STEP: f64 = 0.9;
+    /// What it is multiplied by at most when a frame states more: as fast as the noise is learnt, so that a first frame that states too
+    /// little is not believed for ever.
+    pub(crate) const LARGEST_RISE: f64 = 1.01;
+    /// Deviation over that of a good point from which on it is taken for this: such a point counts for a thousandth.
+    pub(crate) const LARGEST_RATIO: f64 = 30.0;
+    /// Deviations over that of a typical point of its frame by which a point is still judged: an edge that was not found lies anywhere, and
+    /// what it says of itself is no more than that.
+    pub(crate) const WIDEST: f64 = 3.0;
+}
+
+/// Comparison of poses by their likelihoods.
+pub(crate) mod likelihood {
+    /// Smallest noise that poses are compared by, in spacings: without noise residuals are what straight cells leave.
+    pub(crate) const CELL_ERROR: f64 = 0.1;
+    /// Residuals of more deviations are no worse: they may be outliers.
+    pub(crate) const LARGEST: f64 = 4.0;
+    /// Square that stands for a point beyond the known ends of the outline.
+    pub(crate) const UNKNOWN: f64 = 2.0;
+    /// Variance of the difference of a point's squared residuals from two parts of an outline: the noise of the point is in both, that
+    /// of the map is not (2 + 2 - 2 / 2).
+    pub(crate) const VARIANCE: f64 = 3.0;
+    /// Deviations of the difference by which one of many poses must be worse.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Mean square of the residuals, in that of the best pose, from which on another is far worse at a first look, and is not measured: far
+    /// beyond what any comparison asks for.
+    pub(crate) const FAR_WORSE: f64 = 6.0;
+    /// Points that a first look is at: the mean of their squares is known to a fifth.
+    pub(crate) const ROUGHLY: usize = 100;
+    /// Points that turns are compared by; more of them would not decide more.
+    pub(crate) const ENOUGH_POINTS: usize = 2000;
+}
+
+/// Solving for a frame, and the gate.
+pub(crate) mod update {
+    /// Weight of the first pose, in points: it only fixes the gauge, since pose and offsets can move together.
+    pub(crate) const GAUGE_WEIGHT: f64 = 10.0;
+    /// Information on the motion that makes the first equations solvable, per squared second: next to nothing.
+    pub(crate) const MOTION_PRIOR: f64 = 1e-10;
+    /// Most linearisations per frame. One suffices in steady state; acquisition needs three or four.
+    pub(crate) const MOST_ITERATIONS: usize = 6;
+    /// A step that moves points by less than this many deviations of the noise is the last.
+    pub(crate) const SETTLED: f64 = 0.03;
+    /// Determinant of a pose below which it has collapsed.
+    pub(crate) const COLLAPSED: f64 = 1e-12;
+    /// Residuals within this many deviations agree with the map.
+    pub(crate) const AGREEING: f64 = 3.5;
+    /// Residuals below this many spacings agree too: corners lie off the straight cells by as much.
+    pub(crate) const BEND: f64 = 0.2;
+    /// So many points beyond the known ends count as one in the share that agrees: they may be anything.
+    pub(crate) const NEW_POINTS_PER_POINT: f64 = 3.0;
+    /// Share of what is known of a cell beyond which a point says nothing of the noise: the cell follows it.
+    pub(crate) const LARGEST_LEVERAGE: f64 = 0.8;
+    /// Fewest points beyond the known ends that make the map grow.
+    pub(crate) const FEWEST_NEW_POINTS: usize = 4;
+    /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does
+    /// that once in a million frames.
+    pub(crate) const SUDDEN: f64 = 25.0;
+    /// Share of the smallest agreement from which a frame may show the outline where a motion that has changed has taken it: that of two lines
+    /// which cross, one of them held where it was expected.
+    pub(crate) const PARTLY_THERE: f64 = 0.5;
+}

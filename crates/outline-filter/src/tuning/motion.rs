@@ -1,0 +1,177 @@
+//! Constants of motion: how it changes, its hypotheses, and what is stated of it.
+
+/// Changes of the motion.
+pub(crate) mod motion_change {
+    /// Frames that the estimate looks back on.
+    pub(crate) const MEMORY: f64 = 15.0;
+    /// Deviations of the likelihood's slope from which a change counts as seen. Constant motion must stay at the bound.
+    pub(crate) const SIGNIFICANT: f64 = 7.0;
+    /// As [`SIGNIFICANT`], for a motion that has been seen to change before.
+    pub(crate) const SIGNIFICANT_AGAIN: f64 = 3.0;
+    /// Squared innovation per parameter that counts at most in the running estimate: squares have long tails.
+    pub(crate) const LIMIT: f64 = 4.0;
+    /// Squared innovation per parameter that chance does not make...
+    pub(crate) const BEYOND_CHANCE: f64 = 8.0;
+    /// ...and up to which one frame counts at most so many deviations of its slope as evidence, which takes several frames that agree.
+    pub(crate) const EVIDENCE: f64 = 4.0;
+}
+
+/// Phases of the filter, and what of the motion is stated.
+pub(crate) mod supervisor {
+    /// Frames rejected in a row before the second one was ever found: the first was not the object.
+    pub(crate) const FALSE_START: usize = 3;
+    /// Starts that came to nothing, one after the other, after which frames are no longer asked whether they are the wrong one: where one
+    /// frame in five is wrong, three starts in a row come to nothing once in a hundred.
+    pub(crate) const MOST_FRUITLESS: usize = 3;
+    /// Frames that may be searched one after the other: two seconds of video.
+    pub(crate) const MOST_SEARCHES: usize = 60;
+    /// Frames after which another one may be searched: a search costs as much as 15 to 30 frames that are followed, so that searches for what
+    /// never comes double the cost at most. An object that comes at last is found within two seconds of video.
+    pub(crate) const FRAMES_OF_SEARCH: usize = 16;
+    /// So many frames one counts as that is followed: an object that is hidden a second in three is searched for in most of the frames.
+    pub(crate) const FOLLOWED_FRAME: usize = 4;
+    /// A map that has taken no more frames than this may have been begun from what is not the object.
+    pub(crate) const FEW_FRAMES: usize = 5;
+    /// Frames rejected in a row after which the object is given up and a new one taken: a second of video.
+    pub(crate) const GIVEN_UP: usize = 30;
+    /// Squared innovation of one frame beyond which a lost object has not gone on as it was.
+    pub(crate) const LARGEST_INNOVATION: f64 = 80.0;
+    /// Steps over which a parameter must be known at least, however fast the motion changes.
+    pub(crate) const STEPS_KNOWN: f64 = 10.0;
+}
+
+/// The batch estimator.
+pub(crate) mod batch {
+    /// Times that the outline is cut anew at most.
+    pub(crate) const MOST_ROUNDS: usize = 8;
+    /// Deviations by which the mean of the rounds may still change where it has settled.
+    pub(crate) const SETTLED: f64 = 0.1;
+}
+
+/// Hypotheses of dynamics.
+pub(crate) mod dynamics {
+    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 70,000 frames.
+    /// With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a frame or two later.
+    pub(crate) const LEAVES_CONSTANT: f64 = 0.000_001_5;
+    /// As that, of a motion that changes already: most of those go on to.
+    pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
+    /// How often a change is that a camera begins to shake, in one to a certain motion: cameras that do shake from the start. A motion that changes
+    /// slowly looks for some frames like one seen by a camera that shakes.
+    pub(crate) const BEGINS_TO_SHAKE: f64 = 0.01;
+    /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
+    pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.046;
+    /// Of each of [`SHAKEN`].
+    pub(crate) const PRIOR_OF_SHAKEN: f64 = 0.002;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
+    /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
+    pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
+    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some forty
+    /// frames, fourteen, four, and none; the last are those of bodies that are pushed. Between levels ten thousand times apart a body that swings
+    /// has none that fits: deviations were half of the errors there.
+    pub(crate) const LEVELS: [f64; 6] = [1e-8, 1e-5, 1e-2, 1e1, 1e4, 1e7];
+    /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
+    pub(crate) const MEMORY: f64 = 2.0;
+    /// As these, where the velocity of the middle alone changes.
+    pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
+    /// How far the point of an object that runs straight may be from its middle, in RMS radii, as a deviation: noise, hidden arcs, and bodies
+    /// that are not quite even.
+    pub(crate) const MIDDLE: f64 = 0.02;
+    /// Probability that an interval of 95 % leaves out.
+    pub(crate) const LEFT_OUT: f64 = 0.05;
+    /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
+    pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
+    /// Share of a hypothesis below which it counts for nothing.
+    pub(crate) const LEAST_SHARE: f64 = 1e-6;
+    /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
+    pub(crate) const LEAST_VARIANCE: f64 = 1e-18;
+    pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
+    /// What makes a measurement of the pose solvable along what it says nothing of.
+    pub(crate) const SINGULAR: f64 = 1e-9;
+    /// Share by which a frame corrects the variance of a pose.
+    pub(crate) const VARIANCE_GAIN: f64 = 0.1;
+    /// While a constant generator is more probable than this, which is what an interval of 95 % leaves out, its own estimate is stated, and
+    /// widened by the others; then the object is expected where all hypotheses take it...
+    pub(crate) const LEADS_FROM: f64 = LEFT_OUT;
+    /// ...until it is as probable as this.
+    pub(crate) const LEADS_UNTIL: f64 = 0.9;
+}
+
+/// Series of innovations, and what they say of deviations.
+pub(crate) mod innovations {
+    /// Innovations, in deviations, that count at most: they may be what the gate has let through.
+    pub(crate) const CLIPPED: f64 = 8.0;
+    /// Blocks that the series is kept in.
+    pub(crate) const BLOCKS: usize = 64;
+    /// Cosines that the long-run variance is told from.
+    pub(crate) const COSINES: usize = 8;
+    /// Cosines that changes are slow up to.
+    pub(crate) const SLOW: usize = 4;
+    /// Half width of a 95 % interval of Student's distribution for eight degrees of freedom over that of a normal one, 2.306 / 1.960.
+    pub(crate) const STUDENT: f64 = 1.177;
+    /// Fewest frames that say something of dependence.
+    pub(crate) const FEWEST_FRAMES: usize = 5;
+    /// Frames that the assumption of unit variance is worth.
+    pub(crate) const PRIOR_FRAMES: f64 = 8.0;
+    /// Deviations of its estimate beyond which a correlation of neighbours is one.
+    pub(crate) const CORRELATED: f64 = 2.5;
+    /// Fewest frames that say something of that.
+    pub(crate) const FEWEST_CORRELATED: usize = 10;
+    /// Correlation of neighbours that is reckoned with at most.
+    pub(crate) const LARGEST_CORRELATION: f64 = 0.98;
+}
+
+/// Tests of what a family of motions leaves out.
+pub(crate) mod family {
+    /// Frames that say something.
+    pub(crate) const FEWEST_FRAMES: usize = 6;
+    /// Deviations beyond which a motion that is left out is there. A warning that is always there is none.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Deviations beyond which it may be there: what it makes of the estimates is reckoned with.
+    pub(crate) const DOUBTFUL: f64 = 2.5;
+    /// Squared deviations that a motion more must explain to be preferred: those that chance explains once in a thousand times.
+    pub(crate) const PER_MOTION: f64 = 10.8;
+    /// Share of the noise of a point that a displacement must have to matter.
+    pub(crate) const MATTERS: f64 = 0.03;
+    /// Displacement, in squares of the noise, that noise itself makes where the outline bends, by frames that are told by straight cells.
+    pub(crate) const OF_NOISE: f64 = 3.0;
+    /// Frames after which a map is known well enough to be compared with: its cells were cut along the first ones, noise and all.
+    pub(crate) const MAP_KNOWN: usize = 4;
+    /// Mean square, in variances, of a change of shape that has no direction.
+    pub(crate) const SHAPE_CHANGES: f64 = 4.0;
+    /// Eigenvalue of the correlations of motions that are left out below which a combination of them is not told.
+    pub(crate) const TOLD_APART: f64 = 1e-4;
+    /// Share of the square of a displacement that must be left of it in a frame to say something: a tenth of the displacement.
+    pub(crate) const LEFT: f64 = 0.01;
+    /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.
+    pub(crate) const SINGULAR: f64 = 1e-9;
+    /// Frames looked at: all of the first so many, and while the motion is known from fewer; else every so many. A frame that stands for
+    /// several must not correct more than it has found.
+    pub(crate) const ALL_OF_THE_FIRST: usize = 16;
+    pub(crate) const EVERY: usize = 4;
+}
+
+/// What is stated at all.
+pub(crate) mod statement {
+    /// Standard deviation of a side of a mask, in pixels: that of rounding, 1 / sqrt(12), where the side lies along the rows or columns. Sides
+    /// that lie across them are off by less.
+    pub(crate) const ROUNDING: f64 = 0.289;
+    /// Tangent of the angle to the rows or columns within which points of a side are rounded together: by less than a pixel over ten.
+    pub(crate) const ALONG_PIXELS: f64 = 0.1;
+    /// Share of the frames rejected beyond which what the others say is no motion of the object.
+    pub(crate) const MOST_REJECTED: f64 = 0.4;
+    /// Fewest frames rejected that say so.
+    pub(crate) const FEWEST_REJECTED: usize = 5;
+    /// Fewest frames rejected, no fewer than taken, that say so: one by itself may be wrong, and where frames are wrong by chance two of the
+    /// first four hardly are.
+    pub(crate) const FEWEST_AGAINST: usize = 2;
+    /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
+    pub(crate) const REACH: f64 = 0.26;
+}
+
+/// States that are read from bytes.
+#[cfg(feature = "serde")]
+pub(crate) mod saved_state {
+    /// How far probabilities may sum to something else than 1, by rounding.
+    pub(crate) const SUM_OFF: f64 = 1e-6;
+}

@@ -1,0 +1,164 @@
+//! Constants of the outline: its map and contours, what it does not show, how it changes.
+
+/// The map: cells along the outline, cut from points.
+pub(crate) mod map {
+    /// Fewest points that a map is begun with. Three cells of two points make no outline; below eight, chance makes any shape.
+    pub(crate) const FEWEST_POINTS: usize = 8;
+    /// Length of a cell in deviations of the noise. Shorter cells leave more offsets to be estimated, and points that come to the wrong
+    /// cell; longer ones a coarser outline.
+    pub(crate) const NOISE_PER_CELL: f64 = 3.0;
+    /// As [`NOISE_PER_CELL`], where there are [`PLENTY_PER_CELL`] points for each cell, so that offsets are known all the same.
+    pub(crate) const LEAST_NOISE_PER_CELL: f64 = 1.5;
+    /// Points for each cell that are plenty.
+    pub(crate) const PLENTY_PER_CELL: f64 = 4.0;
+    /// Fewest points of the first frame for each cell: with fewer, cells would be seen by chance.
+    pub(crate) const POINTS_PER_CELL: f64 = 1.0;
+    /// Most cells of the first frame, which bounds the work of a frame.
+    pub(crate) const MOST_CELLS: f64 = 800.0;
+    /// An outline is cut into so many cells at least, so that it has sides.
+    pub(crate) const CELLS_PER_LENGTH: f64 = 12.0;
+    /// Places further than this many spacings from all cells are new: a cell reaches half a spacing, and its neighbour half of one more.
+    pub(crate) const UNCOVERED: f64 = 1.1;
+    /// A map of so many times the places that any frame has shown at once holds what is not of the object, and grows no more: an
+    /// object of which less was seen at a time could not have been found again. Without this the map of an object that comes and
+    /// goes at the edge of the picture would grow for ever, by poses that its few points leave in doubt.
+    pub(crate) const MOST_TIMES_SEEN: usize = 8;
+    /// Shortest run of new places that is taken: one alone is an outlier as often as not.
+    pub(crate) const SHORTEST_RUN: usize = 2;
+    /// Longest side of the picture of nearest cells, pixels: it stays within the second cache of a processor.
+    pub(crate) const FIELD_PIXELS: f64 = 192.0;
+    /// Farthest that anything on a saved map may be from the centre of the first outline, in its radii; nothing followed comes near it.
+    #[cfg(feature = "serde")]
+    pub(crate) const FARTHEST: f64 = 1e9;
+    /// Most cells of a saved map: far more than [`MOST_TIMES_SEEN`] of [`MOST_CELLS`] make.
+    #[cfg(feature = "serde")]
+    pub(crate) const MOST_SAVED: usize = 1 << 20;
+    /// How far the square of a saved normal may be from 1: far above rounding, far below anything that would show.
+    #[cfg(feature = "serde")]
+    pub(crate) const UNIT_NORMAL: f64 = 1e-6;
+    /// Share of the largest square of a lever below which the outline as a whole is not seen to move: rounding makes as much.
+    pub(crate) const UNSEEN_SHIFT: f64 = 1e-6;
+    /// Points further than this many spacings beyond a known end belong to what is not known yet.
+    pub(crate) const BEYOND_END: f64 = 0.75;
+}
+
+/// Smoothing of one contour, robust against outliers.
+pub(crate) mod contour {
+    /// Half window of the median that finds gross outliers, in points: up to four outliers in a row are found.
+    pub(crate) const MEDIAN_HALF_WINDOW: usize = 4;
+    /// A point this many median distances from the median of its neighbours is a gross outlier.
+    pub(crate) const GROSS: f64 = 5.0;
+    /// Half window of the pilot regression that the noise is taken from.
+    pub(crate) const PILOT_HALF_WINDOW: usize = 4;
+    /// Residuals beyond this many deviations leave the regression: one of 2,000 good points.
+    pub(crate) const OUTLYING: f64 = 3.5;
+    /// Distance of points in a row, in mean distances, up to which they are a piece of the outline rather than outliers: independent points
+    /// are 3 apart once in twenty times.
+    pub(crate) const OF_RUN: f64 = 3.0;
+    /// Share of the points of such a row that are no further from the next: a single step over a gap is no sign of outliers.
+    pub(crate) const CLOSE_OF_RUN: f64 = 0.75;
+    /// Deviation of a normal's direction that the window is chosen for, rad: its cosine is then within 0.2 %.
+    pub(crate) const NORMAL_NOISE: f64 = 0.05;
+    /// As [`NORMAL_NOISE`], for the pilot regression.
+    pub(crate) const PILOT_NORMAL_NOISE: f64 = 0.25;
+    /// Neighbours are looked for among one of so many parts of the points, on either side, where outliers lie between; and windows reach no
+    /// further.
+    pub(crate) const PARTS: usize = 8;
+    /// As [`PARTS`], for windows that are wider than normals usually need: over a tenth of an outline, smoothing leaves nine tenths of the
+    /// height of a wave that is a third of it long.
+    pub(crate) const FINE_PARTS: usize = 20;
+    /// Smallest and largest half window of the local regression, in points.
+    pub(crate) const HALF_WINDOWS: std::ops::RangeInclusive<usize> = 2..=30;
+    /// Largest that is wider than normals usually need, in points.
+    pub(crate) const LARGEST_FINE: usize = 120;
+    /// Residuals of a regression that a point took part in are divided by their deviation, no less than this share of a variance.
+    pub(crate) const LEAST_RESIDUAL_VARIANCE: f64 = 0.05;
+    /// Sizes within these shares of a guess of their median are put in order to find it: a quarter of them, four deviations of the median
+    /// of a few hundred on either side.
+    pub(crate) const ABOUT: [f64; 2] = [0.75, 1.33];
+    /// Points whose residuals keep less of their variance than this tell nothing of the noise.
+    pub(crate) const TELLING_RESIDUAL_VARIANCE: f64 = 0.1;
+}
+
+/// Directions of the pose that an outline does not show.
+pub(crate) mod null_space {
+    /// Eigenvalue of the lever arms, in squares of the RMS radius, below which a direction of the pose cannot be seen.
+    pub(crate) const DEGENERATE: f64 = 0.003;
+    /// Times what the errors of the normals would make of the levers in a direction that is not seen: that, and some more.
+    pub(crate) const EXPLAINED: f64 = 2.0;
+    /// Eigenvalue of the lever arms of a turn below which its normals are taken from wider windows.
+    pub(crate) const WEAKLY_SHOWN: f64 = 0.02;
+    /// Eigenvalue of the lever arms of such a turn, in what errors of the normals make of it, that windows are chosen for. Over n frames errors
+    /// grow as n^(1/100) beyond what is stated.
+    pub(crate) const LEVER_PER_NOISE: f64 = 100.0;
+    /// As that, below which the turn is held as not shown.
+    pub(crate) const LEAST_LEVER_PER_NOISE: f64 = 50.0;
+    /// Eigenvalue of the lever arms above which it never is: that of an ellipse whose axes differ by a seventh.
+    pub(crate) const HARDLY_SHOWN: f64 = 0.01;
+    /// Deviation of a normal's direction that cells are far enough apart for, rad...
+    pub(crate) const CHORD_NOISE: f64 = 0.035;
+    /// ...but no further than one of so many parts of all.
+    pub(crate) const FEWEST_PARTS: usize = 16;
+    /// Squared angle between two chords over the variance of a direction that is anywhere between theirs.
+    pub(crate) const BETWEEN_CHORDS: f64 = 12.0;
+    /// Variance that stands for any direction: the mean squared sine.
+    pub(crate) const ANY_DIRECTION: f64 = 0.5;
+    /// Points of a window over which a quadratic is fitted, for each that its middle is worth.
+    pub(crate) const QUADRATIC: f64 = 2.25;
+    /// Steps of Newton's method to the least of the motions that look alike; each doubles the digits.
+    pub(crate) const LEAST_STEPS: usize = 3;
+    /// Turn, in rad, of a unit step in a direction that counts as turning.
+    pub(crate) const HOLDS_TURN: f64 = 0.3;
+    /// Share of the largest part of a direction, lengths in RMS radii, from which on a parameter takes part in it.
+    pub(crate) const TAKES_PART: f64 = 0.01;
+    /// As that, of a velocity in a direction that turns: what is not seen of a turn may be half a circle in a frame, so that this is
+    /// rounding alone.
+    pub(crate) const TURNS_WITH: f64 = 1e-6;
+    /// Share of the deviation of a velocity at the origin of the image that a rate which is not known may make: beyond, neither is known.
+    pub(crate) const HANGS_ON: f64 = 0.5;
+    /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
+    /// over the frames of a recording, and leaves seven digits to the solution.
+    pub(crate) const HOLDING: f64 = 1e9;
+}
+
+/// Shape process noise: outlines that change slowly.
+pub(crate) mod shape_noise {
+    /// Frames that the evidence looks back on.
+    pub(crate) const MEMORY: f64 = 15.0;
+    /// Deviations by which repeated innovations must be seen. A shape that does not change must not be forgotten.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
+    /// Share of the repeated part that the variance is corrected by in one frame.
+    pub(crate) const GAIN: f64 = 0.1;
+    /// Innovation of one cell, in deviations, that counts at most: one cell gone wrong must not speak for all.
+    pub(crate) const CLIPPED: f64 = 6.0;
+    /// Share of what is known of a cell that a frame must add for its innovation to be told.
+    pub(crate) const SMALLEST_GAIN: f64 = 1e-6;
+}
+
+/// The map drawn anew where many frames have shown the outline.
+pub(crate) mod redrawing {
+    /// Deviation of a normal's direction that its neighbours are chosen for, rad: a fifth of that of the first frames, so that what it takes
+    /// from the weakest directions of a projective pose is below a hundredth.
+    pub(crate) const NORMAL_NOISE: f64 = 0.01;
+    /// Neighbours on either side that a curvature comes from.
+    pub(crate) const NEIGHBOURS_OF_CURVATURE: usize = 3;
+    /// Most neighbours on either side: more would cut corners.
+    pub(crate) const MOST_NEIGHBOURS: usize = 6;
+}
+
+/// Symmetry of outlines.
+pub(crate) mod symmetry {
+    /// Largest order that is looked for.
+    pub(crate) const LARGEST_ORDER: usize = 72;
+    /// Mean square of the innovations of a turned outline, in those of the outline as it is, up to which it is symmetric within its
+    /// noise: noise and straight cells make as much of one, and a tooth that is missing much more.
+    pub(crate) const AS_GOOD: f64 = 1.5;
+    /// As [`AS_GOOD`], that half of a turn of a symmetry must exceed.
+    pub(crate) const HALF_IS_WORSE: f64 = 2.0;
+    /// Share of the angle of symmetry that a turn between frames may lie off a multiple of it for the turns to be the same.
+    pub(crate) const OFF_MULTIPLE: f64 = 0.2;
+    /// Turns on either side of none that are tried of a symmetric outline.
+    pub(crate) const TRIED: usize = 2;
+    /// Turns that differ by less than this share of the angle of symmetry are the same.
+    pub(crate) const SAME: f64 = 0.25;
+}

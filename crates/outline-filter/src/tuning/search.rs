@@ -1,0 +1,92 @@
+//! Constants of searches: where an object is looked for, and the map cut anew.
+
+/// Remapping: the map cut anew from several frames.
+pub(crate) mod remapping {
+    /// Frames after which the map is cut anew.
+    pub(crate) const OCCASIONS: [usize; 3] = [4, 16, 64];
+    /// With so many points of one frame for each cell there is nothing to be gained.
+    pub(crate) const PLENTY_PER_CELL: f64 = 3.5;
+    /// Times that a map is cut from the same frames at most.
+    pub(crate) const MOST_CUTS: usize = 4;
+    /// Points of several frames beyond which more of them would not make cells finer.
+    pub(crate) const PLENTY: usize = 3200;
+    /// Points nearer than so many spacings are one.
+    pub(crate) const COINCIDENT: f64 = 0.05;
+    /// Share of the noise that the map has seen, which the points are taken to have at least: where those of many frames lie in one place
+    /// they make contours of their own.
+    pub(crate) const LEAST_NOISE: f64 = 0.5;
+    /// Length of a map cut anew over that of the map before it, beyond which it follows errors.
+    pub(crate) const LONGEST: f64 = 1.4;
+    /// Cells of a map from which on its length says so: one of fewer may itself be too short, as it cuts corners.
+    pub(crate) const CELLS_OF_LENGTH: usize = 64;
+    /// Points that follow each other in less than this share of the mean distance lie in one place.
+    pub(crate) const COMMON: f64 = 0.2;
+}
+
+/// Global registration: the object looked for without a guess.
+pub(crate) mod registration {
+    /// Turns tried over the whole circle, 15 degrees apart: within reach of the local search on every outline tried.
+    pub(crate) const TURNS: usize = 24;
+    /// Points that the search is made with.
+    pub(crate) const FEW_POINTS: usize = 80;
+    /// Distance beyond which points count alike in the score of a pose, in radii: they may be hidden in the map or wrong. Trimming a share of
+    /// the points instead would leave out the pin of a disc, which alone tells its turn.
+    pub(crate) const FARTHEST: f64 = 0.1;
+    /// Deviation of the residuals that the first step of a search allows for, in radii: starts lie up to 7.5 degrees off, which is 0.13 at the
+    /// RMS radius, and Tukey's weights reach 4.7 deviations.
+    pub(crate) const WIDEST: f64 = 0.065;
+    /// As [`WIDEST`], of a refinement, which begins with what few points have found.
+    pub(crate) const WIDEST_REFINED: f64 = 0.03;
+    /// By which it falls from step to step: below the noise within the steps of a search.
+    pub(crate) const NARROWER: f64 = 0.5;
+    /// Steps of the search for each start, at most.
+    pub(crate) const SEARCH_STEPS: usize = 8;
+    /// Steps after which searches that have come together are made once.
+    pub(crate) const FIRST_STEPS: usize = 4;
+    /// As [`WIDEST`], after these.
+    pub(crate) const WIDEST_FURTHER: f64 = WIDEST * NARROWER * NARROWER * NARROWER * NARROWER;
+    /// Distance of the matrices of poses that have come together: a fiftieth of the turn that starts are apart.
+    pub(crate) const TOGETHER: f64 = 0.005;
+    /// Largest step after which a pose has settled, normalised, in deviations of the noise: less than what a pose is known to, and than what
+    /// the linearisations that follow settle to.
+    pub(crate) const SETTLED: f64 = 0.03;
+    /// Steps of the refinement of the best, at most.
+    pub(crate) const REFINEMENT_STEPS: usize = 15;
+    /// Poses that are refined.
+    pub(crate) const REFINED: usize = 5;
+    /// Poses that are handed back at most, with as many of smaller turns.
+    pub(crate) const KEPT: usize = 2;
+    /// Poses whose turns differ by less than this are the same, rad.
+    pub(crate) const SAME_TURN: f64 = 0.15;
+    /// Poses whose matrices differ by less than this are the same.
+    pub(crate) const SAME_POSE: f64 = 0.5;
+    /// A score up to this many times the best is a tie.
+    pub(crate) const TIE: f64 = 1.25;
+    /// Tukey's constant for 95 % efficiency at Gaussian noise.
+    pub(crate) const TUKEY: f64 = 4.685;
+    /// What makes the equations of a step solvable where the points do not.
+    pub(crate) const DAMPING: f64 = 1e-6;
+    /// Turns from the best that are compared with it, spread by the golden angle, to see whether a frame shows the turn.
+    pub(crate) const OTHER_TURNS: usize = 32;
+    /// The golden angle, rad.
+    pub(crate) const GOLDEN_ANGLE: f64 = 2.399_963;
+    /// Turns nearer than this to the best are no others, rad.
+    pub(crate) const NEAR: f64 = 0.3;
+    /// Share of other turns that a frame must explain worse than the best to show the turn...
+    pub(crate) const MOST: f64 = 0.5;
+    /// ...and where no frame has before.
+    pub(crate) const NEARLY_ALL: f64 = 0.88;
+}
+
+/// Hypotheses: turns that explain a frame alike.
+pub(crate) mod hypotheses {
+    /// Turns that differ by less are the same, rad.
+    pub(crate) const DIFFERENT_TURN: f64 = 0.15;
+    /// Of turns that explain the frames alike the smallest is taken for granted if the others are so many times as large: the turn per
+    /// frame is then less than two thirds of half the angle of symmetry.
+    pub(crate) const SURELY_SMALLER: f64 = 2.0;
+    /// Frames after which hypotheses that are surely larger turns are no longer followed: a symmetric outline will not tell them apart.
+    pub(crate) const FOLLOWED: usize = 8;
+    /// Deviations by which poses or motions of hypotheses must differ to be in doubt.
+    pub(crate) const DIFFERENT: f64 = 2.0;
+}
