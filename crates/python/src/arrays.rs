@@ -11,7 +11,8 @@ use crate::errors::type_error;
 
 /// Points from an array of shape (n, 2) of any numeric type, or from what numpy makes one of.
 pub(crate) fn points(value: &Bound<'_, PyAny>) -> PyResult<Vec<Point2<f64>>> {
-    if let Ok(array) = value.cast::<PyArray2<f64>>() {
+    // Not one of a class of its own, such as a masked array.
+    if let Ok(array) = value.cast_exact::<PyArray2<f64>>() {
         return points_of_array(&array.try_readonly()?);
     }
     let array = numbers(value, "points")?;
@@ -67,7 +68,12 @@ pub(crate) fn matrix3(value: &Bound<'_, PyAny>, what: &str) -> PyResult<Matrix3<
 
 /// What numpy makes an array of real numbers of, as float64.
 fn numbers<'py>(value: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let array = value.py().import("numpy")?.getattr("asarray")?.call1((value,))?;
+    let numpy = value.py().import("numpy")?;
+    let masked = value.hasattr("mask")? && numpy.getattr("ma")?.getattr("is_masked")?.call1((value,))?.is_truthy()?;
+    if masked {
+        return Err(PyValueError::new_err(format!("{what}: some are masked")));
+    }
+    let array = numpy.getattr("asarray")?.call1((value,))?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if !matches!(kind.as_str(), "i" | "u" | "f") {
         let dtype = array.getattr("dtype")?;

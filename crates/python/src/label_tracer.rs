@@ -27,9 +27,9 @@ pub(crate) struct PyLabelTracer {
     naming: Naming,
 }
 
-/// Share of the largest part of a label from which on its next largest part may as well be an object: which of them is the largest may
-/// change from mask to mask.
-const LIKE_SIZE: f64 = 0.5;
+/// Share of the largest part of a label from which on its next largest part may as well be an object, or the rest of a broken one: which of
+/// them is the largest may change from mask to mask.
+const LIKE_SIZE: f64 = 0.25;
 
 /// Objects with their outlines, objects without one with the reason, and what is to be said of labels in several parts.
 type Traced = (Vec<(i64, PyOutline)>, Vec<(i64, String)>, Option<String>);

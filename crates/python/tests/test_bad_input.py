@@ -132,3 +132,26 @@ def test_a_shape_in_a_picture_of_another_format_is_told_as_such(tmp_path):
     path.write_bytes(b"\xff\xd8\xff\xe0" + bytes(100))
     with pytest.raises(ValueError, match="shape.jpg: pictures of type image/jpeg are not supported"):
         ff.simulate(str(path))
+
+
+def test_masked_points_are_refused_and_not_taken_as_they_are(bird):
+    points = np.ma.masked_array(bird[0].outline.points, mask=False)
+    assert len(ff.Outline(points)) == len(points)
+    points[3] = np.ma.masked
+    for take in ff.Outline, lambda given: ff.MotionFilter().step(0.0, given):
+        with pytest.raises(ValueError, match="points: some are masked"):
+            take(points)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda b: ff.plot(3), TypeError, r"an Outline or a table of track\(\) is needed, this is int"),
+        (lambda b: ff.plot({}), ValueError, "no column object, only none"),
+        (lambda b: ff.plot(ff.track(b), parameters=["sigma"]), ValueError, "no column sigma, only object, frame, time"),
+        (lambda b: ff.outline_table([("a", 0, 0.0, b[0].outline.points)]), TypeError, "object a: an Outline is needed, this is ndarray"),
+    ],
+)
+def test_what_cannot_be_drawn_or_made_a_table_of(bird, call, error, message):
+    with pytest.raises(error, match=message):
+        call(bird)

@@ -101,6 +101,61 @@ def test_wrong_masks_and_options_are_refused(masks, call, error, message):
     with pytest.raises(error, match=message):
         call(masks)
 
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda m: ff.identify(m, fps="30"), TypeError, "fps: a number of frames per second is needed, this is str"),
+        (lambda m: ff.identify(m, fps=True), TypeError, "this is bool"),
+        (lambda m: ff.identify(m, fps=np.array([30.0])), TypeError, "this is ndarray"),
+        (lambda m: ff.identify(m, fps=np.nan), ValueError, "this is nan"),
+        (lambda m: ff.identify(m, fps=1e-300), ValueError, "this is 1e-300"),
+        (lambda m: ff.identify(m, times=np.arange(30).astype("datetime64[ns]")), TypeError, r"datetime64\[ns\]; in seconds"),
+        (lambda m: ff.identify(m, times=["a"] * 30), TypeError, "times: real numbers are needed"),
+        (lambda m: ff.identify(m, times=np.arange(30) * 1j), TypeError, "of type complex128"),
+        (lambda m: ff.identify(m, times=[0.0, None] * 15), TypeError, "of type object"),
+        (lambda m: ff.identify(m, times=np.ma.masked_equal(np.arange(30), 4)), ValueError, "that of frame 4 is not finite"),
+        (lambda m: ff.identify([*m[:3], None], fps=30), TypeError, "mask 3: an array of shape .* is needed, this is NoneType"),
+        (lambda m: ff.identify([m[0], m[1, :-1]], fps=30), ValueError, r"mask 1 is of shape \(\d+, \d+\), mask 0 of"),
+        (lambda m: ff.identify([np.zeros((9, 2))], fps=30), TypeError, r"points of an outline are an Outline\(points\)"),
+        (lambda m: ff.identify(m, fps=30, columns={"x": "px"}), TypeError, "columns: only for tables"),
+        (lambda m: ff.identify({"left": m}, fps=30), ValueError, r"the table has left; masks are an array"),
+        (lambda m: ff.identify(np.zeros(3, [("frame", int)]), fps=30), TypeError, "a structured array"),
+        (lambda m: ff.outlines(m[0].astype(np.int8) * np.int8(-128)), ValueError, "label -128: labels are numbers from 1"),
+        (lambda m: ff.outlines(-m[0].astype(np.int8)), ValueError, "mask: label -1: labels are numbers from 1"),
+        (lambda m: ff.outlines(m[0].astype(np.uint64) << np.uint64(63)), ValueError, "9223372036854775808 is beyond"),
+        (lambda m: ff.recognise(m, 3), TypeError, "known: a Recogniser or a dict of outlines by name is needed, this is int"),
+        (lambda m: ff.recognise(m, {}), ValueError, "no outline is known"),
+    ],
+)
+def test_what_is_no_recording_of_masks_is_told_what_is_needed(masks, call, error, message):
+    with pytest.raises(error, match=message):
+        call(masks)
+
+
+def test_minus_one_beside_labels_and_masked_pixels_are_ground(masks):
+    expected = ff.outlines(masks[0])[1].points
+    watershed = np.where(masks[0] > 0, masks[0].astype(np.int32), -1)
+    np.testing.assert_array_equal(ff.outlines(watershed)[1].points, expected)
+    hidden = np.ma.masked_array(np.ones_like(masks[0]), mask=masks[0] == 0)
+    np.testing.assert_array_equal(ff.outlines(hidden)[1].points, expected)
+
+
+def test_a_mask_of_two_values_the_wrong_way_round_is_warned_of_once(masks):
+    with pytest.warns(UserWarning, match="frame 0, label 1 is along all of the edge, as the ground is") as told:
+        ff.identify(masks == 0, fps=30)
+    assert len(told) == 1 and told[0].filename == __file__
+    with pytest.warns(UserWarning, match="label 20 is along all of the edge"):
+        ff.outlines(masks[0] * 180 + 20)
+    # An object that the edge cuts is no ground.
+    assert ff.outlines(disc(60, 60, 30, 0, 29))[1].is_closed
+
+
+def test_masks_without_an_object_are_warned_of():
+    with pytest.warns(UserWarning, match=r"there is no object in any of 5 mask\(s\)"):
+        found = ff.identify(np.zeros((5, 20, 20), int), fps=30)
+    with pytest.raises(KeyError, match="there are no objects"):
+        found["1"]
+
 
 def test_two_bodies_under_one_label_are_warned_of_once(masks):
     two = np.concatenate([masks, masks], axis=2) > 0
@@ -109,6 +164,13 @@ def test_two_bodies_under_one_label_are_warned_of_once(masks):
     assert len(told) == 1 and "frame 0, label 1" in str(told[0].message) and told[0].filename == __file__
     with pytest.warns(UserWarning, match="label 1: the largest part"):
         ff.outlines(two[0])
+
+
+def test_a_part_of_a_label_that_is_no_dirt_is_warned_of():
+    part = disc(60, 90, 30, 25, 20) + disc(60, 90, 30, 70, 11)
+    with pytest.warns(UserWarning, match="the largest part, of 1245 pixels, is taken, and one of 373 pixels is not"):
+        ff.outlines(part)
+    assert ff.outlines(disc(60, 90, 30, 25, 20) + disc(60, 90, 30, 70, 9)).keys() == {1}
 
 
 def test_grey_pictures_are_not_taken_for_labels(masks):

@@ -205,6 +205,32 @@ def test_options_of_masks_and_unknown_columns_are_refused_for_tables(table):
         ff.identify(table, columns={"x": "px"})
     with pytest.raises(ValueError, match="fps: a positive number"):
         ff.identify({n: table[n] for n in ("frame", "x", "y")}, fps=0.0)
+    with pytest.raises(ValueError, match="give fps or the column time, not both"):
+        ff.identify(table, fps=30)
+    with pytest.raises(TypeError, match="columns: a dict such as .* is needed, this is str"):
+        ff.identify(table, columns="x")
+
+
+def test_what_is_no_table_is_told_as_such(table):
+    frame = pandas.DataFrame(table)
+    with pytest.raises(ValueError, match="column x is there 2 times"):
+        ff.identify(pandas.concat([frame, frame[["x"]]], axis=1))
+    for series in frame["x"], polars.Series(table["x"]):
+        with pytest.raises(TypeError, match="a table is needed, this is Series"):
+            ff.identify(series)
+    with pytest.raises(TypeError, match=r"a LazyFrame: collect\(\) makes a table of it"):
+        ff.identify(polars.DataFrame(table).lazy())
+    with pytest.raises(ValueError, match=r"the table has 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11 and 28 more"):
+        ff.identify(pandas.DataFrame(np.zeros((30, 40), int)))
+
+
+def test_masked_values_of_a_column_are_missing(table):
+    def with_mask(name):
+        return {**table, name: np.ma.masked_array(table[name], np.arange(len(table[name])) == 7)}
+
+    for name, message in [("x", "is not a finite number"), ("time", "is not a finite number"), ("frame", "is not a frame number"), ("object", "the name is missing")]:
+        with pytest.raises(ValueError, match=f"row 7, column {name}: .*{message}"):
+            ff.identify(with_mask(name))
 
 
 @pytest.mark.parametrize("of", [np.array, pandas.Series, polars.Series, lambda values: pyarrow.chunked_array([values])])

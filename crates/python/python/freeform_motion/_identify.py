@@ -8,11 +8,13 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ._masks import check_masks, split_tracing, times_of, traced, tracer_of
+from ._masks import check_masks, split_tracing, traced, tracer_of
 from ._native import LabelTracer, ObjectResult, Observation, Recorder, Tracker, identify_table, track_table
 from ._outline_lists import is_outline_list, outlines_by_frame, simulated_times
 from ._progress import progress_bar
 from ._tables import kind_of, native_table, table_like, with_names
+from ._times import times_of
+
 
 class Identification(Sequence[ObjectResult]):
     """The results of all objects: a sequence, also indexed by the names of the objects."""
@@ -36,7 +38,7 @@ class Identification(Sequence[ObjectResult]):
             for result in self._results:
                 if result.object == key:
                     return result
-            raise KeyError(f"{key!r} is none of {', '.join(self.objects)}")
+            raise KeyError(f"{key!r} is none of {', '.join(self.objects)}" if self._results else f"{key!r}: there are no objects")
         if not -len(self) <= key < len(self):
             hint = f"; names are strings: [{str(key)!r}]" if str(key) in self.objects else ""
             raise IndexError(f"position {key} of {len(self)} object(s){hint}")
@@ -104,7 +106,7 @@ def identify(
         `y`). Either one row per point, the rows of one outline following each other in the order of the contour; or one row per
         outline, with lists of numbers in `x`, `y` and `deviation`, as in Parquet.
     fps : float, optional
-        Frames per second; needed for masks and outlines, and for tables without a column `time`.
+        Frames per second; needed for masks and outlines without `times`, and for tables without a column `time`.
     times : array_like, shape (frames,), optional
         Times of the masks or outlines in seconds, instead of `fps`.
     columns : mapping of str to str, optional
@@ -140,7 +142,7 @@ def identify(
     True
     """
     kind = kind_of(data)
-    tracer, tracker = _split(options, data, kind, times, motion=motion, method=method, scale=scale)
+    tracer, tracker = _split(options, data, kind, times, columns, motion=motion, method=method, scale=scale)
     if kind is not None:
         with progress_bar(progress, None) as advance:
             identify_table(tracker, native_table(data, columns, fps), advance)
@@ -187,7 +189,7 @@ def track(
         As `identify`; also a motion that changes, if it is to be smoothed.
     """
     kind = kind_of(data)
-    tracer, tracker = _split(options, data, kind, times, motion=motion, method=method, scale=scale)
+    tracer, tracker = _split(options, data, kind, times, columns, motion=motion, method=method, scale=scale)
     if kind is not None:
         with progress_bar(progress, None) as advance:
             found = track_table(tracker, native_table(data, columns, fps), smooth, advance)
@@ -200,10 +202,12 @@ def track(
 
 
 def _split(
-    options: dict[str, Any], data: Any, kind: str | None, times: Any, **arguments: Any
+    options: dict[str, Any], data: Any, kind: str | None, times: Any, columns: Any, **arguments: Any
 ) -> tuple[LabelTracer | None, Tracker]:
     """What traces masks, where the data are masks, and what follows the outlines."""
     tracing, settings = split_tracing(options)
+    if kind is None and columns is not None:
+        raise TypeError("columns: only for tables")
     if kind is not None:
         only_for_masks(tracing, times)
     elif is_outline_list(data):

@@ -24,6 +24,8 @@ _TRACING: dict[str, Any] = {
     "clipping": "close",
 }
 
+_GROUND = "{} is along all of the edge, as the ground is: the ground is 0, and mask == 0 turns a mask of two values over"
+
 
 def outlines(
     labels: ArrayLike,
@@ -40,8 +42,8 @@ def outlines(
     Parameters
     ----------
     labels : array_like, shape (height, width), bool or integer
-        The label of the object that each pixel belongs to, 0 for the ground: as from scikit-image, Cellpose or SAM. Of a label in
-        several parts the largest is taken; holes are filled.
+        The label of the object that each pixel belongs to, 0 for the ground: as from scikit-image, Cellpose or SAM. -1 beside other
+        labels is ground too. Of a label in several parts the largest is taken; holes are filled.
     y_up : bool
         Whether y runs upwards from the lower edge of the mask, or downwards from its upper edge. It decides the sign of omega. Pixel
         (row r, column c) has its centre at ``x = c + 0.5``, and ``y = height - r - 0.5`` or ``y = r + 0.5``.
@@ -81,9 +83,12 @@ def outlines(
         smoothing=smoothing,
         clipping=clipping,
     )
-    found, refused, in_parts = tracer.trace(0, label_array(labels))
+    array = label_array(labels)
+    found, refused, in_parts = tracer.trace(0, array)
     if in_parts is not None:
         _warn(in_parts.partition(", ")[2])
+    if (ground := ground_label(array)) is not None:
+        _warn(_GROUND.format(f"label {ground}"))
     if refused:
         raise ValueError(refused[0][1].partition(", ")[2])
     return dict(found)
@@ -102,17 +107,44 @@ def label_array(labels: Any, frame: int | None = None) -> NDArray[np.int64]:
     place = "mask" if frame is None else f"mask {frame}"
     if isinstance(labels, (Outline, Mapping)):
         raise TypeError(f"{place}: a mask is needed, this is {type(labels).__name__}; a recording of outlines is a list of them")
-    array = np.asarray(labels)
+    # What a masked array masks is no object.
+    array = np.asarray(labels.filled(0) if isinstance(labels, np.ma.MaskedArray) else labels)
+    if array.ndim == 0:
+        raise TypeError(f"{place}: an array of shape (height, width) is needed, this is {type(labels).__name__}")
     if array.ndim != 2:
         raise ValueError(f"{place}: shape (height, width) is needed, this is {array.shape}")
     if array.dtype.kind not in "biu":
         hint = "; make a mask of a picture first, such as picture > level" if array.dtype.kind == "f" else ""
+        if array.dtype.kind == "f" and array.shape[1] == 2:
+            hint = "; points of an outline are an Outline(points)"
         raise TypeError(f"{place}: labels are whole numbers, these are of type {array.dtype}{hint}")
+    if array.dtype.kind == "u" and array.dtype.itemsize == 8 and array.size and array.max() > np.iinfo(np.int64).max:
+        raise ValueError(f"{place}: label {array.max()} is beyond {np.iinfo(np.int64).max}")
+    if array.dtype.kind == "i" and array.size and (least := array.min()) < 0 and (least < -1 or array.max() < 1):
+        raise ValueError(
+            f"{place}: label {least}: labels are numbers from 1, and 0 is the ground (so is -1 beside them); numbers that are too large for "
+            f"{array.dtype} become negative"
+        )
     return np.ascontiguousarray(array, dtype=np.int64)
+
+
+def ground_label(labels: NDArray[np.int64]) -> int | None:
+    """The label that holds more than half of the edge of a mask, on all four sides, as the ground does and no object."""
+    if labels.size == 0:
+        return None
+    sides = (labels[0], labels[-1], labels[:, 0], labels[:, -1])
+    edge = np.concatenate(sides)
+    if 2 * np.count_nonzero(edge > 0) <= len(edge):
+        return None
+    found, counts = np.unique(edge, return_counts=True)
+    label, most = found[counts.argmax()], counts.max()
+    return int(label) if label > 0 and 2 * most > len(edge) and all((side == label).any() for side in sides) else None
 
 
 def check_masks(masks: Any) -> None:
     """Refuses what cannot be masks."""
+    if isinstance(masks, np.ndarray) and masks.dtype.names:
+        raise TypeError("masks or a table are needed, this is a structured array; pandas.DataFrame(array) makes a table of it")
     if isinstance(masks, np.ndarray) and masks.ndim != 3:
         raise ValueError(f"masks: shape (frames, height, width) is needed, this is {masks.shape}")
     if not isinstance(masks, Iterable) or isinstance(masks, (str, bytes)):
@@ -134,41 +166,29 @@ def traced(
     masks: Iterable[Any], tracer: LabelTracer, progress: bool | None
 ) -> Iterator[tuple[list[tuple[int, Outline]], list[tuple[int, str]]]]:
     """The objects of every mask with their outlines, and those without one with the reason."""
-    is_told = False
+    shape: tuple[int, ...] | None = None
+    frames = objects = 0
+    told: set[str] = set()
+
+    def tell(kind: str, message: str) -> None:
+        if kind not in told:
+            told.add(kind)
+            _warn(message)
+
     with progress_bar(progress, len(masks) if isinstance(masks, Sized) else None) as advance:
         for frame, mask in enumerate(masks):
-            found, refused, in_parts = tracer.trace(frame, label_array(mask, frame))
-            if in_parts is not None and not is_told:
-                _warn(in_parts)
-                is_told = True
+            labels = label_array(mask, frame)
+            shape = shape or labels.shape
+            if labels.shape != shape:
+                raise ValueError(f"mask {frame} is of shape {labels.shape}, mask 0 of {shape}: all have to be whole pictures of one camera")
+            found, refused, in_parts = tracer.trace(frame, labels)
+            if in_parts is not None:
+                tell("parts", in_parts)
+            if "ground" not in told and (ground := ground_label(labels)) is not None:
+                tell("ground", _GROUND.format(f"frame {frame}, label {ground}"))
+            frames, objects = frame + 1, objects + len(found) + len(refused)
             yield found, refused
             if advance is not None:
                 advance(1)
-
-
-def times_of(masks: Any, fps: float | None, times: Any) -> Iterator[float]:
-    """The time of each mask or outline."""
-    if times is not None:
-        if fps is not None:
-            raise ValueError("give fps or times, not both")
-        array = np.asarray(times, dtype=np.float64)
-        if array.ndim != 1 or hasattr(masks, "__len__") and len(masks) != len(array):
-            count = f" for {len(masks)} frames" if hasattr(masks, "__len__") else ""
-            raise ValueError(f"times: one number for each frame is needed, this is of shape {array.shape}{count}")
-        if not np.isfinite(array).all():
-            raise ValueError(f"times: that of frame {int(np.argmin(np.isfinite(array)))} is not finite")
-        if (np.diff(array) <= 0).any():
-            frame = int(np.argmax(np.diff(array) <= 0)) + 1
-            raise ValueError(f"times: {array[frame]} of frame {frame} does not follow {array[frame - 1]} of frame {frame - 1}")
-        return iter(array.tolist())
-    if fps is None or not (np.isfinite(fps) and fps > 0):
-        raise ValueError(f"fps: a positive number of frames per second is needed (or times), this is {fps}")
-    rate = float(fps)
-    return (frame / rate for frame in _count())
-
-
-def _count() -> Iterator[int]:
-    frame = 0
-    while True:
-        yield frame
-        frame += 1
+    if objects == 0:
+        _warn(f"there is no object in any of {frames} mask(s)")

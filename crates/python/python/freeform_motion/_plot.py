@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._native import Outline
-from ._tables import factorise
+from ._tables import column_names, factorise, kind_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def plot(
     what: Any,
     *,
-    parameters: Sequence[str] = ("omega",),
+    parameters: str | Sequence[str] = ("omega",),
     objects: Sequence[str] | None = None,
     deviations: float = 2.0,
     ax: Axes | None = None,
@@ -28,7 +28,7 @@ def plot(
     ----------
     what : Outline or table
         An outline, or what `track` returns.
-    parameters : sequence of str
+    parameters : str or sequence of str
         Columns to draw against time, each with a band of so many standard deviations.
     objects : sequence of str, optional
         Names of the objects drawn; all by default.
@@ -43,6 +43,8 @@ def plot(
 
     Raises
     ------
+    TypeError, ValueError
+        Something else than an outline or a table, or a column that is not there.
     ModuleNotFoundError
         matplotlib is not installed: ``pip install freeform-motion[plot]``.
     """
@@ -55,6 +57,13 @@ def plot(
             axes.plot(way[:, 0], way[:, 1])
         axes.set_aspect("equal")
         return axes
+    drawn = (parameters,) if isinstance(parameters, str) else tuple(parameters)
+    if kind_of(what) is None:
+        raise TypeError(f"an Outline or a table of track() is needed, this is {type(what).__name__}")
+    columns = column_names(what)
+    for column in ("object", "time", *drawn, *(f"{parameter}_std" for parameter in drawn)):
+        if column not in columns:
+            raise ValueError(f"the table has no column {column}, only {', '.join(map(str, columns)) or 'none'}")
     codes, names = factorise(what["object"])
     wanted = [str(name) for name in names] if objects is None else list(objects)
     time = np.asarray(what["time"], dtype=np.float64)
@@ -62,7 +71,7 @@ def plot(
         if name not in names:
             raise ValueError(f"object {name!r} is none of {', '.join(map(str, names))}")
         rows = codes == names.index(name)
-        for parameter in parameters:
+        for parameter in drawn:
             value = np.asarray(what[parameter], dtype=np.float64)[rows]
             label = parameter if len(wanted) == 1 else f"{parameter} of {name}"
             (line,) = axes.plot(time[rows], value, label=label)

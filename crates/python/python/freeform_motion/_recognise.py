@@ -51,10 +51,14 @@ def recognise(
     >>> ff.recognise(ff.simulate("hat", omega=1.0, seconds=0.2).masks(), known)["1"].name
     'hat'
     """
+    if not isinstance(known, (Recogniser, Mapping)):
+        raise TypeError(f"known: a Recogniser or a dict of outlines by name is needed, this is {type(known).__name__}")
     recogniser = known if isinstance(known, Recogniser) else Recogniser()
     if isinstance(known, Mapping):
         for name, outline in known.items():
             recogniser.learn(name, outline)
+    if len(recogniser) == 0:
+        raise ValueError("known: no outline is known")
     evidence: dict[str, Evidence] = {}
     for name, outline in _outlines(data, columns, progress, options):
         try:
@@ -74,9 +78,10 @@ def _outlines(
         raise TypeError(f"recognise() got unexpected arguments: {', '.join(others)}")
     if kind_of(data) is not None:
         only_for_masks(tracing)
-        # Times do not matter.
-        yield from outlines_of_table(native_table(data, columns, 1.0))
+        yield from outlines_of_table(native_table(data, columns, None, times_matter=False))
         return
+    if columns is not None:
+        raise TypeError("columns: only for tables")
     if is_outline_list(data):
         only_for_masks(tracing, found="outlines")
         for of_frame in outlines_by_frame(data):

@@ -10,9 +10,13 @@ from numpy.typing import NDArray
 
 from ._lists import Lists, are_lists, library_of, mark_lists, merged, number_lists, rows_of
 from ._native import Outline, Simulation
+from ._times import frame_rate
 
 REQUIRED = ("frame", "x", "y")
 ALL = ("object", "frame", "time", "x", "y", "arc", "contour", "deviation")
+
+#: Columns that are named where one is missing.
+_MOST_NAMED = 12
 
 #: Arcs or contours of outlines of a chunk: None, one per row, or a list per row.
 Marks = NDArray[np.int64] | Lists | None
@@ -38,14 +42,17 @@ NativeTable = tuple[
 def kind_of(data: object) -> str | None:
     """The library that a table is of, `mapping`, or None for what is no table."""
     library = library_of(data)
-    if library in ("pandas", "polars", "pyarrow") and hasattr(data, "columns"):
+    # Columns of a LazyFrame are not looked at: polars warns of what that may cost.
+    if library in ("pandas", "polars", "pyarrow") and (type(data).__name__ == "LazyFrame" or hasattr(data, "columns")):
         return library
     if isinstance(data, Mapping):
         return "mapping"
     return "arrow" if hasattr(data, "__arrow_c_stream__") else None
 
 
-def native_table(table: Any, columns: Mapping[str, str] | None, fps: float | None) -> NativeTable:
+def native_table(
+    table: Any, columns: Mapping[str, str] | None, fps: float | None, *, times_matter: bool = True
+) -> NativeTable:
     """The columns of a table of outlines, checked and as arrays.
 
     Parameters
@@ -56,32 +63,37 @@ def native_table(table: Any, columns: Mapping[str, str] | None, fps: float | Non
         Names of the columns where they are not `object`, `frame`, `time`, `x`, `y`, `arc`, `contour` and `deviation`.
     fps : float, optional
         Frames per second, where there is no column `time`.
+    times_matter : bool
+        Without it there need be no time at all.
     """
-    if kind_of(table) == "arrow":
-        import pyarrow
-
-        table = pyarrow.table(table)
+    table = _with_columns(table)
+    if columns is not None and not isinstance(columns, Mapping):
+        raise TypeError(f"columns: a dict such as {{'x': 'name in the table'}} is needed, this is {type(columns).__name__}")
     renamed = dict(columns or {})
     unknown = set(renamed) - set(ALL)
     if unknown:
         raise ValueError(f"columns: {', '.join(sorted(unknown))} is none of {', '.join(ALL)}")
-    present = _names(table)
+    present = column_names(table)
 
     def find(name: str) -> Any | None:
         column = renamed.get(name, name)
+        if present.count(column) > 1:
+            raise ValueError(f"column {column} is there {present.count(column)} times")
         return table[column] if column in present else None
 
-    required = REQUIRED if fps is not None else (*REQUIRED, "time")
+    required = REQUIRED if fps is not None or not times_matter else (*REQUIRED, "time")
     missing = [renamed.get(name, name) for name in required if find(name) is None]
     missing += [column for name, column in renamed.items() if column not in present and column not in missing]
     if missing:
-        raise ValueError(f"missing column(s) {', '.join(missing)}, the table has {', '.join(map(str, present))}")
+        raise ValueError(f"missing column(s) {', '.join(missing)}, {_in_short(present)}")
     frame = _frame_numbers(_numbers(find("frame"), "frame"))
     time = find("time")
-    if time is None:
-        if fps is None or not (np.isfinite(fps) and fps > 0):
-            raise ValueError(f"fps: a positive number is needed, this is {fps}")
-        times = frame / float(fps)
+    if not times_matter:
+        times = np.asarray(frame, dtype=np.float64)
+    elif time is None:
+        times = frame / frame_rate(fps, "a column time")
+    elif fps is not None:
+        raise ValueError(f"give fps or the column {renamed.get('time', 'time')}, not both")
     else:
         times = _reals(time, "time")
     names: list[str] = []
@@ -103,6 +115,28 @@ def native_table(table: Any, columns: Mapping[str, str] | None, fps: float | Non
             raise ValueError(f"column {name} has lists, but column {'y' if name == 'x' else 'x'} has none")
     stated = None if deviation is None else _reals(deviation, "deviation")
     return names, codes, frame, times, (_reals(x, "x"), _reals(y, "y"), _marks(arc), _marks(contour), stated)
+
+
+def _with_columns(table: Any) -> Any:
+    """What has columns, of what streams Arrow too."""
+    if type(table).__name__ == "LazyFrame":
+        raise TypeError("a table is needed, this is a LazyFrame: collect() makes a table of it")
+    if kind_of(table) != "arrow":
+        return table
+    import pyarrow
+
+    try:
+        return pyarrow.table(table)
+    except (TypeError, pyarrow.ArrowInvalid) as error:
+        raise TypeError(f"a table is needed, this is {type(table).__name__}: {error}") from None
+
+
+def _in_short(present: list[Any]) -> str:
+    """What columns there are; a picture has hundreds."""
+    names = [str(name) for name in present]
+    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
+    hint = "" if set(REQUIRED) & set(names) else "; masks are an array of shape (frames, height, width) or a list of arrays"
+    return f"the table has {', '.join(names[:_MOST_NAMED]) or 'none'}{more}{hint}"
 
 
 def _list_chunks(x: Any, y: Any, arc: Any, contour: Any, deviation: Any) -> list[Chunk]:
@@ -158,7 +192,8 @@ def _is_negative(value: Any) -> bool:
     return isinstance(value, (int, float, np.number)) and bool(value < 0)
 
 
-def _names(table: Any) -> list[Any]:
+def column_names(table: Any) -> list[Any]:
+    """The names of the columns of a table, in their order."""
     if isinstance(table, Mapping):
         return list(table)
     return list(getattr(table, "column_names", table.columns))
@@ -168,6 +203,8 @@ def _array(column: Any) -> NDArray[Any]:
     """A column as a numpy array; missing numbers are NaN."""
     if library_of(column) == "pyarrow":
         return np.asarray(column.to_numpy())
+    if np.ma.is_masked(column) and column.dtype.kind in "iuf":
+        return np.where(np.ma.getmaskarray(column), np.nan, np.ma.getdata(column))
     return np.asarray(column.to_numpy() if hasattr(column, "to_numpy") else column)
 
 
@@ -221,6 +258,9 @@ def factorise(column: Any) -> tuple[NDArray[np.int64], list[Any]]:
         runs = column.rle().struct.unnest()
         return _of_runs(runs["len"].to_numpy(), runs["value"].to_list())
     array = np.asarray(column)
+    if np.ma.is_masked(column):
+        array = array.astype(object)
+        array[np.ma.getmaskarray(column)] = None
     if array.ndim != 1:
         raise ValueError(f"a column of shape (n,) is needed, this is {array.shape}")
     if len(array) == 0:
@@ -293,6 +333,8 @@ def outline_table(outlines: Simulation | Iterable[tuple[object, int, float, Outl
     pieces: list[NDArray[np.float64]] = []
     deviations: list[NDArray[np.float64]] = []
     for name, frame, time, outline in outlines:
+        if not isinstance(outline, Outline):
+            raise TypeError(f"frame {frame}, object {name}: an Outline is needed, this is {type(outline).__name__}")
         found = outline.pieces
         for number, piece in enumerate(found):
             names.append(str(name))
