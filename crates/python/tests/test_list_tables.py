@@ -124,7 +124,10 @@ def test_values_that_are_floats_already_are_not_copied(outlines):
     of_polars = polars.DataFrame(table)["x"]
     for column, values in (table["x"], of_arrow), (of_polars, of_polars.explode().to_numpy()):
         [(offsets, found)] = number_lists(column, "x")
-        assert np.shares_memory(found, values) and offsets[-1] == len(values)
+        assert offsets[-1] == len(values)
+        # Some versions of polars copy what they explode.
+        is_copied = column is of_polars and not np.shares_memory(values, of_polars.explode().to_numpy())
+        assert is_copied or np.shares_memory(found, values)
     in_chunks = pyarrow.concat_tables([table.slice(0, 5), table.slice(5)])["x"]
     assert all(np.shares_memory(found, of_arrow) for _, found in number_lists(in_chunks, "x"))
 

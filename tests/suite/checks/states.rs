@@ -5,9 +5,11 @@ use freeform_motion::decompose::Line;
 use freeform_motion::estimate::StateFormat;
 use freeform_motion::identify::{AdaptiveIdentifier, AdaptiveLaw, AdaptiveSettings, PairChoice};
 use freeform_motion::outline_filter::{FilterSettings, MotionFilter, state_format};
+use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::{MotionModel, RigidMotion};
 use freeform_motion::sim_camera::{BuiltInShape, Camera, Frame, Scene, SequenceLength, Settings, Simulator};
-use freeform_motion::{Pipeline, PipelineSettings};
+use freeform_motion::tracker::Method;
+use freeform_motion::{Pipeline, PipelineSettings, Tracker, TrackerSettings};
 use nalgebra::Complex;
 
 /// Bytes before the state proper.
@@ -57,6 +59,27 @@ static PIPELINE_STATES: LazyLock<[Vec<u8>; 2]> = LazyLock::new(|| {
     })
 });
 
+/// States of trackers without their header, of either method: objects of which nothing but rejected frames is known, and one that was followed. The
+/// state of a filter within them has a checksum of its own, so that short ones leave more places where a change is not seen at once.
+static TRACKER_STATES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
+    let state = |(method, followed): (Method, usize)| {
+        let mut tracker = Tracker::new(TrackerSettings::new(method, MotionModel::Rigid)).expect("settings");
+        for (number, frame) in (0..).zip(&BIRDS[..followed]) {
+            tracker.push(&named("bird", number, frame));
+        }
+        for number in 0..3 {
+            tracker.reject("other", number, format!("frame {number}: torn"));
+        }
+        tracker.to_bytes().expect("no plane").split_off(HEADER)
+    };
+    [(Method::Filter, 0), (Method::Adaptive, 0), (Method::Filter, 3), (Method::Adaptive, 4)].map(state).to_vec()
+});
+
+/// A frame of an object with a name.
+fn named(object: &str, number: u64, frame: &Frame) -> OutlineFrame {
+    OutlineFrame { frame: number, time: frame.time, object: object.to_owned(), outline: frame.outline.clone() }
+}
+
 /// Frames of a bird, whose lines are apart.
 static BIRDS: LazyLock<Vec<Frame>> = LazyLock::new(|| frames_of(BuiltInShape::Bird));
 
@@ -97,7 +120,7 @@ pub(super) fn assert_restorable(filter: &MotionFilter) {
 /// Any bytes, and any changes of a good state: an error, or a filter that takes frames.
 pub(crate) fn saved_state(bytes: &[u8]) {
     assert!(MotionFilter::from_bytes(bytes).is_err() && AdaptiveIdentifier::from_bytes(bytes).is_err());
-    assert!(Pipeline::from_bytes(bytes).is_err());
+    assert!(Pipeline::from_bytes(bytes).is_err() && Tracker::from_bytes(bytes).is_err());
     take_frames(&state_format(*b"filt", "filter").with_header(bytes));
     take_lines(&ADAPTIVE.with_header(bytes));
     take_frames(&state_format(*b"filt", "filter").with_header(&changed(&STATE, bytes)));
@@ -105,6 +128,9 @@ pub(crate) fn saved_state(bytes: &[u8]) {
     take_lines(&ADAPTIVE.with_header(&changed(&ADAPTIVE_STATES[choice % ADAPTIVE_STATES.len()], bytes)));
     take_outlines(&PIPELINE.with_header(bytes));
     take_outlines(&PIPELINE.with_header(&changed(&PIPELINE_STATES[choice % PIPELINE_STATES.len()], bytes)));
+    let tracker = state_format(*b"trak", "tracker");
+    take_objects(&tracker.with_header(bytes));
+    take_objects(&tracker.with_header(&changed(&TRACKER_STATES[choice % TRACKER_STATES.len()], bytes)));
 }
 
 /// A state with some of its bytes changed: three bytes are a place and what is put there.
@@ -148,4 +174,23 @@ fn take_outlines(bytes: &[u8]) {
     let bytes = pipeline.to_bytes().expect("memory takes it");
     let restored = Pipeline::from_bytes(&bytes).expect("a state that was saved");
     assert_eq!(restored.to_bytes().expect("memory takes it"), bytes);
+}
+
+fn take_objects(bytes: &[u8]) {
+    let Ok(mut tracker) = Tracker::from_bytes(bytes) else { return };
+    let names: Vec<String> = tracker.objects().map(str::to_owned).chain(["bird".to_owned()]).take(4).collect();
+    for (number, frame) in (4..).zip(&BIRDS[4..]) {
+        for name in &names {
+            // Any answer will do.
+            let _ = tracker.push(&named(name, number, frame));
+        }
+    }
+    let told = |tracker: &Tracker| {
+        let results = tracker.results();
+        results.iter().flat_map(|result| result.warnings.iter().map(ToString::to_string)).collect::<Vec<_>>()
+    };
+    let bytes = tracker.to_bytes().expect("no plane");
+    let restored = Tracker::from_bytes(&bytes).expect("a state that was saved");
+    assert_eq!(restored.to_bytes().expect("no plane"), bytes);
+    assert_eq!(told(&restored), told(&tracker));
 }

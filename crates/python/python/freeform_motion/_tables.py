@@ -40,14 +40,18 @@ NativeTable = tuple[
 
 
 def kind_of(data: object) -> str | None:
-    """The library that a table is of, `mapping`, or None for what is no table."""
+    """The library that a table is of, `mapping`, `arrow` for what streams it, or None for what no table is made of."""
     library = library_of(data)
     # Columns of a LazyFrame are not looked at: polars warns of what that may cost.
     if library in ("pandas", "polars", "pyarrow") and (type(data).__name__ == "LazyFrame" or hasattr(data, "columns")):
         return library
     if isinstance(data, Mapping):
         return "mapping"
-    return "arrow" if hasattr(data, "__arrow_c_stream__") else None
+    if hasattr(data, "__arrow_c_stream__"):
+        return "arrow"
+    if library in ("pandas", "polars", "pyarrow"):
+        raise TypeError(f"a table is needed, this is {type(data).__name__}")
+    return None
 
 
 def native_table(
