@@ -25,11 +25,15 @@ enum Naming {
 pub(crate) struct PyLabelTracer {
     settings: TraceSettings,
     naming: Naming,
+    /// Share of the largest part of a label from which on the next is told of.
+    told_from: f64,
 }
 
-/// Share of the largest part of a label from which on its next largest part may as well be an object, or the rest of a broken one: which of
-/// them is the largest may change from mask to mask.
-const LIKE_SIZE: f64 = 0.25;
+/// Share of the largest part of a label from which on its next largest part may as well be an object.
+const LIKE_AN_OBJECT: f64 = 0.25;
+
+/// The same where the largest is asked for: which of them it is may change from mask to mask.
+const LIKE_SIZE: f64 = 0.5;
 
 /// Objects with their outlines, objects without one with the reason, and what is to be said of labels in several parts.
 type Traced = (Vec<(i64, PyOutline)>, Vec<(i64, String)>, Option<String>);
@@ -71,7 +75,8 @@ impl PyLabelTracer {
             "largest" => places(Selection::Largest),
             _ => return Err(unknown_name("link", link, &["labels", "places", "nearest", "largest"])),
         };
-        Ok(Self { settings, naming })
+        let told_from = if matches!(link, "nearest" | "largest") { LIKE_SIZE } else { LIKE_AN_OBJECT };
+        Ok(Self { settings, naming, told_from })
     }
 
     /// The longer side of a pixel, in the unit of the outlines.
@@ -105,7 +110,7 @@ impl PyLabelTracer {
             match outline {
                 Ok(traced) => {
                     let largest = traced.pixel_count;
-                    if next_part as f64 > LIKE_SIZE * largest as f64 && in_parts.is_none() {
+                    if next_part as f64 > self.told_from * largest as f64 && in_parts.is_none() {
                         in_parts = Some(format!(
                             "frame {frame}, label {label}: the largest part, of {largest} pixels, is taken, and one of {next_part} pixels \
                              is not; for several objects give each a label of its own, as scipy.ndimage.label or skimage.measure.label do, \

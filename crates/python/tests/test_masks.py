@@ -170,6 +170,8 @@ def test_a_part_of_a_label_that_is_no_dirt_is_warned_of():
     part = disc(60, 90, 30, 25, 20) + disc(60, 90, 30, 70, 11)
     with pytest.warns(UserWarning, match="the largest part, of 1245 pixels, is taken, and one of 373 pixels is not"):
         ff.outlines(part)
+    # Who asks for the largest is told where another may be it.
+    assert len(ff.identify([part] * 3, fps=30, link="largest")) == 1
     assert ff.outlines(disc(60, 90, 30, 25, 20) + disc(60, 90, 30, 70, 9)).keys() == {1}
 
 
