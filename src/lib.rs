@@ -41,6 +41,7 @@ mod pipeline_error;
 mod pipeline_settings;
 #[cfg(feature = "serde")]
 mod pipeline_state;
+mod plane_by_outline;
 mod rectification;
 mod regular_map;
 mod rejection;
@@ -62,6 +63,7 @@ pub use number::significant;
 pub use pipeline::{FrameResult, Pipeline};
 pub use pipeline_error::PipelineError;
 pub use pipeline_settings::PipelineSettings;
+pub use plane_by_outline::{PlaneByOutline, PlaneByOutlineError, plane_by_outline};
 pub use rectification::{Rectification, RectifyError};
 pub use rejection::with_causes;
 pub use tracker::{Tracker, TrackerSettings};

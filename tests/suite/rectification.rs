@@ -1,8 +1,9 @@
 //! Rigid motions in a plane that a perspective camera sees from aside.
 use freeform_motion::{
-    Rectification, RectifyError, Tracker, TrackerSettings,
+    PlaneByOutlineError, Rectification, RectifyError, Tracker, TrackerSettings,
     curve_fit::Outline,
     outline_io::OutlineFrame,
+    plane_by_outline,
     riccati::{MotionModel, RigidMotion},
     sim_camera::{BuiltInShape, Camera, Scene, Settings, Simulator},
     tracker::{FrameRejection, Method, RejectionCause},
@@ -126,4 +127,68 @@ fn an_outline_at_the_horizon_is_rejected_with_the_reason_and_a_singular_map_is_r
         let error = Rectification::new(&Projective2::from_matrix_unchecked(bad)).expect_err("singular");
         assert!(matches!(error, RectifyError::Singular { .. }));
     }
+}
+
+/// Of a plane seen from aside, as a bird is that lies in it.
+fn seen_at_rest(shape: BuiltInShape, tilt: f64, noise: f64, frames: u64) -> (Outline, Vec<Outline>) {
+    let known = Outline::closed(shape.shape().sample(500, 0.0)).expect("an outline");
+    let map = picture_from_plane(tilt);
+    let mut rng = ChaCha8Rng::seed_from_u64(frames);
+    let mut error = || noise * 12.0_f64.sqrt() * (rng.random::<f64>() - 0.5);
+    let seen = (0..frames).map(|k| {
+        let points = shape.shape().sample(300, 0.0007 * k as f64);
+        // Turned and away from the middle.
+        let place = nalgebra::Isometry2::new(Vector2::new(0.4, -0.3), 2.5);
+        let points = points.iter().map(|p| map * (place * p) + Vector2::new(error(), error())).collect();
+        Outline::closed(points).expect("an outline")
+    });
+    let seen = seen.collect();
+    (known, seen)
+}
+
+#[test]
+fn an_outline_known_in_the_plane_and_seen_at_rest_tells_the_plane() {
+    for shape in [BuiltInShape::Bird, BuiltInShape::Van, BuiltInShape::Shoe, BuiltInShape::Glider, BuiltInShape::Square]
+    {
+        for tilt in [0.0, 60.0] {
+            for (noise, frames, limit) in [(0.0, 1, 0.0005), (0.3, 1, 0.01), (0.3, 20, 0.004)] {
+                let (known, seen) = seen_at_rest(shape, tilt, noise, frames);
+                let found = plane_by_outline(&known, &seen).unwrap_or_else(|error| panic!("{shape} {tilt}: {error}"));
+                // Lengths in the plane are right, wherever the known outline puts its origin.
+                let map = found.plane_from_picture * picture_from_plane(tilt);
+                let corners = [(0.0, 0.0), (0.8, 0.0), (0.8, -0.6), (0.0, -0.6)].map(|(x, y)| Point2::new(x, y));
+                for (i, p) in corners.iter().enumerate() {
+                    for q in &corners[..i] {
+                        let off = (map * p - map * q).norm() - (p - q).norm();
+                        println!("{shape} {tilt} {noise} {frames}: {off:.5}, {:.5}", found.distance);
+                        assert!(off.abs() < limit, "{shape} {tilt} {noise} {frames}: {off}");
+                    }
+                }
+                let expected = noise / 300.0;
+                assert!(found.distance < 2.0 * expected + 1e-3, "{shape} {tilt}: {}", found.distance);
+            }
+        }
+    }
+}
+
+#[test]
+fn outlines_that_tell_no_plane_are_refused_with_the_reason() {
+    let refused = |known: &Outline, seen: &[Outline]| plane_by_outline(known, seen).expect_err("refused");
+    let (bird, seen) = seen_at_rest(BuiltInShape::Bird, 30.0, 0.0, 1);
+    let another = seen_at_rest(BuiltInShape::Phone, 30.0, 0.0, 1).1;
+    assert!(matches!(refused(&bird, &another), PlaneByOutlineError::AnotherOutline { .. }));
+    assert_eq!(refused(&bird, &[]), PlaneByOutlineError::NothingSeen);
+    for round in [BuiltInShape::Circle, BuiltInShape::Ellipse] {
+        let (known, seen) = seen_at_rest(round, 30.0, 0.0, 1);
+        assert_eq!(refused(&known, &seen), PlaneByOutlineError::Open, "{round}");
+    }
+    let sheet = [(0.0, 0.0), (0.297, 0.0), (0.297, 0.21), (0.0, 0.21)].map(|(x, y)| Point2::new(x, y));
+    let sheet = Outline::closed(sheet.to_vec()).expect("a sheet");
+    let map = picture_from_plane(40.0);
+    let of_sheet = sheet.mapped(|p| map * p).expect("an outline");
+    assert_eq!(refused(&sheet, &[of_sheet]), PlaneByOutlineError::TwoPlanes);
+    let arc: Vec<_> = seen[0].points().take(100).copied().collect();
+    let arc = freeform_motion::curve_fit::OpenArc::new(arc).expect("an arc");
+    let arcs = freeform_motion::curve_fit::OpenOutline::new(vec![arc]).expect("arcs");
+    assert_eq!(refused(&bird, &[Outline::Open(arcs)]), PlaneByOutlineError::NotWhole);
 }

@@ -193,13 +193,13 @@ pub(crate) struct TrackOptions {
     /// Map from the picture to the plane that the objects move in: nine numbers, row by row, or a file of them
     ///
     /// For a camera that looks at a table or a floor from aside. A rigid motion in the plane then has its three parameters, in the
-    /// unit of the plane. 'freeform rectify' finds the map from four points.
+    /// unit of the plane. 'freeform rectify' finds the map from four points, or from a known outline.
     #[arg(long, value_name = "FILE|H11,...,H33", value_parser = rectification, allow_hyphen_values = true,
           conflicts_with = "scale")]
     pub(crate) rectify: Option<GivenRectification>,
 
     /// What is assumed of how the motion goes on from frame to frame; not used by the adaptive method, nor for projective
-    /// motion
+    /// motion and a plane in space
     ///
     /// With 'auto', the three others are followed side by side and weighted by their probabilities. With 'generator', the path of an
     /// object tells its turn also if its outline does not, as for a disc on a turntable.

@@ -9,7 +9,7 @@ use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{MethodSettings, ObjectResult, Observation, SmoothingError, Trajectory};
 use freeform_motion::{Tracker, Warning};
 
-use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, TrackOptions};
+use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain, warn};
 use crate::handful::handful;
@@ -153,9 +153,12 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
         && args.options.motion.model() == MotionModel::Projective
         && !args.quiet
     {
-        warn(
-            "--dynamics: not used for projective motion, whose generator is taken for constant until it is seen to change",
-        );
+        warn(match args.options.motion {
+            MotionChoice::Plane => "--dynamics: not used for a plane in space, whose velocities are taken for constant",
+            _ => {
+                "--dynamics: not used for projective motion, whose generator is taken for constant until it is seen to change"
+            }
+        });
     }
     Ok(())
 }

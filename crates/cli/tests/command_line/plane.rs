@@ -38,6 +38,13 @@ fn a_plane_in_space_is_simulated_with_its_truth_and_identified_with_its_normal()
 }
 
 #[test]
+fn dynamics_that_a_plane_does_not_use_are_told_of() {
+    let output = run(&format!("identify - {CAMERA} --dynamics velocity"), &outlines("--seconds 0.2"));
+    let said = "--dynamics: not used for a plane in space";
+    assert!(output.status.success() && stderr(&output).contains(said), "{}", stderr(&output));
+}
+
+#[test]
 fn of_a_plane_that_only_turns_the_normal_and_the_velocity_are_null_with_the_reason() {
     // With other noise a second plane may pass for it too.
     let outlines = outlines("--seconds 1 --plane 0.1,-0.1,0.5,0,0,0 --seed 6");

@@ -96,3 +96,49 @@ fn points_and_maps_that_mean_no_plane_are_wrong_usage() {
         assert!(stderr(&output).contains(message), "{arguments}: {}", stderr(&output));
     }
 }
+
+#[test]
+fn a_known_outline_seen_at_rest_tells_the_plane_as_four_points_do() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let known = succeed("simulate --shape van --omega 0 --b 0,0 --fps 1 --seconds 1 --noise 0", "");
+    let known = file(folder.path(), "known.csv", &known);
+    // The plane does not know where the outline lies in it, so the object lies turned.
+    let rest = "simulate --shape van --omega 0.8 --b 0.5,0.2 --fps 30 --seconds 1 --noise 0.001 --seed 3";
+    let still: String = {
+        let moved = seen(&succeed(rest, ""));
+        let last = moved.lines().last().and_then(|line| line.split(',').next()).expect("a frame").to_owned();
+        let rows = moved.lines().filter(|line| line.starts_with("frame") || line.split(',').next() == Some(&last));
+        rows.collect::<Vec<_>>().join("\n") + "\n"
+    };
+    let still = file(folder.path(), "rest.csv", &still);
+    let map = succeed(&format!("rectify --known {known} --seen {still}"), "");
+    assert!(map.starts_with("# map from the picture to the plane; 400 points of 1 outline(s), off by "), "{map}");
+    let plane = file(folder.path(), "plane.txt", &map);
+    let outlines = seen(&succeed("simulate --omega 1.2 --b -2,1 --seconds 1 --noise 0.001 --points 200", ""));
+    let document = json(&succeed(&format!("identify - --rectify {plane} --format json"), &outlines));
+    let omega = document["objects"][0]["parameters"]["omega"]["value"].as_f64().expect("a number");
+    assert!((omega - 1.2).abs() < 0.01, "{omega}");
+}
+
+#[test]
+fn outlines_that_tell_no_plane_are_told_with_the_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let outline = |shape: &str| {
+        let text = succeed(&format!("simulate --shape {shape} --omega 0 --b 0,0 --fps 1 --seconds 1 --noise 0"), "");
+        file(folder.path(), &format!("{shape}.csv"), &text)
+    };
+    let [van, bird, circle] = ["van", "bird", "circle"].map(outline);
+    for (arguments, status, message) in [
+        (format!("rectify --known {van} --seen {bird}"), 1, "not the known outline"),
+        (format!("rectify --known {circle} --seen {circle}"), 1, "leaves the map open"),
+        (format!("rectify --known {van}"), 2, "--seen"),
+        (format!("rectify --seen {van}"), 2, "--known"),
+        (format!("rectify --known {van} --seen nowhere.csv"), 2, "nowhere.csv"),
+        (format!("rectify --known nowhere.csv --seen {van}"), 2, "nowhere.csv"),
+        (format!("rectify --known {van} --seen {van} --dark"), 2, "--dark"),
+    ] {
+        let output = run(&arguments, "");
+        assert_eq!(output.status.code(), Some(status), "{arguments}: {}", stderr(&output));
+        assert!(stderr(&output).contains(message), "{arguments}: {}", stderr(&output));
+    }
+}

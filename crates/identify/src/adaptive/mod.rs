@@ -1,6 +1,8 @@
 //! The paper's adaptive identifier (equations 19 to 22).
 mod drem_law;
 mod identifier;
+#[cfg(test)]
+mod independent_integration;
 mod least_squares_law;
 mod line_path;
 mod lyapunov;
