@@ -12,6 +12,7 @@ mod left_out;
 mod outline;
 mod remapping;
 mod rounding;
+mod shape_change;
 #[cfg(test)]
 mod side_by_side;
 #[cfg(test)]

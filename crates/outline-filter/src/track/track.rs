@@ -5,7 +5,7 @@ use freeform_estimate::ProcessNoise;
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
-use super::first_pose::FirstPose;
+use super::{first_pose::FirstPose, shape_change::EarlyShape};
 use crate::{
     belief::Belief,
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
@@ -35,6 +35,7 @@ pub(crate) struct Track {
     pub(super) belief: Belief,
     pub(super) noise: NoiseModel,
     pub(super) shape: ShapeNoise,
+    pub(super) early_shape: EarlyShape,
     /// What the model leaves out.
     pub(super) sensitivity: Sensitivity,
     pub(super) family: FamilyTests,
@@ -181,6 +182,7 @@ impl Track {
             self.frames += 1;
             self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
+            self.look_for_change_of_shape();
             shift = self.common_shift(frame);
             if let Some(noise) = noise {
                 self.noise.take(noise / radius, measurement.weight);
@@ -366,6 +368,7 @@ impl Track {
             && self.belief.is_sound(cells)
             && self.noise.is_sound(cells)
             && self.shape.is_sound(cells)
+            && self.early_shape.is_sound(cells)
             && self.sensitivity.is_sound(cells)
             && self.family.is_sound()
             && self.first_pose.is_finite()
