@@ -4,7 +4,7 @@ use std::sync::Arc;
 use freeform_riccati::MotionModel;
 use nalgebra::Matrix3;
 
-use super::{Track, first_pose::FirstPose, shape_change::EarlyShape};
+use super::{Track, first_pose::FirstPose, shape_change::EarlyShape, usual_agreement::UsualAgreement};
 use crate::{
     belief::Belief,
     dynamics::FamilyTests,
@@ -67,6 +67,7 @@ impl Track {
             noise: NoiseModel::new(sigma / frame.deviations.typical()),
             shape: ShapeNoise::default(),
             early_shape: EarlyShape::default(),
+            usual: UsualAgreement::default(),
             sensitivity: Sensitivity::new(),
             family: FamilyTests::default(),
             first_pose: FirstPose::default(),

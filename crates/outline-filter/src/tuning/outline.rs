@@ -121,6 +121,21 @@ pub(crate) mod null_space {
     pub(crate) const HOLDING: f64 = 1e9;
 }
 
+/// Points that disagree in most frames.
+pub(crate) mod usual_agreement {
+    /// Frames that say what is usual.
+    pub(crate) const FEWEST_FRAMES: usize = 2;
+    /// Deviations of a share by which more points must disagree than usual.
+    pub(crate) const SIGNIFICANT: f64 = 3.0;
+    /// Shares by which a frame corrects the usual share where fewer points disagree, and where more do: that falls fast and rises slowly.
+    pub(crate) const FALLS: f64 = 0.2;
+    pub(crate) const RISES: f64 = 0.02;
+    /// Deviations by which another pose must explain such a frame better: more points than usual speak for it already.
+    pub(crate) const ELSEWHERE: f64 = 3.0;
+    /// Share by which a frame does that nothing explains better, so that it is not looked into again and again.
+    pub(crate) const UNEXPLAINED: f64 = 0.5;
+}
+
 /// Outlines that have changed since their map became known.
 pub(crate) mod shape_change {
     /// Fewest cells that are compared.
