@@ -102,7 +102,7 @@ fn grossly_wrong(amplitude: f64, frequency: f64, seed: u64) -> Option<String> {
     let turn = move |t: f64| amplitude * (frequency * t).sin();
     let rate = move |t: f64| amplitude * frequency * (frequency * t).cos();
     let motion = Motion::varying(move |t| RigidMotion { omega: rate(t), b1: 0.0, b2: 0.0 });
-    let frames = frames_of(disc_with(0.15, -0.35), motion, Settings { noise: 0.002, ..settings(60, seed) });
+    let frames = frames_of(disc_with(0.12, -0.44), motion, Settings { noise: 0.002, ..settings(60, seed) });
     let mut run = filter(MotionModel::Rigid);
     for frame in &frames {
         run.step(frame.time, &frame.outline).expect("increasing times");
@@ -115,14 +115,14 @@ fn grossly_wrong(amplitude: f64, frequency: f64, seed: u64) -> Option<String> {
         .then(|| format!("{value} +- {deviation} for {}, turned by {}", rate(frames[59].time), turn(frames[59].time)))
 }
 
-/// Of 16 swings more than six were followed past the notch before.
+/// Four of the twelve were followed past the notch before, one of them to 86 rad/s.
 #[test]
 fn a_disc_with_a_notch_that_swings_is_not_followed_past_its_notch() {
     let mut wrong = Vec::new();
-    for (number, frequency) in [2.5, 3.5, 4.5, 6.0].into_iter().enumerate() {
-        for amplitude in [0.3, 0.5, 0.7, 0.9] {
+    for (number, frequency) in [6.4, 7.0, 7.6].into_iter().enumerate() {
+        for amplitude in [0.6, 0.75, 0.85, 0.95] {
             wrong.extend(grossly_wrong(amplitude, frequency, number as u64));
         }
     }
-    assert!(wrong.len() <= 1, "{wrong:?}");
+    assert!(wrong.is_empty(), "{wrong:?}");
 }
