@@ -23,8 +23,13 @@ impl NegativeLogLikelihood {
     /// neither holds the other (Q. Vuong 1989, Likelihood ratio tests for model selection and non-nested hypotheses), the variance taken
     /// from the noise. Noise is what the other leaves, if that is more than was known of.
     pub(crate) fn is_worse_than(&self, other: &Self) -> bool {
+        self.is_worse_by(tuning::SIGNIFICANT, other)
+    }
+
+    /// Whether the difference is more than so many of its deviations: see [`is_worse_than`](Self::is_worse_than).
+    pub(crate) fn is_worse_by(&self, deviations: f64, other: &Self) -> bool {
         let unit = (other.squares / other.points).max(1.0);
-        self.squares - other.squares > tuning::SIGNIFICANT * unit * (tuning::VARIANCE * other.weighted).sqrt()
+        self.squares - other.squares > deviations * unit * (tuning::VARIANCE * other.weighted).sqrt()
     }
 
     /// Whether the mean square of the innovations is no more than so many times that of another, which is noise at least.

@@ -19,6 +19,11 @@ pub(crate) struct ShapeNoise {
 }
 
 impl ShapeNoise {
+    /// Whether the outline has been seen to change.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.variance > 0.0
+    }
+
     /// Makes room for so many cells.
     pub(crate) fn resize(&mut self, cells: usize) {
         self.last.resize(cells, 0.0);

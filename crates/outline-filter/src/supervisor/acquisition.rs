@@ -10,7 +10,7 @@ use crate::{
     measurement::{NegativeLogLikelihood, Tolerance},
     search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
-    tuning::supervisor::LARGEST_INNOVATION,
+    tuning::{supervisor::LARGEST_INNOVATION, usual_agreement::ELSEWHERE},
     update::Gate,
 };
 
@@ -30,6 +30,38 @@ impl MotionFilter {
                 return Some(outcome);
             }
         }
+        self.search(time, seconds, outline)
+    }
+
+    /// Where more points than usual of a frame that has been taken disagree, they may be those that tell the pose: the object is searched
+    /// for, and taken to be where that explains the frame significantly better.
+    pub(super) fn look_elsewhere(&mut self, outcome: Outcome, time: f64, outline: &Outline) -> Outcome {
+        if !outcome.is_accepted() || !outcome.disagrees || !self.may_search() {
+            return outcome;
+        }
+        let mut other = self.clone();
+        other.phase = Phase::Lost;
+        let found = other.search(time, 0.0, outline).filter(Outcome::is_accepted);
+        self.searches = other.searches;
+        let Some(track) = &mut self.track else { return outcome };
+        let mut is_explained = false;
+        if let (Some(found), Some(of_other)) = (found, &other.track) {
+            let poses = [*track.body_pose(), *of_other.body_pose()];
+            let likelihoods = track.compared(outline, &poses, &mut self.frame);
+            if likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
+                *self = other;
+                return found;
+            }
+            is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
+        }
+        if !is_explained {
+            track.take_as_usual(outcome.measurement.agreement);
+        }
+        outcome
+    }
+
+    /// Searches for the object without a guess.
+    fn search(&mut self, time: f64, seconds: f64, outline: &Outline) -> Option<Outcome> {
         if !self.may_search() {
             return None;
         }

@@ -9,7 +9,7 @@ use crate::{
     dynamics::DynamicsFilter,
     prediction::ByKind,
     track::Outcome,
-    tuning::{motion_change as tuning, statement::REACH},
+    tuning::{dynamics::LEFT_OUT, motion_change as tuning, statement::REACH},
     update::PoseInnovation,
 };
 #[cfg(feature = "serde")]
@@ -50,6 +50,11 @@ impl MotionHistory {
     /// Whether the motion has been seen to change by more than a constant generator does.
     pub(super) fn is_changing(&self) -> bool {
         self.change.is_seen() || self.dynamics.as_ref().is_some_and(DynamicsFilter::leads)
+    }
+
+    /// Whether hypotheses of dynamics say that the motion is constant, in whatever sense.
+    pub(super) fn is_constant(&self) -> bool {
+        self.dynamics.as_ref().is_some_and(|dynamics| dynamics.weights().accelerating < LEFT_OUT)
     }
 
     /// Takes what became of a frame some time after the one before.

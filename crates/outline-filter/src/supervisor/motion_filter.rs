@@ -189,7 +189,7 @@ impl MotionFilter {
         self.last_time = time;
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
-            Phase::Tracking => self.follow(time, outline),
+            Phase::Tracking => self.follow(time, outline).map(|outcome| self.look_elsewhere(outcome, time, outline)),
             _ => self.acquire(time, outline),
         };
         self.searches.add_frame(self.phase == Phase::Tracking);

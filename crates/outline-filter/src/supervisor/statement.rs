@@ -63,9 +63,13 @@ impl MotionFilter {
         let FilterSettings { edge_uncertainty, mask_pixel, .. } = self.settings;
         if [displacement, edge_uncertainty, mask_pixel].iter().any(|length| *length > 0.0) {
             // The rounding of masks is a saw tooth as the object moves, whose mean falls with the pixels that it moves on.
-            let pixels = (track.travelled() / mask_pixel).max(1.0);
+            let span = track.span_of_motion(self.history.is_constant());
+            let pixels = (track.travelled(span) / mask_pixel).max(1.0);
             let rounding = tuning::ROUNDING * mask_pixel / pixels;
-            let [pose, motion] = track.systematic(edge_uncertainty.hypot(displacement).hypot(rounding));
+            let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
+            // What the motion model does not have need not be constant.
+            let [of_pose, of_motion] = track.systematic(displacement, track.span_of_motion(false));
+            let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
             all = all.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
         Some(Statement { random, all, family: left_out.family })

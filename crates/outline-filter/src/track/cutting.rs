@@ -4,7 +4,7 @@ use std::sync::Arc;
 use freeform_riccati::MotionModel;
 use nalgebra::Matrix3;
 
-use super::{Track, first_pose::FirstPose};
+use super::{Track, first_pose::FirstPose, shape_change::EarlyShape, usual_agreement::UsualAgreement};
 use crate::{
     belief::Belief,
     dynamics::FamilyTests,
@@ -66,6 +66,8 @@ impl Track {
             belief,
             noise: NoiseModel::new(sigma / frame.deviations.typical()),
             shape: ShapeNoise::default(),
+            early_shape: EarlyShape::default(),
+            usual: UsualAgreement::default(),
             sensitivity: Sensitivity::new(),
             family: FamilyTests::default(),
             first_pose: FirstPose::default(),

@@ -29,10 +29,10 @@ impl Track {
     }
 
     /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
-    /// about the middle, normalised. Over the time that the motion is known from it may change by as much as it is.
-    pub(crate) fn systematic(&self, size: f64) -> [CentredDeviations; 2] {
+    /// about the middle, normalised. Over the `span` that the motion is known from it may change by as much as it is.
+    pub(crate) fn systematic(&self, size: f64, span: f64) -> [CentredDeviations; 2] {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
-        let (size, span) = (size / self.reference.radius, self.span_of_motion());
+        let size = size / self.reference.radius;
         let cells = self.map.cells();
         let mut levers = [0.0; MAX_PARAMETERS];
         for cell in cells {
@@ -47,20 +47,23 @@ impl Track {
         [pose, pose * (std::f64::consts::SQRT_2 / span)]
     }
 
-    /// Time that the motion is known from, in the filter's unit; positive.
-    fn span_of_motion(&self) -> f64 {
+    /// Time that the motion is known from, in the filter's unit; positive. A motion that is stated as `constant`, by whatever hypothesis of
+    /// dynamics, is known from all of the frames; the memory of a constant generator is shorter where only that changes.
+    pub(crate) fn span_of_motion(&self, constant: bool) -> f64 {
         let memory = &self.belief.memory;
-        memory.shortest(self.belief.parameter_count()).max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
+        let shortest = if constant { memory.span } else { memory.shortest(self.belief.parameter_count()) };
+        shortest.max(memory.step.min(memory.span)).max(f64::MIN_POSITIVE)
     }
 
-    /// How far the points of the outline have moved in the image in the time that the motion is known from, root mean square; image lengths.
-    pub(crate) fn travelled(&self) -> f64 {
+    /// How far the points of the outline have moved in the image in the time `span` that the motion is known from, root mean square; image
+    /// lengths.
+    pub(crate) fn travelled(&self, span: f64) -> f64 {
         let Belief { model, pose, motion, .. } = &self.belief;
         let motion = ProjectiveMotion::of_generator(&model.generator(&motion[..model.parameter_count()]));
         let cells = self.map.cells();
         let squares = cells.iter().map(|cell| motion.velocity(&map_point(pose, &cell.centre)).norm_squared());
         let speed = (squares.sum::<f64>() / cells.len().max(1) as f64).sqrt();
-        speed * self.span_of_motion() * self.reference.radius
+        speed * span * self.reference.radius
     }
 
     /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.

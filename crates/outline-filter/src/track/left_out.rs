@@ -2,7 +2,7 @@
 use super::Track;
 use crate::{
     belief::StateMatrix,
-    dynamics::LeftOutEstimate,
+    dynamics::{LeftOutEstimate, WrongFamily},
     measurement::Frame,
     tuning::family as tuning,
     update::{PoseMeasurement, Proposal, with_hold},
@@ -37,8 +37,13 @@ impl Track {
 
     /// What the outlines do beside their motion, as far as it is told, and the second moments of what it makes of the errors of pose and
     /// motion.
-    pub(crate) fn left_out(&self) -> (&LeftOutEstimate, StateMatrix) {
-        let estimate = self.family.estimate();
+    pub(crate) fn left_out(&self) -> (LeftOutEstimate, StateMatrix) {
+        let mut estimate = *self.family.estimate();
+        if estimate.family.is_none()
+            && let Some(displacement) = self.change_of_shape()
+        {
+            (estimate.family, estimate.displacement) = (Some(WrongFamily::Shape), displacement);
+        }
         let by_size = &self.sensitivity.state;
         (estimate, by_size * estimate.moments * by_size.transpose())
     }

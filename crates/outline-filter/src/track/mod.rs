@@ -12,6 +12,7 @@ mod left_out;
 mod outline;
 mod remapping;
 mod rounding;
+mod shape_change;
 #[cfg(test)]
 mod side_by_side;
 #[cfg(test)]
@@ -19,6 +20,7 @@ mod sides;
 #[expect(clippy::module_inception, reason = "the module holds the type that the layer is about")]
 mod track;
 mod turn;
+mod usual_agreement;
 
 pub use known_outline::{KnownOutline, KnownPiece};
 pub(crate) use remapping::PlacedFrame;

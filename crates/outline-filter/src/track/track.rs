@@ -5,7 +5,7 @@ use freeform_estimate::ProcessNoise;
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
-use super::first_pose::FirstPose;
+use super::{first_pose::FirstPose, shape_change::EarlyShape, usual_agreement::UsualAgreement};
 use crate::{
     belief::Belief,
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
@@ -35,6 +35,8 @@ pub(crate) struct Track {
     pub(super) belief: Belief,
     pub(super) noise: NoiseModel,
     pub(super) shape: ShapeNoise,
+    pub(super) early_shape: EarlyShape,
+    pub(super) usual: UsualAgreement,
     /// What the model leaves out.
     pub(super) sensitivity: Sensitivity,
     pub(super) family: FamilyTests,
@@ -63,6 +65,8 @@ pub(crate) struct Outcome {
     pub(crate) rounding: CentredDeviations,
     /// By which it has moved the outline as a whole, in the body frame.
     pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
+    /// Whether more of its points than usual disagree with the outline.
+    pub(crate) disagrees: bool,
     /// Of the frame given what was known before it; none unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
 }
@@ -155,6 +159,7 @@ impl Track {
                     pose: None,
                     rounding: CentredDeviations::zeros(),
                     shift: SVector::zeros(),
+                    disagrees: false,
                     likelihood: NegativeLogLikelihood::default(),
                 };
             }
@@ -176,11 +181,13 @@ impl Track {
         let verdict = gate.verdict(&measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
-        let mut shift = SVector::zeros();
+        let (mut shift, mut disagrees) = (SVector::zeros(), false);
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
             self.frames += 1;
             self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
+            disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
+            self.look_for_change_of_shape();
             shift = self.common_shift(frame);
             if let Some(noise) = noise {
                 self.noise.take(noise / radius, measurement.weight);
@@ -199,7 +206,7 @@ impl Track {
         }
         let pose = measured.map(|measured| measured.over(variance));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
-        Outcome { measurement, verdict, innovation, pose, rounding, shift, likelihood }
+        Outcome { measurement, verdict, innovation, pose, rounding, shift, disagrees, likelihood }
     }
 
     /// Takes the spread of a frame, used or not.
@@ -366,6 +373,8 @@ impl Track {
             && self.belief.is_sound(cells)
             && self.noise.is_sound(cells)
             && self.shape.is_sound(cells)
+            && self.early_shape.is_sound(cells)
+            && self.usual.is_sound()
             && self.sensitivity.is_sound(cells)
             && self.family.is_sound()
             && self.first_pose.is_finite()

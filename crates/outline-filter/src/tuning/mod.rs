@@ -11,5 +11,5 @@ pub(crate) use frame::{deviations, likelihood, measurement, noise, update};
 #[cfg(feature = "serde")]
 pub(crate) use motion::saved_state;
 pub(crate) use motion::{batch, dynamics, family, innovations, motion_change, statement, supervisor};
-pub(crate) use outline::{contour, map, null_space, redrawing, shape_noise, symmetry};
+pub(crate) use outline::{contour, map, null_space, redrawing, shape_change, shape_noise, symmetry, usual_agreement};
 pub(crate) use search::{hypotheses, registration, remapping};

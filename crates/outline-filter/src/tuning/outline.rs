@@ -121,6 +121,38 @@ pub(crate) mod null_space {
     pub(crate) const HOLDING: f64 = 1e9;
 }
 
+/// Points that disagree in most frames.
+pub(crate) mod usual_agreement {
+    /// Frames that say what is usual.
+    pub(crate) const FEWEST_FRAMES: usize = 2;
+    /// Deviations of a share by which more points must disagree than usual.
+    pub(crate) const SIGNIFICANT: f64 = 3.0;
+    /// Shares by which a frame corrects the usual share where fewer points disagree, and where more do: that falls fast and rises slowly.
+    pub(crate) const FALLS: f64 = 0.2;
+    pub(crate) const RISES: f64 = 0.02;
+    /// Deviations by which another pose must explain such a frame better: more points than usual speak for it already.
+    pub(crate) const ELSEWHERE: f64 = 3.0;
+    /// Share by which a frame does that nothing explains better, so that it is not looked into again and again.
+    pub(crate) const UNEXPLAINED: f64 = 0.5;
+}
+
+/// Outlines that have changed since their map became known.
+pub(crate) mod shape_change {
+    /// Fewest cells that are compared.
+    pub(crate) const FEWEST_CELLS: usize = 16;
+    /// Least share of the map that must have been known early.
+    pub(crate) const LEAST_SHARE: f64 = 0.5;
+    /// Deviations of the noise of a point by which the outline must have changed to matter: errors of outlines that are slow in time are
+    /// learnt as part of the outline, so that they change it by up to three or four times what is left as noise.
+    pub(crate) const LEAST: f64 = 5.0;
+    /// Frames in which one is compared.
+    pub(crate) const EVERY: usize = 4;
+    /// Frames over which a change is forgotten: what has been explains the estimate as long as that remembers it.
+    pub(crate) const MEMORY: f64 = 100.0;
+    /// Deviations of the offsets by which they must have changed: those of Gaussian noise change by one.
+    pub(crate) const SIGNIFICANT: f64 = 3.0;
+}
+
 /// Shape process noise: outlines that change slowly.
 pub(crate) mod shape_noise {
     /// Frames that the evidence looks back on.

@@ -2,7 +2,8 @@
 use crate::filter_support::{frames_of, settings};
 use freeform_outline_filter::{FilterError, FilterSettings, MotionFilter};
 use freeform_riccati::{ProjectiveMotion, RigidMotion};
-use freeform_sim_camera::{BuiltInShape, Frame, Shape};
+use freeform_sim_camera::{BuiltInShape, Dynamics, Frame, Motion, Shape, Trajectory};
+use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
 
 const FRAMES: usize = 31;
@@ -49,6 +50,24 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn masks_of_a_body_that_turns_and_travels_tell_its_turn_as_well_as_of_one_that_only_turns() {
+    let deviation = |velocity: Vector2<f64>| {
+        let path = Trajectory::new(Point2::origin(), 0.9, velocity, Dynamics::Velocity).expect("finite numbers");
+        let frames = frames_of(BuiltInShape::Van, Motion::varying(move |t| path.motion(t)), settings(60, 4));
+        let mut filter =
+            MotionFilter::new(FilterSettings { mask_pixel: 0.02, ..FilterSettings::default() }).expect("settings");
+        for frame in &frames {
+            filter.step(frame.time, &frame.outline).expect("a good frame");
+        }
+        let omega = filter.estimate().expect("a motion").parameters().next().expect("omega");
+        omega.systematic_deviation.expect("a value")
+    };
+    let [resting, travelling] = [Vector2::zeros(), Vector2::new(0.4, 0.2)].map(deviation);
+    // It moves on more pixels.
+    assert!(travelling < 1.2 * resting, "{travelling} {resting}");
 }
 
 #[test]

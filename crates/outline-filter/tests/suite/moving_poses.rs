@@ -1,6 +1,6 @@
 //! Poses of objects whose motion is no constant generator, and of those that show their turn in one place only.
 use crate::filter_support::{filter, frames_of, settings};
-use freeform_riccati::MotionModel;
+use freeform_riccati::{MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Dynamics, Motion, Settings, Shape, Trajectory};
 use nalgebra::{Affine2, Point2, Vector2};
 
@@ -95,4 +95,34 @@ fn the_angle_of_a_circle_is_not_stated_and_its_place_as_far_as_an_unseen_turn_le
         let (error, stated) = ((at.value - expected).abs(), at.standard_deviation);
         assert!(error < 2.5 * stated && stated < 0.05, "{at:?}");
     }
+}
+
+/// Rates of the turn that are stated far from the true one, with small deviations: errors of more than half a radian per second and eight deviations.
+fn grossly_wrong(amplitude: f64, frequency: f64, seed: u64) -> Option<String> {
+    let turn = move |t: f64| amplitude * (frequency * t).sin();
+    let rate = move |t: f64| amplitude * frequency * (frequency * t).cos();
+    let motion = Motion::varying(move |t| RigidMotion { omega: rate(t), b1: 0.0, b2: 0.0 });
+    let frames = frames_of(disc_with(0.12, -0.44), motion, Settings { noise: 0.002, ..settings(60, seed) });
+    let mut run = filter(MotionModel::Rigid);
+    for frame in &frames {
+        run.step(frame.time, &frame.outline).expect("increasing times");
+    }
+    let omega = run.estimate()?.parameters().next()?;
+    let (value, deviation) = (omega.value?, omega.standard_deviation?);
+    let error = (value - rate(frames[59].time)).abs();
+    let is_wrong = error > 0.5 && error > 8.0 * deviation && run.wrong_family().is_none();
+    is_wrong
+        .then(|| format!("{value} +- {deviation} for {}, turned by {}", rate(frames[59].time), turn(frames[59].time)))
+}
+
+/// Four of the twelve were followed past the notch before, one of them to 86 rad/s.
+#[test]
+fn a_disc_with_a_notch_that_swings_is_not_followed_past_its_notch() {
+    let mut wrong = Vec::new();
+    for (number, frequency) in [6.4, 7.0, 7.6].into_iter().enumerate() {
+        for amplitude in [0.6, 0.75, 0.85, 0.95] {
+            wrong.extend(grossly_wrong(amplitude, frequency, number as u64));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
 }

@@ -1,0 +1,66 @@
+//! Whether more points of a frame disagree with the outline than usual.
+//!
+//! Where a body shows its turn, or its place along itself, by a small part of its outline only, such as the notch of a disc, a prediction
+//! that misses this part makes outliers of its points. All others agree, and the pose goes on as predicted, for ever. A share of points
+//! that disagree which is larger than usual says so.
+use super::Track;
+use crate::tuning::usual_agreement as tuning;
+
+/// Share of the points that disagree in most of the frames.
+#[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct UsualAgreement {
+    disagreeing: f64,
+    frames: usize,
+}
+
+impl UsualAgreement {
+    /// Takes a frame of so many points with a share that disagrees; whether that is significantly more than usual.
+    fn take(&mut self, disagreeing: f64, points: usize) -> bool {
+        let usual = self.disagreeing;
+        let points = points.max(1) as f64;
+        let deviation = (usual.max(1.0 / points) * (1.0 - usual) / points).sqrt();
+        let is_known = self.frames >= tuning::FEWEST_FRAMES;
+        self.frames += 1;
+        // Frames in which a part has been missed must not become the usual ones.
+        let gain = if disagreeing < usual { tuning::FALLS } else { tuning::RISES };
+        self.disagreeing += gain.max(1.0 / self.frames as f64) * (disagreeing - usual);
+        is_known && disagreeing > usual + tuning::SIGNIFICANT * deviation
+    }
+}
+
+impl Track {
+    /// Takes the share of the points of an accepted frame that agree; whether more than usual do not.
+    pub(super) fn disagrees_more_than_usual(&mut self, agreement: f64, points: usize) -> bool {
+        self.usual.take((1.0 - agreement).clamp(0.0, 1.0), points)
+    }
+
+    /// Takes a share of points that agree as nearer to the usual one: nothing else explains them better.
+    pub(crate) fn take_as_usual(&mut self, agreement: f64) {
+        let disagreeing = (1.0 - agreement).clamp(0.0, 1.0);
+        self.usual.disagreeing += tuning::UNEXPLAINED * (disagreeing - self.usual.disagreeing).max(0.0);
+    }
+}
+
+#[cfg(feature = "serde")]
+impl UsualAgreement {
+    /// Whether it is a share of so many frames.
+    pub(super) fn is_sound(&self) -> bool {
+        (0.0..=1.0).contains(&self.disagreeing) && self.frames < freeform_estimate::StateFormat::MOST_COUNTED
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_the_outline_that_is_missed_is_noticed_in_every_frame_and_usual_outliers_are_not() {
+        let mut usual = UsualAgreement::default();
+        let noticed = |usual: &mut UsualAgreement, share: f64, frames: i32| {
+            (0..frames).filter(|i| usual.take(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400)).count()
+        };
+        assert_eq!(noticed(&mut usual, 0.05, 100), 0);
+        assert_eq!(noticed(&mut usual, 0.12, 20), 20);
+    }
+}
