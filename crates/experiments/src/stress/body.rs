@@ -43,6 +43,11 @@ pub(super) enum Body {
         lobes: usize,
         amplitude: f64,
     },
+    /// A circle with a notch: its depth in radii, and its angle in rad.
+    Notched {
+        depth: f64,
+        angle: f64,
+    },
     /// A circle with waves of the orders 2 and 3, the second half as high.
     Egg {
         amplitude: f64,
@@ -95,6 +100,11 @@ impl Body {
                 return polygon(&(0..CORNERS).map(corner).collect::<Vec<_>>());
             }
             Self::Lobes { lobes, amplitude } => Box::new(move |angle| 1.0 + amplitude * wave(lobes, angle)),
+            Self::Notched { depth, angle } => {
+                let rim = (0..=CORNERS).map(|k| at(0.5 * angle + (TAU - angle) * k as f64 / CORNERS as f64, 1.0));
+                let floor = [-0.5, 0.5].map(|side| at(side * angle, 1.0 - depth));
+                return polygon(&rim.chain(floor).collect::<Vec<_>>());
+            }
             Self::Egg { amplitude } => {
                 Box::new(move |angle| 1.0 + amplitude * (wave(2, angle) + 0.5 * wave(3, angle + 0.25 * PI)))
             }
@@ -139,6 +149,7 @@ mod tests {
             Body::Ellipse { eccentricity: 0.4 },
             Body::Lobes { lobes: 3, amplitude: 0.02 },
             Body::Egg { amplitude: 0.01 },
+            Body::Notched { depth: 0.3, angle: 0.3 },
         ] {
             let shape = body.contour(&mut rng).expect("a contour");
             assert!((shape.diameter() - 1.0).abs() < 1e-4, "{body:?}: {}", shape.diameter());

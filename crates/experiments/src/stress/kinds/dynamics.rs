@@ -77,6 +77,14 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
             ("swing", "swings to and fro in 3 s", swinging(3.0, 1.0)),
             ("swing, blob", "the same with a smooth contour", blob(swinging(3.0, 1.0))),
             ("fast swing", "swings to and fro in 0.7 s", swinging(0.7, 1.0)),
+            (
+                "disc with a notch that swings",
+                "a disc with a notch swings to and fro in 1 s, in its place, at up to 4 to 7 rad/s",
+                Recipe {
+                    body: Body::Notched { depth: 0.35, angle: 0.3 },
+                    ..in_place(spin(swinging(1.0, 1.0), 4.0, 7.0))
+                },
+            ),
         ],
     )
 }

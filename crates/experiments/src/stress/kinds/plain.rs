@@ -36,6 +36,11 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
                 "a smooth contour with independent errors of 0.1 %",
                 Recipe { noise: 0.001, ..of(Body::Blob) },
             ),
+            (
+                "disc with a notch",
+                "a disc that shows its turn by a notch alone",
+                of(Body::Notched { depth: 0.35, angle: 0.3 }),
+            ),
             ("polygon", "a star-shaped polygon of 7 corners", of(Body::Polygon { corners: 7 })),
             ("long polygon", "a star-shaped polygon of 13 corners", of(Body::Polygon { corners: 13 })),
             (
