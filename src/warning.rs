@@ -40,6 +40,9 @@ pub enum Warning {
         /// Their names.
         parameters: Vec<&'static str>,
     },
+    /// The outline does not show the rotation that is stated; the path of the object tells it, as `--dynamics generator` asks for. It is right
+    /// only if the object turns with its path (motion filter).
+    RotationFromPath,
     /// The object was not seen in the last frames.
     Lost,
     /// The object was lost and searched for in the last frames; the motion is the last one known.
@@ -144,7 +147,7 @@ impl Warning {
             Self::TooManyRejected { .. } | Self::Lost | Self::Reacquiring { .. } => 1,
             Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
             Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias => 3,
-            Self::Aliases { .. } => 4,
+            Self::Aliases { .. } | Self::RotationFromPath => 4,
             Self::NotObservable { .. }
             | Self::NotKnown { .. }
             | Self::PlaneHardlyMoves { .. }
@@ -164,6 +167,7 @@ impl Warning {
             Self::NotObservable { .. } => "not_observable",
             Self::NotKnown { .. } => "not_known",
             Self::RotationNotObservable { .. } => "rotation_not_observable",
+            Self::RotationFromPath => "rotation_from_path",
             Self::Lost => "lost",
             Self::Reacquiring { .. } => "reacquiring",
             Self::Restarted { .. } => "restarted",
@@ -211,6 +215,9 @@ impl fmt::Display for Warning {
             Self::RotationNotObservable { parameters } => {
                 write!(f, "rotation is not observable from these outlines; unknown: {}", parameters.join(", "))
             }
+            Self::RotationFromPath => f.write_str(
+                "the outline does not show its rotation: omega is told by the path alone, and right only if the object turns with its path",
+            ),
             Self::Lost => f.write_str("the object was lost at the end"),
             Self::Reacquiring { last_known } => write!(
                 f,

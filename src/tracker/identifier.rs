@@ -264,6 +264,9 @@ impl FilteredObject {
             if !others.is_empty() {
                 warnings.push(Warning::NotKnown { parameters: others });
             }
+            if filter.turn_is_told_by_path() && estimate.parameters().next().is_some_and(|p| p.value.is_some()) {
+                warnings.push(Warning::RotationFromPath);
+            }
         }
         if let (Phase::Acquiring, Some((time, _))) = (filter.phase(), last_known) {
             warnings.push(Warning::Reacquiring { last_known: *time });

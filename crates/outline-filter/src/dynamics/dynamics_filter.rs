@@ -38,18 +38,19 @@ impl DynamicsFilter {
         model: MotionModel,
         setting: Dynamics,
         summary: (&Summary, &StateMatrix),
-        middle: Point2<f64>,
+        (middle, null): (Point2<f64>, &[NullDirection]),
         seconds: f64,
     ) -> Option<Self> {
+        let place = (middle, null);
         match model {
             MotionModel::Rigid => {
-                InteractingHypotheses::begin(model, setting, summary, middle, seconds).map(Self::Rigid)
+                InteractingHypotheses::begin(model, setting, summary, place, seconds).map(Self::Rigid)
             }
             MotionModel::Similarity => {
-                InteractingHypotheses::begin(model, setting, summary, middle, seconds).map(Self::Similarity)
+                InteractingHypotheses::begin(model, setting, summary, place, seconds).map(Self::Similarity)
             }
             MotionModel::Affine => {
-                InteractingHypotheses::begin(model, setting, summary, middle, seconds).map(Self::Affine)
+                InteractingHypotheses::begin(model, setting, summary, place, seconds).map(Self::Affine)
             }
             MotionModel::Projective => None,
         }
@@ -89,6 +90,11 @@ impl DynamicsFilter {
     /// Whether the object must not be expected where a constant generator takes it.
     pub(crate) fn leads(&self) -> bool {
         of_any_size!(self, hypotheses => hypotheses.leads())
+    }
+
+    /// Whether a turn that the outline does not show is told by the path of the middle.
+    pub(crate) fn turn_is_of_path(&self) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.turn_is_of_path())
     }
 
     /// Whether others than a constant generator are neither ruled out nor lead already.

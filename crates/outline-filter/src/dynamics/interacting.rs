@@ -39,6 +39,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     /// Factor of the variance of a pose by the most probable hypothesis.
     shaking: f64,
     leads: bool,
+    /// Whether a turn that the outline does not show is told by the path of the middle, as whoever asks for a constant generator wants it.
+    turn_is_of_path: bool,
     /// Whether wrong poses have moved the outline: others than a constant generator have led, or the motion has changed.
     pub(super) outline_has_moved: bool,
 }
@@ -50,7 +52,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         model: MotionModel,
         setting: Dynamics,
         (summary, given_outline): (&Summary, &StateMatrix),
-        middle: Point2<f64>,
+        (middle, null): (Point2<f64>, &[NullDirection]),
         seconds: f64,
     ) -> Option<Self> {
         let k = model.parameter_count();
@@ -81,6 +83,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             shaking: 1.0,
             outline_has_moved: false,
             leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
+            turn_is_of_path: false,
         };
         for course in courses {
             let mut hypothesis = Hypothesis { course, mean, covariance };
@@ -106,7 +109,29 @@ impl<const N: usize> InteractingHypotheses<N> {
             filter.hypotheses.push(hypothesis);
         }
         filter.normalise();
+        if setting == Dynamics::Generator && model <= MotionModel::Similarity && !null.is_empty() {
+            filter.take_turn_from_path(null, seconds);
+        }
         Some(filter)
+    }
+
+    /// Lets the path of the middle tell what the outline does not show of the rates, from a prior that is as wide as steps of so many seconds
+    /// allow.
+    fn take_turn_from_path(&mut self, null: &[NullDirection], seconds: f64) {
+        let (from, k) = (self.reference.about_middle(self.model), self.model.parameter_count());
+        (self.turn_is_of_path, self.leads) = (true, true);
+        for NullDirection { direction, .. } in null {
+            let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
+            let largest = (0..k - 2).map(|i| direction[i].abs()).fold(0.0, f64::max);
+            if largest > 0.0 {
+                let unit = tuning::LARGEST_STEP_OF_PATH / (seconds * largest);
+                for hypothesis in &mut self.hypotheses {
+                    for (i, j) in (0..k).flat_map(|i| (0..k).map(move |j| (i, j))) {
+                        hypothesis.covariance[(k + i, k + j)] += direction[i] * direction[j] * unit * unit;
+                    }
+                }
+            }
+        }
     }
 
     fn normalise(&mut self) {
@@ -132,7 +157,9 @@ impl<const N: usize> InteractingHypotheses<N> {
             Step { model: self.model, seconds, from: &self.reference, to: pose, pose_variance: &self.pose_variance };
         let possible = self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step));
         self.reference = *pose;
-        self.hold(null);
+        if !self.turn_is_of_path {
+            self.hold(null);
+        }
         possible
     }
 
@@ -221,6 +248,11 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Whether the object must not be expected where a constant generator takes it.
     pub(crate) fn leads(&self) -> bool {
         self.leads
+    }
+
+    /// Whether a turn that the outline does not show is told by the path of the middle.
+    pub(crate) fn turn_is_of_path(&self) -> bool {
+        self.turn_is_of_path
     }
 
     /// Whether others than a constant generator are neither ruled out nor lead already.

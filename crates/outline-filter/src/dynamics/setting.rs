@@ -8,7 +8,7 @@ pub enum Dynamics {
     #[default]
     Auto,
     /// The paper's constant generator: the velocity of the object's middle turns with the object, as on a turntable. The path of the middle
-    /// then tells the turn, also where the outline does not show it.
+    /// then tells the turn, also where the outline does not show it (rigid and similarity motion).
     Generator,
     /// Constant rates and a constant velocity of the middle, as of an object that is thrown or slides.
     Velocity,

@@ -49,7 +49,8 @@ pub(super) struct MotionHistory {
 impl MotionHistory {
     /// Whether the motion has been seen to change by more than a constant generator does.
     pub(super) fn is_changing(&self) -> bool {
-        self.change.is_seen() || self.dynamics.as_ref().is_some_and(DynamicsFilter::leads)
+        let leads = |dynamics: &DynamicsFilter| dynamics.leads() && !dynamics.turn_is_of_path();
+        self.change.is_seen() || self.dynamics.as_ref().is_some_and(leads)
     }
 
     /// Whether hypotheses of dynamics say that the motion is constant, in whatever sense.

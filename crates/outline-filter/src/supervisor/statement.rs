@@ -9,6 +9,7 @@ use super::{
 };
 use crate::{
     dynamics::{CentredDeviations, Purpose, Summary, WrongFamily},
+    track::TurnTold,
     tuning::statement as tuning,
 };
 
@@ -90,7 +91,7 @@ impl MotionFilter {
         }
         let track = self.track.as_ref()?;
         let Statement { random, all, .. } = self.statement()?;
-        let estimate = track.estimate_of(all)?.with_random_part(&track.deviations_of(random)?);
+        let estimate = track.estimate_of(all, self.turn_told())?.with_random_part(&track.deviations_of(random)?);
         let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
         let is_stated = self.unstated().is_none();
         let unknown =
@@ -98,11 +99,28 @@ impl MotionFilter {
         Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
     }
 
+    /// Whether the turn that is stated is told by the path of the object alone: the outline does not show it, and
+    /// [`Dynamics::Generator`](crate::Dynamics::Generator) asks for what a constant generator tells.
+    #[must_use]
+    pub fn turn_is_told_by_path(&self) -> bool {
+        self.turn_told() == TurnTold::ByPath
+    }
+
+    fn turn_told(&self) -> TurnTold {
+        match &self.history.dynamics {
+            Some(dynamics) if dynamics.turn_is_of_path() => TurnTold::ByPath,
+            _ => TurnTold::ByOutline,
+        }
+    }
+
     /// Which parameters, in the order of the model, the outline does not show, as far as it is known by now. Others that are not stated are
     /// not known well enough.
     #[must_use]
     pub fn hidden_parameters(&self) -> [bool; MAX_PARAMETERS] {
         let none = [false; MAX_PARAMETERS];
+        if self.turn_is_told_by_path() {
+            return none;
+        }
         self.track.as_ref().map_or(none, |track| track.blind_parameters(track.body_pose()))
     }
 

@@ -15,6 +15,14 @@ use crate::{
     update::{hold, with_hold},
 };
 
+/// What tells the turn of an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TurnTold {
+    ByOutline,
+    /// The path of its middle too, as a constant generator has it.
+    ByPath,
+}
+
 impl Track {
     /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
     pub(crate) fn summary(&self) -> Option<Summary> {
@@ -74,7 +82,8 @@ impl Track {
         let summary = self.summary_by(&with_hold(&belief.marginal, hold.as_ref()))?;
         let given_outline = with_hold(&belief.information.with_outline_given(), hold.as_ref());
         let given_outline = self.summary_by(&given_outline)?.covariance;
-        DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), self.map.middle(), belief.memory.step)
+        let place = (self.map.middle(), null.as_slice());
+        DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
     /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number.
@@ -102,14 +111,14 @@ impl Track {
 
     /// The motion as this track alone has it: see [`estimate_of`](Self::estimate_of).
     pub(crate) fn estimate(&self) -> Option<MotionEstimate> {
-        self.estimate_of(&self.summary()?)
+        self.estimate_of(&self.summary()?, TurnTold::ByOutline)
     }
 
     /// The motion in image units, with standard deviations. A parameter whose standard deviation, over the time that it is
     /// known from, would turn the object by a quarter of a radian or move it by a quarter of its size is marked as
     /// unobservable; so is one that takes part in a motion which the outline does not show, such as the turning of a circle
-    /// about its centre.
-    pub(crate) fn estimate_of(&self, summary: &Summary) -> Option<MotionEstimate> {
+    /// about its centre, unless the turn is told by the path.
+    pub(crate) fn estimate_of(&self, summary: &Summary, turn: TurnTold) -> Option<MotionEstimate> {
         let covariance = self.covariance_of(summary)?;
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
@@ -118,7 +127,10 @@ impl Track {
         let values = model.parameters_of(&generator).map(|value| value * self.reference.per_second());
         let deviations = roots(&covariance);
         let mut estimate = MotionEstimate::new(model, &values[..k], Some(&deviations));
-        let blind = self.blind_parameters(&summary.pose);
+        let blind = match turn {
+            TurnTold::ByOutline => self.blind_parameters(&summary.pose),
+            TurnTold::ByPath => [false; MAX_PARAMETERS],
+        };
         let reach = self.reference.radius + self.reference.origin.coords.norm();
         let memory = &self.belief.memory;
         let shortest = memory.shortest(k);

@@ -22,6 +22,7 @@ mod track;
 mod turn;
 mod usual_agreement;
 
+pub(crate) use estimate::TurnTold;
 pub use known_outline::{KnownOutline, KnownPiece};
 pub(crate) use remapping::PlacedFrame;
 pub(crate) use track::{Comparison, Outcome, Track};

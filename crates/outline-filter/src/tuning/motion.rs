@@ -77,6 +77,8 @@ pub(crate) mod dynamics {
     /// How far the point of an object that runs straight may be from its middle, in RMS radii, as a deviation: noise, hidden arcs, and bodies
     /// that are not quite even.
     pub(crate) const MIDDLE: f64 = 0.02;
+    /// Turn in a step, in rad, as a deviation, that the path of an object may tell where its outline does not: larger ones are no arc any more.
+    pub(crate) const LARGEST_STEP_OF_PATH: f64 = 0.5;
     /// Probability that an interval of 95 % leaves out.
     pub(crate) const LEFT_OUT: f64 = 0.05;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
