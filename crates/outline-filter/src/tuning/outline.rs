@@ -125,8 +125,9 @@ pub(crate) mod null_space {
 pub(crate) mod usual_agreement {
     /// Frames that say what is usual.
     pub(crate) const FEWEST_FRAMES: usize = 2;
-    /// Deviations of a share by which more points must disagree than usual.
-    pub(crate) const SIGNIFICANT: f64 = 3.0;
+    /// Deviations of a share by which more points must disagree than usual. The usual share is a low one, about one deviation below the mean, and a
+    /// search costs as much as fifty frames.
+    pub(crate) const SIGNIFICANT: f64 = 5.0;
     /// Shares by which a frame corrects the usual share where fewer points disagree, and where more do: that falls fast and rises slowly.
     pub(crate) const FALLS: f64 = 0.2;
     pub(crate) const RISES: f64 = 0.02;
