@@ -4,13 +4,15 @@
 use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by};
 use nalgebra::{Matrix3, Point2, Vector2};
 
-use super::{Frame, Measurement, NO_CELL, Pass, View, association::mean_of_neighbours};
-use crate::{map::NullDirection, tuning::measurement as tuning, vectors::vectorised};
-
-/// Points that are measured side by side.
-const LANES: usize = 4;
-
-type Lanes = [f64; LANES];
+use super::{
+    Frame, Measurement, NO_CELL, Pass, View,
+    association::{LEAST_WEIGHT, mean_of_neighbours},
+};
+use crate::{
+    map::NullDirection,
+    tuning::measurement as tuning,
+    vectors::{LANES, Lanes, vectorised},
+};
 
 /// The outline at a cell in the image of one frame.
 #[derive(Debug, Clone, Copy)]
@@ -35,8 +37,8 @@ impl CellLine {
 pub(crate) struct Columns {
     /// The points in the body frame.
     own_places: Vec<Point2<f64>>,
-    /// Coordinates in the body frame times weights, and these.
-    weighted: Vec<[f64; 3]>,
+    /// Coordinates in the body frame times weights, and these; a fourth number, which is none, makes it a whole vector.
+    weighted: Vec<Lanes>,
     /// Of the cells; the number of cells for none.
     numbers: Vec<u32>,
     residuals: Vec<f64>,
@@ -61,11 +63,16 @@ impl View<'_> {
         let Columns { own_places, weighted, numbers, residuals, weights, lines } = columns;
         numbers.resize(count, 0);
         residuals.resize(count, 0.0);
-        weights.clear();
-        weights.extend(measurements.iter().map(|m| m.weight));
+        weights.resize(count, 0.0);
+        match pass {
+            Pass::First if half_window == 0 => weights.fill(0.0),
+            // They will be found.
+            Pass::First => {}
+            Pass::Again => weights.iter_mut().zip(measurements.iter()).for_each(|(weight, m)| *weight = m.weight),
+        }
         own_places.resize(count, Point2::origin());
         places.resize(count, Point2::origin());
-        weighted.resize(count, [0.0; 3]);
+        weighted.resize(count, [0.0; LANES]);
         lines.resize(map.cells().len() + 1, CellLine::NONE);
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (own_places, places, weighted) =
@@ -85,14 +92,14 @@ impl View<'_> {
             places.copy_from_slice(own_places);
             vectorised(
                 #[inline(always)]
-                || map.associate(|i| places[i], numbers),
+                || map.associate(places.iter().copied(), numbers),
             );
         } else {
             if pass == Pass::First {
                 // What the points count with in the means.
                 vectorised(
                     #[inline(always)]
-                    || map.associate(|i| own_places[i], numbers),
+                    || map.associate(own_places.iter().copied(), numbers),
                 );
                 self.weigh_side_by_side((points, numbers, lines), (residuals, weights), values, pass);
             }
@@ -100,24 +107,31 @@ impl View<'_> {
                 #[inline(always)]
                 || {
                     for (weighted, (q, weight)) in weighted.iter_mut().zip(own_places.iter().zip(weights.iter())) {
-                        *weighted = [weight * q.x, weight * q.y, *weight];
+                        *weighted = [weight * q.x, weight * q.y, *weight, 0.0];
                     }
                     for piece in pieces.iter() {
                         let range = piece.range();
                         let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
                         let places = &mut places[range];
+                        if piece.closed {
+                            take_means(weighted, half_window, own, places);
+                            continue;
+                        }
                         mean_of_neighbours(
                             weighted.len(),
                             #[inline(always)]
                             |i| weighted[i],
-                            piece.closed,
+                            false,
                             half_window,
                             #[inline(always)]
                             |i, mean| places[i] = mean.unwrap_or(own[i]),
                         );
                     }
                     // The means where the points count, the points where they do not.
-                    map.associate(|i| if weights[i] > 0.0 { places[i] } else { own_places[i] }, numbers);
+                    for ((own, place), weight) in own_places.iter_mut().zip(places.iter()).zip(weights.iter()) {
+                        *own = if *weight > 0.0 { *place } else { *own };
+                    }
+                    map.associate(own_places.iter().copied(), numbers);
                 },
             );
         }
@@ -169,6 +183,36 @@ impl View<'_> {
             #[inline(always)]
             || take_weights((residuals, numbers, lines), weights, 1.0 / scale, share),
         );
+    }
+}
+
+/// As [`mean_of_neighbours`], which a test compares it with, along a closed piece; the point itself where its neighbours count for nothing.
+#[inline(always)]
+fn take_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], places: &mut [Point2<f64>]) {
+    let count = weighted.len();
+    let w = half_window.min((count - 1) / 2);
+    let mut sum = [0.0; LANES];
+    for more in weighted[count - w..].iter().chain(&weighted[..=w]) {
+        (0..LANES).for_each(|c| sum[c] += more[c]);
+    }
+    let mean = |sum: &Lanes, own: &Point2<f64>| {
+        let [x, y, weight, _] = *sum;
+        let inverse = 1.0 / weight;
+        if weight > LEAST_WEIGHT { Point2::new(x * inverse, y * inverse) } else { *own }
+    };
+    places[0] = mean(&sum, &own[0]);
+    // Points that come into the window and that leave it: at the start, and at the end, over the other end.
+    let parts = [
+        (1..w + 1, &weighted[w + 1..], &weighted[count - w..]),
+        (w + 1..count - w, &weighted[2 * w + 1..], weighted),
+        (count - w..count, weighted, &weighted[count - 2 * w - 1..]),
+    ];
+    for (range, coming, leaving) in parts {
+        let of_points = places[range.clone()].iter_mut().zip(&own[range]);
+        for ((place, own), (more, less)) in of_points.zip(coming.iter().zip(leaving)) {
+            (0..LANES).for_each(|c| sum[c] += more[c] - less[c]);
+            *place = mean(&sum, own);
+        }
     }
 }
 
@@ -309,6 +353,32 @@ impl Columns {
     pub(super) fn hand_cells_back(&self, measurements: &mut [Measurement]) {
         for (measurement, number) in measurements.iter_mut().zip(&self.numbers).filter(|(m, _)| m.cell != NO_CELL) {
             measurement.cell = *number as usize;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    #[test]
+    fn means_along_a_closed_piece_are_those_of_the_plain_way_bit_for_bit() {
+        let mut rng = ChaCha8Rng::seed_from_u64(8);
+        for (count, half_window) in [(1, 3), (2, 1), (3, 1), (4, 7), (5, 2), (9, 4), (40, 3), (41, 20), (41, 30)] {
+            let mut draw = || rng.random_range(-1.0..1.0);
+            let own: Vec<_> = (0..count).map(|_| Point2::new(draw(), draw())).collect();
+            let weight = |i: usize| f64::from(u8::from(!(10..30).contains(&i)));
+            let weighted: Vec<_> =
+                own.iter().enumerate().map(|(i, q)| [weight(i) * q.x, weight(i) * q.y, weight(i), 0.0]).collect();
+            let mut found = vec![Point2::origin(); count];
+            take_means(&weighted, half_window, &own, &mut found);
+            let mut expected = found.clone();
+            let take = |i: usize, mean: Option<Point2<f64>>| expected[i] = mean.unwrap_or(own[i]);
+            mean_of_neighbours(count, |i| weighted[i], true, half_window, take);
+            assert_eq!(found, expected, "{count} {half_window}");
         }
     }
 }
