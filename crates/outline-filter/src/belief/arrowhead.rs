@@ -8,6 +8,9 @@ use crate::vectors::{LANES, Lanes, add_product, in_lanes, positive_inverse, vect
 /// Pose error and motion parameters of the largest model.
 pub(crate) const STATE: usize = 2 * MAX_PARAMETERS;
 
+/// Entries of a state up to which cells are summed over side by side.
+const LARGEST_IN_LANES: usize = 8;
+
 pub(crate) type StateVector = SVector<f64, STATE>;
 pub(crate) type StateMatrix = SMatrix<f64, STATE, STATE>;
 
@@ -134,8 +137,37 @@ fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &Paramet
     *v = moved;
 }
 
-/// Sum of `c c' / o` over the cells, several of them side by side; the upper half is that of the lower.
+/// Sum of `c c' / o` over the cells.
 fn told_by_offsets<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
+    // Of more entries than that the sums of several cells side by side are too many to be near at hand.
+    if S > LARGEST_IN_LANES { told_row_by_row(cells) } else { told_side_by_side(cells) }
+}
+
+/// As [`told_by_offsets`], one cell after the other.
+fn told_row_by_row<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
+    vectorised(
+        #[inline(always)]
+        || {
+            let mut told = [[0.0; S]; S];
+            for (coupling, own) in cells.rows::<S>().iter().zip(cells.own()) {
+                if *own <= 0.0 {
+                    continue;
+                }
+                let inverse = 1.0 / own;
+                for i in 0..S {
+                    let factor = coupling[i] * inverse;
+                    for j in 0..S {
+                        told[i][j] += factor * coupling[j];
+                    }
+                }
+            }
+            told
+        },
+    )
+}
+
+/// As [`told_row_by_row`], which a test compares it with, several cells side by side.
+fn told_side_by_side<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
     let told = vectorised(
         #[inline(always)]
         || {
@@ -180,4 +212,34 @@ fn symmetric<const S: usize>(entry: impl Fn(usize, usize) -> f64) -> StateMatrix
         }
     }
     whole
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    fn difference<const S: usize>(cells: usize) -> f64 {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let mut information = OffsetInformation::new(S);
+        information.resize(cells);
+        for (number, (own, coupling)) in information.iter_mut().enumerate() {
+            if number % 5 != 2 {
+                *own = rng.random_range(0.5..2.0);
+                coupling.iter_mut().for_each(|entry| *entry = rng.random_range(-1.0..1.0));
+            }
+        }
+        let (found, expected) = (told_side_by_side::<S>(&information), told_row_by_row::<S>(&information));
+        found.iter().flatten().zip(expected.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn offsets_side_by_side_tell_what_they_do_one_after_the_other() {
+        for cells in [0, 1, 3, 4, 5, 30] {
+            let largest = difference::<6>(cells).max(difference::<8>(cells));
+            assert!(largest < 1e-13, "{cells}: {largest}");
+        }
+    }
 }
