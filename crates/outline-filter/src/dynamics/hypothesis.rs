@@ -369,7 +369,7 @@ impl<const N: usize> Hypothesis<N> {
         // What is rounded in one half only would grow from frame to frame.
         for j in 0..N {
             for i in 0..j {
-                covariance[i][j] = covariance[j][i];
+                self.covariance[(j, i)] = self.covariance[(i, j)];
             }
         }
     }

@@ -124,9 +124,6 @@ impl View<'_> {
     }
 }
 
-/// Weight of all neighbours of a point below which they say nothing of its place.
-pub(super) const LEAST_WEIGHT: f64 = 1e-3;
-
 /// Mean of the neighbours of every point along a piece of the contour, the point itself included; none where they count for nothing.
 /// `weighted` are the coordinates of the points times their weights, and these; a fourth number is not looked at.
 #[inline(always)]
@@ -170,6 +167,6 @@ pub(super) fn mean_of_neighbours(
             }
         }
         let [x, y, weight, _] = sum;
-        take(i, (weight > LEAST_WEIGHT).then(|| Point2::new(x * (1.0 / weight), y * (1.0 / weight))));
+        take(i, (weight > tuning::LEAST_WEIGHT).then(|| Point2::new(x * (1.0 / weight), y * (1.0 / weight))));
     }
 }

@@ -4,10 +4,7 @@
 use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by};
 use nalgebra::{Matrix3, Point2, Vector2};
 
-use super::{
-    Frame, Measurement, NO_CELL, Pass, View,
-    association::{LEAST_WEIGHT, mean_of_neighbours},
-};
+use super::{Frame, Measurement, NO_CELL, Pass, View, association::mean_of_neighbours};
 use crate::{
     map::NullDirection,
     tuning::measurement as tuning,
@@ -35,7 +32,7 @@ impl CellLine {
 /// Numbers of the points of a frame, by columns; buffers that are reused from frame to frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Columns {
-    /// The points in the body frame.
+    /// The points in the body frame; in the end the means of their neighbours where they count.
     own_places: Vec<Point2<f64>>,
     /// Coordinates in the body frame times weights, and these; a fourth number, which is none, makes it a whole vector.
     weighted: Vec<Lanes>,
@@ -198,7 +195,7 @@ fn take_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], place
     let mean = |sum: &Lanes, own: &Point2<f64>| {
         let [x, y, weight, _] = *sum;
         let inverse = 1.0 / weight;
-        if weight > LEAST_WEIGHT { Point2::new(x * inverse, y * inverse) } else { *own }
+        if weight > tuning::LEAST_WEIGHT { Point2::new(x * inverse, y * inverse) } else { *own }
     };
     places[0] = mean(&sum, &own[0]);
     // Points that come into the window and that leave it: at the start, and at the end, over the other end.
