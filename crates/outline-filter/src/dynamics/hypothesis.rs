@@ -219,13 +219,15 @@ impl<const N: usize> Hypothesis<N> {
     pub(super) fn add_change_of_accelerations(&mut self, step: &Step<'_>) {
         let Course::Accelerating { level, rates: all } = self.course else { return };
         let k = Self::K;
+        let covariance = &mut self.covariance.data.0;
         for j in if all { 0 } else { k - 2 }..k {
             let variance = level * step.pose_variance[j];
             for (row, column, share) in step.by_change {
                 let (r, c) = (row * k + j, column * k + j);
-                self.covariance[(r, c)] += share * variance;
+                let added = share * variance;
+                covariance[c][r] += added;
                 if r != c {
-                    self.covariance[(c, r)] += share * variance;
+                    covariance[r][c] += added;
                 }
             }
         }

@@ -163,23 +163,21 @@ impl View<'_> {
         values: &mut Vec<f64>,
         pass: Pass,
     ) {
-        let limit = tuning::FULL_WEIGHT * self.noise.sigma;
+        let sigma = self.noise.sigma;
         let near = vectorised(
             #[inline(always)]
-            || take_residuals((points, numbers, lines), residuals, limit),
+            || take_residuals_and_weights((points, numbers, lines), (residuals, weights), sigma),
         );
-        let (mut scale, mut share) = (self.noise.sigma, 1.0);
         if (near as f64) < tuning::NEAR_ENOUGH * points.len() as f64 {
             values.clear();
             let none = (lines.len() - 1) as u32;
             let known = residuals.iter().zip(numbers).filter(|(_, number)| **number != none);
             values.extend(known.map(|(residual, _)| residual.abs()));
-            (scale, share) = self.scale_of_wide_frame(values, pass);
+            let (scale, share) = self.scale_of_wide_frame(values, pass);
+            for ((weight, residual), number) in weights.iter_mut().zip(residuals.iter()).zip(numbers) {
+                *weight = weight_of(*residual, &lines[*number as usize], 1.0 / scale) * share;
+            }
         }
-        vectorised(
-            #[inline(always)]
-            || take_weights((residuals, numbers, lines), weights, 1.0 / scale, share),
-        );
     }
 }
 
@@ -237,66 +235,55 @@ fn take_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &m
     lines[cells.len()] = CellLine::NONE;
 }
 
-/// Distances of points from the lines of their cells; how many of them are below a limit.
+/// Distances of points from the lines of their cells, and Tukey's weights for a deviation; how many of the points are near.
 #[inline(always)]
-fn take_residuals(
+fn take_residuals_and_weights(
     (points, numbers, lines): (&[Point2<f64>], &[u32], &[CellLine]),
-    residuals: &mut [f64],
-    limit: f64,
+    (residuals, weights): (&mut [f64], &mut [f64]),
+    sigma: f64,
 ) -> usize {
-    let distance = |p: &Point2<f64>, line: &CellLine| line.normal.x * p.x + line.normal.y * p.y - line.at;
+    let (limit, scale) = (tuning::FULL_WEIGHT * sigma, 1.0 / sigma);
     let mut near = [0.0; LANES];
-    let (chunks, rest) = residuals.as_chunks_mut::<LANES>();
+    let (residuals, last_residuals) = residuals.as_chunks_mut::<LANES>();
+    let (weights, last_weights) = weights.as_chunks_mut::<LANES>();
     let (points, last_points) = points.as_chunks::<LANES>();
     let (numbers, last_numbers) = numbers.as_chunks::<LANES>();
-    for ((residuals, points), numbers) in chunks.iter_mut().zip(points).zip(numbers) {
+    for ((residuals, weights), (points, numbers)) in residuals.iter_mut().zip(weights).zip(points.iter().zip(numbers)) {
         let lines: [&CellLine; LANES] = std::array::from_fn(|lane| &lines[numbers[lane] as usize]);
         let [x, y, at]: [Lanes; 3] =
             [lines.map(|line| line.normal.x), lines.map(|line| line.normal.y), lines.map(|line| line.at)];
+        let [inverse, of_cell]: [Lanes; 2] = [lines.map(|line| line.inverse_deviation), lines.map(|line| line.share)];
         for lane in 0..LANES {
             let residual = x[lane] * points[lane].x + y[lane] * points[lane].y - at[lane];
             residuals[lane] = residual;
             near[lane] += if residual.abs() < limit { 1.0 } else { 0.0 };
+            weights[lane] = tukeys_weight(residual * (inverse[lane] * scale)) * of_cell[lane];
         }
     }
     let mut all: f64 = near.iter().sum();
-    for ((residual, p), number) in rest.iter_mut().zip(last_points).zip(last_numbers) {
-        *residual = distance(p, &lines[*number as usize]);
+    let last = last_points.iter().zip(last_numbers);
+    for ((residual, weight), (p, number)) in last_residuals.iter_mut().zip(last_weights).zip(last) {
+        let line = &lines[*number as usize];
+        *residual = line.normal.x * p.x + line.normal.y * p.y - line.at;
         all += if residual.abs() < limit { 1.0 } else { 0.0 };
+        *weight = weight_of(*residual, line, scale);
     }
     all as usize
 }
 
-/// Tukey's weights of residuals, by the inverse of their deviation; `share` is what all points count for.
+/// What a point with a residual counts for, by the inverse of a deviation.
 #[inline(always)]
-fn take_weights(
-    (residuals, numbers, lines): (&[f64], &[u32], &[CellLine]),
-    weights: &mut [f64],
-    scale: f64,
-    share: f64,
-) {
-    let by_excess = 1.0 / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT);
-    let weight = |residual: f64, inverse_deviation: f64, of_cell: f64| {
-        let size = residual.abs() * (inverse_deviation * scale);
-        let excess = (size - tuning::FULL_WEIGHT) * by_excess;
-        let beyond = if excess > 0.0 { excess } else { 0.0 };
-        let kept = 1.0 - beyond * beyond;
-        (if excess < 1.0 { kept * kept } else { 0.0 }) * share * of_cell
-    };
-    let (chunks, rest) = weights.as_chunks_mut::<LANES>();
-    let (residuals, last_residuals) = residuals.as_chunks::<LANES>();
-    let (numbers, last_numbers) = numbers.as_chunks::<LANES>();
-    for ((weights, residuals), numbers) in chunks.iter_mut().zip(residuals).zip(numbers) {
-        let lines: [&CellLine; LANES] = std::array::from_fn(|lane| &lines[numbers[lane] as usize]);
-        let [inverse, of_cell]: [Lanes; 2] = [lines.map(|line| line.inverse_deviation), lines.map(|line| line.share)];
-        for lane in 0..LANES {
-            weights[lane] = weight(residuals[lane], inverse[lane], of_cell[lane]);
-        }
-    }
-    for ((found, residual), number) in rest.iter_mut().zip(last_residuals).zip(last_numbers) {
-        let line = &lines[*number as usize];
-        *found = weight(*residual, line.inverse_deviation, line.share);
-    }
+fn weight_of(residual: f64, line: &CellLine, scale: f64) -> f64 {
+    tukeys_weight(residual * (line.inverse_deviation * scale)) * line.share
+}
+
+/// Tukey's weight of a residual in deviations.
+#[inline(always)]
+fn tukeys_weight(residual: f64) -> f64 {
+    let excess = (residual.abs() - tuning::FULL_WEIGHT) * (1.0 / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT));
+    let beyond = if excess > 0.0 { excess } else { 0.0 };
+    let kept = 1.0 - beyond * beyond;
+    if excess < 1.0 { kept * kept } else { 0.0 }
 }
 
 /// What has been found of the points of a frame.
