@@ -3,6 +3,11 @@ use nalgebra::{Complex, Matrix3, RowVector3};
 /// Norm beyond which no digit of an exponential is left in f64: a turn by 1e15 rad has lost its phase.
 const MEANINGFUL_NORM: f64 = 1e15;
 
+/// Size up to which the second quotient is summed as a series; beyond, a difference loses no more than a few digits' worth of rounding.
+const SERIES_SIZE: f64 = 0.5;
+/// Last factorial of that series: the next term is below the rounding of the sum.
+const SERIES_TERMS: u32 = 16;
+
 /// `expm(m)`; all NaN if `m` is not finite or too large for any accuracy. Where the last row of `m` is zero,
 /// that of the result is exactly `(0, 0, 1)`.
 pub(crate) fn exponential(m: &Matrix3<f64>) -> Matrix3<f64> {
@@ -25,9 +30,38 @@ pub(crate) fn exponential_quotient(z: Complex<f64>) -> Complex<f64> {
     if half.norm() < 1e-9 { half + 1.0 } else { half.exp() * half.sinh() / half }
 }
 
+/// `(e^z - 1 - z) / z^2`, without loss of digits near 0.
+pub(crate) fn second_exponential_quotient(z: Complex<f64>) -> Complex<f64> {
+    if z.norm_sqr() > SERIES_SIZE * SERIES_SIZE {
+        return (exponential_quotient(z) - 1.0) / z;
+    }
+    // Horner's scheme for the sum of z^k / (k + 2)!.
+    let mut sum = Complex::new(1.0, 0.0);
+    for k in (3..=SERIES_TERMS).rev() {
+        sum = z * sum / f64::from(k) + 1.0;
+    }
+    sum * 0.5
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_second_quotient_agrees_with_a_long_series_on_both_sides_of_the_switch() {
+        for size in [0.0, 1e-300, 1e-12, 1e-6, 1e-3, 0.3, 0.499, 0.501, 1.0, 3.0] {
+            for phase in 0..8 {
+                let z = Complex::from_polar(size, f64::from(phase));
+                let (mut term, mut series) = (Complex::new(0.5, 0.0), Complex::new(0.0, 0.0));
+                for k in 3..60 {
+                    series += term;
+                    term *= z / f64::from(k);
+                }
+                let found = second_exponential_quotient(z);
+                assert!((found - series).norm() < 3e-15 * series.norm().max(0.1), "z = {z}: {found} {series}");
+            }
+        }
+    }
 
     #[test]
     fn the_quotient_agrees_with_its_series_on_both_sides_of_the_switch() {

@@ -122,7 +122,13 @@ impl MotionModel {
     pub fn generator(self, parameters: &[f64]) -> Matrix3<f64> {
         let basis = self.basis();
         assert_eq!(parameters.len(), basis.len(), "number of parameters of a {self} motion");
-        parameters.iter().zip(basis).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta)
+        // Written out: this is asked for dozens of times a frame, and most entries of the basis are zero.
+        match *parameters {
+            [omega, b1, b2] => generator_of([[0.0, omega, b1], [0.0 - omega, 0.0, b2], [0.0; 3]]),
+            [sigma, omega, b1, b2] => generator_of([[sigma, omega, b1], [0.0 - omega, sigma, b2], [0.0; 3]]),
+            [a1, a2, a3, a4, b1, b2] => generator_of([[a1, a2, b1], [a3, a4, b2], [0.0; 3]]),
+            _ => parameters.iter().zip(basis).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta),
+        }
     }
 
     /// The parameters of a motion in this model, in its order; `None` where the model does not hold the motion.
@@ -192,5 +198,20 @@ impl std::fmt::Display for MotionModel {
             Self::Affine => "affine",
             Self::Projective => "projective",
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_generator_is_the_sum_of_the_basis() {
+        let parameters = [0.3, -0.7, 1.1, 0.2, -0.4, 0.9, 0.05, -0.06];
+        for model in MotionModel::ALL {
+            let parameters = &parameters[..model.parameter_count()];
+            let sum = parameters.iter().zip(model.basis()).fold(Matrix3::zeros(), |sum, (theta, e)| sum + e * *theta);
+            assert_eq!(model.generator(parameters), sum, "{model}");
+        }
     }
 }

@@ -1,6 +1,9 @@
-use nalgebra::Matrix3;
+use nalgebra::{Complex, Matrix3};
 
-use crate::{exponential::exponential, motion_model::MotionModel};
+use crate::{
+    exponential::{exponential, exponential_quotient, second_exponential_quotient},
+    motion_model::MotionModel,
+};
 
 /// Norm up to which the series below is summed; larger motions are halved first.
 const SERIES_NORM: f64 = 0.25;
@@ -40,6 +43,23 @@ pub fn flow_sensitivity(generator: &Matrix3<f64>, direction: &Matrix3<f64>, seco
     sum
 }
 
+/// [`flow_sensitivity`] of a similarity motion, for directions that are such motions too, in closed form.
+///
+/// With `q = x + j y` such a motion is `q' = a q + b`, and its flow takes the generator `(e, f)` along to `(e, exp(a s) f - e b phi(s))`, where
+/// `phi(s) = (exp(a s) - 1) / a`. V is the integral of that over s.
+fn similarity_sensitivity(generator: &Matrix3<f64>, seconds: f64) -> impl Fn(&Matrix3<f64>) -> Matrix3<f64> {
+    let parts = |m: &Matrix3<f64>| (Complex::new(m.m11, m.m21), Complex::new(m.m13, m.m23));
+    let (a, b) = parts(generator);
+    let z = a * seconds;
+    let by_shift = exponential_quotient(z) * seconds;
+    let by_linear = b * second_exponential_quotient(z) * (seconds * seconds);
+    move |direction| {
+        let (e, f) = parts(direction);
+        let (linear, shift) = (e * seconds, f * by_shift - e * by_linear);
+        Matrix3::new(linear.re, -linear.im, shift.re, linear.im, linear.re, shift.im, 0.0, 0.0, 0.0)
+    }
+}
+
 impl MotionModel {
     /// [`flow_sensitivity`] for every parameter: entry j has `d flow / d theta_j = V_j flow`. Entries beyond the number of
     /// parameters are zero.
@@ -50,9 +70,40 @@ impl MotionModel {
     pub fn flow_sensitivities(self, parameters: &[f64], seconds: f64) -> [Matrix3<f64>; Self::MAX_PARAMETERS] {
         let generator = self.generator(parameters);
         let mut sensitivities = [Matrix3::zeros(); Self::MAX_PARAMETERS];
+        if self <= Self::Similarity {
+            let of_similarity = similarity_sensitivity(&generator, seconds);
+            for (v, e) in sensitivities.iter_mut().zip(self.basis()) {
+                *v = of_similarity(e);
+            }
+            return sensitivities;
+        }
         for (v, e) in sensitivities.iter_mut().zip(self.basis()) {
             *v = flow_sensitivity(&generator, e, seconds);
         }
         sensitivities
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sensitivities_of_similarities_in_closed_form_are_those_of_the_series() {
+        let motions = [[0.2, -1.3, 0.4, -0.7], [0.0, 0.0, 3.0, 4.0], [-0.5, 4.0, 1.0, 2.0], [1e-9, 1e-7, 1.0, -1.0]];
+        for (model, skipped) in [(MotionModel::Rigid, 1), (MotionModel::Similarity, 0)] {
+            for (motion, seconds) in motions.iter().zip([0.03, 1.0, 2.5, 0.4]) {
+                let parameters = &motion[skipped..];
+                let found = model.flow_sensitivities(parameters, seconds);
+                let generator = model.generator(parameters);
+                for (v, e) in found.iter().zip(model.basis()) {
+                    let expected = flow_sensitivity(&generator, e, seconds);
+                    assert!(
+                        (v - expected).amax() < 1e-12 * (1.0 + expected.amax()),
+                        "{model} {seconds}: {v} {expected}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -3,10 +3,13 @@ use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 use nalgebra::{SMatrix, SVector};
 
 use super::OffsetInformation;
-use crate::vectors::vectorised;
+use crate::vectors::{LANES, Lanes, add_product, in_lanes, positive_inverse, vectorised};
 
 /// Pose error and motion parameters of the largest model.
 pub(crate) const STATE: usize = 2 * MAX_PARAMETERS;
+
+/// Entries of a state up to which cells are summed over side by side.
+const LARGEST_IN_LANES: usize = 8;
 
 pub(crate) type StateVector = SVector<f64, STATE>;
 pub(crate) type StateMatrix = SMatrix<f64, STATE, STATE>;
@@ -43,12 +46,8 @@ impl Arrowhead {
     }
 
     fn predict_sized<const K: usize, const S: usize>(&mut self, inverse: &ParameterMatrix, product: &ParameterMatrix) {
-        let transform = |v: &mut [f64; S]| transform::<K, S>(v, inverse, product);
-        let mut rows: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| self.dense[i][j]));
-        rows.iter_mut().for_each(transform);
-        let mut columns: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
-        columns.iter_mut().for_each(transform);
-        for (row, moved) in self.dense.iter_mut().zip(&columns) {
+        let moved = moved_sized::<K, S>(|i, j| self.dense[i][j], inverse, product);
+        for (row, moved) in self.dense.iter_mut().zip(&moved) {
             row[..S].copy_from_slice(moved);
         }
         let couplings = self.cells.all_mut::<S>().1;
@@ -64,19 +63,26 @@ impl Arrowhead {
 
     /// Information of pose and motion with the offsets eliminated, `L - sum c c' / o`; unit diagonal beyond the state.
     pub(crate) fn marginal(&self) -> StateMatrix {
-        let mut sum = self.dense;
         match self.k {
-            3 => eliminate::<6>(&self.cells, &mut sum),
-            4 => eliminate::<8>(&self.cells, &mut sum),
-            6 => eliminate::<12>(&self.cells, &mut sum),
-            _ => eliminate::<16>(&self.cells, &mut sum),
+            3 => self.marginal_sized::<6>(),
+            4 => self.marginal_sized::<8>(),
+            6 => self.marginal_sized::<12>(),
+            _ => self.marginal_sized::<16>(),
         }
-        padded(&sum, 2 * self.k)
+    }
+
+    fn marginal_sized<const S: usize>(&self) -> StateMatrix {
+        let taken = told_by_offsets::<S>(&self.cells);
+        symmetric::<S>(|i, j| self.dense[i][j] - taken[i][j])
     }
 
     /// Information of pose and motion where the offsets are known; unit diagonal beyond the state.
     pub(crate) fn with_outline_given(&self) -> StateMatrix {
-        padded(&self.dense, 2 * self.k)
+        let mut given = StateMatrix::identity();
+        for i in 0..2 * self.k {
+            (0..2 * self.k).for_each(|j| given[(i, j)] = 0.5 * (self.dense[i][j] + self.dense[j][i]));
+        }
+        given
     }
 }
 
@@ -87,12 +93,34 @@ pub(crate) fn moved_marginal(
     inverse: &ParameterMatrix,
     product: &ParameterMatrix,
 ) -> StateMatrix {
-    let mut moved = Arrowhead::new(k);
-    for (i, row) in moved.dense.iter_mut().enumerate().take(2 * k) {
-        (0..2 * k).for_each(|j| row[j] = m[(i, j)]);
+    match k {
+        3 => moved_marginal_sized::<3, 6>(m, inverse, product),
+        4 => moved_marginal_sized::<4, 8>(m, inverse, product),
+        6 => moved_marginal_sized::<6, 12>(m, inverse, product),
+        _ => moved_marginal_sized::<8, 16>(m, inverse, product),
     }
-    moved.predict(inverse, product);
-    padded(&moved.dense, 2 * k)
+}
+
+fn moved_marginal_sized<const K: usize, const S: usize>(
+    m: &StateMatrix,
+    inverse: &ParameterMatrix,
+    product: &ParameterMatrix,
+) -> StateMatrix {
+    let moved = moved_sized::<K, S>(|i, j| m[(i, j)], inverse, product);
+    symmetric::<S>(|i, j| moved[i][j])
+}
+
+/// `F^-T m F^-1` of a symmetric matrix.
+fn moved_sized<const K: usize, const S: usize>(
+    m: impl Fn(usize, usize) -> f64,
+    inverse: &ParameterMatrix,
+    product: &ParameterMatrix,
+) -> [[f64; S]; S] {
+    let mut rows: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| m(i, j)));
+    rows.iter_mut().for_each(|row| transform::<K, S>(row, inverse, product));
+    let mut columns: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
+    columns.iter_mut().for_each(|column| transform::<K, S>(column, inverse, product));
+    columns
 }
 
 /// `v <- F^-T v`.
@@ -109,13 +137,18 @@ fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &Paramet
     *v = moved;
 }
 
-/// Subtracts `c c' / o` of every cell.
-fn eliminate<const S: usize>(cells: &OffsetInformation, sum: &mut [[f64; STATE]; STATE]) {
-    let taken = vectorised(
+/// Sum of `c c' / o` over the cells.
+fn told_by_offsets<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
+    // Of more entries than that the sums of several cells side by side are too many to be near at hand.
+    if S > LARGEST_IN_LANES { told_row_by_row(cells) } else { told_side_by_side(cells) }
+}
+
+/// As [`told_by_offsets`], one cell after the other.
+fn told_row_by_row<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
+    vectorised(
         #[inline(always)]
         || {
-            // A sum of the size of the model fits where the processor is fastest; that of the largest one does not.
-            let mut taken = [[0.0; S]; S];
+            let mut told = [[0.0; S]; S];
             for (coupling, own) in cells.rows::<S>().iter().zip(cells.own()) {
                 if *own <= 0.0 {
                     continue;
@@ -124,22 +157,89 @@ fn eliminate<const S: usize>(cells: &OffsetInformation, sum: &mut [[f64; STATE];
                 for i in 0..S {
                     let factor = coupling[i] * inverse;
                     for j in 0..S {
-                        taken[i][j] += factor * coupling[j];
+                        told[i][j] += factor * coupling[j];
                     }
                 }
             }
-            taken
+            told
+        },
+    )
+}
+
+/// As [`told_row_by_row`], which a test compares it with, several cells side by side.
+fn told_side_by_side<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
+    let told = vectorised(
+        #[inline(always)]
+        || {
+            let mut told = [[[0.0; LANES]; S]; S];
+            let (rows, last_rows) = cells.rows::<S>().as_chunks::<LANES>();
+            let (own, last_own) = cells.own().as_chunks::<LANES>();
+            for (rows, own) in rows.iter().zip(own) {
+                add_told(rows, own, &mut told);
+            }
+            let (mut rows, mut own) = ([[0.0; S]; LANES], [0.0; LANES]);
+            rows[..last_rows.len()].copy_from_slice(last_rows);
+            own[..last_own.len()].copy_from_slice(last_own);
+            add_told(&rows, &own, &mut told);
+            told
         },
     );
-    for (row, taken) in sum.iter_mut().zip(&taken) {
-        row.iter_mut().zip(taken).for_each(|(entry, taken)| *entry -= taken);
+    let sum = |i: usize, j: usize| told[i.max(j)][i.min(j)].iter().sum();
+    std::array::from_fn(|i| std::array::from_fn(|j| sum(i, j)))
+}
+
+/// Adds the lower half of `c c' / o` of some cells, in lanes.
+#[inline(always)]
+fn add_told<const S: usize>(rows: &[[f64; S]; LANES], own: &Lanes, told: &mut [[Lanes; S]; S]) {
+    let (coupling, inverse) = (in_lanes(rows), positive_inverse(own));
+    for i in 0..S {
+        let mut factor = [0.0; LANES];
+        add_product(&mut factor, &coupling[i], &inverse);
+        for j in 0..=i {
+            add_product(&mut told[i][j], &factor, &coupling[j]);
+        }
     }
 }
 
-fn padded(sum: &[[f64; STATE]; STATE], size: usize) -> StateMatrix {
-    StateMatrix::from_fn(
-        |i, j| {
-            if i < size && j < size { 0.5 * (sum[i][j] + sum[j][i]) } else { f64::from(u8::from(i == j)) }
-        },
-    )
+/// The symmetric part of the entries of a state; unit diagonal beyond them.
+fn symmetric<const S: usize>(entry: impl Fn(usize, usize) -> f64) -> StateMatrix {
+    let mut whole = StateMatrix::identity();
+    for i in 0..S {
+        whole[(i, i)] = entry(i, i);
+        for j in 0..i {
+            let mean = 0.5 * (entry(i, j) + entry(j, i));
+            (whole[(i, j)], whole[(j, i)]) = (mean, mean);
+        }
+    }
+    whole
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    fn difference<const S: usize>(cells: usize) -> f64 {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        let mut information = OffsetInformation::new(S);
+        information.resize(cells);
+        for (number, (own, coupling)) in information.iter_mut().enumerate() {
+            if number % 5 != 2 {
+                *own = rng.random_range(0.5..2.0);
+                coupling.iter_mut().for_each(|entry| *entry = rng.random_range(-1.0..1.0));
+            }
+        }
+        let (found, expected) = (told_side_by_side::<S>(&information), told_row_by_row::<S>(&information));
+        found.iter().flatten().zip(expected.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn offsets_side_by_side_tell_what_they_do_one_after_the_other() {
+        for cells in [0, 1, 3, 4, 5, 30] {
+            let largest = difference::<6>(cells).max(difference::<8>(cells));
+            assert!(largest < 1e-13, "{cells}: {largest}");
+        }
+    }
 }

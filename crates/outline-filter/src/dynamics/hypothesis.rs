@@ -86,15 +86,44 @@ pub(super) struct Innovation {
 pub(super) struct Step<'a> {
     pub(super) model: MotionModel,
     pub(super) seconds: f64,
-    pub(super) from: &'a CentredPose,
-    pub(super) to: &'a CentredPose,
+    /// Linear part of the pose before, with that of the pose after it taken off.
+    turned: Matrix2<f64>,
+    /// Its logarithm, as rates.
+    pub(super) turned_by: CentredVector,
+    /// The middle before the step, as seen from the one after it.
+    pub(super) centre: Vector2<f64>,
     /// Variance of a pose as one frame tells it, of every parameter.
-    pub(super) pose_variance: &'a CentredVector,
+    pose_variance: &'a CentredVector,
+    /// What accelerations that change at random add: blocks, and what they get of a variance over the fifth power of a step.
+    by_change: [(usize, usize, f64); 6],
+}
+
+impl<'a> Step<'a> {
+    /// `None` where the numbers do not allow it.
+    pub(super) fn new(
+        (model, seconds): (MotionModel, f64),
+        [from, to]: [&CentredPose; 2],
+        pose_variance: &'a CentredVector,
+    ) -> Option<Self> {
+        let turned = from.linear() * to.linear().try_inverse()?;
+        let by = model.motion_between(&as_map(&turned), 1.0)?;
+        let turned_by = CentredVector::from_fn(|j, _| by[j]);
+        let by_change = [
+            (0, 0, 1.0 / 20.0),
+            (0, 1, 1.0 / (8.0 * seconds)),
+            (0, 2, 1.0 / (6.0 * seconds.powi(2))),
+            (1, 1, 1.0 / (3.0 * seconds.powi(2))),
+            (1, 2, 1.0 / (2.0 * seconds.powi(3))),
+            (2, 2, 1.0 / seconds.powi(4)),
+        ];
+        let centre = from.centre() - to.centre();
+        Some(Self { model, seconds, turned, turned_by, centre, pose_variance, by_change })
+    }
 }
 
 impl<const N: usize> Hypothesis<N> {
     /// Number of parameters.
-    const K: usize = N / 3;
+    pub(super) const K: usize = N / 3;
 
     /// Number of entries in use.
     pub(super) fn size(&self) -> usize {
@@ -127,6 +156,22 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Moves on by a step; whether the numbers allow it.
     pub(super) fn predict(&mut self, step: &Step<'_>) -> bool {
+        if step.model <= MotionModel::Similarity {
+            self.predict_commuting(step);
+        } else if !self.predict_any(step) {
+            return false;
+        }
+        // A sum is finite only if all of its members are.
+        let mut sum: [f64; N] = self.mean.into();
+        for column in &self.covariance.data.0 {
+            (0..N).for_each(|i| sum[i] += column[i]);
+        }
+        sum.iter().sum::<f64>().is_finite()
+    }
+
+    /// The plain way, for all models; whether the numbers allow it. Where turns and growth commute there is
+    /// [another](Self::predict_commuting).
+    pub(super) fn predict_any(&mut self, step: &Step<'_>) -> bool {
         let (model, k, dt) = (step.model, Self::K, step.seconds);
         let rates = k - 2;
         let entry = |at: usize| CentredVector::from_fn(|j, _| if j < k { self.mean[at * k + j] } else { 0.0 });
@@ -152,10 +197,9 @@ impl<const N: usize> Hypothesis<N> {
                 (of_rates(&(motion + 0.5 * dt * acceleration), dt), v * dt + 0.5 * dt * dt * w, v + dt * w)
             }
         };
-        let Some(before) = step.to.linear().try_inverse() else { return false };
-        let relative = turn * of_rates(&error, 1.0) * step.from.linear() * before;
+        let relative = turn * of_rates(&error, 1.0) * step.turned;
         let Some(off) = model.motion_between(&as_map(&relative), 1.0) else { return false };
-        let centre = step.from.centre() + Vector2::new(error[k - 2], error[k - 1]) + shift - step.to.centre();
+        let centre = step.centre + Vector2::new(error[k - 2], error[k - 1]) + shift;
         let transition = self.transition(step, (&turn, &a, &v, &later));
         for j in 0..rates {
             self.mean[j] = off[j];
@@ -167,32 +211,31 @@ impl<const N: usize> Hypothesis<N> {
             self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
         }
         self.covariance = carried(&transition, &self.covariance, self.size());
-        if let Course::Accelerating { level, rates: all } = self.course {
-            for j in if all { 0 } else { rates }..k {
-                let density = level * step.pose_variance[j] / dt.powi(5);
-                for (row, column, factor) in [
-                    (0, 0, dt.powi(5) / 20.0),
-                    (0, 1, dt.powi(4) / 8.0),
-                    (0, 2, dt.powi(3) / 6.0),
-                    (1, 1, dt.powi(3) / 3.0),
-                    (1, 2, dt.powi(2) / 2.0),
-                    (2, 2, dt),
-                ] {
-                    let (r, c) = (row * k + j, column * k + j);
-                    self.covariance[(r, c)] += factor * density;
-                    if r != c {
-                        self.covariance[(c, r)] += factor * density;
-                    }
+        self.add_change_of_accelerations(step);
+        true
+    }
+
+    /// Lets accelerations have changed at random during a step.
+    pub(super) fn add_change_of_accelerations(&mut self, step: &Step<'_>) {
+        let Course::Accelerating { level, rates: all } = self.course else { return };
+        let k = Self::K;
+        let covariance = &mut self.covariance.data.0;
+        for j in if all { 0 } else { k - 2 }..k {
+            let variance = level * step.pose_variance[j];
+            for (row, column, share) in step.by_change {
+                let (r, c) = (row * k + j, column * k + j);
+                let added = share * variance;
+                covariance[c][r] += added;
+                if r != c {
+                    covariance[r][c] += added;
                 }
             }
         }
-        // A sum is finite only if all of its members are.
-        (self.mean.sum() + self.covariance.sum()).is_finite()
     }
 
     /// Propagation of errors over a step: `turn` is the linear part of the motion over it, a and v are rates and velocity before it, and
     /// `later` is the velocity after it.
-    fn transition(
+    pub(super) fn transition(
         &self,
         step: &Step<'_>,
         (turn, a, v, later): (&Matrix2<f64>, &Matrix2<f64>, &Vector2<f64>, &Vector2<f64>),
@@ -297,7 +340,9 @@ impl<const N: usize> Hypothesis<N> {
     #[inline(always)]
     fn take_gain<const K: usize>(&mut self, pulled: &SVector<f64, K>, weight: &SMatrix<f64, K, K>) {
         // Of all entries with the pose.
-        let columns: [[f64; N]; K] = std::array::from_fn(|l| std::array::from_fn(|i| self.covariance[(i, l)]));
+        let covariance = &mut self.covariance.data.0;
+        let mut columns = [[0.0; N]; K];
+        columns.copy_from_slice(&covariance[..K]);
         let mut gain = [[0.0; N]; K];
         for l in 0..K {
             for (m, column) in columns.iter().enumerate() {
@@ -310,16 +355,17 @@ impl<const N: usize> Hypothesis<N> {
                 *mean += entry * pulled[l];
             }
         }
-        for j in 0..self.size() {
+        // The columns of what a hypothesis has no entries for are none, and stay so.
+        for (j, entries) in covariance.iter_mut().enumerate() {
             let mut less = [0.0; N];
             for l in 0..K {
-                let (by_gain, by_column) = (0.5 * columns[l][j], 0.5 * gain[l][j]);
+                let by_column = columns[l][j];
                 for i in 0..N {
-                    less[i] += gain[l][i] * by_gain + by_column * columns[l][i];
+                    less[i] += gain[l][i] * by_column;
                 }
             }
-            for (i, less) in less.into_iter().enumerate() {
-                self.covariance[(i, j)] -= less;
+            for i in 0..N {
+                entries[i] -= less[i];
             }
         }
         // What is rounded in one half only would grow from frame to frame.

@@ -153,9 +153,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         self.reference = moved;
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
-        let step =
-            Step { model: self.model, seconds, from: &self.reference, to: pose, pose_variance: &self.pose_variance };
-        let possible = self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step));
+        let step = Step::new((self.model, seconds), [&self.reference, pose], &self.pose_variance);
+        let possible = step.is_some_and(|step| self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step)));
         self.reference = *pose;
         if !self.turn_is_of_path {
             self.hold(null);

@@ -52,19 +52,20 @@ pub(super) fn mix<const N: usize>(
             *apart = of_all.mean[i] - hypothesis.mean[i];
             hypothesis.mean[i] += changed * *apart;
         }
-        let covariance = &mut hypothesis.covariance;
+        let (covariance, of_all_covariance) = (&mut hypothesis.covariance.data.0, &of_all.covariance.data.0);
         vectorised(
             #[inline(always)]
             || {
-                for j in 0..n {
-                    let by_column = changed * apart[j];
-                    // What lies beyond the entries in use is none, in all of them.
-                    let of_all_counts = if j < shared { changed } else { 0.0 };
+                // What lies beyond the entries in use is none, in all of them. Columns are worked on in copies, which nothing else is in
+                // the place of.
+                let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { changed } else { 0.0 });
+                for (j, (entries, of_all)) in covariance.iter_mut().zip(of_all_covariance).enumerate() {
+                    let (mut column, by_column) = (*entries, changed * apart[j]);
+                    let counts = if j < shared { 1.0 } else { 0.0 };
                     for i in 0..N {
-                        let of_all = if i < shared { of_all_counts * of_all.covariance[(i, j)] } else { 0.0 };
-                        let entry = &mut covariance[(i, j)];
-                        *entry = of_all + own * (*entry + by_column * apart[i]);
+                        column[i] = of_shared[i] * counts * of_all[i] + own * (column[i] + by_column * apart[i]);
                     }
+                    *entries = column;
                 }
             },
         );
@@ -114,17 +115,19 @@ impl<const N: usize> Pooled<N> {
             let share = weight / sum;
             let apart = accelerations.mean_of(source, model) - pooled.mean;
             let known = if accelerations.are_part_of(source.course) { 3 * k } else { 2 * k };
-            let covariance = &mut pooled.covariance;
+            let (covariance, of_source) = (&mut pooled.covariance.data.0, &source.covariance.data.0);
             vectorised(
                 #[inline(always)]
                 || {
-                    for j in 0..N {
-                        let by_column = share * apart[j];
-                        let of_own = if j < known { share } else { 0.0 };
+                    let apart: [f64; N] = apart.into();
+                    let of_known: [f64; N] = std::array::from_fn(|i| if i < known { share } else { 0.0 });
+                    for (j, (entries, own)) in covariance.iter_mut().zip(of_source).enumerate() {
+                        let (mut column, by_column) = (*entries, share * apart[j]);
+                        let counts = if j < known { 1.0 } else { 0.0 };
                         for i in 0..N {
-                            let own = if i < known { of_own * source.covariance[(i, j)] } else { 0.0 };
-                            covariance[(i, j)] += own + by_column * apart[i];
+                            column[i] += of_known[i] * counts * own[i] + by_column * apart[i];
                         }
+                        *entries = column;
                     }
                 },
             );

@@ -6,6 +6,7 @@
 mod centred;
 mod combination;
 mod common_error;
+mod commuting;
 mod dynamics_filter;
 mod family;
 mod hypothesis;

@@ -47,6 +47,7 @@ impl OutlineMap {
         self.field.build(&centres, self.spacing);
         self.bisectors.clear();
         self.bisectors.extend((0..self.cells.len()).map(|number| Bisectors::of(number, &self.cells)));
+        self.has_ends = self.bisectors.iter().any(|bisectors| bisectors.is_end);
     }
 
     /// The cell nearest to a body point, from one near it.
@@ -66,12 +67,15 @@ impl OutlineMap {
     /// Numbers of the cells nearest to places, one for each; that of no cell is the number of cells, where a place lies beyond a known end
     /// of the outline or there are no cells.
     #[inline(always)]
-    pub(crate) fn associate(&self, place: impl Fn(usize) -> Point2<f64>, numbers: &mut [u32]) {
-        self.associate_all(&place, numbers);
+    pub(crate) fn associate(&self, places: impl Iterator<Item = Point2<f64>> + Clone, numbers: &mut [u32]) {
+        self.associate_all(places.clone(), numbers);
+        if !self.has_ends {
+            return;
+        }
         let none = self.cells.len() as u32;
-        for (i, number) in numbers.iter_mut().enumerate().filter(|_| none > 0) {
+        for (number, q) in numbers.iter_mut().zip(places) {
             let nearest = *number as usize;
-            if self.bisectors[nearest].is_end && self.is_beyond_end(nearest, &place(i)) {
+            if self.bisectors[nearest].is_end && self.is_beyond_end(nearest, &q) {
                 *number = none;
             }
         }
@@ -79,15 +83,21 @@ impl OutlineMap {
 
     /// As [`associate`](Self::associate), of places beyond ends too.
     #[inline(always)]
-    pub(crate) fn associate_all(&self, place: impl Fn(usize) -> Point2<f64>, numbers: &mut [u32]) {
+    pub(crate) fn associate_all(&self, places: impl Iterator<Item = Point2<f64>> + Clone, numbers: &mut [u32]) {
         if self.cells.is_empty() {
             numbers.fill(0);
             return;
         }
         // A first look at all of them waits for none; which way to go from there cannot be foreseen.
-        self.field.pixels(&place, numbers);
-        for (i, number) in numbers.iter_mut().enumerate() {
-            *number = self.nearest_from(self.field.at(*number), &place(i)) as u32;
+        self.field.pixels(places.clone(), numbers);
+        // Slices are near at hand in a loop, vectors are looked up each time.
+        let (nearest, bisectors) = (self.field.nearest(), self.bisectors.as_slice());
+        for (number, q) in numbers.iter_mut().zip(places) {
+            let near = nearest[*number as usize];
+            *number = match bisectors[near as usize].nearer(&q) {
+                Some(nearer) => self.nearest_from(nearer, &q) as u32,
+                None => near,
+            };
         }
     }
 }

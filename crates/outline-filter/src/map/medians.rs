@@ -1,5 +1,8 @@
 //! Medians.
-use crate::{tuning::contour::ABOUT, vectors::vectorised};
+use crate::{
+    tuning::contour::ABOUT,
+    vectors::{LANES, vectorised},
+};
 
 /// Median, the upper one of two; reorders the list.
 pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
@@ -40,33 +43,49 @@ pub(super) fn median_of_nine(mut values: [f64; 9]) -> f64 {
 }
 
 /// As [`median`], of sizes of which most are expected to be about a guess or below it: only those about it are put in order, the others are
-/// counted.
-pub(crate) fn median_about(guess: f64, sizes: &mut Vec<f64>) -> Option<f64> {
-    let (low, high) = (ABOUT[0] * guess, ABOUT[1] * guess);
+/// counted. Overwrites the list.
+pub(crate) fn median_about(guess: f64, sizes: &mut [f64]) -> Option<f64> {
     let middle = sizes.len() / 2;
-    let all = sizes.as_slice();
-    let [below, within] = vectorised(
+    for [low, high] in ABOUT.map(|shares| shares.map(|share| share * guess)) {
+        let [below, within] = counts_below([low, high], sizes);
+        if !(below..within).contains(&middle) {
+            continue;
+        }
+        let mut kept = 0;
+        for i in 0..sizes.len() {
+            let size = sizes[i];
+            // Few are.
+            if size >= low && size < high {
+                sizes[kept] = size;
+                kept += 1;
+            }
+        }
+        return Some(*sizes[..kept].select_nth_unstable_by(middle - below, f64::total_cmp).1);
+    }
+    median(sizes)
+}
+
+/// How many of the sizes are below each limit.
+fn counts_below(limits: [f64; 2], sizes: &[f64]) -> [usize; 2] {
+    let (chunks, rest) = sizes.as_chunks::<LANES>();
+    let counts = vectorised(
         #[inline(always)]
         || {
-            let mut counts = [0.0; 2];
-            for size in all {
-                counts[0] += if *size < low { 1.0 } else { 0.0 };
-                counts[1] += if *size < high { 1.0 } else { 0.0 };
+            let mut counts = [[0.0; LANES]; 2];
+            for sizes in chunks {
+                for (counts, limit) in counts.iter_mut().zip(limits) {
+                    for lane in 0..LANES {
+                        counts[lane] += if sizes[lane] < limit { 1.0 } else { 0.0 };
+                    }
+                }
             }
-            counts.map(|count| count as usize)
+            counts
         },
     );
-    if !(below..within).contains(&middle) {
-        return median(sizes);
-    }
-    let mut kept = 0;
-    for i in 0..sizes.len() {
-        let size = sizes[i];
-        sizes[kept] = size;
-        kept += usize::from(size >= low && size < high);
-    }
-    sizes.truncate(kept);
-    Some(*sizes.select_nth_unstable_by(middle - below, f64::total_cmp).1)
+    [0, 1].map(|at| {
+        let of_rest = rest.iter().filter(|size| **size < limits[at]).count();
+        counts[at].iter().sum::<f64>() as usize + of_rest
+    })
 }
 
 #[cfg(test)]
@@ -90,14 +109,14 @@ mod tests {
     #[test]
     fn the_median_about_a_guess_is_the_median_whatever_the_guess() {
         let mut rng = ChaCha8Rng::seed_from_u64(6);
-        for count in [0, 1, 2, 7, 100, 401] {
+        for count in [0, 1, 2, 7, 100, 401, 1602] {
             let sizes: Vec<f64> = (0..count)
                 .map(|_| {
                     let x: f64 = StandardNormal.sample(&mut rng);
                     x.abs()
                 })
                 .collect();
-            for guess in [0.0, 0.3, 0.6745, 1.5, f64::INFINITY, f64::NAN] {
+            for guess in [0.0, 0.3, 0.6, 0.6745, 0.7, 1.5, f64::INFINITY, f64::NAN] {
                 assert_eq!(median_about(guess, &mut sizes.clone()), median(&mut sizes.clone()), "{count} {guess}");
             }
         }

@@ -71,15 +71,15 @@ impl NearestField {
         Some(self.nearest[self.pixel_of(p)] as usize)
     }
 
-    /// What a pixel holds; there are pixels.
+    /// What the pixels hold.
     #[inline(always)]
-    pub(super) fn at(&self, pixel: u32) -> usize {
-        self.nearest[pixel as usize] as usize
+    pub(super) fn nearest(&self) -> &[u32] {
+        &self.nearest
     }
 
     /// Pixels of places, one for each: as [`lookup`](Self::lookup) takes them, several side by side.
     #[inline(always)]
-    pub(super) fn pixels(&self, place: impl Fn(usize) -> Point2<f64>, pixels: &mut [u32]) {
+    pub(super) fn pixels(&self, places: impl Iterator<Item = Point2<f64>>, pixels: &mut [u32]) {
         let (most_x, most_y) = ((self.width - 1) as f64, (self.height - 1) as f64);
         let width = self.width as f64;
         // NaN becomes 0.
@@ -88,8 +88,7 @@ impl NearestField {
             let length = if length > 0.0 { length } else { 0.0 };
             (if length < most { length } else { most }).floor()
         };
-        for (i, pixel) in pixels.iter_mut().enumerate() {
-            let p = place(i);
+        for (pixel, p) in pixels.iter_mut().zip(places) {
             let number = within(p.y - self.origin.y, most_y) * width + within(p.x - self.origin.x, most_x);
             // The last bits of a number that small, whose unit is the last of them.
             *pixel = (number + WHOLE).to_bits() as u32;

@@ -25,6 +25,9 @@ pub(crate) struct OutlineMap {
     /// Of each cell.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) bisectors: Vec<Bisectors>,
+    /// Whether any cell is an end.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) has_ends: bool,
     /// Length of a cell.
     pub(super) spacing: f64,
     /// Of the regression that places and normals come from, in points.
@@ -45,6 +48,7 @@ impl OutlineMap {
             cells: Vec::new(),
             field: NearestField::default(),
             bisectors: Vec::new(),
+            has_ends: false,
             spacing,
             half_window,
             step,

@@ -123,6 +123,7 @@ mod tests {
             cells,
             field: NearestField::default(),
             bisectors: Vec::new(),
+            has_ends: false,
             spacing,
             half_window: 2,
             step: spacing,

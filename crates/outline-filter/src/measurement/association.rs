@@ -36,11 +36,8 @@ impl View<'_> {
     pub(crate) fn measure(&self, frame: &mut Frame, pose: &Matrix3<f64>, null: &[NullDirection], pass: Pass) {
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
         let half_window = self.half_window_of_places(pose, frame);
-        if pass == Pass::First {
-            frame.measurements.clear();
-            frame.measurements.resize(frame.points.len(), Measurement::NOTHING);
-        }
         let counts_alike = frame.deviations.ratios().is_none() && self.noise.counted == Counted::Alike;
+        frame.measurements.resize(frame.points.len(), Measurement::NOTHING);
         if counts_alike && is_affine(&inverse) {
             self.measure_side_by_side(frame, &inverse, half_window, null, pass);
         } else {
@@ -59,6 +56,9 @@ impl View<'_> {
         pass: Pass,
     ) {
         let Frame { points, measurements, values, shifts, pieces, places, deviations, columns, .. } = frame;
+        if pass == Pass::First {
+            measurements.fill(Measurement::NOTHING);
+        }
         places.clear();
         let in_body = |p: &Point2<f64>| map_point(inverse, p);
         if half_window == 0 {
@@ -79,7 +79,7 @@ impl View<'_> {
                 let (points, measurements) = (&points[range.clone()], &measurements[range]);
                 let weighted = |i: usize| {
                     let (p, weight) = (&points[i], measurements[i].weight);
-                    [weight * p.x, weight * p.y, weight]
+                    [weight * p.x, weight * p.y, weight, 0.0]
                 };
                 let take = |i: usize, mean: Option<Point2<f64>>| places.push(in_body(&mean.unwrap_or(points[i])));
                 mean_of_neighbours(points.len(), weighted, piece.closed, half_window, take);
@@ -125,11 +125,11 @@ impl View<'_> {
 }
 
 /// Mean of the neighbours of every point along a piece of the contour, the point itself included; none where they count for nothing.
-/// `weighted` are the coordinates of the points times their weights, and these.
+/// `weighted` are the coordinates of the points times their weights, and these; a fourth number is not looked at.
 #[inline(always)]
 pub(super) fn mean_of_neighbours(
     count: usize,
-    weighted: impl Fn(usize) -> [f64; 3],
+    weighted: impl Fn(usize) -> [f64; 4],
     closed: bool,
     half_window: usize,
     mut take: impl FnMut(usize, Option<Point2<f64>>),
@@ -137,13 +137,13 @@ pub(super) fn mean_of_neighbours(
     let w = half_window.min((count - 1) / 2);
     // Less than two rounds on, where a remainder would be most of the work.
     let at = |i: usize| weighted(if i < count { i } else { i - count });
-    let mut sum = [0.0; 3];
-    let change = |sum: &mut [f64; 3], more: [f64; 3], less: [f64; 3]| {
+    let mut sum = [0.0; 4];
+    let change = |sum: &mut [f64; 4], more: [f64; 4], less: [f64; 4]| {
         for c in 0..3 {
             sum[c] += more[c] - less[c];
         }
     };
-    let none = [0.0; 3];
+    let none = [0.0; 4];
     if closed {
         // The window of the first point reaches back over the end.
         (count - w..=count + w).for_each(|i| change(&mut sum, at(i), none));
@@ -166,7 +166,7 @@ pub(super) fn mean_of_neighbours(
                 change(&mut sum, at(i + now), at(i - 1 - before));
             }
         }
-        let [x, y, weight] = sum;
-        take(i, (weight > 1e-3).then(|| Point2::new(x * (1.0 / weight), y * (1.0 / weight))));
+        let [x, y, weight, _] = sum;
+        take(i, (weight > tuning::LEAST_WEIGHT).then(|| Point2::new(x * (1.0 / weight), y * (1.0 / weight))));
     }
 }

@@ -3,7 +3,7 @@ use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Point2};
 
 use super::{Columns, Measurement, PointDeviations};
-use crate::{belief::OffsetInformation, map::Contour};
+use crate::{belief::OffsetInformation, map::Contour, vectors::vectorised};
 
 /// The coordinates that all is normalised by: centred on the first outline and divided by its RMS radius, and the unit of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +50,38 @@ impl Piece {
     }
 }
 
+/// Takes the points of a piece, normalised, if none of them repeats the one before it, nor the last the first of a closed piece; whether they
+/// have been taken. Most outlines have no such points, and are looked at side by side.
+fn take_distinct(
+    points: &mut Vec<Point2<f64>>,
+    (piece, closed): (&[Point2<f64>], bool),
+    origin: Point2<f64>,
+    scale: f64,
+) -> bool {
+    let start = points.len();
+    let repeated = vectorised(
+        #[inline(always)]
+        || {
+            points.extend(piece.iter().map(
+                #[inline(always)]
+                |p| Point2::new((p.x - origin.x) * scale, (p.y - origin.y) * scale),
+            ));
+            let taken = &points[start..];
+            let mut repeated = 0_u64;
+            for (p, next) in taken.iter().zip(taken.iter().skip(1)) {
+                repeated |= u64::from((p.x == next.x) & (p.y == next.y));
+            }
+            repeated
+        },
+    );
+    let ends_meet = closed && piece.len() > 1 && points[start] == points[points.len() - 1];
+    if repeated != 0 || ends_meet {
+        points.truncate(start);
+        return false;
+    }
+    true
+}
+
 /// The points of one frame and what is found of them; buffers that are reused from frame to frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Frame {
@@ -87,6 +119,10 @@ impl Frame {
         let mut stated = outline.deviations();
         for piece in outline.pieces() {
             let start = points.len();
+            if stated.is_none() && take_distinct(points, (piece.points, piece.closed), origin, scale) {
+                pieces.push(Piece { start, count: piece.points.len(), closed: piece.closed });
+                continue;
+            }
             points.reserve(piece.points.len());
             let mut last = None;
             for p in piece.points {

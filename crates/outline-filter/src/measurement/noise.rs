@@ -225,15 +225,23 @@ pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>) -> Option<f64> {
 /// Robust deviation of all residuals, as if all points were good ones, which is expected to be `noise`; infinite where there are none.
 pub(crate) fn spread(frame: &mut Frame, noise: f64) -> f64 {
     let Frame { measurements, values, deviations, .. } = frame;
-    let ratios = deviations.ratios();
     values.resize(measurements.len(), 0.0);
     let mut known = 0;
-    for (i, m) in measurements.iter().enumerate() {
-        values[known] = m.residual.abs() / ratios.map_or(1.0, |ratios| ratios[i]);
-        known += usize::from(m.cell != NO_CELL);
+    match deviations.ratios() {
+        None => {
+            for m in measurements.iter() {
+                values[known] = m.residual.abs();
+                known += usize::from(m.cell != NO_CELL);
+            }
+        }
+        Some(ratios) => {
+            for (m, ratio) in measurements.iter().zip(ratios) {
+                values[known] = m.residual.abs() / ratio;
+                known += usize::from(m.cell != NO_CELL);
+            }
+        }
     }
-    values.truncate(known);
-    median_about(noise / MEDIAN_TO_DEVIATION, values).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m)
+    median_about(noise / MEDIAN_TO_DEVIATION, &mut values[..known]).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m)
 }
 
 #[cfg(feature = "serde")]

@@ -2,7 +2,11 @@
 use nalgebra::Point2;
 
 use super::{Piece, View};
-use crate::{map::OutlineMap, tuning::measurement as tuning};
+use crate::{
+    map::{Cell, OutlineMap},
+    tuning::measurement as tuning,
+    vectors::vectorised,
+};
 
 /// A piece of the contour with the cells found for its points, and the window that tells its direction.
 struct Course<'a> {
@@ -32,6 +36,28 @@ impl Course<'_> {
     fn along(&self, i: usize, cell: usize) -> f64 {
         let place = |forth| self.places[self.beside(i, self.reach, forth).unwrap_or(i)];
         self.map.cells()[cell].normal.perp(&(place(true) - place(false)))
+    }
+
+    /// Of the points that have all of their neighbours, how many run the way in which `along` is positive, and how many tell.
+    #[inline(always)]
+    fn count_forth(&self, of_points: &Numbered<'_>) -> (usize, usize) {
+        let (reach, cells) = (self.reach, self.map.cells());
+        let range = reach..self.places.len() - reach;
+        let chords = self.places[2 * reach..].iter().zip(self.places);
+        let of_points = of_points.numbers[range.clone()].iter().zip(&of_points.weights[range]);
+        let (mut forth, mut total) = (0, 0);
+        for ((ahead, behind), (number, weight)) in chords.zip(of_points) {
+            let mut across = 0.0;
+            let mut is_told = *weight > 0.0;
+            if let Some(Cell { normal, .. }) = cells.get(*number as usize) {
+                across = normal.x * (ahead.y - behind.y) - normal.y * (ahead.x - behind.x);
+            } else {
+                is_told = false;
+            }
+            forth += usize::from(is_told & (across > 0.0));
+            total += usize::from(is_told);
+        }
+        (forth, total)
     }
 
     /// The cell nearest to point i that its neighbours lead to and that runs the right way.
@@ -87,15 +113,10 @@ impl View<'_> {
             if count <= 2 * reach {
                 continue;
             }
-            let (mut forth, mut total) = (0usize, 0usize);
-            // Most have all of their neighbours.
-            for i in reach..count - reach {
-                if let Some(cell) = of_points.known(i) {
-                    let chord = course.places[i + reach] - course.places[i - reach];
-                    forth += usize::from(self.map.cells()[cell].normal.perp(&chord) > 0.0);
-                    total += 1;
-                }
-            }
+            let (mut forth, mut total) = vectorised(
+                #[inline(always)]
+                || course.count_forth(&of_points),
+            );
             for i in (0..reach).chain(count - reach..count) {
                 if let Some(cell) = of_points.known(i) {
                     forth += usize::from(course.along(i, cell) > 0.0);

@@ -5,12 +5,11 @@ use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by}
 use nalgebra::{Matrix3, Point2, Vector2};
 
 use super::{Frame, Measurement, NO_CELL, Pass, View, association::mean_of_neighbours};
-use crate::{map::NullDirection, tuning::measurement as tuning, vectors::vectorised};
-
-/// Points that are measured side by side.
-const LANES: usize = 4;
-
-type Lanes = [f64; LANES];
+use crate::{
+    map::NullDirection,
+    tuning::measurement as tuning,
+    vectors::{LANES, Lanes, vectorised},
+};
 
 /// The outline at a cell in the image of one frame.
 #[derive(Debug, Clone, Copy)]
@@ -33,10 +32,10 @@ impl CellLine {
 /// Numbers of the points of a frame, by columns; buffers that are reused from frame to frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Columns {
-    /// The points in the body frame.
+    /// The points in the body frame; in the end the means of their neighbours where they count.
     own_places: Vec<Point2<f64>>,
-    /// Coordinates in the body frame times weights, and these.
-    weighted: Vec<[f64; 3]>,
+    /// Coordinates in the body frame times weights, and these; a fourth number, which is none, makes it a whole vector.
+    weighted: Vec<Lanes>,
     /// Of the cells; the number of cells for none.
     numbers: Vec<u32>,
     residuals: Vec<f64>,
@@ -61,11 +60,16 @@ impl View<'_> {
         let Columns { own_places, weighted, numbers, residuals, weights, lines } = columns;
         numbers.resize(count, 0);
         residuals.resize(count, 0.0);
-        weights.clear();
-        weights.extend(measurements.iter().map(|m| m.weight));
+        weights.resize(count, 0.0);
+        match pass {
+            Pass::First if half_window == 0 => weights.fill(0.0),
+            // They will be found.
+            Pass::First => {}
+            Pass::Again => weights.iter_mut().zip(measurements.iter()).for_each(|(weight, m)| *weight = m.weight),
+        }
         own_places.resize(count, Point2::origin());
         places.resize(count, Point2::origin());
-        weighted.resize(count, [0.0; 3]);
+        weighted.resize(count, [0.0; LANES]);
         lines.resize(map.cells().len() + 1, CellLine::NONE);
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (own_places, places, weighted) =
@@ -85,14 +89,14 @@ impl View<'_> {
             places.copy_from_slice(own_places);
             vectorised(
                 #[inline(always)]
-                || map.associate(|i| places[i], numbers),
+                || map.associate(places.iter().copied(), numbers),
             );
         } else {
             if pass == Pass::First {
                 // What the points count with in the means.
                 vectorised(
                     #[inline(always)]
-                    || map.associate(|i| own_places[i], numbers),
+                    || map.associate(own_places.iter().copied(), numbers),
                 );
                 self.weigh_side_by_side((points, numbers, lines), (residuals, weights), values, pass);
             }
@@ -100,24 +104,31 @@ impl View<'_> {
                 #[inline(always)]
                 || {
                     for (weighted, (q, weight)) in weighted.iter_mut().zip(own_places.iter().zip(weights.iter())) {
-                        *weighted = [weight * q.x, weight * q.y, *weight];
+                        *weighted = [weight * q.x, weight * q.y, *weight, 0.0];
                     }
                     for piece in pieces.iter() {
                         let range = piece.range();
                         let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
                         let places = &mut places[range];
+                        if piece.closed {
+                            take_means(weighted, half_window, own, places);
+                            continue;
+                        }
                         mean_of_neighbours(
                             weighted.len(),
                             #[inline(always)]
                             |i| weighted[i],
-                            piece.closed,
+                            false,
                             half_window,
                             #[inline(always)]
                             |i, mean| places[i] = mean.unwrap_or(own[i]),
                         );
                     }
                     // The means where the points count, the points where they do not.
-                    map.associate(|i| if weights[i] > 0.0 { places[i] } else { own_places[i] }, numbers);
+                    for ((own, place), weight) in own_places.iter_mut().zip(places.iter()).zip(weights.iter()) {
+                        *own = if *weight > 0.0 { *place } else { *own };
+                    }
+                    map.associate(own_places.iter().copied(), numbers);
                 },
             );
         }
@@ -152,23 +163,51 @@ impl View<'_> {
         values: &mut Vec<f64>,
         pass: Pass,
     ) {
-        let limit = tuning::FULL_WEIGHT * self.noise.sigma;
+        let sigma = self.noise.sigma;
         let near = vectorised(
             #[inline(always)]
-            || take_residuals((points, numbers, lines), residuals, limit),
+            || take_residuals_and_weights((points, numbers, lines), (residuals, weights), sigma),
         );
-        let (mut scale, mut share) = (self.noise.sigma, 1.0);
         if (near as f64) < tuning::NEAR_ENOUGH * points.len() as f64 {
             values.clear();
             let none = (lines.len() - 1) as u32;
             let known = residuals.iter().zip(numbers).filter(|(_, number)| **number != none);
             values.extend(known.map(|(residual, _)| residual.abs()));
-            (scale, share) = self.scale_of_wide_frame(values, pass);
+            let (scale, share) = self.scale_of_wide_frame(values, pass);
+            for ((weight, residual), number) in weights.iter_mut().zip(residuals.iter()).zip(numbers) {
+                *weight = weight_of(*residual, &lines[*number as usize], 1.0 / scale) * share;
+            }
         }
-        vectorised(
-            #[inline(always)]
-            || take_weights((residuals, numbers, lines), weights, 1.0 / scale, share),
-        );
+    }
+}
+
+/// As [`mean_of_neighbours`], which a test compares it with, along a closed piece; the point itself where its neighbours count for nothing.
+#[inline(always)]
+fn take_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], places: &mut [Point2<f64>]) {
+    let count = weighted.len();
+    let w = half_window.min((count - 1) / 2);
+    let mut sum = [0.0; LANES];
+    for more in weighted[count - w..].iter().chain(&weighted[..=w]) {
+        (0..LANES).for_each(|c| sum[c] += more[c]);
+    }
+    let mean = |sum: &Lanes, own: &Point2<f64>| {
+        let [x, y, weight, _] = *sum;
+        let inverse = 1.0 / weight;
+        if weight > tuning::LEAST_WEIGHT { Point2::new(x * inverse, y * inverse) } else { *own }
+    };
+    places[0] = mean(&sum, &own[0]);
+    // Points that come into the window and that leave it: at the start, and at the end, over the other end.
+    let parts = [
+        (1..w + 1, &weighted[w + 1..], &weighted[count - w..]),
+        (w + 1..count - w, &weighted[2 * w + 1..], weighted),
+        (count - w..count, weighted, &weighted[count - 2 * w - 1..]),
+    ];
+    for (range, coming, leaving) in parts {
+        let of_points = places[range.clone()].iter_mut().zip(&own[range]);
+        for ((place, own), (more, less)) in of_points.zip(coming.iter().zip(leaving)) {
+            (0..LANES).for_each(|c| sum[c] += more[c] - less[c]);
+            *place = mean(&sum, own);
+        }
     }
 }
 
@@ -196,66 +235,55 @@ fn take_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &m
     lines[cells.len()] = CellLine::NONE;
 }
 
-/// Distances of points from the lines of their cells; how many of them are below a limit.
+/// Distances of points from the lines of their cells, and Tukey's weights for a deviation; how many of the points are near.
 #[inline(always)]
-fn take_residuals(
+fn take_residuals_and_weights(
     (points, numbers, lines): (&[Point2<f64>], &[u32], &[CellLine]),
-    residuals: &mut [f64],
-    limit: f64,
+    (residuals, weights): (&mut [f64], &mut [f64]),
+    sigma: f64,
 ) -> usize {
-    let distance = |p: &Point2<f64>, line: &CellLine| line.normal.x * p.x + line.normal.y * p.y - line.at;
+    let (limit, scale) = (tuning::FULL_WEIGHT * sigma, 1.0 / sigma);
     let mut near = [0.0; LANES];
-    let (chunks, rest) = residuals.as_chunks_mut::<LANES>();
+    let (residuals, last_residuals) = residuals.as_chunks_mut::<LANES>();
+    let (weights, last_weights) = weights.as_chunks_mut::<LANES>();
     let (points, last_points) = points.as_chunks::<LANES>();
     let (numbers, last_numbers) = numbers.as_chunks::<LANES>();
-    for ((residuals, points), numbers) in chunks.iter_mut().zip(points).zip(numbers) {
+    for ((residuals, weights), (points, numbers)) in residuals.iter_mut().zip(weights).zip(points.iter().zip(numbers)) {
         let lines: [&CellLine; LANES] = std::array::from_fn(|lane| &lines[numbers[lane] as usize]);
         let [x, y, at]: [Lanes; 3] =
             [lines.map(|line| line.normal.x), lines.map(|line| line.normal.y), lines.map(|line| line.at)];
+        let [inverse, of_cell]: [Lanes; 2] = [lines.map(|line| line.inverse_deviation), lines.map(|line| line.share)];
         for lane in 0..LANES {
             let residual = x[lane] * points[lane].x + y[lane] * points[lane].y - at[lane];
             residuals[lane] = residual;
             near[lane] += if residual.abs() < limit { 1.0 } else { 0.0 };
+            weights[lane] = tukeys_weight(residual * (inverse[lane] * scale)) * of_cell[lane];
         }
     }
     let mut all: f64 = near.iter().sum();
-    for ((residual, p), number) in rest.iter_mut().zip(last_points).zip(last_numbers) {
-        *residual = distance(p, &lines[*number as usize]);
+    let last = last_points.iter().zip(last_numbers);
+    for ((residual, weight), (p, number)) in last_residuals.iter_mut().zip(last_weights).zip(last) {
+        let line = &lines[*number as usize];
+        *residual = line.normal.x * p.x + line.normal.y * p.y - line.at;
         all += if residual.abs() < limit { 1.0 } else { 0.0 };
+        *weight = weight_of(*residual, line, scale);
     }
     all as usize
 }
 
-/// Tukey's weights of residuals, by the inverse of their deviation; `share` is what all points count for.
+/// What a point with a residual counts for, by the inverse of a deviation.
 #[inline(always)]
-fn take_weights(
-    (residuals, numbers, lines): (&[f64], &[u32], &[CellLine]),
-    weights: &mut [f64],
-    scale: f64,
-    share: f64,
-) {
-    let by_excess = 1.0 / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT);
-    let weight = |residual: f64, inverse_deviation: f64, of_cell: f64| {
-        let size = residual.abs() * (inverse_deviation * scale);
-        let excess = (size - tuning::FULL_WEIGHT) * by_excess;
-        let beyond = if excess > 0.0 { excess } else { 0.0 };
-        let kept = 1.0 - beyond * beyond;
-        (if excess < 1.0 { kept * kept } else { 0.0 }) * share * of_cell
-    };
-    let (chunks, rest) = weights.as_chunks_mut::<LANES>();
-    let (residuals, last_residuals) = residuals.as_chunks::<LANES>();
-    let (numbers, last_numbers) = numbers.as_chunks::<LANES>();
-    for ((weights, residuals), numbers) in chunks.iter_mut().zip(residuals).zip(numbers) {
-        let lines: [&CellLine; LANES] = std::array::from_fn(|lane| &lines[numbers[lane] as usize]);
-        let [inverse, of_cell]: [Lanes; 2] = [lines.map(|line| line.inverse_deviation), lines.map(|line| line.share)];
-        for lane in 0..LANES {
-            weights[lane] = weight(residuals[lane], inverse[lane], of_cell[lane]);
-        }
-    }
-    for ((found, residual), number) in rest.iter_mut().zip(last_residuals).zip(last_numbers) {
-        let line = &lines[*number as usize];
-        *found = weight(*residual, line.inverse_deviation, line.share);
-    }
+fn weight_of(residual: f64, line: &CellLine, scale: f64) -> f64 {
+    tukeys_weight(residual * (line.inverse_deviation * scale)) * line.share
+}
+
+/// Tukey's weight of a residual in deviations.
+#[inline(always)]
+fn tukeys_weight(residual: f64) -> f64 {
+    let excess = (residual.abs() - tuning::FULL_WEIGHT) * (1.0 / (tuning::NO_WEIGHT - tuning::FULL_WEIGHT));
+    let beyond = if excess > 0.0 { excess } else { 0.0 };
+    let kept = 1.0 - beyond * beyond;
+    if excess < 1.0 { kept * kept } else { 0.0 }
 }
 
 /// What has been found of the points of a frame.
@@ -309,6 +337,32 @@ impl Columns {
     pub(super) fn hand_cells_back(&self, measurements: &mut [Measurement]) {
         for (measurement, number) in measurements.iter_mut().zip(&self.numbers).filter(|(m, _)| m.cell != NO_CELL) {
             measurement.cell = *number as usize;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    #[test]
+    fn means_along_a_closed_piece_are_those_of_the_plain_way_bit_for_bit() {
+        let mut rng = ChaCha8Rng::seed_from_u64(8);
+        for (count, half_window) in [(1, 3), (2, 1), (3, 1), (4, 7), (5, 2), (9, 4), (40, 3), (41, 20), (41, 30)] {
+            let mut draw = || rng.random_range(-1.0..1.0);
+            let own: Vec<_> = (0..count).map(|_| Point2::new(draw(), draw())).collect();
+            let weight = |i: usize| f64::from(u8::from(!(10..30).contains(&i)));
+            let weighted: Vec<_> =
+                own.iter().enumerate().map(|(i, q)| [weight(i) * q.x, weight(i) * q.y, weight(i), 0.0]).collect();
+            let mut found = vec![Point2::origin(); count];
+            take_means(&weighted, half_window, &own, &mut found);
+            let mut expected = found.clone();
+            let take = |i: usize, mean: Option<Point2<f64>>| expected[i] = mean.unwrap_or(own[i]);
+            mean_of_neighbours(count, |i| weighted[i], true, half_window, take);
+            assert_eq!(found, expected, "{count} {half_window}");
         }
     }
 }

@@ -253,8 +253,10 @@ impl Seen<'_> {
     ) {
         let Self { points, inverse, map, offsets } = self;
         map.associate_all(
-            #[inline(always)]
-            |i| map_point_by::<AFFINE>(inverse, &points[i]),
+            points.iter().map(
+                #[inline(always)]
+                |p| map_point_by::<AFFINE>(inverse, p),
+            ),
             numbers,
         );
         let cells = map.cells();

@@ -1,9 +1,9 @@
 //! How far a frame has moved the outline as a whole.
-use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{SMatrix, SVector};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use nalgebra::{Const, DimMin, Point2, SMatrix, SVector, Vector2};
 
 use super::Track;
-use crate::{measurement::Frame, tuning::map::UNSEEN_SHIFT};
+use crate::{measurement::Frame, tuning::map::UNSEEN_SHIFT, vectors::vectorised};
 
 impl Track {
     /// The motion of the body frame that moves the outline as the frame just taken has moved the offsets of its cells, by least squares; what
@@ -14,18 +14,53 @@ impl Track {
 
     /// The motion of the body frame that moves the outline as offsets of its cells have changed, by least squares with weights.
     pub(super) fn motion_of_outline(&self, weights: &[f64], moved: &[f64]) -> SVector<f64, MAX_PARAMETERS> {
-        let (model, k) = (self.belief.model, self.belief.parameter_count());
-        let (mut squares, mut right) =
-            (SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros(), SVector::<f64, MAX_PARAMETERS>::zeros());
-        for ((cell, weight), moved) in self.map.cells().iter().zip(weights).zip(moved) {
-            let h = model.normal_velocities(&cell.centre, &cell.normal);
-            for i in 0..k {
-                right[i] += weight * h[i] * moved;
-                (0..k).for_each(|j| squares[(i, j)] += weight * h[i] * h[j]);
+        match self.belief.model {
+            MotionModel::Rigid => {
+                self.motion_of_outline_sized::<3>((weights, moved), |p, n| MotionModel::Rigid.normal_velocities(p, n))
             }
+            MotionModel::Similarity => self
+                .motion_of_outline_sized::<4>((weights, moved), |p, n| MotionModel::Similarity.normal_velocities(p, n)),
+            MotionModel::Affine => {
+                self.motion_of_outline_sized::<6>((weights, moved), |p, n| MotionModel::Affine.normal_velocities(p, n))
+            }
+            MotionModel::Projective => self
+                .motion_of_outline_sized::<8>((weights, moved), |p, n| MotionModel::Projective.normal_velocities(p, n)),
         }
-        let largest = (0..k).map(|i| squares[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
-        (0..MAX_PARAMETERS).for_each(|i| squares[(i, i)] += if i < k { UNSEEN_SHIFT * largest } else { 1.0 });
-        squares.lu().solve(&right).unwrap_or_else(SVector::zeros)
+    }
+
+    fn motion_of_outline_sized<const K: usize>(
+        &self,
+        (weights, moved): (&[f64], &[f64]),
+        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
+    ) -> SVector<f64, MAX_PARAMETERS>
+    where
+        Const<K>: DimMin<Const<K>, Output = Const<K>>,
+    {
+        let cells = self.map.cells();
+        let (squares, right) = vectorised(
+            #[inline(always)]
+            || {
+                let (mut squares, mut right) = ([[0.0; K]; K], [0.0; K]);
+                for ((cell, &weight), shift) in cells.iter().zip(weights).zip(moved) {
+                    let h = velocities(&cell.centre, &cell.normal);
+                    for i in 0..K {
+                        let weighted = weight * h[i];
+                        right[i] += weighted * shift;
+                        for j in i..K {
+                            squares[i][j] += weighted * h[j];
+                        }
+                    }
+                }
+                (squares, right)
+            },
+        );
+        let largest = (0..K).map(|i| squares[i][i]).fold(f64::MIN_POSITIVE, f64::max);
+        let seen = |i: usize| UNSEEN_SHIFT * largest + squares[i][i];
+        let squares = SMatrix::<f64, K, K>::from_fn(|i, j| if i == j { seen(i) } else { squares[i.min(j)][i.max(j)] });
+        let mut shift = SVector::<f64, MAX_PARAMETERS>::zeros();
+        if let Some(solution) = squares.lu().solve(&SVector::<f64, K>::from(right)) {
+            shift.fixed_rows_mut::<K>(0).copy_from(&solution);
+        }
+        shift
     }
 }

@@ -80,8 +80,8 @@ impl Track {
         let null = self.map.null_directions(belief.model, &belief.pose);
         let hold = hold(belief, &self.map, &null);
         let summary = self.summary_by(&with_hold(&belief.marginal, hold.as_ref()))?;
-        let given_outline = with_hold(&belief.information.with_outline_given(), hold.as_ref());
-        let given_outline = self.summary_by(&given_outline)?.covariance;
+        let given_outline = belief.information.with_outline_given();
+        let given_outline = self.summary_by(&with_hold(&given_outline, hold.as_ref()))?.covariance;
         let place = (self.map.middle(), null.as_slice());
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }

@@ -10,7 +10,8 @@ use crate::{
 
 impl Track {
     /// Looks at what a solved frame, which has not been committed, says of motions that the model leaves out: all of the first frames, and
-    /// then one that stands for several, unless the motion is known from so few frames that each of them corrects much of it. `variance` is
+    /// then one that stands for several, fewer where more is known, unless the motion is known from so few frames that each of them corrects
+    /// much of it. `variance` is
     /// that of the noise.
     pub(super) fn look_for_what_is_left_out(
         &mut self,
@@ -19,19 +20,30 @@ impl Track {
         measured: &PoseMeasurement,
         variance: f64,
     ) {
-        let memory = &self.belief.memory;
-        let remembered = memory.shortest(self.belief.parameter_count());
-        let takes_all =
-            self.frames <= tuning::ALL_OF_THE_FIRST || remembered < tuning::ALL_OF_THE_FIRST as f64 * memory.step;
-        if !takes_all && !self.frames.is_multiple_of(tuning::EVERY) {
+        let repeats = self.frames_stood_for();
+        if !self.frames.is_multiple_of(repeats) {
             return;
         }
-        let repeats = if takes_all { 1.0 } else { tuning::EVERY as f64 };
+        let repeats = repeats as f64;
         let marginal = with_hold(&proposal.marginal, hold);
         let at = (&self.belief, &*self.map);
         let score = self.sensitivity.take(at, frame, (&proposal.pose, &marginal), measured, repeats);
         if let Some(score) = score.filter(|_| self.frames > tuning::MAP_KNOWN) {
             self.family.take(&score, self.noise.sigma, variance);
+        }
+    }
+
+    /// How many frames one stands for that is looked at.
+    fn frames_stood_for(&self) -> usize {
+        let memory = &self.belief.memory;
+        let remembered = memory.shortest(self.belief.parameter_count());
+        let are_known = |frames: usize| self.frames > frames && remembered >= frames as f64 * memory.step;
+        if !are_known(tuning::ALL_OF_THE_FIRST) {
+            1
+        } else if !are_known(tuning::MANY) {
+            tuning::EVERY
+        } else {
+            tuning::EVERY_LATER
         }
     }
 

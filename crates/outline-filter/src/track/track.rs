@@ -167,7 +167,8 @@ impl Track {
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
         let [before, after] =
             [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold.as_ref()));
-        let innovation = self.belief.pose_innovation([&before, &after], &proposal.state, &self.map.middle(), variance);
+        let innovation =
+            self.belief.pose_innovation([&*before, &*after], &proposal.state, &self.map.middle(), variance);
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
             likelihood = view.negative_log_likelihood(frame);

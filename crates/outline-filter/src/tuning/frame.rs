@@ -10,6 +10,8 @@ pub(crate) mod measurement {
     pub(crate) const NEAR_ENOUGH: f64 = 0.75;
     /// Deviation that the place of a point along the outline may have, in spacings.
     pub(crate) const PLACE_NOISE: f64 = 0.13;
+    /// Weight of the neighbours of a point, all together, below which they say nothing of its place: a mean over less is rounding.
+    pub(crate) const LEAST_WEIGHT: f64 = 1e-3;
     /// Share of all points that the mean is taken over at most: a wider mean would cut corners.
     pub(crate) const WIDEST_WINDOW: f64 = 0.04;
     /// Fewest points on either side that the direction of the contour is told from.

@@ -151,6 +151,10 @@ pub(crate) mod family {
     /// several must not correct more than it has found.
     pub(crate) const ALL_OF_THE_FIRST: usize = 16;
     pub(crate) const EVERY: usize = 4;
+    /// Frames that have been taken, and that the motion is known from, after which one out of [`EVERY_LATER`] is looked at: more than seventy
+    /// have told by then what is left out, and what begins later is there in all frames that follow.
+    pub(crate) const MANY: usize = 256;
+    pub(crate) const EVERY_LATER: usize = 8;
 }
 
 /// What is stated at all.

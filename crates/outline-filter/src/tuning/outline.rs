@@ -73,9 +73,9 @@ pub(crate) mod contour {
     pub(crate) const LARGEST_FINE: usize = 120;
     /// Residuals of a regression that a point took part in are divided by their deviation, no less than this share of a variance.
     pub(crate) const LEAST_RESIDUAL_VARIANCE: f64 = 0.05;
-    /// Sizes within these shares of a guess of their median are put in order to find it: a quarter of them, four deviations of the median
-    /// of a few hundred on either side.
-    pub(crate) const ABOUT: [f64; 2] = [0.75, 1.33];
+    /// Sizes within these shares of a guess of their median are put in order to find it: a tenth of them, two deviations of the median of a
+    /// few hundred on either side; a quarter of them where the median is not among those.
+    pub(crate) const ABOUT: [[f64; 2]; 2] = [[0.88, 1.13], [0.75, 1.33]];
     /// Points whose residuals keep less of their variance than this tell nothing of the noise.
     pub(crate) const TELLING_RESIDUAL_VARIANCE: f64 = 0.1;
 }

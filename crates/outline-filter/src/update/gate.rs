@@ -6,6 +6,7 @@ use crate::{
     map::median_about,
     measurement::{Frame, Measurement, NO_CELL, View, spread, weighted_median},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, update as tuning},
+    vectors::vectorised,
 };
 
 /// Comparison of one frame with the known outline.
@@ -134,41 +135,22 @@ impl View<'_> {
         let spread = spread(frame, self.noise.sigma);
         let Frame { measurements, values, weighted, cells, deviations, .. } = frame;
         let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
-        let (ratios, widest) = (deviations.ratios(), deviations.widest());
+        let widest = deviations.widest();
         let limit = |ratio: f64| (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());
-        let alike = limit(1.0);
-        // Points that count for next to nothing need not agree.
-        let (mut known, mut agreeing, mut new, mut new_points) = (0.0, 0.0, 0.0, 0usize);
         values.resize(measurements.len(), 0.0);
         weighted.clear();
-        let mut told = 0;
-        for (i, m) in measurements.iter().enumerate() {
-            let (ratio, share, tolerance) = match ratios {
-                None => (1.0, 1.0, alike),
-                Some(ratios) => (ratios[i], (ratios[i] * ratios[i]).recip(), limit(ratios[i])),
-            };
-            if m.cell == NO_CELL {
-                new_points += 1;
-                new += share;
-                continue;
-            }
-            known += share;
-            agreeing += if m.residual.abs() < tolerance { share } else { 0.0 };
-            let factor = without_leverage(m, cells.own()[m.cell]);
-            let size = m.residual.abs() * factor.unwrap_or(0.0).sqrt();
-            let is_told = factor.is_some() && m.weight > 0.0;
-            if ratios.is_none() {
-                values[told] = size;
-                told += usize::from(is_told);
-            } else if is_told {
-                weighted.push((size / ratio, share));
-            }
-        }
-        values.truncate(told);
-        let enough = (values.len() + weighted.len()) * 4 > measurements.len();
+        let Told { known, agreeing, new, new_points, told } = match deviations.ratios() {
+            None => vectorised(
+                #[inline(always)]
+                || told_alike(measurements, cells.own(), limit(1.0), values),
+            ),
+            Some(ratios) => told_by_deviations((measurements.as_slice(), ratios), cells.own(), limit, weighted),
+        };
+        let enough = told * 4 > measurements.len();
         // Points count by their weights: what those that count most scatter by must not hide behind others that say too much of theirs.
         let guess = self.noise.sigma / MEDIAN_TO_DEVIATION;
-        let middle = if weighted.is_empty() { median_about(guess, values) } else { weighted_median(weighted) };
+        let middle =
+            if weighted.is_empty() { median_about(guess, &mut values[..told]) } else { weighted_median(weighted) };
         let typical = deviations.typical();
         let noise = middle.filter(|_| enough).map(|m| MEDIAN_TO_DEVIATION * m * radius * typical);
         let total = known + new / tuning::NEW_POINTS_PER_POINT;
@@ -177,6 +159,65 @@ impl View<'_> {
         let (spread, weight) = (spread * radius * typical, deviations.weight());
         FrameMeasurement { agreement, new_points, innovation, iterations, noise, spread, weight }
     }
+}
+
+/// What the points of a frame say of whether it shows the outline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Told {
+    /// Points on the outline, those of them that agree, and points beyond its ends, by what they count for.
+    known: f64,
+    agreeing: f64,
+    new: f64,
+    new_points: usize,
+    /// Points that tell of the noise.
+    told: usize,
+}
+
+/// Of points that count by their deviations, over that of a good one, with what each may be off by; those that tell of the noise are listed.
+fn told_by_deviations(
+    (measurements, ratios): (&[Measurement], &[f64]),
+    own: &[f64],
+    limit: impl Fn(f64) -> f64,
+    weighted: &mut Vec<(f64, f64)>,
+) -> Told {
+    let mut all = Told { known: 0.0, agreeing: 0.0, new: 0.0, new_points: 0, told: 0 };
+    for (m, ratio) in measurements.iter().zip(ratios) {
+        // Points that count for next to nothing need not agree.
+        let share = (ratio * ratio).recip();
+        if m.cell == NO_CELL {
+            all.new_points += 1;
+            all.new += share;
+            continue;
+        }
+        all.known += share;
+        all.agreeing += if m.residual.abs() < limit(*ratio) { share } else { 0.0 };
+        if let Some(factor) = without_leverage(m, own[m.cell]).filter(|_| m.weight > 0.0) {
+            weighted.push((m.residual.abs() * factor.sqrt() / ratio, share));
+        }
+    }
+    all.told = weighted.len();
+    all
+}
+
+/// As [`told_by_deviations`], which a test compares it with, of points that are all good ones; sizes of those that tell of the noise come
+/// first among the values.
+#[inline(always)]
+fn told_alike(measurements: &[Measurement], own: &[f64], limit: f64, values: &mut [f64]) -> Told {
+    let (mut agreeing, mut new_points, mut told) = (0, 0, 0);
+    for m in measurements {
+        // None has a number beyond all cells.
+        let Some(own) = own.get(m.cell) else {
+            new_points += 1;
+            continue;
+        };
+        let size = m.residual.abs();
+        agreeing += usize::from(size < limit);
+        let of_point = m.weight * m.by_offset * m.by_offset;
+        values[told] = size * (own / (own - of_point)).sqrt();
+        told += usize::from((of_point < tuning::LARGEST_LEVERAGE * own) & (m.weight > 0.0));
+    }
+    let known = (measurements.len() - new_points) as f64;
+    Told { known, agreeing: agreeing as f64, new: new_points as f64, new_points, told }
 }
 
 /// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is;
@@ -205,5 +246,36 @@ impl fmt::Display for Rejection {
             }
             Self::NotFound => f.write_str("the object was not found"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    #[test]
+    fn good_points_tell_what_points_of_deviations_that_are_all_one_do() {
+        let mut rng = ChaCha8Rng::seed_from_u64(9);
+        let own: Vec<f64> = (0..40).map(|_| rng.random_range(0.0..5.0)).collect();
+        let measurements: Vec<_> = (0..200)
+            .map(|i| Measurement {
+                cell: if i % 13 == 0 { NO_CELL } else { rng.random_range(0..own.len()) },
+                residual: rng.random_range(-1.0..1.0),
+                by_offset: rng.random_range(0.5..1.5),
+                weight: if i % 7 == 0 { 0.0 } else { rng.random_range(0.0..1.0) },
+                ..Measurement::NOTHING
+            })
+            .collect();
+        let mut weighted = Vec::new();
+        let ratios = vec![1.0; measurements.len()];
+        let expected = told_by_deviations((&measurements, &ratios), &own, |_| 0.4, &mut weighted);
+        let mut values = vec![0.0; measurements.len()];
+        let found = told_alike(&measurements, &own, 0.4, &mut values);
+        assert_eq!(found, expected);
+        assert!(found.told > 50 && found.told < measurements.len());
+        assert!(values.iter().zip(&weighted).all(|(value, (size, _))| value == size));
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! A constant generator would tell the turn of a plain circle from its path. Wheels roll and coins slide while they spin, so that would be
 //! wrong for most objects: a turn is told by the outline, never by the path alone.
+use std::borrow::Cow;
+
 use freeform_riccati::MotionModel;
 
 use crate::{
@@ -31,6 +33,6 @@ pub(crate) fn hold(belief: &Belief, map: &OutlineMap, null: &[NullDirection]) ->
 }
 
 /// Information with that of a hold, where there is one.
-pub(crate) fn with_hold(information: &StateMatrix, hold: Option<&StateMatrix>) -> StateMatrix {
-    hold.map_or(*information, |hold| information + hold)
+pub(crate) fn with_hold<'a>(information: &'a StateMatrix, hold: Option<&StateMatrix>) -> Cow<'a, StateMatrix> {
+    hold.map_or(Cow::Borrowed(information), |hold| Cow::Owned(information + hold))
 }

@@ -1,4 +1,5 @@
 //! The normal equations of a frame, added to the information, and the offsets eliminated from them.
+use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 
 use crate::{
     belief::{Arrowhead, StateVector},
@@ -6,9 +7,18 @@ use crate::{
     vectors::vectorised,
 };
 
-/// Adds the measurements to the information; returns the right-hand side of pose and motion, and leaves those of the offsets in the frame.
-/// `state` is the step that the residuals were taken after.
-pub(crate) fn accumulate(frame: &mut Frame, work: &mut Arrowhead, state: &StateVector) -> StateVector {
+/// What a frame adds to pose and motion, the offsets not eliminated.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Added {
+    /// Information on the pose.
+    pub(super) information: ParameterMatrix,
+    /// Right-hand side of pose and motion.
+    pub(super) right: StateVector,
+}
+
+/// Adds the measurements to the information; returns what they add to pose and motion, and leaves the right-hand sides of the offsets in the
+/// frame. `state` is the step that the residuals were taken after.
+pub(crate) fn accumulate(frame: &mut Frame, work: &mut Arrowhead, state: &StateVector) -> Added {
     frame.right.clear();
     frame.right.resize(work.cells.len(), 0.0);
     match work.k {
@@ -23,7 +33,7 @@ fn accumulate_sized<const K: usize, const S: usize>(
     frame: &mut Frame,
     work: &mut Arrowhead,
     state: &StateVector,
-) -> StateVector {
+) -> Added {
     let step: [f64; K] = std::array::from_fn(|i| state[i]);
     let (own, coupling) = work.cells.all_mut::<S>();
     let Frame { measurements, shifts, right, .. } = frame;
@@ -32,10 +42,13 @@ fn accumulate_sized<const K: usize, const S: usize>(
         #[inline(always)]
         || add_points::<K, S>(of_points, &step, (&mut *own, &mut *coupling), right),
     );
-    for (sum, row) in work.dense.iter_mut().zip(&dense) {
-        sum.iter_mut().zip(row).for_each(|(s, d)| *s += d);
+    let mut added = Added { information: [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS], right: StateVector::zeros() };
+    for i in 0..K {
+        added.information[i][..K].copy_from_slice(&dense[i]);
+        added.right[i] = of_state[i];
+        work.dense[i].iter_mut().zip(&dense[i]).for_each(|(sum, entry)| *sum += entry);
     }
-    StateVector::from_fn(|i, _| of_state.get(i).copied().unwrap_or(0.0))
+    added
 }
 
 /// Adds points to the information on their cells and to its right-hand sides; returns what they add to pose and motion.
@@ -48,6 +61,9 @@ fn add_points<const K: usize, const S: usize>(
 ) -> ([[f64; K]; K], [f64; K]) {
     let mut right = [0.0; K];
     let mut dense = [[0.0; K]; K];
+    // All of the same length, which a number is compared with once.
+    let cells = own.len();
+    let (coupling, shifts, right_of_cells) = (&mut coupling[..cells], &shifts[..cells], &mut right_of_cells[..cells]);
     // Short rows are summed from their diagonal on, long ones as whole vectors.
     let first = |i: usize| if K < 6 { i } else { 0 };
     for Measurement { cell, residual, by_offset, jacobian, weight } in measurements {

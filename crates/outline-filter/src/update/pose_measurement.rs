@@ -7,7 +7,7 @@ use crate::{
     belief::{Belief, OffsetInformation},
     measurement::Frame,
     tuning::dynamics::LARGEST_VARIANCE,
-    vectors::vectorised,
+    vectors::{LANES, Lanes, add_product, in_lanes, vectorised},
 };
 
 /// In normalised coordinates, of the error of the predicted pose, on the left; the outline taken as known before the frame.
@@ -39,33 +39,28 @@ impl PoseMeasurement {
         let mut pulled = [0.0; K];
         for i in 0..K {
             pulled[i] = proposal.right[i];
-            (0..K).for_each(|j| information[i][j] = proposal.dense[i][j] - before.dense[i][j]);
+            information[i].copy_from_slice(&proposal.added[i][..K]);
         }
         let [own, own_before] = [&frame.cells, &before.cells].map(OffsetInformation::own);
         let [coupling, coupling_before] = [&frame.cells, &before.cells].map(OffsetInformation::rows::<S>);
-        vectorised(
+        let (taken, taken_pull) = vectorised(
             #[inline(always)]
             || {
-                let of_cells = own.iter().zip(own_before).zip(coupling.iter().zip(coupling_before));
-                for (((own, own_before), (coupling, coupling_before)), right) in of_cells.zip(&frame.right) {
-                    if own <= own_before {
-                        continue;
-                    }
-                    let inverse = 1.0 / own;
-                    let mut added = [0.0; K];
-                    for i in 0..K {
-                        added[i] = coupling[i] - coupling_before[i];
-                    }
-                    for i in 0..K {
-                        let factor = added[i] * inverse;
-                        pulled[i] -= factor * right;
-                        for j in 0..K {
-                            information[i][j] -= factor * added[j];
-                        }
-                    }
+                let mut taken = ([[[0.0; LANES]; K]; K], [[0.0; LANES]; K]);
+                for start in (0..own.len()).step_by(LANES) {
+                    take_off(start, (own, own_before), (coupling, coupling_before), &frame.right, &mut taken);
                 }
+                taken
             },
         );
+        for i in 0..K {
+            pulled[i] -= taken_pull[i].iter().sum::<f64>();
+            for j in 0..=i {
+                let sum: f64 = taken[i][j].iter().sum();
+                information[i][j] -= sum;
+                information[j][i] -= if i == j { 0.0 } else { sum };
+            }
+        }
         Self {
             information: SMatrix::from_fn(|i, j| {
                 if i < K && j < K { 0.5 * (information[i][j] + information[j][i]) } else { 0.0 }
@@ -83,5 +78,35 @@ impl PoseMeasurement {
     /// In units of a variance of the noise.
     pub(crate) fn over(&self, variance: f64) -> Self {
         Self { information: self.information / variance, pulled: self.pulled / variance }
+    }
+}
+
+/// Adds, in lanes, what the offsets of the cells from `start` on take off the information of a frame on the pose, its lower half, and off its
+/// pull: of each cell its part of the coupling that the frame has added.
+#[inline(always)]
+fn take_off<const K: usize, const S: usize>(
+    start: usize,
+    (own, own_before): (&[f64], &[f64]),
+    (coupling, coupling_before): (&[[f64; S]], &[[f64; S]]),
+    right: &[f64],
+    (taken, taken_pull): &mut ([[Lanes; K]; K], [Lanes; K]),
+) {
+    let count = LANES.min(own.len() - start);
+    let (mut added, mut inverse, mut of_offset) = ([[0.0; K]; LANES], [0.0; LANES], [0.0; LANES]);
+    for lane in 0..count {
+        let at = start + lane;
+        let (with, before) = (&coupling[at], &coupling_before[at]);
+        (0..K).for_each(|i| added[lane][i] = with[i] - before[i]);
+        inverse[lane] = if own[at] > own_before[at] { 1.0 / own[at] } else { 0.0 };
+        of_offset[lane] = right[at];
+    }
+    let added = in_lanes(&added);
+    for i in 0..K {
+        let mut factor = [0.0; LANES];
+        add_product(&mut factor, &added[i], &inverse);
+        add_product(&mut taken_pull[i], &factor, &of_offset);
+        for j in 0..=i {
+            add_product(&mut taken[i][j], &factor, &added[j]);
+        }
     }
 }

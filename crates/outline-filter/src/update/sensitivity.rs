@@ -172,7 +172,6 @@ impl Sensitivity {
         let (coupling, coupling_before) = (with.rows::<S>(), before.rows::<S>());
         let (with, before) = (with.own(), before.own());
         let mut left = std::mem::take(&mut frame.values);
-        left.clear();
         left.resize(with.len() * LEFT_OUT, 0.0);
         vectorised(
             #[inline(always)]
@@ -184,6 +183,7 @@ impl Sensitivity {
                     of_cells.zip(left).zip(known)
                 {
                     let own = with - before;
+                    *left = [0.0; LEFT_OUT];
                     if own > 0.0 {
                         let whole = at.displacement(cell, *offset).0;
                         let mut added = [0.0; K];

@@ -1,12 +1,13 @@
 //! A frame linearised and solved for pose, motion and offsets until the pose settles.
+use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 use nalgebra::Matrix3;
 
 use super::{
     hold::with_hold,
-    normal_equations::{accumulate, reduce},
+    normal_equations::{Added, accumulate, reduce},
 };
 use crate::{
-    belief::{Arrowhead, OffsetInformation, STATE, StateMatrix, StateVector, scaled_solution},
+    belief::{Arrowhead, OffsetInformation, StateMatrix, StateVector, scaled_solution},
     map::NullDirection,
     measurement::{Frame, NO_CELL, Pass, View},
     tuning::update as tuning,
@@ -20,8 +21,8 @@ pub(crate) struct Proposal {
     /// Step of pose and motion from what was predicted.
     pub(crate) state: StateVector,
     pub(crate) pose: Matrix3<f64>,
-    /// Information on pose and motion with the frame, the outline given.
-    pub(crate) dense: [[f64; STATE]; STATE],
+    /// Information on the pose that the frame has added, the outline given.
+    pub(super) added: ParameterMatrix,
     /// Information on pose and motion with the frame, the offsets eliminated.
     pub(crate) marginal: StateMatrix,
     /// Right-hand side of pose and motion that the frame has added, the offsets not eliminated.
@@ -45,7 +46,7 @@ impl View<'_> {
         let mut proposal = Proposal {
             state: StateVector::zeros(),
             pose: belief.pose,
-            dense: belief.information.dense,
+            added: [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS],
             marginal: belief.marginal,
             right: StateVector::zeros(),
             iterations: 0,
@@ -63,7 +64,7 @@ impl View<'_> {
             frame.cells.copy_from(&belief.information.cells);
             std::mem::swap(&mut work.cells, &mut frame.cells);
             work.dense = belief.information.dense;
-            let right = accumulate(frame, &mut work, &proposal.state);
+            let Added { information: added, right } = accumulate(frame, &mut work, &proposal.state);
             let marginal = work.marginal();
             let reduced = reduce(&work, &frame.right, right);
             let solution = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
@@ -79,7 +80,7 @@ impl View<'_> {
                 return Err(proposal.iterations);
             }
             let iterations = proposal.iterations + 1;
-            proposal = Proposal { state: next, pose, dense: work.dense, marginal, right, iterations };
+            proposal = Proposal { state: next, pose, added, marginal, right, iterations };
             settled = step < tuning::SETTLED * self.noise.sigma;
         }
         Ok(proposal)
@@ -107,6 +108,7 @@ impl Frame {
         let state: [f64; S] = std::array::from_fn(|i| state[i]);
         let Self { measurements, shifts, right, values, .. } = self;
         values.resize(shifts.len(), 0.0);
+        let values = values.as_mut_slice();
         vectorised(
             #[inline(always)]
             || {
@@ -161,7 +163,7 @@ mod tests {
             let mut frame = Frame { measurements, ..Frame::default() };
             frame.clear_shifts(cells);
             let mut work = belief.information.clone();
-            let right = accumulate(&mut frame, &mut work, &StateVector::zeros());
+            let Added { information: added, right } = accumulate(&mut frame, &mut work, &StateVector::zeros());
             let reduced = reduce(&work, &frame.right, right);
             let state = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
             frame.take_step(&work.cells, &state, &state, k);
@@ -170,7 +172,7 @@ mod tests {
             let proposal = Proposal {
                 state,
                 pose: belief.pose,
-                dense: work.dense,
+                added,
                 marginal,
                 right,
                 iterations: 1,
@@ -205,7 +207,7 @@ mod tests {
             let mut steps = Vec::new();
             for _ in 0..2 {
                 let mut work = problem.belief.information.clone();
-                let right = accumulate(&mut frame, &mut work, &state);
+                let Added { right, .. } = accumulate(&mut frame, &mut work, &state);
                 let reduced = reduce(&work, &frame.right, right);
                 let next = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
                 frame.take_step(&work.cells, &(next - state), &next, k);

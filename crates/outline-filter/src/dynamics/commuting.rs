@@ -1,0 +1,155 @@
+//! Hypotheses of models whose turns and growth commute, moved on in closed form: their logarithms add up.
+use std::f64::consts::TAU;
+
+use freeform_riccati::MotionModel;
+use nalgebra::{Matrix2, Vector2};
+
+use super::{
+    centred::{carried, parts},
+    hypothesis::{Course, Hypothesis, Step},
+};
+use crate::vectors::vectorised;
+
+impl<const N: usize> Hypothesis<N> {
+    /// As [`predict_any`](Self::predict_any), which a test compares it with, for rigid and similarity motion.
+    pub(super) fn predict_commuting(&mut self, step: &Step<'_>) {
+        let (model, k, dt) = (step.model, Self::K, step.seconds);
+        debug_assert!(model <= MotionModel::Similarity);
+        if let Course::Accelerating { .. } = self.course {
+            let covariance = &mut self.covariance.data.0;
+            vectorised(
+                #[inline(always)]
+                || carry_chains(covariance, dt),
+            );
+            for j in 0..k {
+                let [error, motion, acceleration] = [0, 1, 2].map(|at| self.mean[at * k + j]);
+                self.mean[j] = error + dt * (motion + 0.5 * dt * acceleration);
+                self.mean[k + j] = motion + dt * acceleration;
+            }
+            self.add_change_of_accelerations(step);
+        } else {
+            let motion = &self.mean.as_slice()[k..2 * k];
+            let (a, v) = parts(&model.generator(motion));
+            let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
+            let (turn, shift, later) = if self.course == Course::ConstantVelocity {
+                let turn = model.linear_flow(motion, dt);
+                let turned = turn * turning - turning;
+                (turn, v * dt + 0.5 * dt * turned, v + turned)
+            } else {
+                let (turn, shift) = parts(&model.flow(motion, dt).into_inner());
+                (turn, shift, turn * v)
+            };
+            let transition = self.transition(step, (&turn, &a, &v, &later));
+            self.covariance = carried(&transition, &self.covariance, self.size());
+            self.take_velocity(&turn, &shift, &later);
+            for j in 0..k - 2 {
+                self.mean[j] += dt * self.mean[k + j];
+            }
+        }
+        for j in 0..k - 2 {
+            self.mean[j] += step.turned_by[j];
+        }
+        self.mean[k - 2] += step.centre.x;
+        self.mean[k - 1] += step.centre.y;
+        // Turns that differ by a round are the same.
+        let turn = &mut self.mean[k - 3];
+        *turn -= TAU * (*turn / TAU).round();
+    }
+
+    /// Takes what a step makes of the velocity, and the way that the middle has gone.
+    fn take_velocity(&mut self, turn: &Matrix2<f64>, shift: &Vector2<f64>, later: &Vector2<f64>) {
+        let k = Self::K;
+        for i in 0..2 {
+            self.mean[k - 2 + i] += shift[i];
+            self.mean[2 * k - 2 + i] = later[i];
+        }
+        if self.course == Course::ConstantVelocity {
+            let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
+            self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
+        }
+    }
+}
+
+/// `F P F'` of parameters that accelerate one by one: of each, `F = [[1, dt, dt^2 / 2], [0, 1, dt], [0, 0, 1]]`.
+#[inline(always)]
+fn carry_chains<const N: usize>(p: &mut [[f64; N]; N], dt: f64) {
+    let (k, half) = (N / 3, 0.5 * dt * dt);
+    for column in p.iter_mut() {
+        for j in 0..k {
+            column[j] += dt * column[k + j] + half * column[2 * k + j];
+            column[k + j] += dt * column[2 * k + j];
+        }
+    }
+    let (errors, others) = p.split_at_mut(k);
+    let (motions, accelerations) = others.split_at_mut(k);
+    for ((error, motion), acceleration) in errors.iter_mut().zip(motions).zip(accelerations) {
+        for i in 0..N {
+            error[i] += dt * motion[i] + half * acceleration[i];
+            motion[i] += dt * acceleration[i];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MAX_PARAMETERS;
+    use nalgebra::{Matrix3, Point2, SMatrix, SVector};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::dynamics::{CentredPose, centred::CentredVector};
+
+    const COURSES: [Course; 5] = [
+        Course::ConstantGenerator,
+        Course::ConstantVelocity,
+        Course::Shaken { deviations: 4.0 },
+        Course::Accelerating { level: 1e-1, rates: true },
+        Course::Accelerating { level: 1e1, rates: false },
+    ];
+
+    /// Largest difference between the two ways, for a model of N / 3 parameters.
+    fn difference<const N: usize>(model: MotionModel, numbers: &[f64], course: Course) -> f64 {
+        let k = N / 3;
+        let pose = |numbers: &[f64]| CentredPose {
+            pose: model.flow(&numbers[..k], 1.0).into_inner(),
+            middle: Point2::new(0.1, -0.3),
+        };
+        let (from, to) = (pose(&numbers[..MAX_PARAMETERS]), pose(&numbers[MAX_PARAMETERS..]));
+        let variance = CentredVector::from_fn(|j, _| 0.1 + numbers[j].abs());
+        let step = Step::new((model, 0.7), [&from, &to], &variance).expect("poses");
+        let root = SMatrix::<f64, N, N>::from_fn(|i, j| (7.0 * numbers[(3 * i + 5 * j) % numbers.len()]).sin());
+        let in_use = |i: usize| course.has_more_than_motion() || i < 2 * k;
+        let mean = SVector::<f64, N>::from_fn(|i, _| if in_use(i) { numbers[i] } else { 0.0 });
+        let covariance = root * root.transpose();
+        let covariance = SMatrix::from_fn(|i, j| if in_use(i) && in_use(j) { covariance[(i, j)] } else { 0.0 });
+        let mut plain = Hypothesis::<N> { course, mean, covariance };
+        let mut closed = plain.clone();
+        assert!(plain.predict_any(&step));
+        closed.predict_commuting(&step);
+        (plain.mean - closed.mean).amax().max((plain.covariance - closed.covariance).amax())
+    }
+
+    proptest! {
+        #[test]
+        fn hypotheses_are_moved_on_in_closed_form_as_by_matrices(
+            numbers in prop::collection::vec(-1.4_f64..1.4, 2 * MAX_PARAMETERS), which in 0..COURSES.len(),
+        ) {
+            let course = COURSES[which];
+            let rigid = difference::<9>(MotionModel::Rigid, &numbers, course);
+            let similarity = difference::<12>(MotionModel::Similarity, &numbers, course);
+            prop_assert!(rigid.max(similarity) < 1e-11, "{course:?}: {rigid} {similarity}");
+        }
+    }
+
+    #[test]
+    fn a_turn_of_more_than_half_a_circle_is_one_the_other_way() {
+        let pose = CentredPose { pose: Matrix3::identity(), middle: Point2::origin() };
+        let variance = CentredVector::repeat(1.0);
+        let step = Step::new((MotionModel::Rigid, 1.0), [&pose, &pose], &variance).expect("poses");
+        let mut hypothesis =
+            Hypothesis::<9> { course: COURSES[3], mean: SVector::zeros(), covariance: SMatrix::identity() };
+        hypothesis.mean[3] = 4.0;
+        hypothesis.predict_commuting(&step);
+        assert!((hypothesis.mean[0] - (4.0 - TAU)).abs() < 1e-15);
+    }
+}
