@@ -33,7 +33,7 @@ pub struct Observation {
     pub progress: Option<AdaptiveProgress>,
     /// Adaptive method: root mean square distance of the points from the curve. Motion filter: noise of this frame. In image lengths.
     pub residual: Option<f64>,
-    /// Squared innovation of pose and motion in units of its predicted covariance (motion filter).
+    /// Squared Mahalanobis norm of the innovation of the pose in units of its predicted covariance (motion filter).
     pub innovation: Option<f64>,
     /// Turns between which the outlines so far do not decide (motion filter).
     pub ambiguity: Option<Ambiguity>,

@@ -15,8 +15,9 @@ impl Tracker {
         self.objects.positions.get(object).and_then(|position| self.objects.list[*position].expected_outline(time))
     }
 
-    /// As [`push`](Self::push). If the outline does not show the object as it is known, as where it touches another one, `seek` is asked for
-    /// arcs of it near where it is expected. They are taken in place of the outline if they show it. Returns them with the observation then.
+    /// Takes an outline as [`push`](Self::push) does. If it does not show the object as it is known, as where it touches another one, `seek` is
+    /// asked for arcs near where the object is expected. They are taken in place of the outline if they show it, and returned with the
+    /// observation.
     pub fn push_or_seek(
         &mut self,
         frame: &OutlineFrame,

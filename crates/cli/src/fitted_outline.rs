@@ -62,7 +62,7 @@ impl FittedOutline {
         }
     }
 
-    /// The same with the standard deviations of its parts for a covariance of the coefficients.
+    /// Adds the standard deviations of its parts for a covariance of the coefficients.
     pub(crate) fn with_deviations(mut self, covariance: &FitCovariance) -> Self {
         let carried = CurveUncertainty::carried(self.fit.working(), &covariance.coefficients());
         let map = self.fit.normalisation().image_from_working();

@@ -213,7 +213,7 @@ impl Input {
         self.pictures().is_some_and(PictureInput::is_picture_over)
     }
 
-    /// Takes it that an object was in a picture although it was not traced there.
+    /// Marks an object as present in a picture in which it was not traced.
     pub(crate) fn keep(&mut self, object: &str, frame: u64) {
         if let Source::Pictures(pictures) = &mut self.source {
             pictures.keep(object, frame);

@@ -247,7 +247,7 @@ impl PictureInput {
         self.waiting.is_empty()
     }
 
-    /// Takes it that an object was in a picture although it was not traced there, so that it keeps its name.
+    /// Marks an object as present in a picture in which it was not traced, so that it keeps its name.
     pub(crate) fn keep(&mut self, object: &str, frame: u64) {
         if let Ok(name) = object.parse() {
             self.outlines.keep(name, frame);

@@ -37,7 +37,7 @@ impl FitCovariance {
         self.coefficients_for(self.noise)
     }
 
-    /// The same for another noise, in working coordinates.
+    /// Covariance of the coefficients for another standard deviation of the noise, in working coordinates.
     #[must_use]
     pub fn coefficients_for(&self, noise: f64) -> DMatrix<f64> {
         &self.per_unit_noise * (noise * noise)

@@ -75,7 +75,7 @@ impl Fitter {
         self.fit_loaded(outline, normalisation)
     }
 
-    /// The same in coordinates that are given: the outline is spread evenly by arc length there and fitted as it is. For open arcs
+    /// Fits an outline in coordinates that are given: it is spread evenly by arc length there and fitted as it is. For open arcs
     /// of an object whose pose is known, which have no area moments. `image_from_working` maps coordinates to the image in which the
     /// whole outline has about the mean 0 and the RMS radius 1, such as the
     /// [`normalisation`](Fit::normalisation) of an affine-normalised fit of an earlier outline, moved as the object has moved.

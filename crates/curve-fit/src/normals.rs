@@ -66,7 +66,7 @@ impl NormalRegression {
         self.run_along(points, half_window, normals);
     }
 
-    /// The same for pieces of so many points, each closed or not.
+    /// Normals along pieces of so many points, each closed or not.
     pub(crate) fn run_pieces(
         &mut self,
         pieces: &[(usize, bool)],

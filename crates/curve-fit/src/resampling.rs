@@ -23,7 +23,7 @@ pub(crate) struct EvenOutline {
     moved: Vec<Point2<f64>>,
     /// Spread evenly, before they are smoothed.
     rough: Vec<Point2<f64>>,
-    /// The same, smoothed point by point, before they are spread evenly once more.
+    /// The points smoothed one by one, before they are spread evenly once more.
     smoothed: Vec<Point2<f64>>,
     lengths: Vec<f64>,
 }

@@ -95,7 +95,7 @@ impl Derived {
         self.points.iter().flat_map(|(_, p)| [p.x, p.y]).chain(self.invariants.iter().copied())
     }
 
-    /// The same with the points of each level in the order of those of a neighbour that they are nearest to.
+    /// Reorders the points of each level: each is put where the nearest point of a neighbour stands.
     fn in_order_of(mut self, other: &Self) -> Result<Self, DecompositionError> {
         if self.len() != other.len() {
             return Err(OVERFLOW);

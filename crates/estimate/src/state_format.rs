@@ -48,7 +48,7 @@ pub struct StateFormat {
     pub version: u32,
     /// What the bytes hold.
     pub kind: [u8; 4],
-    /// The same in words, for messages.
+    /// What the bytes hold in words, for messages.
     pub name: &'static str,
 }
 

@@ -172,7 +172,7 @@ impl Identities {
         }
     }
 
-    /// Takes it that an object is where it is expected in a frame, although it was not traced there.
+    /// Puts an object where it is expected in a frame in which it was not traced.
     pub(crate) fn keep(&mut self, name: u64, frame: u64) {
         for known in self.known.iter_mut().filter(|known| known.name == name && known.frame < frame) {
             (known.centre, known.frame) = (known.expected(frame), frame);

@@ -161,7 +161,7 @@ impl OutlineFile {
         Self::of_polygons(&paths.iter().map(read).collect::<Result<Vec<_>, _>>()?, settings)
     }
 
-    /// The same of a source, which is read to its end. The name is used in error messages.
+    /// Reads polygons from a source to its end. The name is used in error messages.
     ///
     /// # Errors
     /// As [`Self::open_polygons`].

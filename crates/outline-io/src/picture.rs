@@ -23,7 +23,7 @@ pub(crate) const DECODER_LIMIT: u64 = 1 << 30;
 /// Most bytes of a picture as it is decoded: 16 bits in each of 4 channels of the largest. Others have 32.
 const LARGEST_PICTURE: u64 = DECODER_LIMIT / 2;
 
-/// The same for each pixel of a picture.
+/// Most bytes that the decoder may take for each pixel of a picture.
 const DECODER_LIMIT_OF_PIXEL: u64 = DECODER_LIMIT / PIXEL_LIMIT;
 
 /// Most memory for what a PNG tells beside its pixels, in bytes: colour profiles of printers have some megabytes, histories of editors some

@@ -171,7 +171,7 @@ impl<S: Iterator<Item = Result<PictureFrame, PictureError>>> PictureOutlines<S> 
         &self.source
     }
 
-    /// Takes it that an object was in a picture, at most the last one, although it was not traced there: it keeps its name.
+    /// Marks an object as present in a picture, at most the last one, in which it was not traced: it keeps its name.
     pub fn keep(&mut self, name: u64, frame: u64) {
         self.identities.keep(name, frame);
     }

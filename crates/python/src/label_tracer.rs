@@ -32,7 +32,7 @@ pub(crate) struct PyLabelTracer {
 /// Share of the largest part of a label from which on its next largest part may as well be an object.
 const LIKE_AN_OBJECT: f64 = 0.25;
 
-/// The same where the largest is asked for: which of them it is may change from mask to mask.
+/// That share where the largest part is asked for: which of them it is may change from mask to mask.
 const LIKE_SIZE: f64 = 0.5;
 
 /// Objects with their outlines, objects without one with the reason, and what is to be said of labels in several parts.

@@ -137,7 +137,7 @@ impl ProjectiveMotion {
         Self { a1, a2, a3, a4, b1, b2, c1, c2 }
     }
 
-    /// The same motion without c1 and c2 where they are 0; `None` where they are not.
+    /// The motion as an affine one; `None` unless c1 and c2 are 0.
     #[must_use]
     pub fn as_affine(&self) -> Option<AffineMotion> {
         let Self { a1, a2, a3, a4, b1, b2, c1, c2 } = *self;

@@ -145,7 +145,7 @@ impl PlaneMotion {
         [w.x, w.y, w.z, v.x, v.y, v.z, n.x, n.y]
     }
 
-    /// The same motion in lengths in which z of the normal is 1: distances of the plane along the optical axis. `None` for a plane that
+    /// The motion in units of length in which z of the normal is 1: distances of the plane along the optical axis. `None` for a plane that
     /// is seen edge on along the optical axis.
     #[must_use]
     pub fn scaled_to_axis(&self) -> Option<Self> {

@@ -256,8 +256,8 @@ impl TrackOptions {
         pictures.files_read(inputs).into_iter().chain(of_map).collect()
     }
 
-    /// The same for outlines that may lie off as pictures say, in the unit of the pictures. What is given goes before it, and in another plane
-    /// the unit is another.
+    /// Settings of the tracker for outlines whose edges are as uncertain as pictures say, in the unit of the pictures. Options that are given
+    /// go before it, and so does another plane, whose unit is another.
     pub(crate) fn tracker_settings_for(&self, by_pictures: OutlineError) -> TrackerSettings {
         let mut options = self.clone();
         if self.edge_uncertainty.is_none() && self.mask_pixel.is_none() && self.rectify.is_none() {

@@ -49,7 +49,7 @@ pub(crate) fn write_stress_table(sink: &mut impl Write, report: &StressReport) -
     writeln!(sink, "{}", notes())
 }
 
-/// The same for a document, the classes first.
+/// Writes the figures as Markdown, the classes first.
 pub(crate) fn write_stress_markdown(sink: &mut impl Write, report: &StressReport) -> io::Result<()> {
     let (kinds, totals) = rows(report);
     let line =
@@ -75,7 +75,7 @@ pub(crate) fn write_kinds(sink: &mut impl Write, kinds: &[Kind]) -> io::Result<(
     write_aligned(sink, &["class", "kind", "explanation"], &rows, &[0, 1, 2])
 }
 
-/// The same for a document, class by class.
+/// Writes the kinds as Markdown, class by class.
 pub(crate) fn write_kinds_markdown(sink: &mut impl Write, kinds: &[Kind]) -> io::Result<()> {
     for class in Class::ALL {
         let of_class: Vec<&Kind> = kinds.iter().filter(|kind| kind.class == class).collect();

@@ -24,7 +24,7 @@ impl Method {
         Self::Adaptive(Box::new(PipelineSettings { identify, ..PipelineSettings::for_model(model) }))
     }
 
-    /// The same with this RMS radius of the object in the identifier; the filter knows no such size.
+    /// The method with this RMS radius of the object in the identifier; the filter knows no such size.
     pub(super) fn with_size(mut self, size: f64) -> Self {
         if let Self::Adaptive(settings) = &mut self {
             settings.size = size;

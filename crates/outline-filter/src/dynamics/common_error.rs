@@ -65,7 +65,7 @@ impl CommonError {
         Some(())
     }
 
-    /// Takes it that the outline as a whole has moved, in the body frame, and with it what later poses are measured against.
+    /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
     pub(super) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
         self.shift += shift;
     }

@@ -20,7 +20,7 @@ pub(crate) enum DynamicsFilter {
     Affine(InteractingHypotheses<18>),
 }
 
-/// The same of whichever size there is.
+/// Calls a method of the hypotheses, whatever their size.
 macro_rules! of_any_size {
     ($filter:expr, $hypotheses:ident => $value:expr) => {
         match $filter {
@@ -67,12 +67,12 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.update(measured, off));
     }
 
-    /// Takes it that the motion has changed as none of them tells.
+    /// Records that the motion has changed in a way that no hypothesis models.
     pub(crate) fn take_change(&mut self) {
         of_any_size!(self, hypotheses => hypotheses.take_change());
     }
 
-    /// Takes it that the outline as a whole has moved, in the body frame, and with it what later poses are measured against.
+    /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
     pub(crate) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
         of_any_size!(self, hypotheses => hypotheses.take_shift(shift));
     }

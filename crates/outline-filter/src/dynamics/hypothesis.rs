@@ -376,7 +376,7 @@ impl<const N: usize> Hypothesis<N> {
         }
     }
 
-    /// Takes it that nothing happens in a direction that the outline does not show, given with its dual.
+    /// Projects a null direction, given with its dual, out of mean and covariance.
     pub(super) fn hold(&mut self, direction: &CentredVector, dual: &CentredVector) {
         let k = Self::K;
         let mut projection = SMatrix::<f64, N, N>::identity();

@@ -162,7 +162,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         possible
     }
 
-    /// Takes it that nothing happens in null directions of the reference pose.
+    /// Projects the null directions of the reference pose out of all hypotheses.
     fn hold(&mut self, null: &[NullDirection]) {
         let Some(to) = self.reference.about_origin(self.model).filter(|_| !null.is_empty()) else { return };
         let (from, k) = (self.reference.about_middle(self.model), self.model.parameter_count());
@@ -221,12 +221,12 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
-    /// Takes it that the motion has changed as none of them tells.
+    /// Records that the motion has changed in a way that no hypothesis models.
     pub(crate) fn take_change(&mut self) {
         self.outline_has_moved = true;
     }
 
-    /// Takes it that the outline as a whole has moved, in the body frame, and with it what later poses are measured against.
+    /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
     pub(crate) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
         self.common.take_shift(shift);
     }

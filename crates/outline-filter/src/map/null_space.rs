@@ -142,7 +142,7 @@ impl OutlineMap {
         self.null_space.turn
     }
 
-    /// Takes it that one frame alone has shown the turn so far.
+    /// Records that one frame alone has shown the turn so far.
     pub(crate) fn take_turn_as_new(&mut self) {
         self.null_space.turn = match self.null_space.turn {
             TurnEvidence::Hidden | TurnEvidence::NewAndHidden => TurnEvidence::NewAndHidden,
@@ -150,14 +150,14 @@ impl OutlineMap {
         };
     }
 
-    /// Takes it that another frame has shown the turn too, unless it is hidden.
+    /// Records that another frame has shown the turn too, unless it is hidden.
     pub(crate) fn confirm_turn(&mut self) {
         if self.null_space.turn == TurnEvidence::New {
             self.null_space.turn = TurnEvidence::AsTheNormals;
         }
     }
 
-    /// Takes it that a growth of the map has shown the turn where it could not be seen before, or that it has not.
+    /// Records whether a growth of the map shows the turn where it was not observable before.
     pub(crate) fn take_growth(&mut self, shows_turn: bool) {
         let space = &mut self.null_space;
         if shows_turn {
@@ -167,7 +167,7 @@ impl OutlineMap {
         }
     }
 
-    /// Takes it that the turn about the object's centre cannot be seen.
+    /// Marks the turn about the object's centre as not observable.
     pub(crate) fn hide_turn(&mut self, model: MotionModel) {
         let turn = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         let parameters = model.parameters_of(&turn);

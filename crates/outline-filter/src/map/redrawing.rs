@@ -7,7 +7,7 @@ use super::OutlineMap;
 use crate::tuning::redrawing as tuning;
 
 impl OutlineMap {
-    /// The same cells where their offsets put the outline, with normals across the places of their neighbours, whose deviation along their
+    /// The cells moved to where their offsets put the outline, with normals across the places of their neighbours, whose deviation along their
     /// normals is `noise`: offsets from this map are none.
     ///
     /// Normals come from a few frames, and a normal that errs takes part of what slides along the outline for a displacement. Places that

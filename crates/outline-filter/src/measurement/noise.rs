@@ -107,13 +107,13 @@ impl NoiseModel {
         }
     }
 
-    /// Takes it that straight cells leave some of a bent outline.
+    /// Sets a floor of the noise for what straight cells leave of a bent outline.
     pub(crate) fn allow_for_cells(&mut self, sagitta: f64, spacing: f64) {
         self.floor = self.floor.max(tuning::SAGITTA_LEFT * sagitta).max(tuning::CELL_ERROR * spacing);
         self.sigma = self.sigma.max(2.0 * tuning::SAGITTA_LEFT * sagitta).max(self.floor);
     }
 
-    /// Takes it that the points are rounded.
+    /// Sets a floor of the noise for the rounding of points to pixels.
     pub(crate) fn allow_for_rounding(&mut self, rounding: Rounding) {
         self.rounding = rounding;
         self.floor = self.floor.max(rounding.deviation);

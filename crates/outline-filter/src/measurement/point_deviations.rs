@@ -101,7 +101,7 @@ impl PointDeviations {
 }
 
 impl Reference {
-    /// Takes it that a frame which shows the object has stated these deviations, if it has. The first that does is believed, one alone of the
+    /// Takes the deviations that a frame which shows the object states, if any. The first that does is believed, one alone of the
     /// others hardly: the reference falls fast to what many state, and rises slowly.
     pub(crate) fn take_stated(&mut self, good: f64) {
         if good.is_infinite() {

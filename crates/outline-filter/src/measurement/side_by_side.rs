@@ -45,7 +45,7 @@ pub(crate) struct Columns {
 }
 
 impl View<'_> {
-    /// As [`measure_one_by_one`](Self::measure_one_by_one), which a test compares it with.
+    /// The vectorised way of [`measure_one_by_one`](Self::measure_one_by_one), for affine poses and points that count alike; a test compares the two.
     pub(crate) fn measure_side_by_side(
         &self,
         frame: &mut Frame,

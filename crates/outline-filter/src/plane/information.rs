@@ -103,7 +103,7 @@ impl Information {
         crate::map::median(&mut own).unwrap_or(1.0).max(1.0)
     }
 
-    /// Takes it that the solution has been gone to: there the right-hand sides are none.
+    /// Re-centres the equations at their solution: the right-hand sides become zero.
     pub(super) fn settle(&mut self) {
         self.right.fill(0.0);
         self.cells.iter_mut().for_each(|cell| cell.right = 0.0);

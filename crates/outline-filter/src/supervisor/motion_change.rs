@@ -26,7 +26,7 @@ const KEPT: f64 = 1.0 - 1.0 / tuning::MEMORY;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MotionChange {
     kinds: [Change; 2],
-    /// Of one variance for both: chance has no more than one occasion.
+    /// Evidence for a change of either kind: one test for both keeps the false-alarm rate of a single test.
     of_both: Evidence,
     /// Whether it has ever changed from one frame to the next by more than such variances tell.
     pub(crate) was_sudden: bool,
@@ -92,7 +92,7 @@ impl MotionHistory {
     }
 }
 
-/// One of them.
+/// The variance of one kind of change, with the evidence for it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Change {

@@ -291,7 +291,7 @@ impl MotionFilter {
         self.track.iter().flat_map(Track::outline_points)
     }
 
-    /// The same in its order along the outline, where it was in the first frame, with its present pose. `None` before the first frame.
+    /// The known outline in order along the contour, in its place in the first frame, with the present pose. `None` before the first frame.
     #[must_use]
     pub fn known_outline(&self) -> Option<KnownOutline> {
         self.track.as_ref().map(Track::known_outline)

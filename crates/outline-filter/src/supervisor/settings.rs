@@ -26,8 +26,8 @@ pub struct FilterSettings {
     /// points beside each other are off together: their noise is reckoned with as at least 0.15 of a pixel, and what is stated is
     /// widened, the less the more pixels the object has moved on.
     pub mask_pixel: f64,
-    /// Smallest share of a frame's points that must lie on the known outline, or beyond its ends, for the frame to be taken, in (0, 1);
-    /// 0.7 by default.
+    /// Smallest agreement ([`FrameMeasurement::agreement`](crate::FrameMeasurement::agreement)) of a frame that is taken, in (0, 1); 0.7 by
+    /// default.
     pub smallest_agreement: f64,
     /// Frames rejected in a row after which the object is searched for again, at least 1; 2 by default.
     pub patience: usize,

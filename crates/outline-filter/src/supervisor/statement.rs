@@ -31,9 +31,9 @@ pub enum Unstated {
 /// Pose and motion with their covariance, the hypotheses of dynamics taken together.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Statement {
-    /// Without the systematic part of the errors.
+    /// With the random part of the errors alone.
     random: Summary,
-    /// With it.
+    /// With the random and the systematic part.
     all: Summary,
     /// What the model leaves out, beyond doubt.
     family: Option<WrongFamily>,

@@ -61,13 +61,13 @@ pub(crate) struct Outcome {
     pub(crate) innovation: PoseInnovation,
     /// What the frame tells of the pose by itself, if it shows the outline, taken or not.
     pub(crate) pose: Option<PoseMeasurement>,
-    /// What that is off by as masks are rounded, besides: deviations about the middle, normalised.
+    /// Standard deviations that the rounding of masks adds to that, about the middle, normalised.
     pub(crate) rounding: CentredDeviations,
-    /// By which it has moved the outline as a whole, in the body frame.
+    /// Displacement of the whole outline by the frame, in the body frame.
     pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
     /// Whether more of its points than usual disagree with the outline.
     pub(crate) disagrees: bool,
-    /// Of the frame given what was known before it; none unless asked for.
+    /// Of the frame, given the prediction; zero unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
 }
 
@@ -119,7 +119,7 @@ impl Track {
         self.belief.add_change(variances, &self.map.middle(), variance);
     }
 
-    /// Takes it that the object is where hypotheses of its dynamics expect it, and moves as they say, as far as they know.
+    /// Sets pose and motion to the combined prediction of the hypotheses of dynamics, and adds its covariance.
     pub(crate) fn expect(&mut self, expected: &Summary) {
         let variance = self.noise.effective_variance();
         self.belief.pose = expected.pose;
@@ -321,7 +321,7 @@ impl Track {
         self.map.turn_evidence()
     }
 
-    /// Takes it that the turn cannot be seen, or that it can by the normals.
+    /// Marks the turn as not observable.
     pub(crate) fn hide_turn(&mut self) {
         if !self.turn_is_unseen() {
             Arc::make_mut(&mut self.map).hide_turn(self.belief.model);
@@ -335,12 +335,12 @@ impl Track {
         }
     }
 
-    /// Takes it that one frame alone has shown the turn so far.
+    /// Records that one frame alone has shown the turn so far.
     pub(crate) fn take_turn_as_new(&mut self) {
         Arc::make_mut(&mut self.map).take_turn_as_new();
     }
 
-    /// Takes it that another frame has shown the turn too.
+    /// Records that another frame has shown the turn too.
     pub(crate) fn confirm_turn(&mut self) {
         if self.turn_evidence() == TurnEvidence::New {
             Arc::make_mut(&mut self.map).confirm_turn();

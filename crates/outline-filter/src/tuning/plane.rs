@@ -53,7 +53,7 @@ pub(crate) const DECIDED: f64 = 12.0;
 pub(crate) const DIFFERENT: f64 = 0.5;
 /// Deviation over the whole time, rad or distances of the plane, beyond which a parameter is not known: as `estimate::is_worth`.
 pub(crate) const LARGEST_DEVIATION: f64 = 0.25;
-/// The same of the normal.
+/// That limit for the components of the normal.
 pub(crate) const LARGEST_DEVIATION_OF_NORMAL: f64 = 0.25;
 /// A plane that has moved by less, in its distance, hardly moves.
 pub(crate) const HARDLY_MOVED: f64 = 0.02;

@@ -12,8 +12,8 @@ use crate::{
 /// Comparison of one frame with the known outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameMeasurement {
-    /// Share of the points that lie on the known outline, of those that do not lie beyond its ends; in [0, 1]. Points that state deviations
-    /// of their own count by them.
+    /// Share of the points that agree with the known outline: agreeing / (known + new / 3), in [0, 1]. "Known" points have a cell of the
+    /// outline, "new" ones lie beyond an end of it. Points that state standard deviations count by their inverse variances.
     pub agreement: f64,
     /// Points that lie beyond the known ends of the outline.
     pub new_points: usize,
@@ -69,7 +69,7 @@ pub(crate) struct Gate {
 }
 
 impl Gate {
-    /// The same gate where something else says that the frame shows the object: its noise says nothing against a pose then.
+    /// This gate without the limit on the noise, for a frame that is known to show the object.
     pub(crate) fn without_noise(self) -> Self {
         Self { largest_noise: None, ..self }
     }

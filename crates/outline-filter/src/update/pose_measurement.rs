@@ -1,4 +1,4 @@
-//! What a frame tells of the pose by itself, for whoever expects the object where it likes.
+//! What a frame tells of the pose by itself, whatever motion was predicted.
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 

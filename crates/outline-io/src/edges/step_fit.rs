@@ -13,7 +13,7 @@ pub(super) struct StepFit {
     step: Vec<f64>,
     /// Weights of the samples that give height times place.
     place: Vec<f64>,
-    /// The same for the samples near the edge.
+    /// That of the samples near the edge.
     near_step: Vec<f64>,
     near_place: Vec<f64>,
     /// The step of height 1 about its middle.

@@ -17,7 +17,7 @@ pub enum PictureScene {
     Coin,
     /// Five different objects on a belt come in on one side and leave on the other.
     Belt,
-    /// The same with shadows.
+    /// The belt with shadows beside its objects.
     BeltShadow,
     /// Two discs roll without slipping. Nothing shows their turn.
     Discs,
