@@ -152,6 +152,10 @@ fn an_outline_known_in_the_plane_and_seen_at_rest_tells_the_plane() {
     {
         for tilt in [0.0, 60.0] {
             for (noise, frames, limit) in [(0.0, 1, 0.0005), (0.3, 1, 0.01), (0.3, 20, 0.004)] {
+                // Many frames take long.
+                if frames > 1 && shape != BuiltInShape::Bird {
+                    continue;
+                }
                 let (known, seen) = seen_at_rest(shape, tilt, noise, frames);
                 let found = plane_by_outline(&known, &seen).unwrap_or_else(|error| panic!("{shape} {tilt}: {error}"));
                 // Lengths in the plane are right, wherever the known outline puts its origin.
@@ -160,7 +164,6 @@ fn an_outline_known_in_the_plane_and_seen_at_rest_tells_the_plane() {
                 for (i, p) in corners.iter().enumerate() {
                     for q in &corners[..i] {
                         let off = (map * p - map * q).norm() - (p - q).norm();
-                        println!("{shape} {tilt} {noise} {frames}: {off:.5}, {:.5}", found.distance);
                         assert!(off.abs() < limit, "{shape} {tilt} {noise} {frames}: {off}");
                     }
                 }

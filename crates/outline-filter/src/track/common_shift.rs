@@ -9,28 +9,37 @@ impl Track {
     /// The motion of the body frame that moves the outline as the frame just taken has moved the offsets of its cells, by least squares; what
     /// is known of a cell is its weight, so that what frames move here and there adds up to what it is all together.
     pub(super) fn common_shift(&self, frame: &Frame) -> SVector<f64, MAX_PARAMETERS> {
-        self.motion_of_outline(self.belief.information.cells.own(), &frame.shifts)
+        let information = self.belief.information.cells.own().iter().copied();
+        self.motion_of_outline(information.zip(frame.shifts.iter().copied()))
     }
 
-    /// The motion of the body frame that moves the outline as offsets of its cells have changed, by least squares with weights.
-    pub(super) fn motion_of_outline(&self, weights: &[f64], moved: &[f64]) -> SVector<f64, MAX_PARAMETERS> {
+    /// The motion of the body frame that moves the outline as the offsets of its cells have changed, by least squares; of each cell the weight
+    /// and the change.
+    #[inline(always)]
+    pub(super) fn motion_of_outline(
+        &self,
+        moved: impl Iterator<Item = (f64, f64)> + Clone,
+    ) -> SVector<f64, MAX_PARAMETERS> {
         match self.belief.model {
             MotionModel::Rigid => {
-                self.motion_of_outline_sized::<3>((weights, moved), |p, n| MotionModel::Rigid.normal_velocities(p, n))
+                self.motion_of_outline_sized::<3>(moved, |p, n| MotionModel::Rigid.normal_velocities(p, n))
             }
-            MotionModel::Similarity => self
-                .motion_of_outline_sized::<4>((weights, moved), |p, n| MotionModel::Similarity.normal_velocities(p, n)),
+            MotionModel::Similarity => {
+                self.motion_of_outline_sized::<4>(moved, |p, n| MotionModel::Similarity.normal_velocities(p, n))
+            }
             MotionModel::Affine => {
-                self.motion_of_outline_sized::<6>((weights, moved), |p, n| MotionModel::Affine.normal_velocities(p, n))
+                self.motion_of_outline_sized::<6>(moved, |p, n| MotionModel::Affine.normal_velocities(p, n))
             }
-            MotionModel::Projective => self
-                .motion_of_outline_sized::<8>((weights, moved), |p, n| MotionModel::Projective.normal_velocities(p, n)),
+            MotionModel::Projective => {
+                self.motion_of_outline_sized::<8>(moved, |p, n| MotionModel::Projective.normal_velocities(p, n))
+            }
         }
     }
 
+    #[inline(always)]
     fn motion_of_outline_sized<const K: usize>(
         &self,
-        (weights, moved): (&[f64], &[f64]),
+        moved: impl Iterator<Item = (f64, f64)> + Clone,
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
     ) -> SVector<f64, MAX_PARAMETERS>
     where
@@ -41,7 +50,7 @@ impl Track {
             #[inline(always)]
             || {
                 let (mut squares, mut right) = ([[0.0; K]; K], [0.0; K]);
-                for ((cell, &weight), shift) in cells.iter().zip(weights).zip(moved) {
+                for (cell, (weight, shift)) in cells.iter().zip(moved.clone()) {
                     let h = velocities(&cell.centre, &cell.normal);
                     for i in 0..K {
                         let weighted = weight * h[i];

@@ -50,6 +50,7 @@ impl Track {
         self.belief.offsets.resize(cells, 0.0);
         self.noise.resize(cells);
         self.shape.resize(cells);
+        self.early_shape.reserve(cells);
         let (null, turn_was_unseen) = (map.null_directions(model, &self.belief.pose), map.turn_is_unseen(model));
         map.find_null_directions(model, sigma);
         if !null.is_empty() {

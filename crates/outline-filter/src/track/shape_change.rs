@@ -6,6 +6,7 @@
 use super::Track;
 use crate::{
     map::median,
+    measurement::Frame,
     tuning::{family::MAP_KNOWN, measurement::MEDIAN_TO_DEVIATION, shape_change as tuning},
 };
 
@@ -23,13 +24,16 @@ pub(super) struct EarlyShape {
 
 impl Track {
     /// Keeps the offsets of the frame in which the map becomes known, and compares later ones with them.
-    pub(super) fn look_for_change_of_shape(&mut self) {
+    pub(super) fn look_for_change_of_shape(&mut self, frame: &mut Frame) {
         if self.frames == MAP_KNOWN {
-            let information = self.belief.information.cells.own().to_vec();
-            self.early_shape = EarlyShape { offsets: self.belief.offsets.clone(), information, largest: 0.0 };
+            let EarlyShape { offsets, information, largest } = &mut self.early_shape;
+            offsets.clone_from(&self.belief.offsets);
+            information.clear();
+            information.extend_from_slice(self.belief.information.cells.own());
+            *largest = 0.0;
         } else if self.shape.is_seen() && self.frames.is_multiple_of(tuning::EVERY) {
             // A shape that is not forgotten does not change.
-            let change = self.shape_change().unwrap_or(0.0);
+            let change = self.shape_change(&mut frame.values).unwrap_or(0.0);
             let kept = 1.0 - tuning::EVERY as f64 / tuning::MEMORY;
             self.early_shape.largest = change.max(kept * self.early_shape.largest);
         }
@@ -43,35 +47,46 @@ impl Track {
         (!self.turn_is_unseen() && largest > tuning::LEAST * self.noise.sigma).then_some(largest)
     }
 
-    /// As it is now. `None` where that is no more than noise, or where too little of the outline was known early.
-    fn shape_change(&self) -> Option<f64> {
+    /// As it is now, with a buffer for numbers. `None` where that is no more than noise, or where too little of the outline was known early.
+    fn shape_change(&self, values: &mut Vec<f64>) -> Option<f64> {
         let EarlyShape { offsets: early, information: early_information, .. } = &self.early_shape;
-        let known = self.belief.information.cells.own();
-        let weight =
-            |(now, then): (&f64, &f64)| if *now > 0.0 && *then > 0.0 { (1.0 / now + 1.0 / then).recip() } else { 0.0 };
+        let (known, offsets) = (self.belief.information.cells.own(), &self.belief.offsets);
         // Cells that are newer than the early shape have no weight.
-        let mut weights: Vec<f64> = known.iter().zip(early_information).map(weight).collect();
-        let compared = weights.iter().filter(|weight| **weight > 0.0).count();
+        let moved = (0..known.len()).map(|number| match (known[number], early_information.get(number)) {
+            (now, Some(&then)) if now > 0.0 && then > 0.0 => {
+                ((1.0 / now + 1.0 / then).recip(), offsets[number] - early[number])
+            }
+            _ => (0.0, 0.0),
+        });
+        let compared = moved.clone().filter(|(weight, _)| *weight > 0.0).count();
         if compared < tuning::FEWEST_CELLS || (compared as f64) < tuning::LEAST_SHARE * known.len() as f64 {
             return None;
         }
-        weights.resize(known.len(), 0.0);
-        let early = early.iter().copied().chain(std::iter::repeat(0.0));
-        let moved: Vec<f64> = self.belief.offsets.iter().zip(early).map(|(now, then)| now - then).collect();
-        let motion = self.motion_of_outline(&weights, &moved);
+        let motion = self.motion_of_outline(moved.clone());
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let scale = self.belief.scale();
-        let (mut sizes, mut in_deviations) = (Vec::with_capacity(compared), Vec::with_capacity(compared));
-        for ((cell, weight), moved) in self.map.cells().iter().zip(&weights).zip(&moved).filter(|((_, w), _)| **w > 0.0)
-        {
+        let left = self.map.cells().iter().zip(moved).filter(|(_, (weight, _))| *weight > 0.0);
+        let left = left.map(|(cell, (weight, moved))| {
             let along = model.normal_velocities(&cell.centre, &cell.normal);
-            let left = scale * (moved - (0..k).map(|j| along[j] * motion[j]).sum::<f64>()).abs();
-            sizes.push(left);
-            in_deviations.push(left * weight.sqrt() / self.noise.sigma);
-        }
-        let [size, in_deviations] =
-            [&mut sizes, &mut in_deviations].map(|list| MEDIAN_TO_DEVIATION * median(list).unwrap_or(0.0));
+            (weight, scale * (moved - (0..k).map(|j| along[j] * motion[j]).sum::<f64>()).abs())
+        });
+        let mut robust = |size: fn(f64, f64) -> f64| {
+            values.clear();
+            values.extend(left.clone().map(|(weight, left)| size(weight, left)));
+            MEDIAN_TO_DEVIATION * median(values).unwrap_or(0.0)
+        };
+        let (size, in_deviations) =
+            (robust(|_, left| left), robust(|weight, left| left * weight.sqrt()) / self.noise.sigma);
         (size > tuning::LEAST * self.noise.sigma && in_deviations > tuning::SIGNIFICANT).then_some(size)
+    }
+}
+
+impl EarlyShape {
+    /// Makes room for so many cells, so that the frame that is kept needs none.
+    pub(super) fn reserve(&mut self, cells: usize) {
+        let Self { offsets, information, .. } = self;
+        offsets.reserve(cells.saturating_sub(offsets.len()));
+        information.reserve(cells.saturating_sub(information.len()));
     }
 }
 
@@ -95,7 +110,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::{measurement::Frame, track::Comparison, update::Gate};
+    use crate::{track::Comparison, update::Gate};
 
     /// A body that turns, seen after a stretch along x in the picture by `1 + stretch` times the number of the frame; and with noise.
     fn change_of(stretch: f64) -> Option<f64> {

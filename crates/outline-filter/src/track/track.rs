@@ -188,7 +188,7 @@ impl Track {
             self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
-            self.look_for_change_of_shape();
+            self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);
             if let Some(noise) = noise {
                 self.noise.take(noise / radius, measurement.weight);

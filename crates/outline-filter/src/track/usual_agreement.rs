@@ -61,6 +61,6 @@ mod tests {
             (0..frames).filter(|i| usual.take(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400)).count()
         };
         assert_eq!(noticed(&mut usual, 0.05, 100), 0);
-        assert_eq!(noticed(&mut usual, 0.12, 20), 20);
+        assert_eq!(noticed(&mut usual, 0.15, 10), 10);
     }
 }
