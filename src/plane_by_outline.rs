@@ -63,7 +63,7 @@ pub enum PlaneByOutlineError {
     },
     /// Many views look alike.
     #[error("the outline leaves the map open: a circle or an ellipse, for example, is seen alike from many places")]
-    Open,
+    Undetermined,
     /// Two planes explain what is seen, as for a rectangle whose sides may be taken for each other.
     #[error(
         "two planes explain what is seen, as for a rectangle, whose sides may be taken for each other: give four points"
@@ -131,7 +131,7 @@ pub fn plane_by_outline(known: &Outline, seen: &[Outline]) -> Result<PlaneByOutl
         return Err(PlaneByOutlineError::AnotherOutline { distance: best.distance });
     }
     if best.least_shown < OPEN {
-        return Err(PlaneByOutlineError::Open);
+        return Err(PlaneByOutlineError::Undetermined);
     }
     let as_good = fits.iter().filter(|view| view.distance <= AS_GOOD * best.distance + ROUNDING);
     if { as_good }.any(|view| views.is_another_plane(best, view, &plane_from_inertia)) {

@@ -183,7 +183,7 @@ fn outlines_that_tell_no_plane_are_refused_with_the_reason() {
     assert_eq!(refused(&bird, &[]), PlaneByOutlineError::NothingSeen);
     for round in [BuiltInShape::Circle, BuiltInShape::Ellipse] {
         let (known, seen) = seen_at_rest(round, 30.0, 0.0, 1);
-        assert_eq!(refused(&known, &seen), PlaneByOutlineError::Open, "{round}");
+        assert_eq!(refused(&known, &seen), PlaneByOutlineError::Undetermined, "{round}");
     }
     let sheet = [(0.0, 0.0), (0.297, 0.0), (0.297, 0.21), (0.0, 0.21)].map(|(x, y)| Point2::new(x, y));
     let sheet = Outline::closed(sheet.to_vec()).expect("a sheet");
