@@ -41,7 +41,9 @@ impl MotionFilter {
         }
         let mut other = self.clone();
         other.phase = Phase::Lost;
-        let found = other.search(time, 0.0, outline).filter(Outcome::is_accepted);
+        // Turns are counted from where the step to this frame has led.
+        let seconds = self.track.as_ref().map_or(0.0, |track| track.belief().memory.step);
+        let found = other.search(time, seconds, outline).filter(Outcome::is_accepted);
         self.searches = other.searches;
         let Some(track) = &mut self.track else { return outcome };
         let mut is_explained = false;
