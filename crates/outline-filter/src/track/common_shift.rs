@@ -22,16 +22,16 @@ impl Track {
     ) -> SVector<f64, MAX_PARAMETERS> {
         match self.belief.model {
             MotionModel::Rigid => {
-                self.motion_of_outline_sized::<3>(moved, |p, n| MotionModel::Rigid.normal_velocities(p, n))
+                self.motion_of_outline_sized::<3>(&moved, |p, n| MotionModel::Rigid.normal_velocities(p, n))
             }
             MotionModel::Similarity => {
-                self.motion_of_outline_sized::<4>(moved, |p, n| MotionModel::Similarity.normal_velocities(p, n))
+                self.motion_of_outline_sized::<4>(&moved, |p, n| MotionModel::Similarity.normal_velocities(p, n))
             }
             MotionModel::Affine => {
-                self.motion_of_outline_sized::<6>(moved, |p, n| MotionModel::Affine.normal_velocities(p, n))
+                self.motion_of_outline_sized::<6>(&moved, |p, n| MotionModel::Affine.normal_velocities(p, n))
             }
             MotionModel::Projective => {
-                self.motion_of_outline_sized::<8>(moved, |p, n| MotionModel::Projective.normal_velocities(p, n))
+                self.motion_of_outline_sized::<8>(&moved, |p, n| MotionModel::Projective.normal_velocities(p, n))
             }
         }
     }
@@ -39,7 +39,7 @@ impl Track {
     #[inline(always)]
     fn motion_of_outline_sized<const K: usize>(
         &self,
-        moved: impl Iterator<Item = (f64, f64)> + Clone,
+        moved: &(impl Iterator<Item = (f64, f64)> + Clone),
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
     ) -> SVector<f64, MAX_PARAMETERS>
     where
