@@ -10,7 +10,7 @@ impl Track {
     /// is known of a cell is its weight, so that what frames move here and there adds up to what it is all together.
     pub(super) fn common_shift(&self, frame: &Frame) -> SVector<f64, MAX_PARAMETERS> {
         let information = self.belief.information.cells.own().iter().copied();
-        self.motion_of_outline(information.zip(frame.shifts.iter().copied()))
+        self.motion_of_outline(&information.zip(frame.shifts.iter().copied()))
     }
 
     /// The motion of the body frame that moves the outline as the offsets of its cells have changed, by least squares; of each cell the weight
@@ -18,20 +18,20 @@ impl Track {
     #[inline(always)]
     pub(super) fn motion_of_outline(
         &self,
-        moved: impl Iterator<Item = (f64, f64)> + Clone,
+        moved: &(impl Iterator<Item = (f64, f64)> + Clone),
     ) -> SVector<f64, MAX_PARAMETERS> {
         match self.belief.model {
             MotionModel::Rigid => {
-                self.motion_of_outline_sized::<3>(&moved, |p, n| MotionModel::Rigid.normal_velocities(p, n))
+                self.motion_of_outline_sized::<3>(moved, |p, n| MotionModel::Rigid.normal_velocities(p, n))
             }
             MotionModel::Similarity => {
-                self.motion_of_outline_sized::<4>(&moved, |p, n| MotionModel::Similarity.normal_velocities(p, n))
+                self.motion_of_outline_sized::<4>(moved, |p, n| MotionModel::Similarity.normal_velocities(p, n))
             }
             MotionModel::Affine => {
-                self.motion_of_outline_sized::<6>(&moved, |p, n| MotionModel::Affine.normal_velocities(p, n))
+                self.motion_of_outline_sized::<6>(moved, |p, n| MotionModel::Affine.normal_velocities(p, n))
             }
             MotionModel::Projective => {
-                self.motion_of_outline_sized::<8>(&moved, |p, n| MotionModel::Projective.normal_velocities(p, n))
+                self.motion_of_outline_sized::<8>(moved, |p, n| MotionModel::Projective.normal_velocities(p, n))
             }
         }
     }

@@ -62,7 +62,7 @@ impl Track {
         if compared < tuning::FEWEST_CELLS || (compared as f64) < tuning::LEAST_SHARE * known.len() as f64 {
             return None;
         }
-        let motion = self.motion_of_outline(moved.clone());
+        let motion = self.motion_of_outline(&moved);
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let scale = self.belief.scale();
         let left = self.map.cells().iter().zip(moved).filter(|(_, (weight, _))| *weight > 0.0);
