@@ -20,6 +20,8 @@ const STEPS: [usize; 2] = [40, 30];
 const SETTLED: f64 = 1e-10;
 /// Longest step: beyond, the nearest places are others.
 const LONGEST_STEP: f64 = 0.3;
+/// Largest difference of the entries of two maps that are one.
+const SAME_MAP: f64 = 0.05;
 /// Coarse fits that are made finer.
 const REFINED: usize = 4;
 /// Residuals of so many medians count a quarter.
@@ -200,7 +202,7 @@ impl Views {
         // Each of them once.
         let mut different: Vec<View> = Vec::new();
         for fit in fits {
-            if !different.iter().any(|other| (fit.map - other.map).amax() < 0.05) {
+            if !different.iter().any(|other| (fit.map - other.map).amax() < SAME_MAP) {
                 different.push(fit);
             }
         }

@@ -34,14 +34,14 @@ macro_rules! of_any_size {
 impl DynamicsFilter {
     /// Begins with what is believed of an object after a step of so many seconds, and the covariance of that if the outline is known. `None`
     /// for models without dynamics of their own (projective), and numbers that do not allow it.
+    /// The place is the object's middle in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
         setting: Dynamics,
         summary: (&Summary, &StateMatrix),
-        (middle, null): (Point2<f64>, &[NullDirection]),
+        place: (Point2<f64>, &[NullDirection]),
         seconds: f64,
     ) -> Option<Self> {
-        let place = (middle, null);
         match model {
             MotionModel::Rigid => {
                 InteractingHypotheses::begin(model, setting, summary, place, seconds).map(Self::Rigid)

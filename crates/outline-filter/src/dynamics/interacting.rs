@@ -48,6 +48,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
 impl<const N: usize> InteractingHypotheses<N> {
     /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
     /// (projective), and numbers that do not allow it.
+    /// The place is the object's middle in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
         setting: Dynamics,

@@ -82,7 +82,8 @@ pub(super) struct Counts {
 /// times.
 ///
 /// A turn is taken from the outline, never from the path of the object alone. For a circle the angular velocity is therefore not
-/// observable, also along an arc; [`velocity`](Self::velocity) is still known.
+/// observable, also along an arc; [`velocity`](Self::velocity) is still known. [`Dynamics::Generator`](crate::Dynamics::Generator) asks for the
+/// turn that the path tells: see [`turn_is_told_by_path`](Self::turn_is_told_by_path).
 ///
 /// ```
 /// use freeform_curve_fit::Outline;

@@ -32,14 +32,19 @@ impl UsualAgreement {
 impl Track {
     /// Takes the share of the points of an accepted frame that agree; whether more than usual do not.
     pub(super) fn disagrees_more_than_usual(&mut self, agreement: f64, points: usize) -> bool {
-        self.usual.take((1.0 - agreement).clamp(0.0, 1.0), points)
+        self.usual.take(disagreeing(agreement), points)
     }
 
     /// Takes a share of points that agree as nearer to the usual one: nothing else explains them better.
     pub(crate) fn take_as_usual(&mut self, agreement: f64) {
-        let disagreeing = (1.0 - agreement).clamp(0.0, 1.0);
-        self.usual.disagreeing += tuning::UNEXPLAINED * (disagreeing - self.usual.disagreeing).max(0.0);
+        let more = disagreeing(agreement) - self.usual.disagreeing;
+        self.usual.disagreeing += tuning::UNEXPLAINED * more.max(0.0);
     }
+}
+
+/// Share of the points that disagree, of that which agree.
+fn disagreeing(agreement: f64) -> f64 {
+    (1.0 - agreement).clamp(0.0, 1.0)
 }
 
 #[cfg(feature = "serde")]

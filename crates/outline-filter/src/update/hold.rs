@@ -1,7 +1,8 @@
 //! Steps in null directions are not taken: noise asks for any of them, and the path of an object does not tell its turn.
 //!
 //! A constant generator would tell the turn of a plain circle from its path. Wheels roll and coins slide while they spin, so that would be
-//! wrong for most objects: a turn is told by the outline, never by the path alone.
+//! wrong for most objects: a turn is told by the outline, never by the path alone. Whoever asks for a constant generator has the turn of such an
+//! object from its hypothesis of dynamics, which holds nothing then; here it is held all the same.
 use std::borrow::Cow;
 
 use freeform_riccati::MotionModel;
