@@ -2,9 +2,9 @@
 use freeform_curve_fit::Outline;
 
 use super::{
-    hypotheses::{Candidate, Hypotheses},
     motion_filter::{MotionFilter, Phase},
     tracking::gate,
+    turn_hypotheses::{Candidate, TurnHypotheses},
 };
 use crate::{
     measurement::{NegativeLogLikelihood, Tolerance},
@@ -80,8 +80,8 @@ impl MotionFilter {
         let nearest = candidates.iter().max_by(|a, b| agreement(a).total_cmp(&agreement(b)))?.outcome;
         let lost = self.phase == Phase::Lost;
         candidates.retain(|candidate| candidate.outcome.is_accepted());
-        let (taken, others) = Hypotheses::among(candidates, self.symmetry, seconds);
-        self.hypotheses = others;
+        let (taken, others) = TurnHypotheses::among(candidates, self.symmetry, seconds);
+        self.turn_hypotheses = others;
         let outcome = taken.as_ref().map_or(nearest, |candidate| candidate.outcome);
         if let Some(taken) = taken {
             // Where a lost object is now says nothing of how it moves now.
@@ -105,7 +105,7 @@ impl MotionFilter {
     ) -> Vec<Candidate> {
         self.track.as_mut().into_iter().for_each(Track::show_turn);
         let found = poses.take().unwrap_or_else(|| self.registered(outline));
-        let candidates = self.measured(outline, seconds, tolerance, &found);
+        let candidates = self.candidates_at(outline, seconds, tolerance, &found);
         let fitting = candidates.iter().filter(|c| c.outcome.is_accepted());
         let Some(best) = fitting.min_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares)) else {
             *poses = Some(found);
@@ -123,7 +123,7 @@ impl MotionFilter {
             track.hide_turn();
         }
         let poses = self.registered(outline);
-        self.measured(outline, seconds, tolerance, &poses)
+        self.candidates_at(outline, seconds, tolerance, &poses)
     }
 
     /// All poses that bring the outline of the track onto that of the frame.
@@ -138,7 +138,7 @@ impl MotionFilter {
     }
 
     /// These poses, measured.
-    fn measured(
+    fn candidates_at(
         &mut self,
         outline: &Outline,
         seconds: f64,

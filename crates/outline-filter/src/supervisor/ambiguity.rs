@@ -16,16 +16,20 @@ impl MotionFilter {
     /// What the turn taken may have been instead; `None` where no parameter depends on it or the motion is not known anyway.
     #[must_use]
     pub fn ambiguity(&self) -> Option<Ambiguity> {
-        let rival_turns = self.hypotheses.doubtful_turns();
+        let rival_turns = self.turn_hypotheses.doubtful_turns();
         if rival_turns.is_empty() {
             return None;
         }
         self.estimate()?;
         let estimate = self.track.as_ref()?.estimate()?;
-        let doubts = self.hypotheses.doubts(&estimate);
+        let doubts = self.turn_hypotheses.doubts(&estimate);
         let parameters =
             estimate.parameters().zip(doubts).filter(|(parameter, doubtful)| *doubtful && parameter.value.is_some());
         let parameters: Vec<_> = parameters.map(|(parameter, _)| parameter.name).collect();
-        (!parameters.is_empty()).then(|| Ambiguity { turn: self.hypotheses.taken(), rival_turns, parameters })
+        (!parameters.is_empty()).then(|| Ambiguity {
+            turn: self.turn_hypotheses.present_turn(),
+            rival_turns,
+            parameters,
+        })
     }
 }

@@ -6,13 +6,13 @@ use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
-    tracking::{Known, advance},
+    tracking::advance_again,
     window::InitialisationWindow,
 };
 use crate::{
     measurement::Frame,
     search::Landmarks,
-    track::{Comparison, PlacedFrame, Track},
+    track::{PlacedFrame, Track},
     tuning::remapping as tuning,
 };
 
@@ -53,7 +53,7 @@ impl MotionFilter {
         let remapper = Remapper { settings: &self.settings, window: &self.window };
         let Some(cut) = remapper.settled(track, remapper.may_change(&self.history), &mut self.frame) else { return };
         let frame = &mut self.frame;
-        self.hypotheses.remap(|track| remapper.settled(track, false, frame).map(|cut| cut.track));
+        self.turn_hypotheses.remap(|track| remapper.settled(track, false, frame).map(|cut| cut.track));
         self.track = Some(cut.track);
         self.motion_changed = cut.history.is_changing();
         self.history = cut.history;
@@ -118,8 +118,7 @@ impl Remapper<'_> {
         let mut poses = vec![*track.first_body_pose()];
         let track = track.remapped(frames, 1, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());
-            let (known, comparison) = (Known::ShowsObject, Comparison::NotAsked);
-            let outcome = advance(self.settings, (track, frame), &mut history, seconds, known, comparison);
+            let outcome = advance_again(self.settings, (track, frame), &mut history, seconds);
             poses.push(*track.body_pose());
             outcome.is_accepted()
         })?;

@@ -3,7 +3,6 @@ mod acquisition;
 mod ambiguity;
 mod error;
 mod expected_outline;
-mod hypotheses;
 mod initialisation;
 mod motion_change;
 mod motion_filter;
@@ -14,6 +13,7 @@ mod starts;
 mod state_bytes;
 mod statement;
 mod tracking;
+mod turn_hypotheses;
 mod window;
 
 pub use ambiguity::Ambiguity;

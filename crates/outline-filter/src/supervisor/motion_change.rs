@@ -58,6 +58,12 @@ impl MotionHistory {
         self.dynamics.as_ref().is_some_and(|dynamics| dynamics.weights().accelerating < LEFT_OUT)
     }
 
+    /// By how many times larger the errors of the frames are than the model's, such as those of a camera that shakes: these are no change of the
+    /// motion.
+    pub(super) fn widening(&self) -> f64 {
+        self.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening)
+    }
+
     /// Takes what became of a frame some time after the one before.
     pub(super) fn take(&mut self, outcome: &Outcome, seconds: f64) {
         self.since_taken += seconds;

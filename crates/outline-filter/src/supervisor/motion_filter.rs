@@ -5,14 +5,8 @@ use freeform_estimate::TimeNotIncreasing;
 use nalgebra::{Point2, Projective2};
 
 use super::{
-    error::FilterError,
-    hypotheses::Hypotheses,
-    motion_change::MotionHistory,
-    search_budget::SearchBudget,
-    settings::FilterSettings,
-    statement::Statement,
-    tracking::{Known, advance},
-    window::InitialisationWindow,
+    error::FilterError, motion_change::MotionHistory, search_budget::SearchBudget, settings::FilterSettings,
+    statement::Statement, tracking::advance, turn_hypotheses::TurnHypotheses, window::InitialisationWindow,
 };
 use crate::{
     dynamics::{DynamicsFilter, DynamicsWeights},
@@ -63,15 +57,36 @@ impl FilterStep {
 #[derive(Debug, Clone, Copy, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Counts {
-    pub(super) accepted: usize,
-    pub(super) rejected: usize,
+    pub(super) accepted_in_recording: usize,
+    pub(super) rejected_in_recording: usize,
     pub(super) rejected_in_a_row: usize,
-    /// Frames that the present track has taken, and that it has not.
-    pub(super) taken: usize,
-    pub(super) refused: usize,
+    /// Frames since the present track was begun, the one that it was begun with included.
+    pub(super) accepted_by_track: usize,
+    pub(super) rejected_by_track: usize,
     pub(super) restarts: usize,
     /// Starts in a row after which the object was not found again.
-    pub(super) fruitless: usize,
+    pub(super) fruitless_starts: usize,
+}
+
+impl Counts {
+    /// The object was found in a frame.
+    fn add_accepted(&mut self) {
+        self.accepted_in_recording += 1;
+        self.accepted_by_track += 1;
+        (self.rejected_in_a_row, self.fruitless_starts) = (0, 0);
+    }
+
+    /// The object was not found in a frame.
+    fn add_rejected(&mut self) {
+        self.rejected_in_recording += 1;
+        self.rejected_by_track += 1;
+        self.rejected_in_a_row += 1;
+    }
+
+    /// A new track was begun with a frame.
+    pub(super) fn begin_track(&mut self) {
+        (self.accepted_by_track, self.rejected_by_track) = (1, 0);
+    }
 }
 
 /// Identifies the motion of one object from its outlines, one frame after the other, in constant memory.
@@ -128,7 +143,7 @@ pub struct MotionFilter {
     pub(super) history: MotionHistory,
     /// Whether the motion of the present track has ever been seen to change.
     pub(super) motion_changed: bool,
-    pub(super) hypotheses: Hypotheses,
+    pub(super) turn_hypotheses: TurnHypotheses,
     pub(super) window: InitialisationWindow,
     /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
     pub(super) unfound: Vec<(f64, Outline)>,
@@ -159,7 +174,7 @@ impl MotionFilter {
             searches: SearchBudget::default(),
             history: MotionHistory::default(),
             motion_changed: false,
-            hypotheses: Hypotheses::default(),
+            turn_hypotheses: TurnHypotheses::default(),
             window: InitialisationWindow::default(),
             unfound: Vec::new(),
             frame: Frame::default(),
@@ -178,7 +193,7 @@ impl MotionFilter {
         let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
             self.start(time, outline)?;
-            self.counts.accepted += 1;
+            self.counts.accepted_in_recording += 1;
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
         let (measurement, rejection) = self.take(time, outline);
@@ -196,10 +211,7 @@ impl MotionFilter {
         self.searches.add_frame(self.phase == Phase::Tracking);
         let rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
         if rejection.is_none() {
-            self.counts.accepted += 1;
-            self.counts.taken += 1;
-            self.counts.rejected_in_a_row = 0;
-            self.counts.fruitless = 0;
+            self.counts.add_accepted();
             self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
@@ -207,9 +219,7 @@ impl MotionFilter {
                 self.begin_with_turn(outline);
             }
         } else {
-            self.counts.rejected += 1;
-            self.counts.refused += 1;
-            self.counts.rejected_in_a_row += 1;
+            self.counts.add_rejected();
             self.fall_back(time, outline);
         }
         (outcome.map(|outcome| outcome.measurement), rejection)
@@ -239,15 +249,16 @@ impl MotionFilter {
         let track = self.track.as_mut()?;
         let seconds = time - self.track_time;
         self.track_time = time;
-        let known = if self.counts.rejected_in_a_row > 0 { Known::OthersRejected } else { Known::Nothing };
-        let (frame, comparison) = (&mut self.frame, self.hypotheses.comparison());
+        let is_after_rejected = self.counts.rejected_in_a_row > 0;
+        let (frame, comparison) = (&mut self.frame, self.turn_hypotheses.comparison());
         frame.load(outline, track.reference());
-        let outcome = advance(&self.settings, (track, frame), &mut self.history, seconds, known, comparison);
+        let outcome =
+            advance(&self.settings, (track, frame), &mut self.history, seconds, is_after_rejected, comparison);
         self.motion_changed |= self.history.is_changing();
         track.take_spread(&outcome.measurement);
-        let (turn, was_accepted) = (self.hypotheses.taken(), outcome.is_accepted());
-        let outcome = self.hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
-        if self.hypotheses.taken() != turn || outcome.is_accepted() != was_accepted {
+        let (turn, was_accepted) = (self.turn_hypotheses.present_turn(), outcome.is_accepted());
+        let outcome = self.turn_hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
+        if self.turn_hypotheses.present_turn() != turn || outcome.is_accepted() != was_accepted {
             self.history.begin_anew();
         }
         Some(outcome)
@@ -312,13 +323,13 @@ impl MotionFilter {
     /// Frames used.
     #[must_use]
     pub fn frames_accepted(&self) -> usize {
-        self.counts.accepted
+        self.counts.accepted_in_recording
     }
 
     /// Frames that did not fit. A frame that starts a new track after others is included.
     #[must_use]
     pub fn frames_rejected(&self) -> usize {
-        self.counts.rejected
+        self.counts.rejected_in_recording
     }
 
     /// The other hypotheses of the turn, in radians, anticlockwise if y points up: turns of the object, up to the frame in which it was last
@@ -327,7 +338,7 @@ impl MotionFilter {
     /// same. [`ambiguity`](Self::ambiguity) tells whether the motion is in doubt.
     #[must_use]
     pub fn rival_turns(&self) -> &[f64] {
-        self.hypotheses.turns()
+        self.turn_hypotheses.rival_turns()
     }
 
     /// Whether the innovations have shown a change of motion. The estimate is then that of the last frame, not of all frames. Always false
@@ -358,7 +369,17 @@ impl MotionFilter {
 
     /// Whether no counter is near its end.
     pub(super) fn counts_are_below(&self, most: usize) -> bool {
-        let Counts { accepted, rejected, rejected_in_a_row, taken, refused, restarts, fruitless } = self.counts;
-        [accepted, rejected, rejected_in_a_row, taken, refused, restarts, fruitless].iter().all(|count| *count < most)
+        let Counts {
+            accepted_in_recording,
+            rejected_in_recording,
+            rejected_in_a_row,
+            accepted_by_track,
+            rejected_by_track,
+            restarts,
+            fruitless_starts,
+        } = self.counts;
+        let of_recording =
+            [accepted_in_recording, rejected_in_recording, rejected_in_a_row, restarts, fruitless_starts];
+        of_recording.iter().chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }
 }

@@ -3,10 +3,10 @@ use freeform_curve_fit::Outline;
 
 use super::{
     error::FilterError,
-    hypotheses::Hypotheses,
     motion_change::MotionHistory,
     motion_filter::{Counts, MotionFilter, Phase},
     settings::FilterSettings,
+    turn_hypotheses::TurnHypotheses,
     window::InitialisationWindow,
 };
 use crate::{
@@ -35,21 +35,23 @@ impl MotionFilter {
     /// Forgets what was known of hypotheses and changes, and keeps a frame as the first of a new track.
     pub(super) fn begin_window(&mut self, time: f64, outline: &Outline, track: &Track) {
         self.window = InitialisationWindow::begin(time, outline, track);
-        self.hypotheses = Hypotheses::default();
+        self.turn_hypotheses = TurnHypotheses::default();
         (self.history, self.motion_changed) = (MotionHistory::default(), false);
-        (self.counts.taken, self.counts.refused) = (1, 0);
+        self.counts.begin_track();
     }
 
     /// After a rejected frame: look elsewhere, or begin again.
     pub(super) fn fall_back(&mut self, time: f64, outline: &Outline) {
-        let Counts { rejected_in_a_row, taken, refused, .. } = self.counts;
+        let Counts { rejected_in_a_row, accepted_by_track, rejected_by_track, .. } = self.counts;
         // Few frames that more speak against than for did not show the object.
-        let is_outvoted = rejected_in_a_row >= self.settings.patience && taken <= tuning::FEW_FRAMES && refused > taken;
+        let is_outvoted = rejected_in_a_row >= self.settings.patience
+            && accepted_by_track <= tuning::FEW_FRAMES
+            && rejected_by_track > accepted_by_track;
         let give_up = match self.phase {
             Phase::Acquiring => rejected_in_a_row >= tuning::FALSE_START && self.may_search(),
             _ => rejected_in_a_row >= tuning::GIVEN_UP || is_outvoted,
         };
-        let is_alone = self.phase == Phase::Acquiring && taken == 1;
+        let is_alone = self.phase == Phase::Acquiring && accepted_by_track == 1;
         if is_alone && !give_up && rejected_in_a_row < tuning::FALSE_START {
             self.unfound.push((time, outline.clone()));
         }
@@ -57,7 +59,7 @@ impl MotionFilter {
         let is_wrong = is_alone && rejected_in_a_row == tuning::FALSE_START && self.shows_another(time, outline);
         if give_up && !is_wrong && self.start(time, outline).is_ok() {
             self.counts.restarts += 1;
-            self.counts.fruitless += 1;
+            self.counts.fruitless_starts += 1;
         } else if self.phase == Phase::Tracking && rejected_in_a_row >= self.settings.patience {
             self.phase = Phase::Lost;
         }
@@ -72,7 +74,7 @@ impl MotionFilter {
     /// Whether a frame shows something else than those before it in which the object of the first has not been found: they agree with each
     /// other and not with it, so that it is no frame to begin again with. Where nothing is found again and again, that is not looked into.
     fn shows_another(&mut self, time: f64, outline: &Outline) -> bool {
-        if self.counts.fruitless >= tuning::MOST_FRUITLESS || !self.searches.has(tuning::FALSE_START) {
+        if self.counts.fruitless_starts >= tuning::MOST_FRUITLESS || !self.searches.has(tuning::FALSE_START) {
             return false;
         }
         let mut do_others_agree = false;

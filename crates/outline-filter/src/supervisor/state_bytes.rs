@@ -62,7 +62,7 @@ impl MotionFilter {
         if !self.track.as_mut().is_none_or(restored) {
             return inconsistent("track");
         }
-        if !self.hypotheses.restore(restored) {
+        if !self.turn_hypotheses.restore(restored) {
             return inconsistent("hypotheses");
         }
         if (self.phase == Phase::Waiting) != self.track.is_none() {

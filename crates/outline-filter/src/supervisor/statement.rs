@@ -92,7 +92,7 @@ impl MotionFilter {
         let track = self.track.as_ref()?;
         let Statement { random, all, .. } = self.statement()?;
         let estimate = track.estimate_of(all, self.turn_told())?.with_random_part(&track.deviations_of(random)?);
-        let doubts = self.hypotheses.doubts(&estimate).into_iter().enumerate();
+        let doubts = self.turn_hypotheses.doubts(&estimate).into_iter().enumerate();
         let is_stated = self.unstated().is_none();
         let unknown =
             doubts.take(self.settings.model.parameter_count()).filter(|(_, doubtful)| *doubtful || !is_stated);
@@ -127,15 +127,15 @@ impl MotionFilter {
     /// Why nothing is stated of the motion although frames have been taken; `None` where it is stated.
     #[must_use]
     pub fn unstated(&self) -> Option<Unstated> {
-        let Counts { taken, refused, .. } = self.counts;
-        let frames = taken + refused;
-        let are_many = refused >= tuning::FEWEST_REJECTED && refused as f64 > tuning::MOST_REJECTED * frames as f64;
+        let Counts { accepted_by_track: accepted, rejected_by_track: rejected, .. } = self.counts;
+        let frames = accepted + rejected;
+        let are_many = rejected >= tuning::FEWEST_REJECTED && rejected as f64 > tuning::MOST_REJECTED * frames as f64;
         // The first frame shows what the object is, but not that it is one.
-        let are_outvoted = taken > 1 && refused >= tuning::FEWEST_AGAINST && refused >= taken;
+        let are_outvoted = accepted > 1 && rejected >= tuning::FEWEST_AGAINST && rejected >= accepted;
         if self.phase == Phase::Lost {
             Some(Unstated::Lost)
         } else if are_many || are_outvoted {
-            Some(Unstated::ManyRejected { rejected: refused, frames })
+            Some(Unstated::ManyRejected { rejected, frames })
         } else {
             None
         }
@@ -150,7 +150,7 @@ impl MotionFilter {
         let known = omega.and_then(|j| self.estimate()?.parameters().nth(j)?.value);
         let Some(omega) = known else { return Vec::new() };
         // Omega is positive clockwise where y points up, turns the other way.
-        self.hypotheses.rates_apart().map(|apart| omega - apart / self.seconds_per_unit()).collect()
+        self.turn_hypotheses.rates_apart().map(|apart| omega - apart / self.seconds_per_unit()).collect()
     }
 
     /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`
@@ -169,7 +169,7 @@ impl MotionFilter {
     /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
     pub fn velocity(&self) -> Option<PointVelocity> {
-        if self.hypotheses.are_doubtful() || self.unstated().is_some() {
+        if self.turn_hypotheses.are_doubtful() || self.unstated().is_some() {
             return None;
         }
         self.track.as_ref()?.velocity_of_middle(&self.state()?)

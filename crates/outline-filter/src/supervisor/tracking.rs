@@ -8,16 +8,6 @@ use crate::{
     update::Gate,
 };
 
-/// What is known of a frame before it is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Known {
-    Nothing,
-    /// The one before it has been rejected: the motion may have changed.
-    OthersRejected,
-    /// It has been taken once: the noise of its few points on cells seen before tells less.
-    ShowsObject,
-}
-
 /// Largest squared innovation of a motion that goes on as it was.
 pub(super) fn largest_innovation(track: &Track) -> f64 {
     SUDDEN * track.model().parameter_count() as f64
@@ -32,66 +22,100 @@ pub(super) fn gate(settings: &FilterSettings, track: &Track) -> Gate {
     }
 }
 
-/// Predicts a track over so many seconds, measures the loaded frame, and finds how the motion changes.
+/// What a frame is judged by.
+struct Gates {
+    /// Where the motion has gone on as it was.
+    as_before: Gate,
+    /// Where it may have changed at once.
+    after_sudden_change: Option<Gate>,
+}
+
+impl Gates {
+    /// Of a frame that is new. Only where the one before it was rejected the motion may have changed at once.
+    fn of_new_frame(settings: &FilterSettings, track: &Track, widening: f64, is_after_rejected: bool) -> Self {
+        let anywhere = gate(settings, track);
+        Self {
+            as_before: Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere },
+            after_sudden_change: (settings.finds_changes() && is_after_rejected).then_some(anywhere),
+        }
+    }
+
+    /// Of a frame that was accepted once. The noise of its few points on cells seen before tells less.
+    fn of_accepted_frame(settings: &FilterSettings, track: &Track, widening: f64) -> Self {
+        let anywhere = gate(settings, track).without_noise();
+        if !settings.finds_changes() {
+            return Self { as_before: anywhere, after_sudden_change: None };
+        }
+        Self {
+            as_before: Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere },
+            after_sudden_change: Some(anywhere),
+        }
+    }
+}
+
+/// Predicts a track over so many seconds, measures the loaded frame, which is new, and finds how the motion changes.
 pub(super) fn advance(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
     history: &mut MotionHistory,
     seconds: f64,
-    known: Known,
+    is_after_rejected: bool,
     comparison: Comparison,
 ) -> Outcome {
     predict(settings, track, history, seconds);
-    let outcome = measured(settings, (track, frame), history, known, comparison);
+    let gates = Gates::of_new_frame(settings, track, history.widening(), is_after_rejected);
+    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, comparison);
     history.take(&outcome, seconds);
     outcome
 }
 
-/// Measures a frame, and finds changes of the motion that are sudden.
-fn measured(
+/// As [`advance`], with a frame that was accepted once, and is measured against a map that was cut anew.
+pub(super) fn advance_again(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
     history: &mut MotionHistory,
-    known: Known,
+    seconds: f64,
+) -> Outcome {
+    predict(settings, track, history, seconds);
+    let gates = Gates::of_accepted_frame(settings, track, history.widening());
+    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, Comparison::NotAsked);
+    history.take(&outcome, seconds);
+    outcome
+}
+
+/// What becomes of a frame, after the changes of the motion that it shows.
+fn outcome_with_changes(
+    settings: &FilterSettings,
+    (track, frame): (&mut Track, &mut Frame),
+    history: &mut MotionHistory,
+    gates: &Gates,
     comparison: Comparison,
 ) -> Outcome {
-    let MotionHistory { change, dynamics, .. } = history;
-    // Errors that are larger than the model's, such as those of a camera that shakes, are no change of the motion.
-    let widening = dynamics.as_ref().map_or(1.0, DynamicsFilter::widening);
-    let parameters = track.model().parameter_count();
-    let anywhere = match known {
-        Known::ShowsObject => gate(settings, track).without_noise(),
-        _ => gate(settings, track),
-    };
-    if !settings.finds_changes() && known == Known::ShowsObject {
-        return track.update(frame, &anywhere, comparison);
-    }
-    let as_before = Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere };
-    let mut outcome = track.update(frame, &as_before, comparison);
+    let mut outcome = track.update(frame, &gates.as_before, comparison);
     if !settings.finds_changes() {
         return outcome;
     }
+    let MotionHistory { change, dynamics, .. } = history;
     let is_there = outcome.measurement.agreement >= settings.smallest_agreement;
-    // Not where a constant generator takes the object, but where other dynamics do that are not ruled out.
-    let others = dynamics.as_mut().filter(|dynamics| is_there && !outcome.is_accepted() && dynamics.has_others());
-    if let Some(dynamics) = others {
-        let (mut followed, mut their) = (track.clone(), dynamics.clone());
-        if lead(&mut followed, &mut their) {
-            let found = followed.update(frame, &as_before, comparison);
-            if found.is_accepted() {
-                (*track, *dynamics) = (followed, their);
-                outcome = found;
-            }
-        }
+    if is_there
+        && !outcome.is_accepted()
+        && let Some(dynamics) = dynamics
+        && let Some(found) = outcome_by_others((track, frame), dynamics, &gates.as_before, comparison)
+    {
+        outcome = found;
     }
     let innovation = outcome.innovation;
     let is_partly_there = outcome.measurement.agreement >= PARTLY_THERE * settings.smallest_agreement;
-    if !outcome.is_accepted() && known != Known::Nothing && is_partly_there && innovation.fisher[0] > 0.0 {
+    if !outcome.is_accepted()
+        && let Some(gate) = gates.after_sudden_change
+        && is_partly_there
+        && innovation.fisher[0] > 0.0
+    {
         // If the outline is there, but for the second time (or beyond doubt) not where it was going, the motion has changed. Held to where it was
         // going, it agrees in part: in the end it must agree like any other.
         let mut changed = track.clone();
         changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
-        let found = changed.update(frame, &anywhere, comparison);
+        let found = changed.update(frame, &gate, comparison);
         if found.is_accepted() {
             *track = changed;
             change.was_sudden = true;
@@ -99,9 +123,32 @@ fn measured(
         }
     }
     if outcome.is_accepted() {
-        change.take(&innovation, parameters);
+        change.take(&innovation, track.model().parameter_count());
     }
     outcome
+}
+
+/// What becomes of a frame not where a constant generator takes the object, but where other dynamics do that are not ruled out; `None`, with
+/// nothing changed, where it is not accepted there either.
+fn outcome_by_others(
+    (track, frame): (&mut Track, &mut Frame),
+    dynamics: &mut DynamicsFilter,
+    gate: &Gate,
+    comparison: Comparison,
+) -> Option<Outcome> {
+    if !dynamics.has_others() {
+        return None;
+    }
+    let (mut followed, mut their) = (track.clone(), dynamics.clone());
+    if !lead(&mut followed, &mut their) {
+        return None;
+    }
+    let found = followed.update(frame, gate, comparison);
+    if !found.is_accepted() {
+        return None;
+    }
+    (*track, *dynamics) = (followed, their);
+    Some(found)
 }
 
 /// Moves a track on to where its motion has led it, by what is known of its dynamics.

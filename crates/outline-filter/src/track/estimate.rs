@@ -8,9 +8,9 @@ use crate::{
     belief::{Belief, StateMatrix, StateVector, scaled_inverse},
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
     tuning::{
-        hypotheses::DIFFERENT,
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
         supervisor::STEPS_KNOWN,
+        turn_hypotheses::DIFFERENT,
     },
     update::{hold, with_hold},
 };

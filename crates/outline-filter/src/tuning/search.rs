@@ -79,7 +79,7 @@ pub(crate) mod registration {
 }
 
 /// Hypotheses: turns that explain a frame alike.
-pub(crate) mod hypotheses {
+pub(crate) mod turn_hypotheses {
     /// Turns that differ by less are the same, rad.
     pub(crate) const DIFFERENT_TURN: f64 = 0.15;
     /// Of turns that explain the frames alike the smallest is taken for granted if the others are so many times as large: the turn per

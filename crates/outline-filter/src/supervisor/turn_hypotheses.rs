@@ -1,0 +1,383 @@
+//! Hypotheses of the turn: turns that explain the frames as well as the one taken, followed until a frame decides.
+use std::f64::consts::TAU;
+
+use freeform_estimate::MotionEstimate;
+use freeform_riccati::MAX_PARAMETERS;
+
+use super::{
+    settings::FilterSettings,
+    tracking::{gate, largest_innovation},
+};
+use crate::{
+    measurement::{Frame, NegativeLogLikelihood},
+    track::{Comparison, Outcome, Track, wrapped},
+    tuning::{
+        symmetry::{OFF_MULTIPLE, SAME},
+        turn_hypotheses as tuning,
+    },
+    update::Gate,
+};
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
+
+/// The track in a pose that was tried.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    pub(super) track: Track,
+    pub(super) outcome: Outcome,
+    /// Turn from the pose before, rad, anticlockwise where y points up.
+    pub(super) turn: f64,
+    pub(super) likelihood: NegativeLogLikelihood,
+}
+
+/// One other way in which the object may have turned.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct TurnHypothesis {
+    /// While it is followed.
+    track: Option<Track>,
+    likelihood: NegativeLogLikelihood,
+    reason: Reason,
+}
+
+/// Why a turn may have been another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Reason {
+    /// It explains the frames so far as well, and is followed until a frame decides.
+    Likeness,
+    /// The outline has a symmetry: no frame will decide, and the path of the object must not.
+    Symmetry,
+}
+
+/// All other turns than that of the present track, and what it is compared with them by.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct TurnHypotheses {
+    rivals: Vec<TurnHypothesis>,
+    /// Their turns, in the same order.
+    rival_turns: Vec<f64>,
+    /// Of the present track.
+    present_turn: f64,
+    likelihood: NegativeLogLikelihood,
+    frames: usize,
+    /// By which the outline looks the same, rad.
+    symmetry_angle: f64,
+    /// Time that the turns were made in, in units of the filter.
+    acquired_over: f64,
+}
+
+impl TurnHypotheses {
+    /// Of an outline with a symmetry of some order, 1 where there is none, takes the smallest turn of all that are not significantly worse than the best.
+    pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
+        let symmetry_angle = TAU / symmetry as f64;
+        let different_turn = different_turn(symmetry_angle);
+        candidates.sort_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares));
+        let Some(best) = candidates.first().map(|c| c.likelihood) else { return (None, Self::default()) };
+        candidates.retain(|candidate| !candidate.likelihood.is_worse_than(&best));
+        // The best of those with one turn stands for them.
+        let mut different: Vec<Candidate> = Vec::new();
+        for candidate in candidates {
+            if different.iter().all(|other| wrapped(other.turn - candidate.turn).abs() > different_turn) {
+                different.push(candidate);
+            }
+        }
+        different.sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
+        let mut others = different.into_iter();
+        let taken = others.next();
+        let mut all = Self {
+            present_turn: taken.as_ref().map_or(0.0, |c| c.turn),
+            likelihood: taken.as_ref().map_or_else(NegativeLogLikelihood::default, |c| c.likelihood),
+            symmetry_angle,
+            acquired_over: seconds,
+            ..Self::default()
+        };
+        if taken.is_some() {
+            for turn in all.turns_alike() {
+                all.rival_turns.push(turn);
+                let found =
+                    others.as_slice().iter().find(|candidate| wrapped(candidate.turn - turn).abs() < different_turn);
+                let likelihood = found.map_or_else(NegativeLogLikelihood::default, |candidate| candidate.likelihood);
+                let track = found.map(|candidate| candidate.track.clone());
+                all.rivals.push(TurnHypothesis { likelihood, track, reason: Reason::Symmetry });
+            }
+        }
+        let others: Vec<Candidate> =
+            others.filter(|candidate| !look_the_same(candidate.turn, all.present_turn, symmetry_angle)).collect();
+        for candidate in others {
+            all.rival_turns.push(candidate.turn);
+            let (likelihood, track) = (candidate.likelihood, Some(candidate.track));
+            all.rivals.push(TurnHypothesis { likelihood, track, reason: Reason::Likeness });
+        }
+        (taken, all)
+    }
+
+    /// Turns by the angle of symmetry from the one taken, which look the same.
+    fn turns_alike(&self) -> Vec<f64> {
+        let (present, symmetry_angle) = (self.present_turn, self.symmetry_angle);
+        let mut turns: Vec<f64> = [-1.0, 1.0, -2.0, 2.0].map(|step| present + step * symmetry_angle).into();
+        if symmetry_angle < TAU {
+            let different_turn = different_turn(symmetry_angle);
+            turns.iter_mut().for_each(|turn| *turn = wrapped(*turn));
+            turns.dedup_by(|a, b| (*a - *b).abs() < different_turn);
+            turns.retain(|turn| (turn - present).abs() > different_turn);
+        } else {
+            // A whole turn more or less looks the same; where it is surely the larger one it is not named.
+            turns.retain(|turn| is_doubtful(*turn, present));
+        }
+        turns
+    }
+
+    /// After an exchange, names the turns that look like the one taken now in place of those that look like the one before.
+    fn name_turns_alike(&mut self) {
+        for index in (0..self.rivals.len()).rev() {
+            if self.rivals[index].reason == Reason::Symmetry && self.rivals[index].track.is_none() {
+                self.remove(index);
+            }
+        }
+        // Some that only looked like the one before look the same as the one taken now: the path does not tell them apart.
+        for (hypothesis, turn) in self.rivals.iter_mut().zip(&self.rival_turns) {
+            if look_the_same(*turn, self.present_turn, self.symmetry_angle) {
+                hypothesis.reason = Reason::Symmetry;
+            }
+        }
+        let different_turn = different_turn(self.symmetry_angle);
+        for turn in self.turns_alike() {
+            if self.rival_turns.iter().all(|other| (other - turn).abs() > different_turn) {
+                self.rival_turns.push(turn);
+                let likelihood = NegativeLogLikelihood::default();
+                self.rivals.push(TurnHypothesis { likelihood, track: None, reason: Reason::Symmetry });
+            }
+        }
+    }
+
+    pub(super) fn rival_turns(&self) -> &[f64] {
+        &self.rival_turns
+    }
+
+    pub(super) fn present_turn(&self) -> f64 {
+        self.present_turn
+    }
+
+    /// Rates of turning, per unit of time, by which the others differ from the one taken.
+    pub(super) fn rates_apart(&self) -> impl Iterator<Item = f64> + '_ {
+        self.rival_turns.iter().map(|turn| (turn - self.present_turn) / self.acquired_over)
+    }
+
+    /// Turns of those that the smaller turn cannot be taken for granted against.
+    pub(super) fn doubtful_turns(&self) -> Vec<f64> {
+        (0..self.rivals.len()).filter(|i| self.is_doubtful(*i)).map(|i| self.rival_turns[i]).collect()
+    }
+
+    /// Whether the smaller turn cannot be taken for granted.
+    pub(super) fn are_doubtful(&self) -> bool {
+        (0..self.rivals.len()).any(|i| self.is_doubtful(i))
+    }
+
+    fn is_doubtful(&self, index: usize) -> bool {
+        is_doubtful(self.rival_turns[index], self.present_turn)
+    }
+
+    /// The parameters in which the motion of a doubtful hypothesis differs from an estimate.
+    pub(super) fn doubts(&self, estimate: &MotionEstimate) -> [bool; MAX_PARAMETERS] {
+        let mut doubts = [false; MAX_PARAMETERS];
+        for hypothesis in (0..self.rivals.len()).filter(|i| self.is_doubtful(*i)).map(|i| &self.rivals[i]) {
+            if hypothesis.reason == Reason::Symmetry {
+                return [true; MAX_PARAMETERS];
+            }
+            let Some(other) = hypothesis.track.as_ref().and_then(Track::estimate) else { continue };
+            for ((doubt, parameter), other) in doubts.iter_mut().zip(estimate.parameters()).zip(other.values()) {
+                let known = parameter.value.zip(parameter.standard_deviation);
+                *doubt |= known.is_some_and(|(value, deviation)| (value - other).abs() > tuning::DIFFERENT * deviation);
+            }
+        }
+        doubts
+    }
+
+    /// Whether frames are to be compared.
+    pub(super) fn comparison(&self) -> Comparison {
+        let is_any_followed = self.rivals.iter().any(|hypothesis| hypothesis.track.is_some());
+        if is_any_followed { Comparison::Asked } else { Comparison::NotAsked }
+    }
+
+    /// Measures the loaded frame, which the track has just been updated with, or not, with every other hypothesis; the track is exchanged for
+    /// one that explains the frames significantly better. Gives what was found of the frame in the end.
+    pub(super) fn decide(
+        &mut self,
+        settings: &FilterSettings,
+        (track, frame): (&mut Track, &mut Frame),
+        outcome: Outcome,
+        seconds: f64,
+    ) -> Outcome {
+        if self.rivals.is_empty() {
+            return outcome;
+        }
+        let mut outcome = outcome;
+        let mut is_another = false;
+        self.frames += 1;
+        self.likelihood.add(&outcome.likelihood);
+        if outcome.is_accepted() {
+            self.compare_intervals(seconds);
+        }
+        for index in (0..self.rivals.len()).rev() {
+            let rival = &mut self.rivals[index];
+            let Some(found) = rival.follow(settings, (track, frame), &outcome, seconds) else { continue };
+            let of_rival = rival.likelihood;
+            let is_alike = rival.reason == Reason::Likeness;
+            // Searches that began apart may find the same motion in the end.
+            let are_compared = is_alike && outcome.is_accepted() && found.is_accepted();
+            let have_met = are_compared && rival.has_met(track, different_turn(self.symmetry_angle));
+            if found.is_accepted() && !self.likelihood.is_worse_than(&of_rival) && outcome.is_noisy() {
+                // The other has shown that the frame shows the object.
+                let gate = gate_of_motion(settings, track).without_noise();
+                let again = track.update(frame, &gate, Comparison::NotAsked);
+                outcome = if again.is_accepted() { again } else { outcome };
+            }
+            let is_better = is_alike
+                && (self.likelihood.is_worse_than(&of_rival) || have_met && of_rival.squares < self.likelihood.squares);
+            if found.is_accepted() && (!outcome.is_accepted() || is_better) {
+                self.exchange(index, track);
+                is_another |= is_alike;
+                let is_worse = !outcome.is_accepted() || self.rivals[index].likelihood.is_worse_than(&self.likelihood);
+                if is_worse || have_met {
+                    self.rule_out(index);
+                }
+                outcome = found;
+            } else if outcome.is_accepted()
+                && (have_met || !found.is_accepted() || of_rival.is_worse_than(&self.likelihood))
+            {
+                self.rule_out(index);
+            }
+        }
+        if is_another {
+            self.name_turns_alike();
+            self.compare_intervals(seconds);
+        }
+        self.follow_no_longer_than_needed();
+        outcome
+    }
+
+    /// Makes a rival the present track, and that the rival.
+    fn exchange(&mut self, index: usize, track: &mut Track) {
+        let rival = &mut self.rivals[index];
+        if let Some(other) = &mut rival.track {
+            std::mem::swap(other, track);
+        }
+        std::mem::swap(&mut self.likelihood, &mut rival.likelihood);
+        std::mem::swap(&mut self.present_turn, &mut self.rival_turns[index]);
+    }
+
+    /// After a frame that decides against a rival.
+    fn rule_out(&mut self, index: usize) {
+        match self.rivals[index].reason {
+            Reason::Likeness => self.remove(index),
+            // Its path is no evidence.
+            Reason::Symmetry => self.rivals[index].track = None,
+        }
+    }
+
+    /// Lets go of the tracks of turns that are surely larger, after some frames.
+    fn follow_no_longer_than_needed(&mut self) {
+        if self.frames < tuning::FOLLOWED {
+            return;
+        }
+        for index in 0..self.rivals.len() {
+            if !self.is_doubtful(index) {
+                self.rivals[index].track = None;
+            }
+        }
+    }
+
+    /// Leaves out turns of a symmetric outline that are no multiple of its angle apart over another interval between frames.
+    fn compare_intervals(&mut self, seconds: f64) {
+        for index in (0..self.rivals.len()).rev() {
+            if self.rivals[index].reason == Reason::Symmetry {
+                let apart = (self.rival_turns[index] - self.present_turn) * seconds
+                    / (self.acquired_over * self.symmetry_angle);
+                if (apart - apart.round()).abs() > OFF_MULTIPLE {
+                    self.remove(index);
+                }
+            }
+        }
+    }
+
+    /// Cuts the maps of all hypotheses anew; those that cannot be are none any more.
+    pub(super) fn remap(&mut self, mut cut: impl FnMut(&Track) -> Option<Track>) {
+        for index in (0..self.rivals.len()).rev() {
+            if let Some(track) = &mut self.rivals[index].track {
+                match cut(track) {
+                    Some(new) => *track = new,
+                    None => self.remove(index),
+                }
+            }
+        }
+    }
+
+    fn remove(&mut self, index: usize) {
+        self.rivals.remove(index);
+        self.rival_turns.remove(index);
+    }
+}
+
+impl TurnHypothesis {
+    /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed.
+    fn follow(
+        &mut self,
+        settings: &FilterSettings,
+        (present, frame): (&Track, &mut Frame),
+        outcome: &Outcome,
+        seconds: f64,
+    ) -> Option<Outcome> {
+        let track = self.track.as_mut()?;
+        track.predict(seconds);
+        track.add_process_noise(&settings.process_noise, seconds);
+        track.take_noise_of(present);
+        let gate = gate_of_motion(settings, track);
+        let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
+        let found = track.update(frame, &gate, Comparison::Asked);
+        track.take_spread(&found.measurement);
+        self.likelihood.add(&found.likelihood);
+        Some(found)
+    }
+
+    fn has_met(&self, present: &Track, different_turn: f64) -> bool {
+        self.track.as_ref().is_some_and(|track| present.has_met(track, different_turn))
+    }
+}
+
+/// The gate for a frame of a track whose motion goes on as it was.
+fn gate_of_motion(settings: &FilterSettings, track: &Track) -> Gate {
+    Gate { largest_innovation: Some(largest_innovation(track)), ..gate(settings, track) }
+}
+
+/// Turns this far apart are different, with an angle of symmetry.
+fn different_turn(symmetry_angle: f64) -> f64 {
+    tuning::DIFFERENT_TURN.min(SAME * symmetry_angle)
+}
+
+/// Whether turns differ by a multiple of the angle of a symmetry, so that they look the same.
+fn look_the_same(turn: f64, other: f64, symmetry_angle: f64) -> bool {
+    let steps = (turn - other) / symmetry_angle;
+    symmetry_angle < TAU && (steps - steps.round()).abs() <= SAME
+}
+
+/// Whether a turn cannot be taken for granted against another.
+fn is_doubtful(other: f64, present: f64) -> bool {
+    other.abs() < tuning::SURELY_SMALLER * present.abs()
+}
+
+#[cfg(feature = "serde")]
+impl TurnHypotheses {
+    /// Whether turns belong to hypotheses, and all numbers can be worked with; `restore` makes their tracks usable, or tells that it cannot.
+    pub(super) fn restore(&mut self, restore: impl Fn(&mut Track) -> bool) -> bool {
+        let numbers = self.rival_turns.iter().chain([&self.present_turn]);
+        let is_sound = numbers.into_iter().all(|turn| turn.is_finite())
+            && self.rival_turns.len() == self.rivals.len()
+            && self.likelihood.is_sound()
+            && self.rivals.iter().all(|hypothesis| hypothesis.likelihood.is_sound())
+            && self.frames < StateFormat::MOST_COUNTED
+            && (self.rivals.is_empty()
+                || [self.symmetry_angle, self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
+        is_sound && self.rivals.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
+    }
+}
