@@ -77,7 +77,7 @@ impl OffsetInformation {
 #[cfg(feature = "serde")]
 impl OffsetInformation {
     /// Whether it is that of so many cells and entries of pose and motion, all finite.
-    pub(crate) fn is_sound(&self, cells: usize, size: usize) -> bool {
+    pub(crate) fn is_valid(&self, cells: usize, size: usize) -> bool {
         self.size == size
             && self.own.len() == cells
             && self.coupling.len() == cells * size

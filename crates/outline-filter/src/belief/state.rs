@@ -103,14 +103,14 @@ impl Memory {
 #[cfg(feature = "serde")]
 impl Belief {
     /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
-    pub(crate) fn is_sound(&self, cells: usize) -> bool {
+    pub(crate) fn is_valid(&self, cells: usize) -> bool {
         let Arrowhead { k, dense, cells: information } = &self.information;
         let Memory { step, span, effective } = self.memory;
         let numbers = self.pose.iter().chain(&self.motion).chain(&self.offsets).chain(dense.iter().flatten());
         let numbers = numbers.chain(&self.marginal).chain([&step, &span]);
         *k == self.model.parameter_count()
             && self.offsets.len() == cells
-            && information.is_sound(cells, 2 * k)
+            && information.is_valid(cells, 2 * k)
             && numbers.into_iter().all(|number| number.is_finite())
             && !effective.iter().any(|seconds| seconds.is_nan())
             && self.pose.try_inverse().is_some()

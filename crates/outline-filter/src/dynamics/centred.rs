@@ -1,4 +1,4 @@
-//! Coordinates about the object's middle: the rates, and the velocity of the middle.
+//! Coordinates about the object's centroid: the rates, and the velocity of the centroid.
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
@@ -13,33 +13,33 @@ pub(crate) type CentredMatrix = SMatrix<f64, LARGEST, LARGEST>;
 /// One entry for each parameter of any model, projective motion included.
 pub(crate) type CentredDeviations = SVector<f64, MAX_PARAMETERS>;
 
-/// A pose with the object's middle in it, which centred coordinates are taken about.
+/// A pose with the object's centroid in it, which centred coordinates are taken about.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct CentredPose {
     /// Body to image, normalised.
     pub(crate) pose: Matrix3<f64>,
     /// Of the object, in the body frame.
-    pub(crate) middle: Point2<f64>,
+    pub(crate) centroid: Point2<f64>,
 }
 
 impl CentredPose {
-    /// The middle in the image.
+    /// The centroid in the image.
     pub(crate) fn centre(&self) -> Point2<f64> {
-        map_point(&self.pose, &self.middle)
+        map_point(&self.pose, &self.centroid)
     }
 
     pub(crate) fn linear(&self) -> Matrix2<f64> {
         self.pose.fixed_view::<2, 2>(0, 0).into_owned()
     }
 
-    /// Parameters about the image origin by those about the middle.
+    /// Parameters about the image origin by those about the centroid.
     pub(crate) fn about_origin(self, model: MotionModel) -> Option<SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>> {
-        centred_change(model, &self.pose, &self.middle)
+        centred_change(model, &self.pose, &self.centroid)
     }
 
-    /// Parameters about the middle by those about the image origin.
-    pub(crate) fn about_middle(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
+    /// Parameters about the centroid by those about the image origin.
+    pub(crate) fn about_centroid(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
         let (k, centre) = (model.parameter_count(), self.centre());
         let shift = |x: f64, y: f64| Matrix3::new(1.0, 0.0, x, 0.0, 1.0, y, 0.0, 0.0, 1.0);
         let change = model.adjoint(&shift(-centre.x, -centre.y), &shift(centre.x, centre.y));
@@ -58,18 +58,18 @@ pub(crate) struct Summary {
 }
 
 impl Summary {
-    /// This covariance with the errors about the middle multiplied by factors, one per parameter, those of pose and motion alike, and with
-    /// deviations about the middle added.
+    /// This covariance with the errors about the centroid multiplied by factors, one per parameter, those of pose and motion alike, and with
+    /// deviations about the centroid added.
     pub(crate) fn widened(
         &self,
         model: MotionModel,
-        middle: &Point2<f64>,
+        centroid: &Point2<f64>,
         factors: &CentredDeviations,
         added: [&CentredDeviations; 2],
     ) -> Option<Self> {
         let k = model.parameter_count();
-        let at = CentredPose { pose: self.pose, middle: *middle };
-        let (to, from) = (at.about_origin(model)?, at.about_middle(model));
+        let at = CentredPose { pose: self.pose, centroid: *centroid };
+        let (to, from) = (at.about_origin(model)?, at.about_centroid(model));
         let mut centred = carried(&of_both(&from, k), &self.covariance, 2 * k);
         for i in 0..2 * k {
             for j in 0..2 * k {

@@ -21,7 +21,7 @@ pub(crate) enum Purpose {
     Statement,
 }
 
-/// A hypothesis that is not left out, as it is taken together with others: the velocity is that of the plane of the object where the middle
+/// A hypothesis that is not left out, as it is taken together with others: the velocity is that of the plane of the object where the centroid
 /// of the reference pose is.
 #[derive(Debug, Clone, Copy)]
 struct Part<const N: usize> {
@@ -30,7 +30,7 @@ struct Part<const N: usize> {
     covariance: SMatrix<f64, N, N>,
     /// Whether its pose is measured against the outline, and is not known together with it.
     is_measured: bool,
-    /// Whether the middle of the object accelerates, and no point aside.
+    /// Whether the centroid of the object accelerates, and no point aside.
     accelerates: bool,
 }
 
@@ -52,7 +52,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Mean and covariance of what is given for a constant generator. Once the motion has changed, wrong poses have moved the outline that it
     /// is known with.
     fn of_generator(&self, given: &Summary) -> Option<(SVector<f64, N>, SMatrix<f64, N, N>)> {
-        let (model, change) = (self.model, self.reference.about_middle(self.model));
+        let (model, change) = (self.model, self.reference.about_centroid(self.model));
         let k = model.parameter_count();
         let (mut mean, covariance) = centred(&change, given, k);
         let off = model.motion_between(&(given.pose * self.reference.pose.try_inverse()?), 1.0)?;
@@ -62,7 +62,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         Some((mean, covariance))
     }
 
-    /// Mean and covariance of a hypothesis, whose own velocity is that of the middle where that is.
+    /// Mean and covariance of a hypothesis, whose own velocity is that of the centroid where that is.
     fn of_measured(&self, hypothesis: &Hypothesis<N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
         let (model, k) = (self.model, self.model.parameter_count());
         let (mut mean, rates) = (hypothesis.mean, hypothesis.rates(model));
@@ -138,7 +138,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     }
 }
 
-/// Motion and covariance of a summary about the middle.
+/// Motion and covariance of a summary about the centroid.
 pub(super) fn centred<const N: usize>(
     change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
     summary: &Summary,

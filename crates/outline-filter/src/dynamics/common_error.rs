@@ -15,7 +15,7 @@ use freeform_estimate::StateFormat;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct CommonError {
     model: MotionModel,
-    /// About the middle, when the hypotheses began.
+    /// About the centroid, when the hypotheses began.
     covariance: CentredMatrix,
     /// Linear part of the pose then.
     linear: Matrix2<f64>,
@@ -38,7 +38,7 @@ impl CommonError {
         Self { model, covariance, linear: reference.linear(), shift: SVector::zeros() }
     }
 
-    /// Its covariance about the middle in a pose.
+    /// Its covariance about the centroid in a pose.
     pub(super) fn covariance_in(&self, pose: &CentredPose) -> Option<CentredMatrix> {
         let map = as_map(&(pose.linear() * self.linear.try_inverse()?));
         let (change, k) = (self.model.adjoint(&map, &map.try_inverse()?), self.model.parameter_count());
@@ -47,8 +47,8 @@ impl CommonError {
         turned.iter().all(|entry| entry.is_finite()).then_some(turned)
     }
 
-    /// Adds it to the covariance of what is measured with a probability, at these rates of the motion. The middle, too, is known no better
-    /// than this, and what accelerates does so in the middle: at a point aside, the rates move it besides.
+    /// Adds it to the covariance of what is measured with a probability, at these rates of the motion. The centroid, too, is known no better
+    /// than this, and what accelerates does so in the centroid: at a point aside, the rates move it besides.
     pub(super) fn add_to<const N: usize>(
         &self,
         covariance: &mut SMatrix<f64, N, N>,
@@ -59,9 +59,9 @@ impl CommonError {
         let (common, k) = (self.covariance_in(pose)?, self.model.parameter_count());
         let mut of_pose = covariance.fixed_view_mut::<LARGEST, LARGEST>(0, 0);
         of_pose += common * measured;
-        let of_middle = rates * common.fixed_view::<2, 2>(k - 2, k - 2) * rates.transpose();
+        let of_centroid = rates * common.fixed_view::<2, 2>(k - 2, k - 2) * rates.transpose();
         let mut of_velocity = covariance.fixed_view_mut::<2, 2>(2 * k - 2, 2 * k - 2);
-        of_velocity += of_middle * accelerated;
+        of_velocity += of_centroid * accelerated;
         Some(())
     }
 
@@ -84,7 +84,7 @@ impl CommonError {
     }
 
     #[cfg(feature = "serde")]
-    pub(super) fn is_sound(&self, model: MotionModel) -> bool {
+    pub(super) fn is_valid(&self, model: MotionModel) -> bool {
         let numbers = || self.covariance.iter().chain(&self.linear).chain(&self.shift);
         let is_in_bounds = numbers().all(|entry| entry.abs() <= StateFormat::LARGEST_NUMBER);
         self.model == model && is_in_bounds && self.linear.try_inverse().is_some()
@@ -98,7 +98,7 @@ mod tests {
     use nalgebra::Point2;
 
     fn reference() -> CentredPose {
-        CentredPose { pose: Matrix3::identity(), middle: Point2::new(0.3, -0.2) }
+        CentredPose { pose: Matrix3::identity(), centroid: Point2::new(0.3, -0.2) }
     }
 
     /// After two frames, a tenth of a second apart, whose poses have this covariance each; and the same with the outline given.

@@ -56,7 +56,7 @@ impl<const N: usize> Hypothesis<N> {
         *turn -= TAU * (*turn / TAU).round();
     }
 
-    /// Takes what a step makes of the velocity, and the way that the middle has gone.
+    /// Takes what a step makes of the velocity, and the way that the centroid has gone.
     fn take_velocity(&mut self, turn: &Matrix2<f64>, shift: &Vector2<f64>, later: &Vector2<f64>) {
         let k = Self::K;
         for i in 0..2 {
@@ -112,7 +112,7 @@ mod tests {
         let k = N / 3;
         let pose = |numbers: &[f64]| CentredPose {
             pose: model.flow(&numbers[..k], 1.0).into_inner(),
-            middle: Point2::new(0.1, -0.3),
+            centroid: Point2::new(0.1, -0.3),
         };
         let (from, to) = (pose(&numbers[..MAX_PARAMETERS]), pose(&numbers[MAX_PARAMETERS..]));
         let variance = CentredVector::from_fn(|j, _| 0.1 + numbers[j].abs());
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_turn_of_more_than_half_a_circle_is_one_the_other_way() {
-        let pose = CentredPose { pose: Matrix3::identity(), middle: Point2::origin() };
+        let pose = CentredPose { pose: Matrix3::identity(), centroid: Point2::origin() };
         let variance = CentredVector::repeat(1.0);
         let step = Step::new((MotionModel::Rigid, 1.0), [&pose, &pose], &variance).expect("poses");
         let mut hypothesis =

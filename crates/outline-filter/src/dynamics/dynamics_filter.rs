@@ -34,7 +34,7 @@ macro_rules! of_any_size {
 impl DynamicsFilter {
     /// Begins with what is believed of an object after a step of so many seconds, and the covariance of that if the outline is known. `None`
     /// for models without dynamics of their own (projective), and numbers that do not allow it.
-    /// The place is the object's middle in the body frame, with the null directions of its pose.
+    /// The place is the object's centroid in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
         setting: Dynamics,
@@ -62,7 +62,7 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.predict(pose, seconds, null))
     }
 
-    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the middle.
+    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         of_any_size!(self, hypotheses => hypotheses.update(measured, off));
     }
@@ -92,7 +92,7 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.leads())
     }
 
-    /// Whether a turn that the outline does not show is told by the path of the middle.
+    /// Whether a turn that the outline does not show is told by the path of the centroid.
     pub(crate) fn turn_is_of_path(&self) -> bool {
         of_any_size!(self, hypotheses => hypotheses.turn_is_of_path())
     }
@@ -102,7 +102,7 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.has_others())
     }
 
-    /// Factors, at least 1, by which the innovations say that deviations about the middle are to be widened.
+    /// Factors, at least 1, by which the innovations say that deviations about the centroid are to be widened.
     pub(crate) fn factors(&self) -> CentredDeviations {
         of_any_size!(self, hypotheses => hypotheses.factors())
     }
@@ -125,7 +125,7 @@ impl DynamicsFilter {
 
     /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.
     #[cfg(feature = "serde")]
-    pub(crate) fn is_sound(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
-        of_any_size!(self, hypotheses => hypotheses.is_sound(model, setting))
+    pub(crate) fn is_valid(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.is_valid(model, setting))
     }
 }

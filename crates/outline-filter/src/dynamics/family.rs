@@ -207,10 +207,10 @@ fn deviations(squared: f64, count: f64) -> f64 {
 #[cfg(feature = "serde")]
 impl FamilyTests {
     /// Whether more can be taken, and all numbers can be worked with.
-    pub(crate) fn is_sound(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         let vectors =
             self.information.iter().chain(&self.score).chain(&self.squares).chain([&self.weight, &self.sigma]);
-        self.series.is_sound()
+        self.series.is_valid()
             && vectors.into_iter().all(|number| number.abs() < StateFormat::LARGEST_NUMBER)
             && self.sigma >= 0.0
     }

@@ -1,4 +1,4 @@
-//! One hypothesis of dynamics: pose, motion and accelerations about the object's middle, moved on and measured.
+//! One hypothesis of dynamics: pose, motion and accelerations about the object's centroid, moved on and measured.
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
 
@@ -10,21 +10,21 @@ use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map,
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Course {
-    /// The velocity of the middle turns with the object.
+    /// The velocity of the centroid turns with the object.
     ConstantGenerator,
     /// As that, seen by a camera that shakes: poses have errors of their own, in every frame others.
     Shaken {
         /// In standard deviations of a pose as the points of a frame tell it.
         deviations: f64,
     },
-    /// The velocity of a point of the object stays that is not quite the middle. In place of accelerations its state has the part of the
-    /// velocity of the middle that turns with the object.
+    /// The velocity of a point of the object stays that is not quite the centroid. In place of accelerations its state has the part of the
+    /// velocity of the centroid that turns with the object.
     ConstantVelocity,
     /// The accelerations change at random.
     Accelerating {
         /// Level of their density, in variances of a pose per fifth power of a step.
         level: f64,
-        /// Whether the rates do as well, or the velocity of the middle alone, as of an object that spins while it falls.
+        /// Whether the rates do as well, or the velocity of the centroid alone, as of an object that spins while it falls.
         rates: bool,
     },
 }
@@ -55,7 +55,7 @@ impl Course {
 }
 
 /// State of one hypothesis for a model of k parameters, N = 3 k. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j`
-/// its acceleration; all about the middle: rates first, then the velocity of the middle.
+/// its acceleration; all about the centroid: rates first, then the velocity of the centroid.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Hypothesis<const N: usize> {
@@ -64,7 +64,7 @@ pub(super) struct Hypothesis<const N: usize> {
     pub(super) covariance: SMatrix<f64, N, N>,
 }
 
-/// What a frame tells of the pose by itself, about the middle of the reference pose.
+/// What a frame tells of the pose by itself, about the centroid of the reference pose.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CentredMeasurement {
     /// Information.
@@ -77,7 +77,7 @@ pub(super) struct CentredMeasurement {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Innovation {
     pub(super) log_likelihood: f64,
-    /// Score of the pose, about the middle, in its own standard deviations.
+    /// Score of the pose, about the centroid, in its own standard deviations.
     pub(super) standardised: CentredVector,
 }
 
@@ -90,7 +90,7 @@ pub(super) struct Step<'a> {
     turned: Matrix2<f64>,
     /// Its logarithm, as rates.
     pub(super) turned_by: CentredVector,
-    /// The middle before the step, as seen from the one after it.
+    /// The centroid before the step, as seen from the one after it.
     pub(super) centre: Vector2<f64>,
     /// Variance of a pose as one frame tells it, of every parameter.
     pose_variance: &'a CentredVector,
@@ -144,7 +144,7 @@ impl<const N: usize> Hypothesis<N> {
     ) {
         let k = Self::K;
         if self.course == Course::ConstantVelocity {
-            let rates = self.rates(model) * tuning::MIDDLE;
+            let rates = self.rates(model) * tuning::OFF_CENTROID;
             let added = share * rates * rates.transpose();
             let mut block = self.covariance.fixed_view_mut::<2, 2>(3 * k - 2, 3 * k - 2);
             block += added;
@@ -262,7 +262,7 @@ impl<const N: usize> Hypothesis<N> {
         }
         match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {
-                let middle = 0.5 * (v + later);
+                let mean_velocity = 0.5 * (v + later);
                 let by_velocity = Matrix2::identity() * dt + 0.5 * dt * dt * a;
                 for i in 0..2 {
                     for j in 0..2 {
@@ -271,7 +271,7 @@ impl<const N: usize> Hypothesis<N> {
                     }
                 }
                 for (j, basis) in model.basis().iter().enumerate().take(rates) {
-                    let by_rate = parts(basis).0 * middle;
+                    let by_rate = parts(basis).0 * mean_velocity;
                     for i in 0..2 {
                         f[(k + rates + i, k + j)] = dt * by_rate[i];
                         f[(rates + i, k + j)] = 0.5 * dt * dt * by_rate[i];
@@ -389,10 +389,10 @@ impl<const N: usize> Hypothesis<N> {
         self.covariance = projection * self.covariance * projection.transpose();
     }
 
-    /// The velocity of the middle taken at another point of the object.
-    pub(super) fn move_middle(&mut self, model: MotionModel, from: &CentredPose, to: &CentredPose) {
+    /// The velocity of the centroid taken at another point of the object.
+    pub(super) fn move_centroid(&mut self, model: MotionModel, from: &CentredPose, to: &CentredPose) {
         let k = Self::K;
-        let apart = map_point(&from.pose, &to.middle) - from.centre();
+        let apart = map_point(&from.pose, &to.centroid) - from.centre();
         let carried = self.rates(model) * apart;
         self.mean[2 * k - 2] += carried.x;
         self.mean[2 * k - 1] += carried.y;

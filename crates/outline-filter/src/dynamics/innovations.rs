@@ -72,7 +72,7 @@ impl<const N: usize> InnovationSeries<N> {
         self.frames
     }
 
-    /// Factors, at least 1, by which the deviations of k parameters about the middle are to be widened.
+    /// Factors, at least 1, by which the deviations of k parameters about the centroid are to be widened.
     pub(crate) fn spread(&self, k: usize) -> SVector<f64, N> {
         let mut factors = SVector::from_element(1.0);
         let n = self.frames as f64;
@@ -191,7 +191,7 @@ fn cosine_projections<const N: usize>(
 #[cfg(feature = "serde")]
 impl<const N: usize> InnovationSeries<N> {
     /// Whether the blocks are those of so many frames; numbers that are not finite say nothing.
-    pub(super) fn is_sound(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         let Self { frames, blocks, length, filled, .. } = self;
         let full = blocks.len().saturating_sub(1);
         let counted = full.checked_mul(*length).and_then(|before| before.checked_add(*filled));

@@ -39,7 +39,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     /// Factor of the variance of a pose by the most probable hypothesis.
     shaking: f64,
     leads: bool,
-    /// Whether a turn that the outline does not show is told by the path of the middle, as whoever asks for a constant generator wants it.
+    /// Whether a turn that the outline does not show is told by the path of the centroid, as whoever asks for a constant generator wants it.
     turn_is_of_path: bool,
     /// Whether wrong poses have moved the outline: others than a constant generator have led, or the motion has changed.
     pub(super) outline_has_moved: bool,
@@ -48,20 +48,20 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
 impl<const N: usize> InteractingHypotheses<N> {
     /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
     /// (projective), and numbers that do not allow it.
-    /// The place is the object's middle in the body frame, with the null directions of its pose.
+    /// The place is the object's centroid in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
         setting: Dynamics,
         (summary, given_outline): (&Summary, &StateMatrix),
-        (middle, null): (Point2<f64>, &[NullDirection]),
+        (centroid, null): (Point2<f64>, &[NullDirection]),
         seconds: f64,
     ) -> Option<Self> {
         let k = model.parameter_count();
         if 3 * k != N || seconds <= 0.0 {
             return None;
         }
-        let reference = CentredPose { pose: summary.pose, middle };
-        let change = reference.about_middle(model);
+        let reference = CentredPose { pose: summary.pose, centroid };
+        let change = reference.about_centroid(model);
         let (mean, mut covariance) = centred(&change, summary, k);
         // Poses are followed as they are measured, against the outline as it is.
         let (_, measured) = centred::<N>(&change, &Summary { covariance: *given_outline, ..*summary }, k);
@@ -116,10 +116,10 @@ impl<const N: usize> InteractingHypotheses<N> {
         Some(filter)
     }
 
-    /// Lets the path of the middle tell what the outline does not show of the rates, from a prior that is as wide as steps of so many seconds
+    /// Lets the path of the centroid tell what the outline does not show of the rates, from a prior that is as wide as steps of so many seconds
     /// allow.
     fn take_turn_from_path(&mut self, null: &[NullDirection], seconds: f64) {
-        let (from, k) = (self.reference.about_middle(self.model), self.model.parameter_count());
+        let (from, k) = (self.reference.about_centroid(self.model), self.model.parameter_count());
         (self.turn_is_of_path, self.leads) = (true, true);
         for NullDirection { direction, .. } in null {
             let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
@@ -148,9 +148,9 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Moves all hypotheses on by a step, after mixing their states; `pose` is where the object is predicted otherwise.
     /// Whether the numbers allow it.
     pub(crate) fn predict(&mut self, pose: &CentredPose, seconds: f64, null: &[NullDirection]) -> bool {
-        let moved = CentredPose { pose: self.reference.pose, middle: pose.middle };
+        let moved = CentredPose { pose: self.reference.pose, centroid: pose.centroid };
         for hypothesis in &mut self.hypotheses {
-            hypothesis.move_middle(self.model, &self.reference, &moved);
+            hypothesis.move_centroid(self.model, &self.reference, &moved);
         }
         self.reference = moved;
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
@@ -166,7 +166,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Projects the null directions of the reference pose out of all hypotheses.
     fn hold(&mut self, null: &[NullDirection]) {
         let Some(to) = self.reference.about_origin(self.model).filter(|_| !null.is_empty()) else { return };
-        let (from, k) = (self.reference.about_middle(self.model), self.model.parameter_count());
+        let (from, k) = (self.reference.about_centroid(self.model), self.model.parameter_count());
         for NullDirection { direction, dual } in null {
             let direction = from * SVector::<f64, MAX_PARAMETERS>::from(*direction);
             let dual = to.transpose() * SVector::<f64, MAX_PARAMETERS>::from(*dual);
@@ -178,7 +178,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
-    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the middle.
+    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
@@ -250,7 +250,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.leads
     }
 
-    /// Whether a turn that the outline does not show is told by the path of the middle.
+    /// Whether a turn that the outline does not show is told by the path of the centroid.
     pub(crate) fn turn_is_of_path(&self) -> bool {
         self.turn_is_of_path
     }
@@ -262,7 +262,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         !self.leads && of_generator.is_some_and(|(_, weight)| 1.0 - weight > tuning::LEFT_OUT)
     }
 
-    /// Factors, at least 1, by which the innovations say that deviations about the middle are to be widened.
+    /// Factors, at least 1, by which the innovations say that deviations about the centroid are to be widened.
     pub(crate) fn factors(&self) -> CentredDeviations {
         let spread = self.series.spread(self.model.parameter_count());
         CentredDeviations::from_fn(|j, _| spread.get(j).copied().unwrap_or(1.0))
@@ -281,11 +281,11 @@ impl<const N: usize> InteractingHypotheses<N> {
 
     /// Takes another reference pose, near the one before.
     pub(crate) fn take_reference(&mut self, pose: &Matrix3<f64>) -> bool {
-        let to = CentredPose { pose: *pose, middle: self.reference.middle };
+        let to = CentredPose { pose: *pose, centroid: self.reference.centroid };
         let (model, k) = (self.model, self.model.parameter_count());
         let Some(inverse) = self.reference.pose.try_inverse() else { return false };
         let Some(moved) = model.motion_between(&(pose * inverse), 1.0) else { return false };
-        let moved = self.reference.about_middle(model) * SVector::<f64, MAX_PARAMETERS>::from(moved);
+        let moved = self.reference.about_centroid(model) * SVector::<f64, MAX_PARAMETERS>::from(moved);
         let apart = to.centre() - self.reference.centre();
         for hypothesis in &mut self.hypotheses {
             for j in 0..k - 2 {
@@ -338,7 +338,7 @@ fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<Ce
 #[cfg(feature = "serde")]
 impl<const N: usize> InteractingHypotheses<N> {
     /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.
-    pub(crate) fn is_sound(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
+    pub(crate) fn is_valid(&self, model: MotionModel, setting: Option<Dynamics>) -> bool {
         let is_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
         let count = self.hypotheses.len();
         let followed = self.hypotheses.iter().map(|hypothesis| hypothesis.course);
@@ -352,10 +352,10 @@ impl<const N: usize> InteractingHypotheses<N> {
             && (weights.iter().sum::<f64>() - 1.0).abs() < SUM_OFF
             && beyond.iter().all(|weight| *weight == 0.0)
             && is_finite(self.reference.pose.as_slice())
-            && is_finite(self.reference.middle.coords.as_slice())
+            && is_finite(self.reference.centroid.coords.as_slice())
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
-            && self.common.is_sound(model)
-            && self.series.is_sound()
+            && self.common.is_valid(model)
+            && self.series.is_valid()
             && (self.shaking == 1.0 || courses(self.setting).iter().any(|course| course.shaking() == self.shaking))
     }
 }

@@ -148,7 +148,7 @@ impl<const N: usize> Pooled<N> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Accelerations {
     None,
-    /// Of the velocity of the middle alone.
+    /// Of the velocity of the centroid alone.
     OfVelocity,
     All,
 }
@@ -176,7 +176,7 @@ impl Accelerations {
         let k = N / 3;
         let mut mean = source.mean;
         match source.course {
-            // Along an arc the velocity of the middle turns all the time.
+            // Along an arc the velocity of the centroid turns all the time.
             Course::ConstantGenerator | Course::Shaken { .. } => {
                 let (a, v) = parts(&model.generator(&source.mean.as_slice()[k..2 * k]));
                 mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(a * v));

@@ -7,12 +7,12 @@ pub enum Dynamics {
     /// Three hypotheses side by side, weighted by their likelihoods: those below.
     #[default]
     Auto,
-    /// The paper's constant generator: the velocity of the object's middle turns with the object, as on a turntable. The path of the middle
+    /// The paper's constant generator: the velocity of the object's centroid turns with the object, as on a turntable. The path of the centroid
     /// then tells the turn, also where the outline does not show it (rigid and similarity motion).
     Generator,
-    /// Constant rates and a constant velocity of the middle, as of an object that is thrown or slides.
+    /// Constant rates and a constant velocity of the centroid, as of an object that is thrown or slides.
     Velocity,
-    /// Nearly constant accelerations of the rates and of the velocity of the middle.
+    /// Nearly constant accelerations of the rates and of the velocity of the centroid.
     Accelerating,
 }
 
@@ -59,7 +59,7 @@ impl FromStr for Dynamics {
 pub struct DynamicsWeights {
     /// Of a constant generator.
     pub generator: f64,
-    /// Of constant rates and a constant velocity of the middle.
+    /// Of constant rates and a constant velocity of the centroid.
     pub velocity: f64,
     /// Of nearly constant accelerations.
     pub accelerating: f64,

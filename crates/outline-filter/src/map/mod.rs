@@ -10,9 +10,11 @@ mod null_space;
 mod outline_map;
 mod plain_regression;
 mod redrawing;
+mod turn_evidence;
 
 pub(crate) use chains::{CellPoint, has_common_places};
 pub(crate) use contour::Contour;
 pub(crate) use medians::{median, median_about};
-pub(crate) use null_space::{NullDirection, TurnEvidence};
+pub(crate) use null_space::NullDirection;
 pub(crate) use outline_map::{Cell, OutlineMap, Resolution};
+pub(crate) use turn_evidence::{TurnEvent, TurnEvidence};

@@ -6,6 +6,7 @@ use super::{
     OutlineMap,
     centring::{Centring, NormalByNeighbours},
     contour::direction_variance,
+    turn_evidence::{TurnEvent, TurnEvidence},
 };
 use crate::tuning::{contour::NORMAL_NOISE, null_space as tuning};
 
@@ -22,31 +23,12 @@ impl NullDirection {
         let along: f64 = jacobian.iter().zip(&self.direction).map(|(a, b)| a * b).sum();
         jacobian.iter_mut().zip(&self.dual).for_each(|(r, d)| *r -= along * d);
     }
-}
 
-impl NullDirection {
-    /// Takes the part of a motion in this direction off.
-    pub(crate) fn take_off(&self, motion: &mut ParameterVector) {
+    /// Subtracts the part of a motion that is in this direction.
+    pub(crate) fn subtract_from(&self, motion: &mut ParameterVector) {
         let part: f64 = motion.iter().zip(&self.dual).map(|(a, b)| a * b).sum();
         motion.iter_mut().zip(&self.direction).for_each(|(m, d)| *m -= part * d);
     }
-}
-
-/// What frames have said of the turn about the object's middle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) enum TurnEvidence {
-    /// As much as the normals of the cells promise.
-    #[default]
-    AsTheNormals,
-    /// Frames have not shown it, whatever the normals promise.
-    Hidden,
-    /// What a frame has shown for the first time shows it, by the normals.
-    AtLast,
-    /// The map was begun anew with a frame that shows it, and no other frame has told it since.
-    New,
-    /// As [`New`](Self::New), and the last frame has not shown it again.
-    NewAndHidden,
 }
 
 /// The null directions of an outline in the body frame.
@@ -56,7 +38,7 @@ pub(super) struct NullSpace {
     pub(super) in_body: Vec<ParameterVector>,
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(super) frame: Matrix3<f64>,
-    pub(super) middle: Point2<f64>,
+    pub(super) centroid: Point2<f64>,
     pub(super) turn: TurnEvidence,
     /// Smallest eigenvalue of the levers of a turn that may be shown, less what errors of the normals make of it.
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -68,7 +50,7 @@ impl Default for NullSpace {
         Self {
             in_body: Vec::new(),
             frame: Matrix3::identity(),
-            middle: Point2::origin(),
+            centroid: Point2::origin(),
             turn: TurnEvidence::default(),
             weakest_turn: f64::INFINITY,
         }
@@ -88,10 +70,10 @@ struct ContourArea {
 }
 
 impl OutlineMap {
-    /// The object's middle in the body frame: the centroid of the area that the outline encloses, which a body of even thickness turns
+    /// The object's centroid in the body frame: the centroid of the area that the outline encloses, which a body of even thickness turns
     /// about where nothing holds it; the centre of the cells where the outline is not closed.
-    pub(crate) fn middle(&self) -> Point2<f64> {
-        self.null_space.middle
+    pub(crate) fn centroid(&self) -> Point2<f64> {
+        self.null_space.centroid
     }
 
     /// Centroid of the area within the polygon of the cells, if they are one closed contour; of several, within the largest, which is the
@@ -142,32 +124,13 @@ impl OutlineMap {
         self.null_space.turn
     }
 
-    /// Records that one frame alone has shown the turn so far.
-    pub(crate) fn take_turn_as_new(&mut self) {
-        self.null_space.turn = match self.null_space.turn {
-            TurnEvidence::Hidden | TurnEvidence::NewAndHidden => TurnEvidence::NewAndHidden,
-            _ => TurnEvidence::New,
-        };
+    /// Records what a frame or new cells say of the turn. What makes it a null direction or none is recorded by [`hide_turn`](Self::hide_turn)
+    /// and [`show_turn`](Self::show_turn).
+    pub(crate) fn record_turn(&mut self, event: TurnEvent) {
+        self.null_space.turn = self.null_space.turn.after(event);
     }
 
-    /// Records that another frame has shown the turn too, unless it is hidden.
-    pub(crate) fn confirm_turn(&mut self) {
-        if self.null_space.turn == TurnEvidence::New {
-            self.null_space.turn = TurnEvidence::AsTheNormals;
-        }
-    }
-
-    /// Records whether a growth of the map shows the turn where it was not observable before.
-    pub(crate) fn take_growth(&mut self, shows_turn: bool) {
-        let space = &mut self.null_space;
-        if shows_turn {
-            space.turn = TurnEvidence::AtLast;
-        } else if space.turn == TurnEvidence::AtLast {
-            space.turn = TurnEvidence::AsTheNormals;
-        }
-    }
-
-    /// Marks the turn about the object's centre as not observable.
+    /// After a frame that has not shown the turn about the object's centroid: marks it as not observable.
     pub(crate) fn hide_turn(&mut self, model: MotionModel) {
         let turn = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         let parameters = model.parameters_of(&turn);
@@ -175,24 +138,18 @@ impl OutlineMap {
         let space = &mut self.null_space;
         let Some(inverse) = space.frame.try_inverse() else { return };
         if !space.holds_turn(model) {
-            space.turn = match space.turn {
-                TurnEvidence::New | TurnEvidence::NewAndHidden => TurnEvidence::NewAndHidden,
-                _ => TurnEvidence::Hidden,
-            };
+            space.turn = space.turn.after(TurnEvent::NotSeen);
             space.in_body.push(model.parameters_of(&(space.frame * turn / size * inverse)));
         }
     }
 
-    /// Takes that back.
+    /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
     pub(crate) fn show_turn(&mut self) {
         let space = &mut self.null_space;
-        let shown = match space.turn {
-            TurnEvidence::Hidden => TurnEvidence::AsTheNormals,
-            TurnEvidence::NewAndHidden => TurnEvidence::New,
-            _ => return,
-        };
-        space.turn = shown;
-        space.in_body.pop();
+        if space.turn.is_hidden() {
+            space.turn = space.turn.after(TurnEvent::AskedAnew);
+            space.in_body.pop();
+        }
     }
 
     /// Whether a null direction holds a turn.
@@ -220,7 +177,7 @@ impl OutlineMap {
             levers += across * across.transpose() / count;
             levers_of_noise += variance / count * along * along.transpose();
         }
-        let middle = self.area_centroid().unwrap_or(centring.centroid);
+        let centroid = self.area_centroid().unwrap_or(centring.centroid);
         let of_cells = direction_variance(sigma / self.step, self.half_window);
         let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_cells);
         let eigen = levers.symmetric_eigen();
@@ -251,12 +208,8 @@ impl OutlineMap {
                 space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
             }
         }
-        (space.frame, space.middle) = (to_body, middle);
-        space.turn = match space.turn {
-            TurnEvidence::Hidden => TurnEvidence::AsTheNormals,
-            TurnEvidence::NewAndHidden => TurnEvidence::New,
-            turn => turn,
-        };
+        (space.frame, space.centroid) = (to_body, centroid);
+        space.turn = space.turn.after(TurnEvent::AskedAnew);
     }
 
     /// Deviation that directions of normals may have at most, in rad. Points slide along an outline that errs in its normals, and the
@@ -268,7 +221,7 @@ impl OutlineMap {
     }
 
     /// Normal of the outline at a cell by the cells some way before and after it. Where cells err together this does not, as their own normals
-    /// do: a circle would have its middle beside where it is.
+    /// do: a circle would have its centroid beside where it is.
     fn normal_by_neighbours(&self, number: usize, sigma: f64) -> NormalByNeighbours {
         // Of the value of a quadratic in the middle of its window.
         let window = (2 * self.half_window + 1) as f64;
@@ -313,7 +266,7 @@ impl OutlineMap {
         let Some(inverse) = pose.try_inverse() else { return Vec::new() };
         let (ad, ad_inverse) = (model.adjoint(pose, &inverse), model.adjoint(&inverse, pose));
         // Duals in centred coordinates, where the directions are orthonormal. What is taken off along a turn is all of the turn: noise of the
-        // normals gives its middle a place of its own, and the object would be taken to turn as it travels.
+        // normals gives its centre a place of its own, and the object would be taken to turn as it travels.
         let Some(from_body) = space.frame.try_inverse() else { return Vec::new() };
         let centring = model.adjoint(&from_body, &space.frame);
         let list = space.in_body.iter().map(|u| {

@@ -156,8 +156,8 @@ impl OutlineMap {
                 && (cell.normal.norm_squared() - 1.0).abs() < tuning::UNIT_NORMAL
                 && cell.neighbours.iter().all(|number| *number < count)
         };
-        let NullSpace { in_body, frame, middle, .. } = &self.null_space;
-        let is_sound = (3..=tuning::MOST_SAVED).contains(&count)
+        let NullSpace { in_body, frame, centroid, .. } = &self.null_space;
+        let is_valid = (3..=tuning::MOST_SAVED).contains(&count)
             && self.cells.iter().all(is_cell)
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
             && super::contour::is_half_window(self.half_window)
@@ -165,10 +165,10 @@ impl OutlineMap {
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
             && in_body.iter().flatten().chain(frame).all(within)
-            && middle.iter().all(|coordinate| coordinate.is_finite());
-        if is_sound {
+            && centroid.iter().all(|coordinate| coordinate.is_finite());
+        if is_valid {
             self.prepare_association();
         }
-        is_sound
+        is_valid
     }
 }

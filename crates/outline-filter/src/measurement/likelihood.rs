@@ -156,7 +156,7 @@ fn of_innovations(
 #[cfg(feature = "serde")]
 impl NegativeLogLikelihood {
     /// Whether no number is NaN.
-    pub(crate) fn is_sound(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         ![self.squares, self.points, self.weighted].iter().any(|number| number.is_nan())
     }
 }

@@ -247,7 +247,7 @@ pub(crate) fn spread(frame: &mut Frame, noise: f64) -> f64 {
 #[cfg(feature = "serde")]
 impl NoiseModel {
     /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
-    pub(crate) fn is_sound(&self, cells: usize) -> bool {
+    pub(crate) fn is_valid(&self, cells: usize) -> bool {
         let Correlation { ratio, frames } = self.correlation;
         let positive = |number: f64| number.is_finite() && number > 0.0;
         positive(self.sigma)
@@ -257,6 +257,6 @@ impl NoiseModel {
             && self.level.count < StateFormat::MOST_COUNTED
             && !self.level.frames.iter().any(|spread| spread.is_nan())
             && self.inflation.len() == cells
-            && self.inflation.iter().all(VarianceInflation::is_sound)
+            && self.inflation.iter().all(VarianceInflation::is_valid)
     }
 }

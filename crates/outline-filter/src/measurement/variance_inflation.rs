@@ -29,7 +29,7 @@ impl VarianceInflation {
 #[cfg(feature = "serde")]
 impl VarianceInflation {
     /// Whether its numbers can be worked with.
-    pub(super) fn is_sound(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         let of_prior = tuning::INFLATION_PRIOR_POINTS;
         self.mean_square.is_finite()
             && self.mean_square >= 0.0

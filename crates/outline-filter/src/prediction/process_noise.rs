@@ -21,11 +21,11 @@ impl Belief {
         self.add_covariance(&added);
     }
 
-    /// Lets the motion have changed at random during the last step predicted: its rates and its velocities about the object's `middle`
+    /// Lets the motion have changed at random during the last step predicted: its rates and its velocities about the object's `centroid`
     /// (body frame) by variances per second.
-    pub(crate) fn add_change(&mut self, variances: ByKind, middle: &nalgebra::Point2<f64>, variance: f64) {
+    pub(crate) fn add_change(&mut self, variances: ByKind, centroid: &nalgebra::Point2<f64>, variance: f64) {
         let (k, seconds) = (self.information.k, self.memory.step);
-        let Some(mut unit) = centred_change(self.model, &self.pose, middle) else { return };
+        let Some(mut unit) = centred_change(self.model, &self.pose, centroid) else { return };
         for (mut column, kind) in unit.column_iter_mut().zip(self.model.parameter_kinds()) {
             column *= variances[kind_index(*kind)].sqrt();
         }
@@ -41,7 +41,7 @@ impl Belief {
         self.add_covariance(&added);
     }
 
-    /// Forgets all that is known of pose and motion in null directions: another place of the middle of a turn makes something known of it
+    /// Forgets all that is known of pose and motion in null directions: another place of the centre of a turn makes something known of it
     /// that is not.
     pub(crate) fn forget(&mut self, null: &[NullDirection], variance: f64) {
         let k = self.information.k;

@@ -103,7 +103,7 @@ impl ShapeNoise {
 #[cfg(feature = "serde")]
 impl ShapeNoise {
     /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
-    pub(crate) fn is_sound(&self, cells: usize) -> bool {
+    pub(crate) fn is_valid(&self, cells: usize) -> bool {
         let numbers = [self.variance, self.repeated, self.uncertainty];
         let is_finite = numbers.iter().chain(&self.last).all(|number| number.is_finite());
         is_finite && self.variance >= 0.0 && self.last.len() == cells

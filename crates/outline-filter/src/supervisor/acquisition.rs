@@ -7,6 +7,7 @@ use super::{
     turn_hypotheses::{Candidate, TurnHypotheses},
 };
 use crate::{
+    map::TurnEvent,
     measurement::{NegativeLogLikelihood, Tolerance},
     search::{Landmarks, RegisteredPose, register, symmetry_order},
     track::{Comparison, Outcome, Track},
@@ -86,7 +87,7 @@ impl MotionFilter {
         if let Some(taken) = taken {
             // Where a lost object is now says nothing of how it moves now.
             self.replace(taken.track, time, if lost { Phase::Acquiring } else { Phase::Tracking });
-            self.track.as_mut().into_iter().for_each(Track::confirm_turn);
+            self.track.as_mut().into_iter().for_each(|track| track.record_turn(TurnEvent::Confirmed));
         }
         if let Some(track) = self.track.as_mut().filter(|_| outcome.is_accepted() || lost) {
             track.take_spread(&outcome.measurement);

@@ -10,6 +10,7 @@ use super::{
     window::InitialisationWindow,
 };
 use crate::{
+    map::TurnEvent,
     measurement::Frame,
     search::Landmarks,
     track::{PlacedFrame, Track},
@@ -70,7 +71,7 @@ impl MotionFilter {
         let Some(track) = &mut self.track else { return };
         let Some(new) = track.begun_anew(outline, &mut self.frame) else {
             track.hide_turn();
-            track.take_turn_as_new();
+            track.record_turn(TurnEvent::Begun);
             return;
         };
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());

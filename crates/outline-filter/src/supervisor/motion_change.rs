@@ -200,8 +200,8 @@ impl Evidence {
 #[cfg(feature = "serde")]
 impl MotionHistory {
     /// Whether it is that of a filter with such settings, and all its numbers can be worked with.
-    pub(super) fn is_sound(&self, settings: &FilterSettings) -> bool {
-        let of_settings = |dynamics: &DynamicsFilter| dynamics.is_sound(settings.model, settings.followed_dynamics());
+    pub(super) fn is_valid(&self, settings: &FilterSettings) -> bool {
+        let of_settings = |dynamics: &DynamicsFilter| dynamics.is_valid(settings.model, settings.followed_dynamics());
         let is_change = |change: &PoseVector| change.iter().all(|entry| entry.abs() < StateFormat::LARGEST_NUMBER);
         self.change.is_finite()
             && self.dynamics.as_ref().is_none_or(of_settings)

@@ -215,7 +215,7 @@ impl MotionFilter {
             self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
-            if self.track.as_mut().is_some_and(Track::may_show_turn) {
+            if self.track.as_ref().is_some_and(Track::may_show_turn) {
                 self.begin_with_turn(outline);
             }
         } else {
@@ -358,7 +358,7 @@ impl MotionFilter {
 #[cfg(feature = "serde")]
 impl MotionFilter {
     /// Whether the last time is finite, or there was none, that of the track is, and the unit is a power of two.
-    pub(super) fn times_are_sound(&self) -> bool {
+    pub(super) fn times_are_valid(&self) -> bool {
         let before_first = self.last_time == f64::NEG_INFINITY && self.track.is_none();
         let is_power_of_two = |unit: f64| unit > 0.0 && unit.is_normal() && unit == unit.log2().round().exp2();
         let is_unit = |unit: f64| is_power_of_two(unit) && (1.0 / unit).is_normal();

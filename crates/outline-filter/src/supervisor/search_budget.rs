@@ -37,7 +37,7 @@ impl SearchBudget {
 
     /// Whether there is no more in it than there can be.
     #[cfg(feature = "serde")]
-    pub(super) fn is_sound(self) -> bool {
+    pub(super) fn is_valid(self) -> bool {
         self.frames <= FULL
     }
 }

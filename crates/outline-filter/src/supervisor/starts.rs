@@ -100,7 +100,7 @@ impl MotionFilter {
 #[cfg(feature = "serde")]
 impl MotionFilter {
     /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other, after the first.
-    pub(super) fn unfound_are_sound(&self) -> bool {
+    pub(super) fn unfound_are_valid(&self) -> bool {
         (self.unfound.is_empty() || self.phase == Phase::Acquiring && self.time_unit.is_some())
             && self.unfound.len() < tuning::FALSE_START
             && self.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.last_time)

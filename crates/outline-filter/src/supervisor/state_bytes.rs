@@ -54,7 +54,7 @@ impl MotionFilter {
         if self.settings.check().is_err() {
             return inconsistent("settings");
         }
-        if !self.times_are_sound() {
+        if !self.times_are_valid() {
             return inconsistent("times");
         }
         let (model, unit) = (self.settings.model, self.seconds_per_unit());
@@ -71,19 +71,19 @@ impl MotionFilter {
         if !(1..=LARGEST_ORDER).contains(&self.symmetry) {
             return inconsistent("symmetry");
         }
-        if !self.history.is_sound(&self.settings) {
+        if !self.history.is_valid(&self.settings) {
             return inconsistent("changes of the motion");
         }
-        if !self.counts_are_below(StateFormat::MOST_COUNTED) || !self.searches.is_sound() {
+        if !self.counts_are_below(StateFormat::MOST_COUNTED) || !self.searches.is_valid() {
             return inconsistent("counts");
         }
         if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
             return inconsistent("landmarks");
         }
-        if !self.window.is_sound() {
+        if !self.window.is_valid() {
             return inconsistent("first frames");
         }
-        if !self.unfound_are_sound() {
+        if !self.unfound_are_valid() {
             return inconsistent("frames without the object");
         }
         Ok(())

@@ -47,12 +47,12 @@ impl MotionFilter {
     fn stated_now(&self) -> Option<Statement> {
         let track = self.track.as_ref()?;
         let own = track.summary()?;
-        let (model, middle) = (self.settings.model, track.centred_pose().middle);
+        let (model, centroid) = (self.settings.model, track.centred_pose().centroid);
         let none = CentredDeviations::zeros();
         let mut random = own;
         if let Some(dynamics) = &self.history.dynamics {
             let summary = dynamics.combined((!dynamics.leads()).then_some(&own), Purpose::Statement).unwrap_or(own);
-            random = summary.widened(model, &middle, &dynamics.factors(), [&none, &none])?;
+            random = summary.widened(model, &centroid, &dynamics.factors(), [&none, &none])?;
         }
         if let Some(covariance) = self.history.contradicted(model.parameter_count()) {
             random.covariance += covariance;
@@ -71,7 +71,7 @@ impl MotionFilter {
             // What the motion model does not have need not be constant.
             let [of_pose, of_motion] = track.systematic(displacement, track.span_of_motion(false));
             let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
-            all = all.widened(model, &middle, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
+            all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
         Some(Statement { random, all, family: left_out.family })
     }
@@ -163,8 +163,8 @@ impl MotionFilter {
         self.track.as_ref()?.state_of(&self.statement()?.all, self.track_time, observable)
     }
 
-    /// Velocity of the middle of the object, which is the centroid of the area within its known outline (the centre of its cells
-    /// where that is not one closed contour), at the time of [`state`](Self::state). It may be
+    /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed
+    /// contour), at the time of [`state`](Self::state). It may be
     /// known while the velocity `b` at the image origin is not, as for a circle. `None` if it is not known, if the motion is
     /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
@@ -172,7 +172,7 @@ impl MotionFilter {
         if self.turn_hypotheses.are_doubtful() || self.unstated().is_some() {
             return None;
         }
-        self.track.as_ref()?.velocity_of_middle(&self.state()?)
+        self.track.as_ref()?.velocity_of_centroid(&self.state()?)
     }
 
     /// Covariance of the motion parameters in the order of the model, image units; `None` before the first frame, or if it is not

@@ -371,13 +371,13 @@ impl TurnHypotheses {
     /// Whether turns belong to hypotheses, and all numbers can be worked with; `restore` makes their tracks usable, or tells that it cannot.
     pub(super) fn restore(&mut self, restore: impl Fn(&mut Track) -> bool) -> bool {
         let numbers = self.rival_turns.iter().chain([&self.present_turn]);
-        let is_sound = numbers.into_iter().all(|turn| turn.is_finite())
+        let is_valid = numbers.into_iter().all(|turn| turn.is_finite())
             && self.rival_turns.len() == self.rivals.len()
-            && self.likelihood.is_sound()
-            && self.rivals.iter().all(|hypothesis| hypothesis.likelihood.is_sound())
+            && self.likelihood.is_valid()
+            && self.rivals.iter().all(|hypothesis| hypothesis.likelihood.is_valid())
             && self.frames < StateFormat::MOST_COUNTED
             && (self.rivals.is_empty()
                 || [self.symmetry_angle, self.acquired_over].iter().all(|n| n.is_finite() && *n > 0.0));
-        is_sound && self.rivals.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
+        is_valid && self.rivals.iter_mut().filter_map(|hypothesis| hypothesis.track.as_mut()).all(restore)
     }
 }

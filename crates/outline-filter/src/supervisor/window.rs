@@ -106,7 +106,7 @@ impl InitialisationWindow {
 #[cfg(feature = "serde")]
 impl InitialisationWindow {
     /// Whether frames and poses belong together and times increase.
-    pub(super) fn is_sound(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         let points: usize = self.frames.iter().map(|(_, outline)| outline.point_count()).sum();
         let increases = self.frames.is_sorted_by(|(a, _), (b, _)| a < b);
         self.frames.len() == self.poses.len()

@@ -4,7 +4,6 @@ use nalgebra::Matrix3;
 
 use super::{Track, wrapped};
 use crate::{
-    map::TurnEvidence,
     measurement::{Frame, NegativeLogLikelihood},
     tuning::{likelihood::ENOUGH_POINTS, registration as tuning},
 };
@@ -43,7 +42,7 @@ impl Track {
         let worse = likelihoods[1..].iter().filter(|other| other.is_worse_than(&likelihoods[0])).count();
         // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in
         // what that frame does not show.
-        let is_new = matches!(self.turn_evidence(), TurnEvidence::New | TurnEvidence::NewAndHidden);
+        let is_new = self.turn_evidence().is_new();
         let share = if is_new { tuning::NEARLY_ALL } else { tuning::MOST };
         worse as f64 > share * (likelihoods.len() - 1) as f64 && (!is_new || self.begun_anew(outline, frame).is_some())
     }

@@ -19,7 +19,7 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum TurnTold {
     ByOutline,
-    /// The path of its middle too, as a constant generator has it.
+    /// The path of its centroid too, as a constant generator has it.
     ByPath,
 }
 
@@ -37,14 +37,14 @@ impl Track {
     }
 
     /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations
-    /// about the middle, normalised. Over the `span` that the motion is known from it may change by as much as it is.
+    /// about the centroid, normalised. Over the `span` that the motion is known from it may change by as much as it is.
     pub(crate) fn systematic(&self, size: f64, span: f64) -> [CentredDeviations; 2] {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let size = size / self.reference.radius;
         let cells = self.map.cells();
         let mut levers = [0.0; MAX_PARAMETERS];
         for cell in cells {
-            let along = model.normal_velocities(&(cell.centre - self.map.middle().coords), &cell.normal);
+            let along = model.normal_velocities(&(cell.centre - self.map.centroid().coords), &cell.normal);
             levers.iter_mut().zip(along).for_each(|(sum, v)| *sum += v * v / cells.len() as f64);
         }
         let pose = CentredDeviations::from_fn(|j, _| {
@@ -82,7 +82,7 @@ impl Track {
         let summary = self.summary_by(&with_hold(&belief.marginal, hold.as_ref()))?;
         let given_outline = belief.information.with_outline_given();
         let given_outline = self.summary_by(&with_hold(&given_outline, hold.as_ref()))?.covariance;
-        let place = (self.map.middle(), null.as_slice());
+        let place = (self.map.centroid(), null.as_slice());
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
@@ -146,8 +146,8 @@ impl Track {
                 estimate = estimate.with_unobservable(j);
             }
         }
-        let middle = map_point(&(to_image * summary.pose), &self.map.middle());
-        let hanging = hanging_velocities(&estimate, &middle, &deviations);
+        let centroid = map_point(&(to_image * summary.pose), &self.map.centroid());
+        let hanging = hanging_velocities(&estimate, &centroid, &deviations);
         Some(hanging.into_iter().fold(estimate, MotionEstimate::with_unobservable))
     }
 
@@ -180,14 +180,14 @@ impl Track {
             ),
             observable,
             hidden: self.hidden_rates(),
-            middle: self.map.middle(),
+            middle: self.map.centroid(),
         };
         Some(state.into())
     }
 
-    /// Velocity of the object's middle in a state of this track; `None` where it is not worth stating.
-    pub(crate) fn velocity_of_middle(&self, state: &MotionState) -> Option<PointVelocity> {
-        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.middle().coords));
+    /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating.
+    pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {
+        let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.centroid().coords));
         let span = self.belief.memory.shortest(self.belief.parameter_count());
         let unit = self.reference.time_unit;
         let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
@@ -223,10 +223,10 @@ impl Track {
         is_worth(deviation, span.max(memory.span.min(STEPS_KNOWN * memory.step)), displacement)
     }
 
-    /// Rates that take part in a motion about the middle which the outline does not show.
+    /// Rates that take part in a motion about the centroid which the outline does not show.
     fn hidden_rates(&self) -> [bool; MAX_PARAMETERS] {
         let (model, at) = (self.belief.model, self.centred_pose());
-        let (change, kinds) = (at.about_middle(model), model.parameter_kinds());
+        let (change, kinds) = (at.about_centroid(model), model.parameter_kinds());
         let mut hidden = [false; MAX_PARAMETERS];
         for null in self.map.null_directions(model, &self.belief.pose) {
             let centred = change * SVector::<f64, MAX_PARAMETERS>::from(null.direction);
@@ -238,7 +238,7 @@ impl Track {
     }
 
     /// Parameters, in image units, that take part in a motion which the outline does not show. The velocity at the origin of the image is
-    /// one of them wherever the middle of a turn that is not seen is not there.
+    /// one of them wherever the centre of a turn that is not seen is not there.
     pub(crate) fn blind_parameters(&self, pose: &Matrix3<f64>) -> [bool; MAX_PARAMETERS] {
         let mut blind = [false; MAX_PARAMETERS];
         let (model, radius) = (self.belief.model, self.reference.radius);
@@ -265,14 +265,14 @@ impl Track {
     }
 }
 
-/// Velocities at the origin of the image that hang on a rate which is not known, by how far that moves the middle of the object.
-fn hanging_velocities(estimate: &MotionEstimate, middle: &Point2<f64>, deviations: &[f64]) -> Vec<usize> {
+/// Velocities at the origin of the image that hang on a rate which is not known, by how far that moves the centroid of the object.
+fn hanging_velocities(estimate: &MotionEstimate, centroid: &Point2<f64>, deviations: &[f64]) -> Vec<usize> {
     let model = estimate.model();
     let (k, kinds) = (model.parameter_count(), model.parameter_kinds());
     let mut carried = Vector2::<f64>::zeros();
     let rates = estimate.parameters().enumerate().filter(|(j, _)| kinds[*j] == ParameterKind::Rate);
     for (j, _) in rates.filter(|(_, parameter)| parameter.value.is_none()) {
-        let by_rate = model.basis()[j].fixed_view::<2, 2>(0, 0) * middle.coords * deviations[j];
+        let by_rate = model.basis()[j].fixed_view::<2, 2>(0, 0) * centroid.coords * deviations[j];
         carried = carried.zip_map(&by_rate, |a, b| a.max(b.abs()));
     }
     let velocities = (0..k).filter(|j| kinds[*j] == ParameterKind::Velocity).zip(&carried);

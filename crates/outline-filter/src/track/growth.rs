@@ -6,7 +6,7 @@ use freeform_curve_fit::Outline;
 use super::Track;
 use crate::{
     belief::StateVector,
-    map::Contour,
+    map::{Contour, TurnEvent},
     measurement::{Frame, NO_CELL, Pass},
     update::accumulate,
 };
@@ -29,7 +29,7 @@ impl Track {
             return None;
         }
         track.noise.take_level_of(&self.noise);
-        track.take_turn_as_new();
+        track.record_turn(TurnEvent::Begun);
         track.begin_here_with_any_turn();
         Some(track)
     }
@@ -57,7 +57,8 @@ impl Track {
             let variance = self.noise.effective_variance();
             self.belief.forget(&null, variance);
             self.belief.forget(&map.null_directions(model, &self.belief.pose), variance);
-            map.take_growth(turn_was_unseen && !map.turn_is_unseen(model));
+            let is_shown = turn_was_unseen && !map.turn_is_unseen(model);
+            map.record_turn(if is_shown { TurnEvent::ShownByGrowth } else { TurnEvent::NotShownByGrowth });
         }
         self.measure_new_cells(frame, first_new);
     }

@@ -74,7 +74,7 @@ mod tests {
     const STEP: f64 = 0.05;
     const MOTION: [f64; 3] = [1.3, 0.4, -0.7];
 
-    /// Points of a body at rest, about its middle.
+    /// Points of a body at rest, about its centroid.
     fn body(i: usize) -> Point2<f64> {
         let t = std::f64::consts::TAU * i as f64 / 600.0;
         let r = 1.0 + 0.25 * (3.0 * t).cos() + 0.15 * (2.0 * t).sin() + 0.1 * (5.0 * t).cos();
@@ -108,13 +108,13 @@ mod tests {
         let mut buffers = Frame::default();
         let plain = Track::begin(model, &at_rest, 0.0, &mut buffers).expect("a track");
         let reference = plain.reference();
-        let (to, middle) = (reference.to_image(), plain.map.middle());
+        let (to, centroid) = (reference.to_image(), plain.map.centroid());
         let from = to.try_inverse().expect("a radius");
         let mut track: Option<Track> = None;
         for frame in 0..frames {
             let elapsed = STEP * f64::from(frame);
             let flow = model.flow(&MOTION, elapsed).into_inner();
-            let centre = map_point(&(from * flow * to), &middle);
+            let centre = map_point(&(from * flow * to), &centroid);
             let generator = from * model.generator(&MOTION) * to;
             let point = |i: usize| {
                 let p = map_point(&(from * flow), &body(i));

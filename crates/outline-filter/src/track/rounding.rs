@@ -5,7 +5,7 @@ use super::Track;
 use crate::{dynamics::CentredDeviations, tuning::statement::ALONG_PIXELS};
 
 impl Track {
-    /// How far a pose is off as its points are rounded to pixels: deviations about the middle, normalised, and none where points are not
+    /// How far a pose is off as its points are rounded to pixels: deviations about the centroid, normalised, and none where points are not
     /// rounded. All points of a side that lies along the rows or columns are off together; others count as noise.
     pub(super) fn rounding_of_pose(&self) -> CentredDeviations {
         let side = self.noise.rounding().of_side();

@@ -93,7 +93,7 @@ impl EarlyShape {
 #[cfg(feature = "serde")]
 impl EarlyShape {
     /// Whether it is that of a map with at most so many cells, and all its numbers are finite.
-    pub(super) fn is_sound(&self, cells: usize) -> bool {
+    pub(super) fn is_valid(&self, cells: usize) -> bool {
         let numbers = self.offsets.iter().chain(&self.information).chain([&self.largest]);
         self.offsets.len() == self.information.len()
             && self.offsets.len() <= cells

@@ -9,7 +9,7 @@ use super::{first_pose::FirstPose, shape_change::EarlyShape, usual_agreement::Us
 use crate::{
     belief::Belief,
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
-    map::{NullDirection, OutlineMap, TurnEvidence},
+    map::{NullDirection, OutlineMap, TurnEvent, TurnEvidence},
     measurement::{
         Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of,
     },
@@ -61,7 +61,7 @@ pub(crate) struct Outcome {
     pub(crate) innovation: PoseInnovation,
     /// What the frame tells of the pose by itself, if it shows the outline, taken or not.
     pub(crate) pose: Option<PoseMeasurement>,
-    /// Standard deviations that the rounding of masks adds to that, about the middle, normalised.
+    /// Standard deviations that the rounding of masks adds to that, about the centroid, normalised.
     pub(crate) rounding: CentredDeviations,
     /// Displacement of the whole outline by the frame, in the body frame.
     pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
@@ -113,10 +113,10 @@ impl Track {
         self.belief.add_process_noise(noise, seconds * of_unit, self.reference.radius, variance);
     }
 
-    /// Lets the motion have changed during the last step by variances per second of its rates and of the velocity of the middle.
+    /// Lets the motion have changed during the last step by variances per second of its rates and of the velocity of the centroid.
     pub(crate) fn add_change(&mut self, variances: ByKind) {
         let variance = self.noise.effective_variance();
-        self.belief.add_change(variances, &self.map.middle(), variance);
+        self.belief.add_change(variances, &self.map.centroid(), variance);
     }
 
     /// Sets pose and motion to the combined prediction of the hypotheses of dynamics, and adds its covariance.
@@ -132,9 +132,9 @@ impl Track {
         self.reference.time_unit = seconds;
     }
 
-    /// The pose, with the object's middle in it.
+    /// The pose, with the object's centroid in it.
     pub(crate) fn centred_pose(&self) -> CentredPose {
-        CentredPose { pose: self.belief.pose, middle: self.map.middle() }
+        CentredPose { pose: self.belief.pose, centroid: self.map.centroid() }
     }
 
     /// What its outline does not show.
@@ -168,7 +168,7 @@ impl Track {
         let [before, after] =
             [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold.as_ref()));
         let innovation =
-            self.belief.pose_innovation([&*before, &*after], &proposal.state, &self.map.middle(), variance);
+            self.belief.pose_innovation([&*before, &*after], &proposal.state, &self.map.centroid(), variance);
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
             likelihood = view.negative_log_likelihood(frame);
@@ -240,7 +240,7 @@ impl Track {
     pub(crate) fn set_motion(&mut self, motion: ParameterVector) {
         self.belief.motion = motion;
         for null in self.map.null_directions(self.belief.model, &self.belief.pose) {
-            null.take_off(&mut self.belief.motion);
+            null.subtract_from(&mut self.belief.motion);
         }
     }
 
@@ -321,41 +321,31 @@ impl Track {
         self.map.turn_evidence()
     }
 
-    /// Marks the turn as not observable.
+    /// After a frame that has not shown the turn: marks it as not observable.
     pub(crate) fn hide_turn(&mut self) {
         if !self.turn_is_unseen() {
             Arc::make_mut(&mut self.map).hide_turn(self.belief.model);
         }
     }
 
-    /// Takes that back.
+    /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
     pub(crate) fn show_turn(&mut self) {
-        if matches!(self.turn_evidence(), TurnEvidence::Hidden | TurnEvidence::NewAndHidden) {
+        if self.turn_evidence().is_hidden() {
             Arc::make_mut(&mut self.map).show_turn();
         }
     }
 
-    /// Records that one frame alone has shown the turn so far.
-    pub(crate) fn take_turn_as_new(&mut self) {
-        Arc::make_mut(&mut self.map).take_turn_as_new();
-    }
-
-    /// Records that another frame has shown the turn too.
-    pub(crate) fn confirm_turn(&mut self) {
-        if self.turn_evidence() == TurnEvidence::New {
-            Arc::make_mut(&mut self.map).confirm_turn();
+    /// Records that one frame alone has shown the turn so far, or that another has.
+    pub(crate) fn record_turn(&mut self, event: TurnEvent) {
+        let evidence = self.turn_evidence();
+        if evidence.after(event) != evidence {
+            Arc::make_mut(&mut self.map).record_turn(event);
         }
     }
 
-    /// Whether the next frame may show the turn where those before it did not. Says so of each growth once.
-    pub(crate) fn may_show_turn(&mut self) -> bool {
-        match self.turn_evidence() {
-            TurnEvidence::AtLast => {
-                Arc::make_mut(&mut self.map).take_growth(false);
-                true
-            }
-            evidence => evidence == TurnEvidence::NewAndHidden,
-        }
+    /// Whether a frame may show the turn where those before it did not.
+    pub(crate) fn may_show_turn(&self) -> bool {
+        matches!(self.turn_evidence(), TurnEvidence::AtLast | TurnEvidence::NewAndHidden)
     }
 }
 
@@ -371,13 +361,13 @@ impl Track {
             && stated > 0.0
             && time_unit == unit
             && self.frames < StateFormat::MOST_COUNTED
-            && self.belief.is_sound(cells)
-            && self.noise.is_sound(cells)
-            && self.shape.is_sound(cells)
-            && self.early_shape.is_sound(cells)
-            && self.usual.is_sound()
-            && self.sensitivity.is_sound(cells)
-            && self.family.is_sound()
+            && self.belief.is_valid(cells)
+            && self.noise.is_valid(cells)
+            && self.shape.is_valid(cells)
+            && self.early_shape.is_valid(cells)
+            && self.usual.is_valid()
+            && self.sensitivity.is_valid(cells)
+            && self.family.is_valid()
             && self.first_pose.is_finite()
             && Arc::make_mut(&mut self.map).restore()
     }

@@ -21,9 +21,9 @@ pub(crate) fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -
 }
 
 impl Track {
-    /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's middle.
+    /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid.
     pub(crate) fn turned(&self, pose: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
-        let centre = map_point(pose, &self.map.middle()).coords;
+        let centre = map_point(pose, &self.map.centroid()).coords;
         turn_between(angle, &centre, &centre) * pose
     }
 }

@@ -50,7 +50,7 @@ fn disagreeing(agreement: f64) -> f64 {
 #[cfg(feature = "serde")]
 impl UsualAgreement {
     /// Whether it is a share of so many frames.
-    pub(super) fn is_sound(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         (0.0..=1.0).contains(&self.disagreeing) && self.frames < freeform_estimate::StateFormat::MOST_COUNTED
     }
 }

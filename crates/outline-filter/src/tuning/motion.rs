@@ -72,11 +72,11 @@ pub(crate) mod dynamics {
     pub(crate) const LEVELS: [f64; 6] = [1e-8, 1e-5, 1e-2, 1e1, 1e4, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;
-    /// As these, where the velocity of the middle alone changes.
+    /// As these, where the velocity of the centroid alone changes.
     pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
-    /// How far the point of an object that runs straight may be from its middle, in RMS radii, as a deviation: noise, hidden arcs, and bodies
+    /// How far the point of an object that runs straight may be from its centroid, in RMS radii, as a deviation: noise, hidden arcs, and bodies
     /// that are not quite even.
-    pub(crate) const MIDDLE: f64 = 0.02;
+    pub(crate) const OFF_CENTROID: f64 = 0.02;
     /// Turn in a step, in rad, as a deviation, that the path of an object may tell where its outline does not: larger ones are no arc any more.
     pub(crate) const LARGEST_STEP_OF_PATH: f64 = 0.5;
     /// Probability that an interval of 95 % leaves out.

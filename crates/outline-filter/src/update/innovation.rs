@@ -19,21 +19,21 @@ pub(crate) struct PoseInnovation {
 }
 
 impl Belief {
-    /// From the marginal information before and after a frame and the step that it made; `middle` is the
+    /// From the marginal information before and after a frame and the step that it made; `centroid` is the
     /// object's in the body frame, `variance` that of the noise, with its correlation. The covariance of the pose step is `P - P+`; with `A = P^-1` of the pose alone the innovation v obeys
     /// `S^-1 v = A step` and `S^-1 = A (P - P+) A`.
     pub(crate) fn pose_innovation(
         &self,
         [before, after]: [&StateMatrix; 2],
         state: &StateVector,
-        middle: &Point2<f64>,
+        centroid: &Point2<f64>,
         variance: f64,
     ) -> PoseInnovation {
         let innovation = match self.information.k {
-            3 => self.sized_innovation::<3>([before, after], state, middle, variance),
-            4 => self.sized_innovation::<4>([before, after], state, middle, variance),
-            6 => self.sized_innovation::<6>([before, after], state, middle, variance),
-            _ => self.sized_innovation::<8>([before, after], state, middle, variance),
+            3 => self.sized_innovation::<3>([before, after], state, centroid, variance),
+            4 => self.sized_innovation::<4>([before, after], state, centroid, variance),
+            6 => self.sized_innovation::<6>([before, after], state, centroid, variance),
+            _ => self.sized_innovation::<8>([before, after], state, centroid, variance),
         };
         innovation.unwrap_or_default()
     }
@@ -42,7 +42,7 @@ impl Belief {
         &self,
         marginals: [&StateMatrix; 2],
         state: &StateVector,
-        middle: &Point2<f64>,
+        centroid: &Point2<f64>,
         variance: f64,
     ) -> Option<PoseInnovation> {
         let [before, after] = marginals.map(pose_information::<K>);
@@ -54,7 +54,7 @@ impl Belief {
         let regular = gained + SMatrix::from_diagonal(&(p.diagonal() * 1e-9));
         let squared = step.dot(&(inverse(&regular)? * step)) / variance;
         let weighted = before * step / variance.sqrt();
-        let by_change = centred_change(self.model, &self.pose, middle)?.fixed_view::<K, K>(0, 0).into_owned();
+        let by_change = centred_change(self.model, &self.pose, centroid)?.fixed_view::<K, K>(0, 0).into_owned();
         // Of the pose by unit changes of the motion, over the last step.
         let by_change_before = before * by_change;
         let (slope, curvature) =
@@ -118,7 +118,7 @@ mod tests {
         #[test]
         fn the_innovation_of_the_pose_and_its_scores_are_those_of_its_likelihood(mut problem in Problem::any()) {
             let (k, cells) = (problem.belief.parameter_count(), problem.belief.offsets.len());
-            let (middle, variance) = (Point2::new(0.3, -0.2), 0.3);
+            let (centroid, variance) = (Point2::new(0.3, -0.2), 0.3);
             let measurements = random_measurements(&mut problem.rng, k, 0..cells, 6 * cells + 3 * k);
             let belief = &problem.belief;
             let mut dense = DenseFilter::of(&belief.information);
@@ -132,14 +132,14 @@ mod tests {
             let mut work = belief.information.clone();
             accumulate(&mut frame, &mut work, &StateVector::zeros());
             let state = StateVector::from_fn(|i, _| if i < 2 * k { dense.mean[i] } else { 0.0 });
-            let found = belief.pose_innovation([&belief.marginal, &work.marginal()], &state, &middle, variance);
+            let found = belief.pose_innovation([&belief.marginal, &work.marginal()], &state, &centroid, variance);
 
             let by_gained = gained.clone().try_inverse().expect("a frame that shows the pose");
             let squared = step.dot(&(&by_gained * &step));
             prop_assert!((found.squared / squared - 1.0).abs() < 1e-4, "{} {squared}", found.squared);
             let covariance = &before * &by_gained * &before;
             let innovation = &before * &by_gained * &step;
-            let by_change = centred_change(belief.model, &belief.pose, &middle).expect("a pose");
+            let by_change = centred_change(belief.model, &belief.pose, &centroid).expect("a pose");
             let growth_of = |kind: usize| {
                 let of_kind = belief.model.parameter_kinds().iter().map(|k| f64::from(u8::from(kind_index(*k) == kind)));
                 let picked = DMatrix::from_diagonal(&DVector::from_iterator(k, of_kind));

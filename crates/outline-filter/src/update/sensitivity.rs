@@ -63,7 +63,7 @@ struct Instant {
     /// Transposed inverse of the linear part: normals of the body to those of the image, not normalised.
     of_normals: Matrix2<f64>,
     /// Of the object, in the image.
-    middle: Point2<f64>,
+    centroid: Point2<f64>,
     generator: Matrix3<f64>,
     elapsed: f64,
     is_had: [bool; LEFT_OUT],
@@ -82,7 +82,7 @@ impl Instant {
         let velocity = Vector2::new(g.m11 * p.x + g.m12 * p.y + g.m13, g.m21 * p.x + g.m22 * p.y + g.m23);
         let square = p.coords.norm_squared();
         let mut all = [
-            self.elapsed * n.dot(&(p - self.middle)),
+            self.elapsed * n.dot(&(p - self.centroid)),
             n.x * p.x - n.y * p.y,
             n.x * p.y + n.y * p.x,
             p.x * along,
@@ -243,7 +243,7 @@ impl Sensitivity {
         Some(Instant {
             pose: *pose,
             of_normals: linear.try_inverse()?.transpose(),
-            middle: map_point(pose, &map.middle()),
+            centroid: map_point(pose, &map.centroid()),
             generator: belief.model.generator(&belief.motion[..belief.parameter_count()]),
             elapsed: self.elapsed,
             is_had,
@@ -368,7 +368,7 @@ impl<const K: usize, const S: usize> Sums<K, S> {
 #[cfg(feature = "serde")]
 impl Sensitivity {
     /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
-    pub(crate) fn is_sound(&self, cells: usize) -> bool {
+    pub(crate) fn is_valid(&self, cells: usize) -> bool {
         let numbers = self.state.iter().chain(self.offsets.iter().flatten()).chain([&self.elapsed]);
         self.offsets.len() == cells && numbers.into_iter().all(|number| number.is_finite())
     }

@@ -55,7 +55,7 @@ impl View<'_> {
         let mut work = Arrowhead::new(k);
         let mut settled = false;
         while proposal.iterations < tuning::MOST_ITERATIONS && !settled {
-            // A turn that is not seen is one about the middle as the frame has it.
+            // A turn that is not seen is one about the centroid as the frame has it.
             if proposal.iterations > 0 && !null.is_empty() {
                 null = self.map.null_directions(model, &proposal.pose);
             }

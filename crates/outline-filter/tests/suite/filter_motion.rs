@@ -180,7 +180,7 @@ fn a_frame_that_jumps_and_one_whose_points_scatter_are_rejected_for_that() {
 }
 
 #[test]
-fn the_velocity_of_the_middle_is_known_with_a_standard_deviation_that_holds() {
+fn the_velocity_of_the_centroid_is_known_with_a_standard_deviation_that_holds() {
     let motion = RigidMotion { omega: 2.0, b1: -5.0, b2: 4.0 };
     let truth = motion.generator();
     let (mut squares, runs) = (0.0, 30);

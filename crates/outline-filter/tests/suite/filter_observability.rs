@@ -69,7 +69,7 @@ fn a_circle_at_rest_keeps_its_turn_unknown_and_its_place_known_whatever_the_nois
             let settings = Settings { noise, ..settings(30, seed) };
             let run = filtered(MotionModel::Rigid, &frames_of(BuiltInShape::Circle, RigidMotion::default(), settings));
             assert!(!observable(&run)[0], "noise {noise}, seed {seed}");
-            let velocity = run.velocity().expect("a velocity of the middle");
+            let velocity = run.velocity().expect("a velocity of the centroid");
             let std = velocity.standard_deviations().norm();
             assert!(velocity.velocity.norm() < 5.0 * std && std < 0.1, "noise {noise}, seed {seed}: {velocity:?}");
             assert_eq!(run.frames_rejected(), 0, "noise {noise}, seed {seed}");
@@ -265,7 +265,7 @@ fn searches_that_began_apart_and_found_the_same_motion_are_no_rivals() {
 }
 
 #[test]
-fn a_circle_at_rest_far_from_the_origin_shows_the_velocity_of_its_middle_though_not_its_turn() {
+fn a_circle_at_rest_far_from_the_origin_shows_the_velocity_of_its_centroid_though_not_its_turn() {
     for seed in 0..4 {
         let mut frames = frames_of(BuiltInShape::Circle, RigidMotion::default(), settings(30, seed));
         for frame in &mut frames {
