@@ -35,7 +35,7 @@ struct Part<const N: usize> {
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
-    /// The weight below which hypotheses are left out: all of them together are less probable than what an interval of 95 % leaves out.
+    /// The weight below which hypotheses are left out: all of them together are less probable than what lies outside of an interval of 95 %.
     fn least_weight(&self) -> f64 {
         let mut sorted = self.weights;
         sorted.sort_unstable_by(f64::total_cmp);
@@ -44,7 +44,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             .into_iter()
             .find(|weight| {
                 sum += weight;
-                sum > tuning::LEFT_OUT
+                sum > tuning::OUTSIDE_INTERVAL
             })
             .unwrap_or(0.0)
     }

@@ -66,7 +66,7 @@ impl CommonError {
     }
 
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
-    pub(super) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
+    pub(super) fn add_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
         self.shift += shift;
     }
 
@@ -137,7 +137,7 @@ mod tests {
     fn a_pose_of_the_outline_that_has_moved_shows_its_points_where_they_were() {
         let mut common = common_error();
         let shift = [0.02, 0.01, -0.03];
-        common.take_shift(&SVector::from([0.02, 0.01, -0.03, 0.0, 0.0, 0.0, 0.0, 0.0]));
+        common.add_shift(&SVector::from([0.02, 0.01, -0.03, 0.0, 0.0, 0.0, 0.0, 0.0]));
         let pose = MotionModel::Rigid.flow(&[0.7, 0.2, 0.1], 1.0).into_inner();
         let point = Point2::new(0.4, 0.5);
         let moved = map_point(MotionModel::Rigid.flow(&shift, 1.0).matrix(), &point);

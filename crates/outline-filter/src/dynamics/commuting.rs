@@ -41,7 +41,7 @@ impl<const N: usize> Hypothesis<N> {
             };
             let transition = self.transition(step, (&turn, &a, &v, &later));
             self.covariance = carried(&transition, &self.covariance, self.size());
-            self.take_velocity(&turn, &shift, &later);
+            self.set_velocity(&turn, &shift, &later);
             for j in 0..k - 2 {
                 self.mean[j] += dt * self.mean[k + j];
             }
@@ -56,8 +56,8 @@ impl<const N: usize> Hypothesis<N> {
         *turn -= TAU * (*turn / TAU).round();
     }
 
-    /// Takes what a step makes of the velocity, and the way that the centroid has gone.
-    fn take_velocity(&mut self, turn: &Matrix2<f64>, shift: &Vector2<f64>, later: &Vector2<f64>) {
+    /// Adds the way that the centroid has gone in a step, and sets the velocity after it.
+    fn set_velocity(&mut self, turn: &Matrix2<f64>, shift: &Vector2<f64>, later: &Vector2<f64>) {
         let k = Self::K;
         for i in 0..2 {
             self.mean[k - 2 + i] += shift[i];

@@ -62,19 +62,19 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.predict(pose, seconds, null))
     }
 
-    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
+    /// Updates by what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         of_any_size!(self, hypotheses => hypotheses.update(measured, off));
     }
 
     /// Records that the motion has changed in a way that no hypothesis models.
-    pub(crate) fn take_change(&mut self) {
-        of_any_size!(self, hypotheses => hypotheses.take_change());
+    pub(crate) fn record_change(&mut self) {
+        of_any_size!(self, hypotheses => hypotheses.record_change());
     }
 
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
-    pub(crate) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
-        of_any_size!(self, hypotheses => hypotheses.take_shift(shift));
+    pub(crate) fn add_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
+        of_any_size!(self, hypotheses => hypotheses.add_shift(shift));
     }
 
     /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.
@@ -118,9 +118,9 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.combined(given, purpose))
     }
 
-    /// Takes another reference pose, near the one before.
-    pub(crate) fn take_reference(&mut self, pose: &Matrix3<f64>) -> bool {
-        of_any_size!(self, hypotheses => hypotheses.take_reference(pose))
+    /// Sets another reference pose, near the one before.
+    pub(crate) fn set_reference(&mut self, pose: &Matrix3<f64>) -> bool {
+        of_any_size!(self, hypotheses => hypotheses.set_reference(pose))
     }
 
     /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.

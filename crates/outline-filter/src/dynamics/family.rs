@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::innovations::InnovationSeries;
 use crate::{
     tuning::family as tuning,
-    update::{LEFT_OUT, LeftOutMatrix, LeftOutScore, LeftOutVector},
+    update::{UNMODELLED, UnmodelledMatrix, UnmodelledScore, UnmodelledVector},
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -42,30 +42,30 @@ const GROUPS: [(WrongFamily, &[usize]); 5] = [
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct FamilyTests {
     /// Of what every frame says, in its deviations.
-    series: InnovationSeries<LEFT_OUT>,
+    series: InnovationSeries<UNMODELLED>,
     /// Over variances of the noise.
-    information: LeftOutMatrix,
-    score: LeftOutVector,
+    information: UnmodelledMatrix,
+    score: UnmodelledVector,
     /// Sum of weights of the points over variances of the noise.
     weight: f64,
     /// Of what one frame says, squared displacements.
-    squares: LeftOutVector,
+    squares: UnmodelledVector,
     /// Deviation of the noise of a point.
     sigma: f64,
     /// What is told, once it has been asked for.
     #[cfg_attr(feature = "serde", serde(skip))]
-    told: OnceLock<LeftOutEstimate>,
+    told: OnceLock<UnmodelledEstimate>,
 }
 
 /// What the outlines do beside their motion, as far as it is told.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct LeftOutEstimate {
+pub(crate) struct UnmodelledEstimate {
     /// What is beyond doubt.
     pub(crate) family: Option<WrongFamily>,
     /// Displacement of the outlines that is seen of that, root mean square, normalised.
     pub(crate) displacement: f64,
     /// Second moments of the sizes of the motions that may be there.
-    pub(crate) moments: LeftOutMatrix,
+    pub(crate) moments: UnmodelledMatrix,
 }
 
 /// Some of the motions, estimated together.
@@ -78,9 +78,9 @@ struct Fit {
 }
 
 impl FamilyTests {
-    /// Takes what a frame says; `sigma` is the deviation of the noise of a point, and `variance` that which dependence along the contour makes
+    /// Adds what a frame says; `sigma` is the deviation of the noise of a point, and `variance` that which dependence along the contour makes
     /// of it.
-    pub(crate) fn take(&mut self, frame: &LeftOutScore, sigma: f64, variance: f64) {
+    pub(crate) fn add(&mut self, frame: &UnmodelledScore, sigma: f64, variance: f64) {
         self.told.take();
         self.sigma = sigma;
         self.information += frame.information / variance;
@@ -89,19 +89,19 @@ impl FamilyTests {
         let own = frame.information.diagonal();
         let told = |i: usize| own[i] > 0.0;
         let standardised =
-            LeftOutVector::from_fn(|i, _| if told(i) { frame.score[i] / (own[i] * variance).sqrt() } else { 0.0 });
+            UnmodelledVector::from_fn(|i, _| if told(i) { frame.score[i] / (own[i] * variance).sqrt() } else { 0.0 });
         let square = |i: usize| if told(i) { frame.score[i].powi(2) / (own[i] * frame.weight) } else { 0.0 };
-        self.series.take(&standardised, LEFT_OUT);
-        self.squares += LeftOutVector::from_fn(|i, _| square(i));
+        self.series.add(&standardised, UNMODELLED);
+        self.squares += UnmodelledVector::from_fn(|i, _| square(i));
     }
 
     /// What is told of them.
-    pub(crate) fn estimate(&self) -> &LeftOutEstimate {
+    pub(crate) fn estimate(&self) -> &UnmodelledEstimate {
         self.told.get_or_init(|| self.estimated())
     }
 
-    fn estimated(&self) -> LeftOutEstimate {
-        let mut estimate = LeftOutEstimate { family: None, displacement: 0.0, moments: LeftOutMatrix::zeros() };
+    fn estimated(&self) -> UnmodelledEstimate {
+        let mut estimate = UnmodelledEstimate { family: None, displacement: 0.0, moments: UnmodelledMatrix::zeros() };
         if self.series.frames() < tuning::FEWEST_FRAMES || self.weight <= 0.0 {
             return estimate;
         }
@@ -144,9 +144,9 @@ impl FamilyTests {
     }
 
     /// Changes to and fro: of a mean square that noise does not have, or slow; or all of the motions together.
-    fn change_of_shape(&self, least: f64, dependence: &LeftOutVector) -> Option<f64> {
+    fn change_of_shape(&self, least: f64, dependence: &UnmodelledVector) -> Option<f64> {
         let n = self.series.frames() as f64;
-        let all: Vec<usize> = (0..LEFT_OUT).collect();
+        let all: Vec<usize> = (0..UNMODELLED).collect();
         if let Some((fit, squared, count)) = self.with(&self.fit(&[]), &all, dependence) {
             let displacement = (fit.squared / self.weight).sqrt();
             if deviations(squared, count) > tuning::SIGNIFICANT && displacement > least {
@@ -155,13 +155,13 @@ impl FamilyTests {
         }
         let most = (1.0 + tuning::SIGNIFICANT * (2.0 / n).sqrt()).max(tuning::SHAPE_CHANGES);
         let slow = self.series.slow_part();
-        let changes = (0..LEFT_OUT).filter(|i| self.series.mean_square(*i) > most || slow[*i] > tuning::SIGNIFICANT);
+        let changes = (0..UNMODELLED).filter(|i| self.series.mean_square(*i) > most || slow[*i] > tuning::SIGNIFICANT);
         changes.map(|i| (self.squares[i] / n).sqrt()).max_by(f64::total_cmp).filter(|size| *size > least)
     }
 
     /// The motions known with others, what these add to the squared distance from none, dependence from frame to frame allowed for, and how
     /// many they are.
-    fn with(&self, known: &Fit, others: &[usize], dependence: &LeftOutVector) -> Option<(Fit, f64, f64)> {
+    fn with(&self, known: &Fit, others: &[usize], dependence: &UnmodelledVector) -> Option<(Fit, f64, f64)> {
         let new: Vec<usize> = others.iter().copied().filter(|i| !known.numbers.contains(i)).collect();
         let numbers: Vec<usize> = known.numbers.iter().copied().chain(new.iter().copied()).collect();
         let dependence = new.iter().map(|i| dependence[*i]).fold(1.0, f64::max);
@@ -227,16 +227,16 @@ mod tests {
     const SIGMA: f64 = 0.01;
 
     /// Tests after so many frames that show motions of these sizes, noise included.
-    fn after(frames: usize, sizes: &LeftOutVector, seed: u64) -> FamilyTests {
+    fn after(frames: usize, sizes: &UnmodelledVector, seed: u64) -> FamilyTests {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
         let mut tests = FamilyTests::default();
         for _ in 0..frames {
-            let factor = LeftOutMatrix::from_fn(|_, _| normal());
+            let factor = UnmodelledMatrix::from_fn(|_, _| normal());
             let information = factor * factor.transpose();
-            let noise = factor * LeftOutVector::from_fn(|_, _| SIGMA * normal());
-            let score = LeftOutScore { information, score: information * sizes + noise, weight: 50.0 };
-            tests.take(&score, SIGMA, SIGMA * SIGMA);
+            let noise = factor * UnmodelledVector::from_fn(|_, _| SIGMA * normal());
+            let score = UnmodelledScore { information, score: information * sizes + noise, weight: 50.0 };
+            tests.add(&score, SIGMA, SIGMA * SIGMA);
         }
         tests
     }
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn noise_alone_is_no_wrong_family() {
         let found =
-            (0..200).filter(|seed| after(40, &LeftOutVector::zeros(), *seed).estimate().family.is_some()).count();
+            (0..200).filter(|seed| after(40, &UnmodelledVector::zeros(), *seed).estimate().family.is_some()).count();
         assert_eq!(found, 0);
     }
 
@@ -253,10 +253,10 @@ mod tests {
         for (family, members) in GROUPS {
             // Of a group that has others in it, the part that is its own.
             let member = members[members.len() - 1];
-            let mut sizes = LeftOutVector::zeros();
+            let mut sizes = UnmodelledVector::zeros();
             sizes[member] = 0.02;
             let tests = after(40, &sizes, 7);
-            let LeftOutEstimate { family: found, displacement, moments } = tests.estimate();
+            let UnmodelledEstimate { family: found, displacement, moments } = tests.estimate();
             assert_eq!(*found, Some(family));
             let size = moments[(member, member)].sqrt();
             assert!((size / 0.02 - 1.0).abs() < 0.1, "{family:?}: {size}");
@@ -267,7 +267,7 @@ mod tests {
 
     #[test]
     fn what_may_be_there_is_reckoned_with_before_it_is_beyond_doubt() {
-        let mut sizes = LeftOutVector::zeros();
+        let mut sizes = UnmodelledVector::zeros();
         // Information of about 9 in each of 40 frames: 3.5 deviations.
         sizes[0] = 3.5 * SIGMA / 360.0_f64.sqrt();
         let doubts = (0..40).map(|seed| after(40, &sizes, seed)).filter(|tests| {

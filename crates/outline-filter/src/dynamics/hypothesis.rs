@@ -324,7 +324,7 @@ impl<const N: usize> Hypothesis<N> {
         }
         vectorised(
             #[inline(always)]
-            || self.take_gain::<K>(&pulled, &weight),
+            || self.correct::<K>(&pulled, &weight),
         );
         // The score, S^-1 off with S the covariance of the innovation, has the covariance S^-1: also where S is not finite.
         let mut standardised = CentredVector::zeros();
@@ -336,9 +336,9 @@ impl<const N: usize> Hypothesis<N> {
         Some(Innovation { log_likelihood, standardised })
     }
 
-    /// Takes a step, given as what pulls the pose, and the information that it comes with.
+    /// Corrects mean and covariance by what pulls the pose, and the information that it comes with.
     #[inline(always)]
-    fn take_gain<const K: usize>(&mut self, pulled: &SVector<f64, K>, weight: &SMatrix<f64, K, K>) {
+    fn correct<const K: usize>(&mut self, pulled: &SVector<f64, K>, weight: &SMatrix<f64, K, K>) {
         // Of all entries with the pose.
         let covariance = &mut self.covariance.data.0;
         let mut columns = [[0.0; N]; K];

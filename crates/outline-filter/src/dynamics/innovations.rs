@@ -41,8 +41,8 @@ impl<const N: usize> Default for InnovationSeries<N> {
 }
 
 impl<const N: usize> InnovationSeries<N> {
-    /// Takes the innovation of a frame, in its standard deviations.
-    pub(crate) fn take(&mut self, innovation: &SVector<f64, N>, k: usize) {
+    /// Adds the innovation of a frame, in its standard deviations.
+    pub(crate) fn add(&mut self, innovation: &SVector<f64, N>, k: usize) {
         let e = innovation.map(|e| e.clamp(-tuning::CLIPPED, tuning::CLIPPED));
         for j in 0..k.min(N) {
             self.squares[j] += e[j] * e[j];
@@ -225,7 +225,7 @@ mod tests {
             for _ in 0..frames {
                 x = correlation * x
                     + (1.0 - correlation * correlation).sqrt() * CentredVector::from_fn(|_, _| normal());
-                series.take(&x, 3);
+                series.add(&x, 3);
             }
             sum += series.spread(3)[0].powi(2);
         }

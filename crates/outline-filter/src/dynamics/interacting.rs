@@ -111,14 +111,14 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         filter.normalise();
         if setting == Dynamics::Generator && model <= MotionModel::Similarity && !null.is_empty() {
-            filter.take_turn_from_path(null, seconds);
+            filter.add_turn_of_path(null, seconds);
         }
         Some(filter)
     }
 
     /// Lets the path of the centroid tell what the outline does not show of the rates, from a prior that is as wide as steps of so many seconds
     /// allow.
-    fn take_turn_from_path(&mut self, null: &[NullDirection], seconds: f64) {
+    fn add_turn_of_path(&mut self, null: &[NullDirection], seconds: f64) {
         let (from, k) = (self.reference.about_centroid(self.model), self.model.parameter_count());
         (self.turn_is_of_path, self.leads) = (true, true);
         for NullDirection { direction, .. } in null {
@@ -178,7 +178,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
-    /// Takes what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
+    /// Updates by what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
@@ -212,7 +212,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.normalise();
         let best = (0..self.weights.len()).max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b]));
         if let Some((best, e)) = best.and_then(|best| Some((best, standardised[best]?))) {
-            self.series.take(&e, k);
+            self.series.add(&e, k);
             self.shaking = self.hypotheses[best].course.shaking();
         }
         let weight = self.weights().generator;
@@ -223,13 +223,13 @@ impl<const N: usize> InteractingHypotheses<N> {
     }
 
     /// Records that the motion has changed in a way that no hypothesis models.
-    pub(crate) fn take_change(&mut self) {
+    pub(crate) fn record_change(&mut self) {
         self.outline_has_moved = true;
     }
 
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
-    pub(crate) fn take_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
-        self.common.take_shift(shift);
+    pub(crate) fn add_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
+        self.common.add_shift(shift);
     }
 
     /// Probabilities of the three kinds of dynamics.
@@ -259,7 +259,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn has_others(&self) -> bool {
         let of_generator =
             self.hypotheses.iter().zip(&self.weights).find(|(h, _)| h.course == Course::ConstantGenerator);
-        !self.leads && of_generator.is_some_and(|(_, weight)| 1.0 - weight > tuning::LEFT_OUT)
+        !self.leads && of_generator.is_some_and(|(_, weight)| 1.0 - weight > tuning::OUTSIDE_INTERVAL)
     }
 
     /// Factors, at least 1, by which the innovations say that deviations about the centroid are to be widened.
@@ -279,8 +279,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.common.of_outline_now(pose)
     }
 
-    /// Takes another reference pose, near the one before.
-    pub(crate) fn take_reference(&mut self, pose: &Matrix3<f64>) -> bool {
+    /// Sets another reference pose, near the one before.
+    pub(crate) fn set_reference(&mut self, pose: &Matrix3<f64>) -> bool {
         let to = CentredPose { pose: *pose, centroid: self.reference.centroid };
         let (model, k) = (self.model, self.model.parameter_count());
         let Some(inverse) = self.reference.pose.try_inverse() else { return false };

@@ -19,5 +19,5 @@ pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use combination::Purpose;
 pub(crate) use dynamics_filter::DynamicsFilter;
 pub use family::WrongFamily;
-pub(crate) use family::{FamilyTests, LeftOutEstimate};
+pub(crate) use family::{FamilyTests, UnmodelledEstimate};
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};

@@ -47,7 +47,7 @@ impl NearestField {
             lowest.clear();
             for (p, number) in &places {
                 let across = p.y - row as f64;
-                take_line(
+                push_line(
                     &mut lowest,
                     Line { x: p.x, at_none: p.x * p.x + across * across, from: 0.0, number: *number },
                 );
@@ -115,8 +115,8 @@ struct Line {
     number: u32,
 }
 
-/// Takes a line that falls no slower than those before it, and drops those that are then lowest nowhere.
-fn take_line(lowest: &mut Vec<Line>, line: Line) {
+/// Adds a line that falls no slower than those before it, and drops those that are then lowest nowhere.
+fn push_line(lowest: &mut Vec<Line>, line: Line) {
     while let Some(last) = lowest.last() {
         let apart = line.x - last.x;
         if apart > 0.0 {

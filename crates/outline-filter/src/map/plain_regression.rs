@@ -41,7 +41,7 @@ impl PlainRegression {
         for (axis, values) in coordinates.iter().enumerate() {
             vectorised(
                 #[inline(always)]
-                || moments.take(values, half_window, &mut sums),
+                || moments.add_windows(values, half_window, &mut sums),
             );
             let own = values[half_window..].iter();
             for (fit, (sums, own)) in self.fits[first..].iter_mut().zip(sums.iter().zip(own)) {
@@ -101,7 +101,7 @@ impl Moments {
 
     /// Sums of the values of every window, less that in its middle, times the first three powers of their places.
     #[inline(always)]
-    fn take(&self, values: &[f64], half_window: usize, sums: &mut [[f64; 3]]) {
+    fn add_windows(&self, values: &[f64], half_window: usize, sums: &mut [[f64; 3]]) {
         const LANES: usize = 8;
         let unit = 1.0 / half_window as f64;
         for (chunk, sums) in sums.chunks_mut(LANES).enumerate() {

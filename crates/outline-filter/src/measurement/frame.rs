@@ -50,9 +50,9 @@ impl Piece {
     }
 }
 
-/// Takes the points of a piece, normalised, if none of them repeats the one before it, nor the last the first of a closed piece; whether they
-/// have been taken. Most outlines have no such points, and are looked at side by side.
-fn take_distinct(
+/// Adds the points of a piece, normalised, if none of them repeats the one before it, nor the last the first of a closed piece; whether they
+/// have been added. Most outlines have no such points, and are looked at side by side.
+fn push_distinct(
     points: &mut Vec<Point2<f64>>,
     (piece, closed): (&[Point2<f64>], bool),
     origin: Point2<f64>,
@@ -94,8 +94,8 @@ pub(crate) struct Frame {
     pub(crate) measurements: Vec<Measurement>,
     /// Corrections of the offsets that are being tried.
     pub(crate) shifts: Vec<f64>,
-    /// Information on the offsets with the frame, before it is taken.
-    pub(crate) cells: OffsetInformation,
+    /// Information on the offsets with the frame: of a frame that was solved, until it is committed; room for it otherwise.
+    pub(crate) cells_with_frame: OffsetInformation,
     /// Right-hand sides of the offsets.
     pub(crate) right: Vec<f64>,
     /// For whatever needs a list of numbers.
@@ -119,7 +119,7 @@ impl Frame {
         let mut stated = outline.deviations();
         for piece in outline.pieces() {
             let start = points.len();
-            if stated.is_none() && take_distinct(points, (piece.points, piece.closed), origin, scale) {
+            if stated.is_none() && push_distinct(points, (piece.points, piece.closed), origin, scale) {
                 pieces.push(Piece { start, count: piece.points.len(), closed: piece.closed });
                 continue;
             }

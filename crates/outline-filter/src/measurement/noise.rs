@@ -124,8 +124,8 @@ impl NoiseModel {
         self.rounding
     }
 
-    /// Takes what frames have shown so far from another model.
-    pub(crate) fn take_level_of(&mut self, other: &Self) {
+    /// Adopts what frames have shown so far from another model.
+    pub(crate) fn adopt_level_of(&mut self, other: &Self) {
         (self.level, self.correlation, self.tolerance) = (other.level, other.correlation, other.tolerance);
         self.counted = other.counted;
     }
@@ -135,29 +135,29 @@ impl NoiseModel {
         self.inflation.resize(cells, VarianceInflation::NEW);
     }
 
-    /// Takes a frame's estimate of the noise into the running mean, the frame counting for a share of one of good points.
-    pub(crate) fn take(&mut self, sigma: f64, share: f64) {
+    /// Updates the running mean by a frame's estimate of the noise, the frame counting for a share of one of good points.
+    pub(crate) fn update(&mut self, sigma: f64, share: f64) {
         let weight = self.weight;
         self.sigma = (self.sigma * weight + sigma * share) / (weight + share);
         self.sigma = self.sigma.max(self.floor);
         self.weight = (weight + share).min(tuning::MEMORY);
     }
 
-    /// Takes the spread of a frame, used or not.
-    pub(crate) fn take_spread(&mut self, spread: f64) {
+    /// Records the spread of a frame, used or not.
+    pub(crate) fn record_spread(&mut self, spread: f64) {
         self.level.frames[self.level.count % tuning::FRAMES] = spread.min(2.0 * tuning::LARGEST);
         self.level.count += 1;
     }
 
-    /// Takes a squared residual of a cell in units of the noise of its point, which counts for a share of a good one.
+    /// Adds a squared residual of a cell in units of the noise of its point, which counts for a share of a good one.
     #[inline(always)]
-    pub(crate) fn take_residual(&mut self, cell: usize, square: f64, share: f64) {
-        self.inflation[cell].take(square, share);
+    pub(crate) fn add_residual(&mut self, cell: usize, square: f64, share: f64) {
+        self.inflation[cell].add(square, share);
     }
 
-    /// Takes how many times the variance of the mean over a stretch was what independent errors give, in a frame that counts for a share of
+    /// Updates the mean of how many times the variance of the mean over a stretch was what independent errors give, in a frame that counts for a share of
     /// one of good points.
-    pub(crate) fn take_correlation(&mut self, ratio: f64, share: f64) {
+    pub(crate) fn update_correlation(&mut self, ratio: f64, share: f64) {
         let Correlation { ratio: mean, frames } = &mut self.correlation;
         *frames = (*frames + share).min(tuning::CORRELATION_MEMORY);
         *mean += (ratio - *mean) * share / *frames;

@@ -101,9 +101,9 @@ impl PointDeviations {
 }
 
 impl Reference {
-    /// Takes the deviations that a frame which shows the object states, if any. The first that does is believed, one alone of the
+    /// Updates what good points state by the deviations that a frame which shows the object states, if any. The first that does is believed, one alone of the
     /// others hardly: the reference falls fast to what many state, and rises slowly.
-    pub(crate) fn take_stated(&mut self, good: f64) {
+    pub(crate) fn update_stated(&mut self, good: f64) {
         if good.is_infinite() {
             return;
         }

@@ -14,9 +14,9 @@ pub(super) struct VarianceInflation {
 impl VarianceInflation {
     pub(super) const NEW: Self = Self { mean_square: 1.0, points: tuning::INFLATION_PRIOR_POINTS, variance: 1.0 };
 
-    /// Takes one squared residual in units of the noise of its point, which counts for a share of a good one.
+    /// Adds one squared residual in units of the noise of its point, which counts for a share of a good one.
     #[inline(always)]
-    pub(super) fn take(&mut self, square: f64, share: f64) {
+    pub(super) fn add(&mut self, square: f64, share: f64) {
         self.points = (self.points + share).min(tuning::INFLATION_MEMORY);
         let square = square.min(tuning::INFLATION_CLIPPED * self.variance);
         let of_all = 1.0 / self.points;
@@ -54,7 +54,7 @@ mod tests {
             let mut inflation = VarianceInflation::NEW;
             (0..points).for_each(|_| {
                 let residual: f64 = StandardNormal.sample(&mut rng);
-                inflation.take((deviation * residual).powi(2), 1.0);
+                inflation.add((deviation * residual).powi(2), 1.0);
             });
             inflation.variance
         };

@@ -111,7 +111,7 @@ impl PlaneFilter {
     fn update(&mut self) {
         let Some(track) = self.follower.track() else { return };
         let track = track.clone();
-        let is_new = self.take_scenery(&track);
+        let is_new = self.update_scenery(&track);
         let is_occasion = self.folded == 0 && tuning::OCCASIONS.contains(&self.frames.len());
         if is_occasion && !self.is_decided() {
             self.search();
@@ -123,7 +123,7 @@ impl PlaneFilter {
         for solution in &mut self.solutions {
             if !is_new {
                 buffers.load(&last.outline, scenery.reference);
-                if solution.take(scenery, buffers, last.seconds).is_some() && !solution.is_stale(scenery.sigma()) {
+                if solution.add(scenery, buffers, last.seconds).is_some() && !solution.is_stale(scenery.sigma()) {
                     continue;
                 }
             }
@@ -143,8 +143,8 @@ impl PlaneFilter {
             && self.estimate_of(only).is_some_and(|estimate| estimate.known().iter().all(|known| *known))
     }
 
-    /// Takes outline and noise of the follower. Whether the outline is another than before.
-    fn take_scenery(&mut self, track: &Track) -> bool {
+    /// Updates outline and noise by those of the follower. Whether the outline is another than before.
+    fn update_scenery(&mut self, track: &Track) -> bool {
         let is_same = self.scenery.as_ref().is_some_and(|scenery| scenery.is_of(track));
         if is_same {
             if let Some(scenery) = &mut self.scenery {
@@ -166,7 +166,7 @@ impl PlaneFilter {
                 scenery.first_pose = pose;
             }
         }
-        self.solutions.iter_mut().for_each(|solution| solution.take_outline(belief.clone()));
+        self.solutions.iter_mut().for_each(|solution| solution.replace_outline(belief.clone()));
         true
     }
 
@@ -218,7 +218,7 @@ impl PlaneFilter {
         let offsets = best.belief().offsets.clone();
         scenery.redraw(&offsets, best.outline_deviation(scenery.sigma()));
         for solution in &mut self.solutions {
-            solution.take_redrawn(&offsets);
+            solution.subtract_redrawn(&offsets);
             solution.relinearise(scenery, &self.frames, &mut self.buffers);
         }
         self.sort();

@@ -53,7 +53,7 @@ pub(super) struct Agreement {
 }
 
 impl Agreement {
-    fn take(&mut self, square: f64) {
+    fn add(&mut self, square: f64) {
         self.sum += square.min(tuning::LARGEST_INNOVATION);
         self.frames += 1.0;
     }
@@ -94,18 +94,18 @@ impl Solution {
         sigma / self.information.typical_own().sqrt()
     }
 
-    /// Offsets from a map that has been drawn anew where they were.
-    pub(super) fn take_redrawn(&mut self, offsets: &[f64]) {
+    /// Subtracts offsets that a map has been drawn anew with.
+    pub(super) fn subtract_redrawn(&mut self, offsets: &[f64]) {
         self.belief.offsets.iter_mut().zip(offsets).for_each(|(own, drawn)| *own -= drawn);
     }
 
-    /// Takes another outline, the frames of which are all still kept.
-    pub(super) fn take_outline(&mut self, belief: Belief) {
+    /// Replaces the outline by another, the frames of which are all still kept.
+    pub(super) fn replace_outline(&mut self, belief: Belief) {
         self.belief = belief;
     }
 
-    /// Takes a frame that goes on from the others.
-    pub(super) fn take(&mut self, scenery: &Scenery, frame: &mut Frame, seconds: f64) -> Option<()> {
+    /// Adds a frame that goes on from the others.
+    pub(super) fn add(&mut self, scenery: &Scenery, frame: &mut Frame, seconds: f64) -> Option<()> {
         let sensitivity = scenery.sensitivity(&self.motion, seconds)?;
         scenery.measure(&self.belief, frame, &scenery.pose(&self.motion, seconds));
         self.compare(scenery, frame, &sensitivity);
@@ -129,7 +129,7 @@ impl Solution {
             Some(offset.dot(&freeform_estimate::scaled_solution(&covariance, &offset)?))
         });
         if let Some(square) = square.filter(|square| square.is_finite()) {
-            self.agreement.take(square / scenery.noise.effective_variance());
+            self.agreement.add(square / scenery.noise.effective_variance());
         }
     }
 

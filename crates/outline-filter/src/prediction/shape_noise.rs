@@ -29,8 +29,8 @@ impl ShapeNoise {
         self.last.resize(cells, 0.0);
     }
 
-    /// Takes the sums of products of successive innovations and of their squares, over so many cells.
-    fn take(&mut self, products: f64, squares: f64, cells: f64) {
+    /// Updates the variance by the sums of products of successive innovations and of their squares, over so many cells.
+    fn update(&mut self, products: f64, squares: f64, cells: f64) {
         if self.variance > 0.0 {
             self.variance = (self.variance + tuning::GAIN * products / cells).max(0.0);
             return;
@@ -75,7 +75,7 @@ impl ShapeNoise {
             *last = innovation;
         }
         if count > 0.0 {
-            self.take(products, squares, count);
+            self.update(products, squares, count);
         }
     }
 
@@ -138,7 +138,7 @@ mod tests {
     fn innovations_that_repeat_are_taken_for_a_changing_shape_and_independent_ones_are_not() {
         let variance_after = |products: f64| {
             let mut noise = ShapeNoise::default();
-            (0..60).for_each(|_| noise.take(products, 100.0, 100.0));
+            (0..60).for_each(|_| noise.update(products, 100.0, 100.0));
             noise.variance
         };
         assert!(variance_after(50.0) > 0.0);

@@ -58,7 +58,7 @@ impl MotionFilter {
             is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
         }
         if !is_explained {
-            track.take_as_usual(outcome.measurement.agreement);
+            track.record_as_usual(outcome.measurement.agreement);
         }
         outcome
     }
@@ -68,7 +68,7 @@ impl MotionFilter {
         if !self.may_search() {
             return None;
         }
-        self.searches.take();
+        self.searches.spend();
         // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
         // where nothing fits without.
         let mut poses = None;
@@ -90,7 +90,7 @@ impl MotionFilter {
             self.track.as_mut().into_iter().for_each(|track| track.record_turn(TurnEvent::Confirmed));
         }
         if let Some(track) = self.track.as_mut().filter(|_| outcome.is_accepted() || lost) {
-            track.take_spread(&outcome.measurement);
+            track.record_spread(&outcome.measurement);
         }
         Some(outcome)
     }

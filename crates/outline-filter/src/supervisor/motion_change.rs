@@ -9,7 +9,7 @@ use crate::{
     dynamics::DynamicsFilter,
     prediction::ByKind,
     track::Outcome,
-    tuning::{dynamics::LEFT_OUT, motion_change as tuning, statement::REACH},
+    tuning::{dynamics::OUTSIDE_INTERVAL, motion_change as tuning, statement::REACH},
     update::PoseInnovation,
 };
 #[cfg(feature = "serde")]
@@ -55,7 +55,7 @@ impl MotionHistory {
 
     /// Whether hypotheses of dynamics say that the motion is constant, in whatever sense.
     pub(super) fn is_constant(&self) -> bool {
-        self.dynamics.as_ref().is_some_and(|dynamics| dynamics.weights().accelerating < LEFT_OUT)
+        self.dynamics.as_ref().is_some_and(|dynamics| dynamics.weights().accelerating < OUTSIDE_INTERVAL)
     }
 
     /// By how many times larger the errors of the frames are than the model's, such as those of a camera that shakes: these are no change of the
@@ -64,16 +64,16 @@ impl MotionHistory {
         self.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening)
     }
 
-    /// Takes what became of a frame some time after the one before.
-    pub(super) fn take(&mut self, outcome: &Outcome, seconds: f64) {
+    /// Records what became of a frame some time after the one before.
+    pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64) {
         self.since_taken += seconds;
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
             if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {
                 dynamics.update(measured, &outcome.rounding);
-                dynamics.take_shift(&outcome.shift);
+                dynamics.add_shift(&outcome.shift);
                 if self.change.is_seen() {
-                    dynamics.take_change();
+                    dynamics.record_change();
                 }
             }
         } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error()) {
@@ -131,15 +131,15 @@ impl MotionChange {
         self.was_sudden || self.kinds.iter().any(|change| change.variance > 0.0 || change.has_changed)
     }
 
-    /// Takes the innovation of an accepted frame of a motion with so many parameters.
-    pub(crate) fn take(&mut self, innovation: &PoseInnovation, parameters: usize) {
+    /// Updates the variances by the innovation of an accepted frame of a motion with so many parameters.
+    pub(crate) fn update(&mut self, innovation: &PoseInnovation, parameters: usize) {
         let limit = tuning::LIMIT * parameters as f64;
         let share = if innovation.squared > limit { limit / innovation.squared } else { 1.0 };
         let by_chance = innovation.squared < tuning::BEYOND_CHANCE * parameters as f64;
         for (change, (gradient, fisher)) in self.kinds.iter_mut().zip(innovation.gradient.iter().zip(innovation.fisher))
         {
             if fisher > 0.0 {
-                change.take(gradient * share, fisher, by_chance);
+                change.update(gradient * share, fisher, by_chance);
             }
         }
         let open = |kind: &usize| self.kinds[*kind].variance <= 0.0;
@@ -148,7 +148,7 @@ impl MotionChange {
         let fisher =
             if is_open { innovation.fisher_of_both } else { (0..2).filter(open).map(|k| innovation.fisher[k]).sum() };
         if fisher > 0.0 {
-            self.of_both.take(gradient, fisher, by_chance);
+            self.of_both.add(gradient, fisher, by_chance);
         }
         let [rates, velocities] = &self.kinds;
         let significant =
@@ -165,9 +165,9 @@ impl MotionChange {
 }
 
 impl Change {
-    fn take(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
+    fn update(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
         if self.variance <= 0.0 {
-            self.evidence.take(gradient, fisher, by_chance);
+            self.evidence.add(gradient, fisher, by_chance);
             return;
         }
         self.variance += gradient / (tuning::MEMORY * fisher);
@@ -183,8 +183,8 @@ impl Change {
 }
 
 impl Evidence {
-    /// Takes that of one frame, no more than chance may make unless it is beyond that.
-    fn take(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
+    /// Adds that of one frame, no more than chance may make unless it is beyond that.
+    fn add(&mut self, gradient: f64, fisher: f64, by_chance: bool) {
         let most = if by_chance { tuning::EVIDENCE } else { f64::INFINITY };
         self.slope = KEPT * self.slope + (gradient / fisher.sqrt()).min(most);
         self.by_variance = KEPT * self.by_variance + fisher.sqrt();
@@ -227,9 +227,9 @@ mod tests {
     fn one_frame_that_chance_may_make_shows_no_change_but_several_in_a_row_do() {
         let innovation = PoseInnovation { squared: 20.0, gradient: [14.0, 2.0], fisher: [1.0; 2], fisher_of_both: 2.5 };
         let mut change = MotionChange::default();
-        change.take(&innovation, 6);
+        change.update(&innovation, 6);
         assert_eq!(change.variances(), None);
-        (0..4).for_each(|_| change.take(&innovation, 6));
+        (0..4).for_each(|_| change.update(&innovation, 6));
         let [rates, velocities] = change.variances().expect("a change");
         assert!(rates > 0.0 && velocities == 0.0);
     }

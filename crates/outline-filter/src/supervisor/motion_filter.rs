@@ -182,7 +182,7 @@ impl MotionFilter {
         })
     }
 
-    /// Takes the outline seen at a time in seconds.
+    /// Processes the outline seen at a time in seconds.
     ///
     /// # Errors
     /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
@@ -196,12 +196,12 @@ impl MotionFilter {
             self.counts.accepted_in_recording += 1;
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
-        let (measurement, rejection) = self.take(time, outline);
+        let (measurement, rejection) = self.process(time, outline);
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
     }
 
-    /// Takes a frame after the first, at a time in units of time.
-    pub(super) fn take(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
+    /// Processes a frame after the first, at a time in units of time.
+    pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
         self.last_time = time;
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
@@ -255,7 +255,7 @@ impl MotionFilter {
         let outcome =
             advance(&self.settings, (track, frame), &mut self.history, seconds, is_after_rejected, comparison);
         self.motion_changed |= self.history.is_changing();
-        track.take_spread(&outcome.measurement);
+        track.record_spread(&outcome.measurement);
         let (turn, was_accepted) = (self.turn_hypotheses.present_turn(), outcome.is_accepted());
         let outcome = self.turn_hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
         if self.turn_hypotheses.present_turn() != turn || outcome.is_accepted() != was_accepted {

@@ -31,7 +31,7 @@ impl SearchBudget {
     }
 
     /// A search has been made.
-    pub(super) fn take(&mut self) {
+    pub(super) fn spend(&mut self) {
         self.frames = self.frames.saturating_sub(FRAMES_OF_SEARCH);
     }
 

@@ -85,11 +85,11 @@ impl MotionFilter {
                 continue;
             }
             for (time, outline) in &unfound[number + 1..] {
-                self.searches.take();
-                do_others_agree |= begun.take(*time, outline).1.is_none();
+                self.searches.spend();
+                do_others_agree |= begun.process(*time, outline).1.is_none();
             }
-            self.searches.take();
-            if begun.take(time, outline).1.is_none() {
+            self.searches.spend();
+            if begun.process(time, outline).1.is_none() {
                 return false;
             }
         }

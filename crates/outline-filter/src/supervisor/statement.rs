@@ -57,10 +57,10 @@ impl MotionFilter {
         if let Some(covariance) = self.history.contradicted(model.parameter_count()) {
             random.covariance += covariance;
         }
-        let (left_out, moments) = track.left_out();
+        let (unmodelled, moments) = track.unmodelled_motions();
         let mut all = random;
         all.covariance += moments;
-        let displacement = left_out.displacement * track.reference().radius;
+        let displacement = unmodelled.displacement * track.reference().radius;
         let FilterSettings { edge_uncertainty, mask_pixel, .. } = self.settings;
         if [displacement, edge_uncertainty, mask_pixel].iter().any(|length| *length > 0.0) {
             // The rounding of masks is a saw tooth as the object moves, whose mean falls with the pixels that it moves on.
@@ -73,7 +73,7 @@ impl MotionFilter {
             let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
             all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
-        Some(Statement { random, all, family: left_out.family })
+        Some(Statement { random, all, family: unmodelled.family })
     }
 
     /// What the outlines do that the motion model does not have, if that is beyond doubt: the model to try is another.

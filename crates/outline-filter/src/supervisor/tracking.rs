@@ -65,7 +65,7 @@ pub(super) fn advance(
     predict(settings, track, history, seconds);
     let gates = Gates::of_new_frame(settings, track, history.widening(), is_after_rejected);
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, comparison);
-    history.take(&outcome, seconds);
+    history.record(&outcome, seconds);
     outcome
 }
 
@@ -79,7 +79,7 @@ pub(super) fn advance_again(
     predict(settings, track, history, seconds);
     let gates = Gates::of_accepted_frame(settings, track, history.widening());
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, Comparison::NotAsked);
-    history.take(&outcome, seconds);
+    history.record(&outcome, seconds);
     outcome
 }
 
@@ -123,7 +123,7 @@ fn outcome_with_changes(
         }
     }
     if outcome.is_accepted() {
-        change.take(&innovation, track.model().parameter_count());
+        change.update(&innovation, track.model().parameter_count());
     }
     outcome
 }
@@ -175,7 +175,7 @@ pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mu
 fn lead(track: &mut Track, dynamics: &mut DynamicsFilter) -> bool {
     let Some(mut expected) = dynamics.combined(None, Purpose::Prediction) else { return false };
     expected.pose = dynamics.of_outline_now(&expected.pose);
-    let is_taken = dynamics.take_reference(&expected.pose);
+    let is_taken = dynamics.set_reference(&expected.pose);
     if is_taken {
         track.expect(&expected);
     }

@@ -331,11 +331,11 @@ impl TurnHypothesis {
         let track = self.track.as_mut()?;
         track.predict(seconds);
         track.add_process_noise(&settings.process_noise, seconds);
-        track.take_noise_of(present);
+        track.adopt_noise_of(present);
         let gate = gate_of_motion(settings, track);
         let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
         let found = track.update(frame, &gate, Comparison::Asked);
-        track.take_spread(&found.measurement);
+        track.record_spread(&found.measurement);
         self.likelihood.add(&found.likelihood);
         Some(found)
     }

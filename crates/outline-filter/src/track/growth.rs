@@ -28,7 +28,7 @@ impl Track {
         if track.turn_is_unseen() {
             return None;
         }
-        track.noise.take_level_of(&self.noise);
+        track.noise.adopt_level_of(&self.noise);
         track.record_turn(TurnEvent::Begun);
         track.begin_here_with_any_turn();
         Some(track)

@@ -8,7 +8,6 @@ mod growth;
 #[cfg(test)]
 mod jacobians;
 mod known_outline;
-mod left_out;
 mod outline;
 mod remapping;
 mod rounding;
@@ -20,6 +19,7 @@ mod sides;
 #[expect(clippy::module_inception, reason = "the module holds the type that the layer is about")]
 mod track;
 mod turn;
+mod unmodelled;
 mod usual_agreement;
 
 pub(crate) use estimate::TurnTold;

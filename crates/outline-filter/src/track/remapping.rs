@@ -71,7 +71,7 @@ impl Track {
             return None;
         }
         track.first_pose = first_pose;
-        track.noise.take_level_of(&self.noise);
+        track.noise.adopt_level_of(&self.noise);
         track.doubt_first_pose();
         track.belief.motion = self.belief.motion;
         let mut before = first.time;

@@ -92,7 +92,7 @@ impl Track {
         }
         let mut reference = Reference::of(outline);
         frame.load(outline, reference);
-        reference.take_stated(frame.deviations.good());
+        reference.update_stated(frame.deviations.good());
         let contours = frame.contours(&Matrix3::identity());
         let rounding = Rounding::of(outline, mask_pixel, reference.radius);
         Self::cut(model, reference, Matrix3::identity(), contours, (0.0, rounding), frame)
@@ -142,7 +142,7 @@ impl Track {
         self.map.null_directions(self.belief.model, &self.belief.pose)
     }
 
-    /// Measures the loaded outline and takes it if the gate lets it through; otherwise nothing changes.
+    /// Measures the loaded outline, and updates the track by it if the gate lets it through; otherwise nothing changes.
     pub(crate) fn update(&mut self, frame: &mut Frame, gate: &Gate, comparison: Comparison) -> Outcome {
         let (view, radius) = (self.view(), self.reference.radius);
         let null = self.map.null_directions(self.belief.model, &self.belief.pose);
@@ -185,18 +185,18 @@ impl Track {
         let (mut shift, mut disagrees) = (SVector::zeros(), false);
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
             self.frames += 1;
-            self.look_for_what_is_left_out(frame, (&proposal, hold.as_ref()), &measured, variance);
+            self.look_for_unmodelled_motions(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
             self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);
             if let Some(noise) = noise {
-                self.noise.take(noise / radius, measurement.weight);
+                self.noise.update(noise / radius, measurement.weight);
             }
             if let Some(ratio) = correlation {
-                self.noise.take_correlation(ratio, measurement.weight);
+                self.noise.update_correlation(ratio, measurement.weight);
             }
-            self.reference.take_stated(frame.deviations.good());
+            self.reference.update_stated(frame.deviations.good());
             if frame.deviations.ratios().is_some() {
                 self.noise.counted = Counted::ByDeviation;
             }
@@ -210,13 +210,13 @@ impl Track {
         Outcome { measurement, verdict, innovation, pose, rounding, shift, disagrees, likelihood }
     }
 
-    /// Takes the spread of a frame, used or not.
-    pub(crate) fn take_spread(&mut self, measurement: &FrameMeasurement) {
-        self.noise.take_spread(measurement.of_good_points(measurement.spread) / self.reference.radius);
+    /// Records the spread of a frame, used or not.
+    pub(crate) fn record_spread(&mut self, measurement: &FrameMeasurement) {
+        self.noise.record_spread(measurement.of_good_points(measurement.spread) / self.reference.radius);
     }
 
-    /// Takes the noise of another track: it is the same whatever the pose.
-    pub(crate) fn take_noise_of(&mut self, other: &Self) {
+    /// Adopts the noise of another track: it is the same whatever the pose.
+    pub(crate) fn adopt_noise_of(&mut self, other: &Self) {
         self.noise.sigma = other.noise.sigma;
     }
 

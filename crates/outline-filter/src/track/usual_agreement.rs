@@ -15,8 +15,8 @@ pub(super) struct UsualAgreement {
 }
 
 impl UsualAgreement {
-    /// Takes a frame of so many points with a share that disagrees; whether that is significantly more than usual.
-    fn take(&mut self, disagreeing: f64, points: usize) -> bool {
+    /// Updates the usual share by a frame of so many points with a share that disagrees; whether that is significantly more than usual.
+    fn update(&mut self, disagreeing: f64, points: usize) -> bool {
         let usual = self.disagreeing;
         let points = points.max(1) as f64;
         let deviation = (usual.max(1.0 / points) * (1.0 - usual) / points).sqrt();
@@ -32,11 +32,11 @@ impl UsualAgreement {
 impl Track {
     /// Takes the share of the points of an accepted frame that agree; whether more than usual do not.
     pub(super) fn disagrees_more_than_usual(&mut self, agreement: f64, points: usize) -> bool {
-        self.usual.take(disagreeing(agreement), points)
+        self.usual.update(disagreeing(agreement), points)
     }
 
-    /// Takes a share of points that agree as nearer to the usual one: nothing else explains them better.
-    pub(crate) fn take_as_usual(&mut self, agreement: f64) {
+    /// Records a share of points that agree as nearer to the usual one: nothing else explains them better.
+    pub(crate) fn record_as_usual(&mut self, agreement: f64) {
         let more = disagreeing(agreement) - self.usual.disagreeing;
         self.usual.disagreeing += tuning::UNEXPLAINED * more.max(0.0);
     }
@@ -63,7 +63,7 @@ mod tests {
     fn a_part_of_the_outline_that_is_missed_is_noticed_in_every_frame_and_usual_outliers_are_not() {
         let mut usual = UsualAgreement::default();
         let noticed = |usual: &mut UsualAgreement, share: f64, frames: i32| {
-            (0..frames).filter(|i| usual.take(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400)).count()
+            (0..frames).filter(|i| usual.update(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400)).count()
         };
         assert_eq!(noticed(&mut usual, 0.05, 100), 0);
         assert_eq!(noticed(&mut usual, 0.15, 10), 10);

@@ -79,8 +79,8 @@ pub(crate) mod dynamics {
     pub(crate) const OFF_CENTROID: f64 = 0.02;
     /// Turn in a step, in rad, as a deviation, that the path of an object may tell where its outline does not: larger ones are no arc any more.
     pub(crate) const LARGEST_STEP_OF_PATH: f64 = 0.5;
-    /// Probability that an interval of 95 % leaves out.
-    pub(crate) const LEFT_OUT: f64 = 0.05;
+    /// Probability of what lies outside of an interval of 95 %.
+    pub(crate) const OUTSIDE_INTERVAL: f64 = 0.05;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
     /// Share of a hypothesis below which it counts for nothing.
@@ -92,9 +92,9 @@ pub(crate) mod dynamics {
     pub(crate) const SINGULAR: f64 = 1e-9;
     /// Share by which a frame corrects the variance of a pose.
     pub(crate) const VARIANCE_GAIN: f64 = 0.1;
-    /// While a constant generator is more probable than this, which is what an interval of 95 % leaves out, its own estimate is stated, and
+    /// While a constant generator is more probable than this, which is that of what lies outside of an interval of 95 %, its own estimate is stated, and
     /// widened by the others; then the object is expected where all hypotheses take it...
-    pub(crate) const LEADS_FROM: f64 = LEFT_OUT;
+    pub(crate) const LEADS_FROM: f64 = OUTSIDE_INTERVAL;
     /// ...until it is as probable as this.
     pub(crate) const LEADS_UNTIL: f64 = 0.9;
 }

@@ -133,7 +133,7 @@ impl View<'_> {
         radius: f64,
     ) -> FrameMeasurement {
         let spread = spread(frame, self.noise.sigma);
-        let Frame { measurements, values, weighted, cells, deviations, .. } = frame;
+        let Frame { measurements, values, weighted, cells_with_frame: cells, deviations, .. } = frame;
         let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
         let widest = deviations.widest();
         let limit = |ratio: f64| (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());

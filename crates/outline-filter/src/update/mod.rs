@@ -15,5 +15,5 @@ pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
 pub(crate) use normal_equations::accumulate;
 pub(crate) use pose_measurement::PoseMeasurement;
-pub(crate) use sensitivity::{LEFT_OUT, LeftOutMatrix, LeftOutScore, LeftOutVector, Sensitivity};
+pub(crate) use sensitivity::{Sensitivity, UNMODELLED, UnmodelledMatrix, UnmodelledScore, UnmodelledVector};
 pub(crate) use solve::Proposal;

@@ -22,7 +22,7 @@ pub(crate) struct PoseMeasurement {
 }
 
 impl PoseMeasurement {
-    /// Of a solved frame that has not been taken yet, in units of the noise: `frame.cells` have the information with it, those of the belief
+    /// Of a solved frame that has not been committed yet, in units of the noise: `frame.cells_with_frame` have the information with it, those of the belief
     /// without.
     pub(crate) fn of(belief: &Belief, proposal: &Proposal, frame: &Frame) -> Self {
         match belief.parameter_count() {
@@ -41,14 +41,14 @@ impl PoseMeasurement {
             pulled[i] = proposal.right[i];
             information[i].copy_from_slice(&proposal.added[i][..K]);
         }
-        let [own, own_before] = [&frame.cells, &before.cells].map(OffsetInformation::own);
-        let [coupling, coupling_before] = [&frame.cells, &before.cells].map(OffsetInformation::rows::<S>);
+        let [own, own_before] = [&frame.cells_with_frame, &before.cells].map(OffsetInformation::own);
+        let [coupling, coupling_before] = [&frame.cells_with_frame, &before.cells].map(OffsetInformation::rows::<S>);
         let (taken, taken_pull) = vectorised(
             #[inline(always)]
             || {
                 let mut taken = ([[[0.0; LANES]; K]; K], [[0.0; LANES]; K]);
                 for start in (0..own.len()).step_by(LANES) {
-                    take_off(start, (own, own_before), (coupling, coupling_before), &frame.right, &mut taken);
+                    add_eliminated(start, (own, own_before), (coupling, coupling_before), &frame.right, &mut taken);
                 }
                 taken
             },
@@ -84,7 +84,7 @@ impl PoseMeasurement {
 /// Adds, in lanes, what the offsets of the cells from `start` on take off the information of a frame on the pose, its lower half, and off its
 /// pull: of each cell its part of the coupling that the frame has added.
 #[inline(always)]
-fn take_off<const K: usize, const S: usize>(
+fn add_eliminated<const K: usize, const S: usize>(
     start: usize,
     (own, own_before): (&[f64], &[f64]),
     (coupling, coupling_before): (&[[f64; S]], &[[f64; S]]),

@@ -20,36 +20,36 @@ use crate::{
 
 /// Motions that may be left out: growth, stretch, skew, two of perspective, that of rows which are read one after the other, and three of a
 /// lens.
-pub(crate) const LEFT_OUT: usize = 9;
+pub(crate) const UNMODELLED: usize = 9;
 
-pub(crate) type LeftOutVector = SVector<f64, LEFT_OUT>;
-pub(crate) type LeftOutMatrix = SMatrix<f64, LEFT_OUT, LEFT_OUT>;
+pub(crate) type UnmodelledVector = SVector<f64, UNMODELLED>;
+pub(crate) type UnmodelledMatrix = SMatrix<f64, UNMODELLED, UNMODELLED>;
 
 /// How far a unit of each motion that is left out has moved the estimates.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Sensitivity {
     /// Of pose and motion.
-    pub(crate) state: SMatrix<f64, STATE, LEFT_OUT>,
+    pub(crate) state: SMatrix<f64, STATE, UNMODELLED>,
     /// Of the offset of each cell.
-    offsets: Vec<LeftOutVector>,
+    offsets: Vec<UnmodelledVector>,
     /// Time since the first frame.
     elapsed: f64,
 }
 
 /// What one frame says of the motions that are left out, its pose taken to be unknown.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct LeftOutScore {
+pub(crate) struct UnmodelledScore {
     /// In units of the noise.
-    pub(crate) information: LeftOutMatrix,
+    pub(crate) information: UnmodelledMatrix,
     /// Information times the sizes that the frame asks for.
-    pub(crate) score: LeftOutVector,
+    pub(crate) score: UnmodelledVector,
     /// Sum of the weights of points on known cells.
     pub(crate) weight: f64,
 }
 
 /// Which of them a model has.
-fn has(model: MotionModel) -> [bool; LEFT_OUT] {
+fn has(model: MotionModel) -> [bool; UNMODELLED] {
     let (growth, shear, perspective) =
         (model != MotionModel::Rigid, model >= MotionModel::Affine, model >= MotionModel::Projective);
     // The slant of a rolling shutter is a shear.
@@ -66,13 +66,13 @@ struct Instant {
     centroid: Point2<f64>,
     generator: Matrix3<f64>,
     elapsed: f64,
-    is_had: [bool; LEFT_OUT],
+    is_had: [bool; UNMODELLED],
 }
 
 impl Instant {
     /// Displacement of a cell along its normal in the body frame by a unit of each motion, and how far an error of the pose moves it.
     #[inline(always)]
-    fn displacement(&self, cell: &Cell, offset: f64) -> ([f64; LEFT_OUT], Point2<f64>, Vector2<f64>) {
+    fn displacement(&self, cell: &Cell, offset: f64) -> ([f64; UNMODELLED], Point2<f64>, Vector2<f64>) {
         let p = map_point(&self.pose, &(cell.centre + offset * cell.normal));
         // A step of the image along n moves the body point by as much along the normal of the cell.
         let n = self.of_normals * cell.normal;
@@ -125,65 +125,65 @@ impl Sensitivity {
     /// Cells are new from those that it has on, and are measured by a frame in the pose that is believed: their offsets take in all of it.
     pub(crate) fn begin_cells(&mut self, belief: &Belief, map: &OutlineMap) {
         let Some(at) = self.instant(belief, &belief.pose, map) else {
-            self.offsets.resize(map.cells().len(), LeftOutVector::zeros());
+            self.offsets.resize(map.cells().len(), UnmodelledVector::zeros());
             return;
         };
         let k = belief.parameter_count();
         for (cell, offset) in map.cells().iter().zip(&belief.offsets).skip(self.offsets.len()) {
             let (displacement, p, n) = at.displacement(cell, *offset);
-            let mut displacement = LeftOutVector::from(displacement);
+            let mut displacement = UnmodelledVector::from(displacement);
             let by_pose = belief.model.normal_velocities(&p, &n);
             (0..k).for_each(|i| displacement -= self.state.row(i).transpose() * by_pose[i]);
             self.offsets.push(displacement);
         }
     }
 
-    /// Takes a solved frame that has not been committed yet, which stands for `repeats` frames: `frame.cells` have the information with
+    /// Updates by a solved frame that has not been committed yet, which stands for `repeats` frames: `frame.cells_with_frame` have the information with
     /// it, those of the belief without. `pose` and `marginal`, the information on
     /// pose and motion, are those with the frame; `measured` is what it tells of the pose by itself.
-    pub(crate) fn take(
+    pub(crate) fn update(
         &mut self,
         (belief, map): (&Belief, &OutlineMap),
         frame: &mut Frame,
         (pose, marginal): (&Matrix3<f64>, &StateMatrix),
         measured: &PoseMeasurement,
         repeats: f64,
-    ) -> Option<LeftOutScore> {
+    ) -> Option<UnmodelledScore> {
         match belief.parameter_count() {
-            3 => self.take_sized::<3, 6>((belief, map), frame, (pose, marginal), measured, repeats),
-            4 => self.take_sized::<4, 8>((belief, map), frame, (pose, marginal), measured, repeats),
-            6 => self.take_sized::<6, 12>((belief, map), frame, (pose, marginal), measured, repeats),
-            _ => self.take_sized::<8, 16>((belief, map), frame, (pose, marginal), measured, repeats),
+            3 => self.update_sized::<3, 6>((belief, map), frame, (pose, marginal), measured, repeats),
+            4 => self.update_sized::<4, 8>((belief, map), frame, (pose, marginal), measured, repeats),
+            6 => self.update_sized::<6, 12>((belief, map), frame, (pose, marginal), measured, repeats),
+            _ => self.update_sized::<8, 16>((belief, map), frame, (pose, marginal), measured, repeats),
         }
     }
 
-    fn take_sized<const K: usize, const S: usize>(
+    fn update_sized<const K: usize, const S: usize>(
         &mut self,
         (belief, map): (&Belief, &OutlineMap),
         frame: &mut Frame,
         (pose, marginal): (&Matrix3<f64>, &StateMatrix),
         measured: &PoseMeasurement,
         repeats: f64,
-    ) -> Option<LeftOutScore> {
+    ) -> Option<UnmodelledScore> {
         let at = self.instant(belief, pose, map)?;
-        let of_pose: [[f64; LEFT_OUT]; K] = std::array::from_fn(|i| std::array::from_fn(|l| self.state[(i, l)]));
+        let of_pose: [[f64; UNMODELLED]; K] = std::array::from_fn(|i| std::array::from_fn(|l| self.state[(i, l)]));
         let mut sums = Sums::<K, S>::NOTHING;
-        let [with, before] = [&frame.cells, &belief.information.cells];
+        let [with, before] = [&frame.cells_with_frame, &belief.information.cells];
         let (coupling, coupling_before) = (with.rows::<S>(), before.rows::<S>());
         let (with, before) = (with.own(), before.own());
         let mut left = std::mem::take(&mut frame.values);
-        left.resize(with.len() * LEFT_OUT, 0.0);
+        left.resize(with.len() * UNMODELLED, 0.0);
         vectorised(
             #[inline(always)]
             || {
                 let of_cells = map.cells().iter().zip(&belief.offsets).zip(&self.offsets);
                 let known = with.iter().zip(before).zip(coupling.iter().zip(coupling_before)).zip(&frame.right);
-                let left = left.as_chunks_mut::<LEFT_OUT>().0;
+                let left = left.as_chunks_mut::<UNMODELLED>().0;
                 for ((((cell, offset), taken_in), left), (((with, before), (coupling, coupling_before)), right)) in
                     of_cells.zip(left).zip(known)
                 {
                     let own = with - before;
-                    *left = [0.0; LEFT_OUT];
+                    *left = [0.0; UNMODELLED];
                     if own > 0.0 {
                         let whole = at.displacement(cell, *offset).0;
                         let mut added = [0.0; K];
@@ -201,31 +201,31 @@ impl Sensitivity {
         );
         // The estimates move as such residuals would move them.
         let right =
-            SMatrix::<f64, STATE, LEFT_OUT>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
+            SMatrix::<f64, STATE, UNMODELLED>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
         if let Some(steps) = scaled_solution(marginal, &right, K) {
-            let by_entry: [[f64; LEFT_OUT]; S] = std::array::from_fn(|i| std::array::from_fn(|l| steps[(i, l)]));
+            let by_entry: [[f64; UNMODELLED]; S] = std::array::from_fn(|i| std::array::from_fn(|l| steps[(i, l)]));
             vectorised(
                 #[inline(always)]
                 || {
-                    let of_cells = self.offsets.iter_mut().zip(left.as_chunks::<LEFT_OUT>().0);
+                    let of_cells = self.offsets.iter_mut().zip(left.as_chunks::<UNMODELLED>().0);
                     for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
                         if *with > 0.0 {
-                            let mut along = [0.0; LEFT_OUT];
+                            let mut along = [0.0; UNMODELLED];
                             for (row, coupling) in by_entry.iter().zip(coupling) {
-                                for l in 0..LEFT_OUT {
+                                for l in 0..UNMODELLED {
                                     along[l] += coupling * row[l];
                                 }
                             }
                             let inverse = 1.0 / with;
                             let offset = offset.as_mut_slice();
-                            for l in 0..LEFT_OUT {
+                            for l in 0..UNMODELLED {
                                 offset[l] += left[l] - along[l] * inverse;
                             }
                         }
                     }
                 },
             );
-            for l in 0..LEFT_OUT {
+            for l in 0..UNMODELLED {
                 (0..S).for_each(|i| self.state[(i, l)] += steps[(i, l)]);
             }
         }
@@ -264,45 +264,45 @@ struct OfCell<'a, const K: usize, const S: usize> {
 
 /// Sums over the cells of a frame, the offsets eliminated.
 struct Sums<const K: usize, const S: usize> {
-    information: [[f64; LEFT_OUT]; LEFT_OUT],
-    score: [f64; LEFT_OUT],
+    information: [[f64; UNMODELLED]; UNMODELLED],
+    score: [f64; UNMODELLED],
     /// Squares of the displacements with what pose and outline have taken in.
-    whole: [f64; LEFT_OUT],
+    whole: [f64; UNMODELLED],
     /// With the pose.
-    with_pose: [[f64; LEFT_OUT]; K],
+    with_pose: [[f64; UNMODELLED]; K],
     weight: f64,
     /// What pose and motion are moved by.
-    right: [[f64; LEFT_OUT]; S],
+    right: [[f64; UNMODELLED]; S],
 }
 
 impl<const K: usize, const S: usize> Sums<K, S> {
     const NOTHING: Self = Self {
-        information: [[0.0; LEFT_OUT]; LEFT_OUT],
-        score: [0.0; LEFT_OUT],
-        whole: [0.0; LEFT_OUT],
-        with_pose: [[0.0; LEFT_OUT]; K],
+        information: [[0.0; UNMODELLED]; UNMODELLED],
+        score: [0.0; UNMODELLED],
+        whole: [0.0; UNMODELLED],
+        with_pose: [[0.0; UNMODELLED]; K],
         weight: 0.0,
-        right: [[0.0; LEFT_OUT]; S],
+        right: [[0.0; UNMODELLED]; S],
     };
 
     /// Adds a cell that is displaced by `whole`, of which its offset and the pose have taken some in; returns what is left.
     #[inline(always)]
     fn add(
         &mut self,
-        whole: &[f64; LEFT_OUT],
+        whole: &[f64; UNMODELLED],
         taken_in: &[f64],
-        of_pose: &[[f64; LEFT_OUT]; K],
+        of_pose: &[[f64; UNMODELLED]; K],
         cell: &OfCell<'_, K, S>,
-    ) -> [f64; LEFT_OUT] {
+    ) -> [f64; UNMODELLED] {
         let OfCell { with, before, own, right, coupling, added } = *cell;
-        let mut left = [0.0; LEFT_OUT];
-        for l in 0..LEFT_OUT {
+        let mut left = [0.0; UNMODELLED];
+        for l in 0..UNMODELLED {
             left[l] = whole[l] - taken_in[l];
         }
         let inverse = 1.0 / own;
         for (row, added) in of_pose.iter().zip(added) {
             let factor = added * inverse;
-            for l in 0..LEFT_OUT {
+            for l in 0..UNMODELLED {
                 left[l] -= factor * row[l];
             }
         }
@@ -310,7 +310,7 @@ impl<const K: usize, const S: usize> Sums<K, S> {
         for (i, row) in self.right.iter_mut().enumerate() {
             let direct = if i < K { added[i] } else { 0.0 };
             let factor = direct - coupling[i] * by_known;
-            for l in 0..LEFT_OUT {
+            for l in 0..UNMODELLED {
                 row[l] += factor * left[l];
             }
         }
@@ -320,16 +320,16 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             let shared = left.map(|left| share * left);
             for (row, shared) in self.information.iter_mut().zip(&shared) {
                 let of_own = shared * own;
-                for l in 0..LEFT_OUT {
+                for l in 0..UNMODELLED {
                     row[l] += of_own * left[l];
                 }
             }
             for (row, added) in self.with_pose.iter_mut().zip(added) {
-                for l in 0..LEFT_OUT {
+                for l in 0..UNMODELLED {
                     row[l] += shared[l] * added;
                 }
             }
-            for l in 0..LEFT_OUT {
+            for l in 0..UNMODELLED {
                 self.score[l] += shared[l] * right;
                 self.whole[l] += share * own * whole[l] * whole[l];
             }
@@ -339,20 +339,20 @@ impl<const K: usize, const S: usize> Sums<K, S> {
     }
 
     /// The pose eliminated.
-    fn score(&self, pose: &PoseMeasurement) -> Option<LeftOutScore> {
+    fn score(&self, pose: &PoseMeasurement) -> Option<UnmodelledScore> {
         let known = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| {
             if i < K && j < K { pose.information[(i, j)] } else { f64::from(u8::from(i == j)) }
         });
         let jitter = (0..K).map(|i| known[(i, i)]).fold(0.0, f64::max) * tuning::SINGULAR;
         let with_pose =
-            SMatrix::<f64, MAX_PARAMETERS, LEFT_OUT>::from_fn(|i, l| if i < K { self.with_pose[i][l] } else { 0.0 });
+            SMatrix::<f64, MAX_PARAMETERS, UNMODELLED>::from_fn(|i, l| if i < K { self.with_pose[i][l] } else { 0.0 });
         let explained = (known + SMatrix::identity() * jitter).cholesky()?.solve(&with_pose);
-        let mut information = LeftOutMatrix::from_fn(|a, b| {
+        let mut information = UnmodelledMatrix::from_fn(|a, b| {
             self.information[a.max(b)][a.min(b)] - with_pose.column(a).dot(&explained.column(b))
         });
-        let mut score = LeftOutVector::from(self.score) - explained.transpose() * pose.pulled;
+        let mut score = UnmodelledVector::from(self.score) - explained.transpose() * pose.pulled;
         // What has been taken in is known to some percent.
-        for l in 0..LEFT_OUT {
+        for l in 0..UNMODELLED {
             if information[(l, l)] > tuning::LEFT * self.whole[l] {
                 continue;
             }
@@ -360,7 +360,7 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             information.column_mut(l).fill(0.0);
             score[l] = 0.0;
         }
-        let found = LeftOutScore { information, score, weight: self.weight };
+        let found = UnmodelledScore { information, score, weight: self.weight };
         (self.weight > 0.0 && information.iter().chain(&score).all(|e| e.is_finite())).then_some(found)
     }
 }

@@ -14,8 +14,8 @@ use crate::{
     vectors::vectorised,
 };
 
-/// What a frame asks for: a step of pose and motion, and the information with the frame. That of the offsets, and their corrections, are in
-/// the buffers of the frame until it is committed.
+/// What a frame asks for: a step of pose and motion, and the information with the frame. That of the offsets is
+/// [`Frame::cells_with_frame`], their corrections [`Frame::shifts`], until it is committed.
 #[derive(Debug, Clone)]
 pub(crate) struct Proposal {
     /// Step of pose and motion from what was predicted.
@@ -61,8 +61,9 @@ impl View<'_> {
             }
             let pass = if proposal.iterations == 0 { Pass::First } else { Pass::Again };
             self.measure(frame, &proposal.pose, &null, pass);
-            frame.cells.copy_from(&belief.information.cells);
-            std::mem::swap(&mut work.cells, &mut frame.cells);
+            // The room that the frame has for them is used while its equations are set up.
+            work.cells = std::mem::take(&mut frame.cells_with_frame);
+            work.cells.copy_from(&belief.information.cells);
             work.dense = belief.information.dense;
             let Added { information: added, right } = accumulate(frame, &mut work, &proposal.state);
             let marginal = work.marginal();
@@ -70,9 +71,9 @@ impl View<'_> {
             let solution = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
             let next = solution.filter(|next| next.iter().all(|e| e.is_finite()));
             if let Some(next) = next {
-                frame.take_step(&work.cells, &(next - proposal.state), &next, k);
+                frame.apply_step(&work.cells, &(next - proposal.state), &next, k);
             }
-            std::mem::swap(&mut work.cells, &mut frame.cells);
+            frame.cells_with_frame = std::mem::take(&mut work.cells);
             let next = next.ok_or(proposal.iterations)?;
             let step = (0..k).map(|i| (next[i] - proposal.state[i]).abs()).fold(0.0, f64::max);
             let pose = model.flow(&next.as_slice()[..k], 1.0).into_inner() * belief.pose;
@@ -89,16 +90,16 @@ impl View<'_> {
 
 impl Frame {
     /// Offsets that go with a solution for pose and motion, and what it leaves of the residuals.
-    fn take_step(&mut self, cells: &OffsetInformation, step: &StateVector, state: &StateVector, k: usize) {
+    fn apply_step(&mut self, cells: &OffsetInformation, step: &StateVector, state: &StateVector, k: usize) {
         match k {
-            3 => self.take_step_sized::<3, 6>(cells, step, state),
-            4 => self.take_step_sized::<4, 8>(cells, step, state),
-            6 => self.take_step_sized::<6, 12>(cells, step, state),
-            _ => self.take_step_sized::<8, 16>(cells, step, state),
+            3 => self.apply_step_sized::<3, 6>(cells, step, state),
+            4 => self.apply_step_sized::<4, 8>(cells, step, state),
+            6 => self.apply_step_sized::<6, 12>(cells, step, state),
+            _ => self.apply_step_sized::<8, 16>(cells, step, state),
         }
     }
 
-    fn take_step_sized<const K: usize, const S: usize>(
+    fn apply_step_sized<const K: usize, const S: usize>(
         &mut self,
         cells: &OffsetInformation,
         step: &StateVector,
@@ -166,8 +167,8 @@ mod tests {
             let Added { information: added, right } = accumulate(&mut frame, &mut work, &StateVector::zeros());
             let reduced = reduce(&work, &frame.right, right);
             let state = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
-            frame.take_step(&work.cells, &state, &state, k);
-            frame.cells.copy_from(&work.cells);
+            frame.apply_step(&work.cells, &state, &state, k);
+            frame.cells_with_frame.copy_from(&work.cells);
             let marginal = work.marginal();
             let proposal = Proposal {
                 state,
@@ -210,7 +211,7 @@ mod tests {
                 let Added { right, .. } = accumulate(&mut frame, &mut work, &state);
                 let reduced = reduce(&work, &frame.right, right);
                 let next = scaled_solution(&work.marginal(), &reduced, k).expect("a solution");
-                frame.take_step(&work.cells, &(next - state), &next, k);
+                frame.apply_step(&work.cells, &(next - state), &next, k);
                 steps.push((next - state).amax());
                 state = next;
             }

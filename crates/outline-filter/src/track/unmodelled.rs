@@ -2,7 +2,7 @@
 use super::Track;
 use crate::{
     belief::StateMatrix,
-    dynamics::{LeftOutEstimate, WrongFamily},
+    dynamics::{UnmodelledEstimate, WrongFamily},
     measurement::Frame,
     tuning::family as tuning,
     update::{PoseMeasurement, Proposal, with_hold},
@@ -13,7 +13,7 @@ impl Track {
     /// then one that stands for several, fewer where more is known, unless the motion is known from so few frames that each of them corrects
     /// much of it. `variance` is
     /// that of the noise.
-    pub(super) fn look_for_what_is_left_out(
+    pub(super) fn look_for_unmodelled_motions(
         &mut self,
         frame: &mut Frame,
         (proposal, hold): (&Proposal, Option<&StateMatrix>),
@@ -27,9 +27,9 @@ impl Track {
         let repeats = repeats as f64;
         let marginal = with_hold(&proposal.marginal, hold);
         let at = (&self.belief, &*self.map);
-        let score = self.sensitivity.take(at, frame, (&proposal.pose, &marginal), measured, repeats);
+        let score = self.sensitivity.update(at, frame, (&proposal.pose, &marginal), measured, repeats);
         if let Some(score) = score.filter(|_| self.frames > tuning::MAP_KNOWN) {
-            self.family.take(&score, self.noise.sigma, variance);
+            self.family.add(&score, self.noise.sigma, variance);
         }
     }
 
@@ -49,7 +49,7 @@ impl Track {
 
     /// What the outlines do beside their motion, as far as it is told, and the second moments of what it makes of the errors of pose and
     /// motion.
-    pub(crate) fn left_out(&self) -> (LeftOutEstimate, StateMatrix) {
+    pub(crate) fn unmodelled_motions(&self) -> (UnmodelledEstimate, StateMatrix) {
         let mut estimate = *self.family.estimate();
         if estimate.family.is_none()
             && let Some(displacement) = self.change_of_shape()
@@ -69,7 +69,7 @@ mod tests {
 
     use super::*;
     use crate::track::Comparison;
-    use crate::update::{Gate, LEFT_OUT};
+    use crate::update::{Gate, UNMODELLED};
 
     const STEP: f64 = 0.05;
     const MOTION: [f64; 3] = [1.3, 0.4, -0.7];
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn a_motion_that_is_left_out_moves_the_estimates_by_its_size_times_their_sensitivity() {
         let size = 1e-5;
-        for l in 0..LEFT_OUT {
+        for l in 0..UNMODELLED {
             let [moved, as_it_is] = [size, 0.0].map(|size| tracked(size, l, (14, [0.0; 2])));
             let to_image = as_it_is.reference().to_image();
             let by_size = as_it_is.belief.model.adjoint(&to_image, &to_image.try_inverse().expect("a radius"));
