@@ -1,6 +1,6 @@
 use freeform_curve_fit::Outline;
 use freeform_estimate::MotionEstimate;
-use freeform_riccati::MotionModel;
+use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::DMatrix;
 
 use crate::{
@@ -82,58 +82,11 @@ pub struct BatchEstimate {
 /// # Errors
 /// Times that do not increase, a first outline of fewer than 8 points, an object that is found in fewer than two frames.
 pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<BatchEstimate, BatchError> {
-    let settings = FilterSettings { model, ..FilterSettings::default() };
-    let smallest = settings.smallest_agreement;
-    let mut filter = MotionFilter::new(settings).map_err(|error| BatchError::Frame { index: 0, error })?;
-    let mut used = Vec::new();
-    let (mut last_used, mut restarts) = (None, 0);
-    for (index, (time, outline)) in frames.iter().enumerate() {
-        let step = filter.step(*time, outline).map_err(|error| BatchError::Frame { index, error })?;
-        let is_begun_anew = filter.restarts() > restarts;
-        restarts = filter.restarts();
-        if step.is_accepted() || is_begun_anew {
-            // It has not gone on from the frames before.
-            if step.phase == Phase::Acquiring {
-                used.clear();
-            }
-            used.push((*time, outline));
-            last_used = filter.track().cloned();
-        }
-    }
     let no_start = BatchError::NoStart { frames: frames.len() };
-    let start = filter.estimate().filter(|_| used.len() > 1).ok_or(no_start)?;
-    // Frames rejected in the end have moved the filter's own map on.
-    let track = last_used.ok_or(no_start)?;
-    let points: usize = used.iter().map(|(_, outline)| outline.point_count()).sum();
-    let gate = Gate { smallest_agreement: smallest, largest_innovation: None, largest_noise: None };
-    let take = |track: &mut Track, buffers: &mut Frame, seconds: f64, outline: &Outline| {
-        track.predict(seconds);
-        buffers.load(outline, track.reference());
-        track.update(buffers, &gate, Comparison::NotAsked).is_accepted()
-    };
-    let unit = track.reference().time_unit;
-    let mut buffers = Frame::default();
-    let mut best = track.clone();
-    let mut mean = best.belief().motion;
-    let (mut rounds, mut converged) = (0, false);
-    // Nothing to cut from where the filter has begun with another frame.
-    while rounds < tuning::MOST_ROUNDS && !converged && track.is_begun_with(used[0].1) {
-        let stride = points.div_ceil(PLENTY).max(1);
-        let Some(new) = best.remapped(
-            &best.placed(used.iter().map(|(time, outline)| (time / unit, *outline))),
-            stride,
-            &mut buffers,
-            take,
-        ) else {
-            break;
-        };
-        best = new;
-        rounds += 1;
-        let before = mean;
-        mean.iter_mut().zip(&best.belief().motion).for_each(|(mean, new)| *mean += (new - *mean) / rounds as f64);
-        let moved = best.in_deviations(&before, &mean).ok_or(no_start)?;
-        converged = rounds > 1 && moved < tuning::SETTLED;
-    }
+    let settings = FilterSettings { model, ..FilterSettings::default() };
+    let Start { estimate: start, track, used } = Start::of(settings, frames)?;
+    let Rounds { mut best, mean, count, has_converged } =
+        Rounds::of(track, &used, settings.smallest_agreement).ok_or(no_start)?;
     // Where points fall on the pieces differs from cut to cut, and so does the motion, by a part of its deviation.
     best.set_motion(mean);
     let covariance = best.covariance().ok_or(no_start)?;
@@ -146,7 +99,88 @@ pub fn estimate_batch(model: MotionModel, frames: &[(f64, Outline)]) -> Result<B
         noise: best.sigma() * best.reference().radius,
         frames_used: used.len(),
         outline_pieces: best.cell_count(),
-        rounds,
-        converged,
+        rounds: count,
+        converged: has_converged,
     })
+}
+
+/// What the motion filter makes of a recording.
+struct Start<'a> {
+    estimate: MotionEstimate,
+    /// After the last frame that was used.
+    track: Track,
+    used: Vec<(f64, &'a Outline)>,
+}
+
+impl<'a> Start<'a> {
+    fn of(settings: FilterSettings, frames: &'a [(f64, Outline)]) -> Result<Self, BatchError> {
+        let no_start = BatchError::NoStart { frames: frames.len() };
+        let mut filter = MotionFilter::new(settings).map_err(|error| BatchError::Frame { index: 0, error })?;
+        let mut used = Vec::new();
+        let (mut last_used, mut restarts) = (None, 0);
+        for (index, (time, outline)) in frames.iter().enumerate() {
+            let step = filter.step(*time, outline).map_err(|error| BatchError::Frame { index, error })?;
+            let is_begun_anew = filter.restarts() > restarts;
+            restarts = filter.restarts();
+            if step.is_accepted() || is_begun_anew {
+                // It has not gone on from the frames before.
+                if step.phase == Phase::Acquiring {
+                    used.clear();
+                }
+                used.push((*time, outline));
+                last_used = filter.track().cloned();
+            }
+        }
+        let estimate = filter.estimate().filter(|_| used.len() > 1).ok_or(no_start)?;
+        // Frames rejected in the end have moved the filter's own map on.
+        let track = last_used.ok_or(no_start)?;
+        Ok(Self { estimate, track, used })
+    }
+}
+
+/// The outline rebuilt round by round.
+struct Rounds {
+    /// Of the last round.
+    best: Track,
+    /// Of the motions of all rounds.
+    mean: ParameterVector,
+    count: usize,
+    has_converged: bool,
+}
+
+impl Rounds {
+    /// `None` where the numbers do not allow it.
+    fn of(track: Track, used: &[(f64, &Outline)], smallest_agreement: f64) -> Option<Self> {
+        let points: usize = used.iter().map(|(_, outline)| outline.point_count()).sum();
+        let stride = points.div_ceil(PLENTY).max(1);
+        let gate = Gate { smallest_agreement, largest_innovation: None, largest_noise: None };
+        let measure = |track: &mut Track, buffers: &mut Frame, seconds: f64, outline: &Outline| {
+            track.predict(seconds);
+            buffers.load(outline, track.reference());
+            track.update(buffers, &gate, Comparison::NotAsked).is_accepted()
+        };
+        let unit = track.reference().time_unit;
+        let mut buffers = Frame::default();
+        // Nothing to cut from where the filter has begun with another frame.
+        let may_be_cut = track.is_begun_with(used[0].1);
+        let mut rounds = Self { mean: track.belief().motion, best: track, count: 0, has_converged: false };
+        while may_be_cut && rounds.count < tuning::MOST_ROUNDS && !rounds.has_converged {
+            let placed = rounds.best.placed(used.iter().map(|(time, outline)| (time / unit, *outline)));
+            let Some(new) = rounds.best.remapped(&placed, stride, &mut buffers, measure) else { break };
+            rounds.add(new)?;
+        }
+        Some(rounds)
+    }
+
+    fn add(&mut self, new: Track) -> Option<()> {
+        self.best = new;
+        self.count += 1;
+        let before = self.mean;
+        for (mean, new) in self.mean.iter_mut().zip(&self.best.belief().motion) {
+            *mean += (new - *mean) / self.count as f64;
+        }
+        let moved = self.best.in_deviations(&before, &self.mean)?;
+        self.has_converged = self.count > 1 && moved < tuning::SETTLED;
+        Some(())
+    }
 }

@@ -4,7 +4,8 @@ use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{Summary, carried, of_both, parts},
-    hypothesis::{Course, Hypothesis},
+    course::Course,
+    hypothesis::Hypothesis,
     interacting::{InteractingHypotheses, MOST},
 };
 use crate::{

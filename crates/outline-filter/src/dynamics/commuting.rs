@@ -6,7 +6,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::{
     centred::{carried, parts},
-    hypothesis::{Course, Hypothesis, Step},
+    course::Course,
+    hypothesis::{Hypothesis, Step},
 };
 use crate::vectors::vectorised;
 

@@ -4,55 +4,10 @@ use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
 
 use crate::{tuning::dynamics as tuning, vectors::vectorised};
 
-use super::centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts};
-
-/// What the motion does between frames.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) enum Course {
-    /// The velocity of the centroid turns with the object.
-    ConstantGenerator,
-    /// As that, seen by a camera that shakes: poses have errors of their own, in every frame others.
-    Shaken {
-        /// In standard deviations of a pose as the points of a frame tell it.
-        deviations: f64,
-    },
-    /// The velocity of a point of the object stays that is not quite the centroid. In place of accelerations its state has the part of the
-    /// velocity of the centroid that turns with the object.
-    ConstantVelocity,
-    /// The accelerations change at random.
-    Accelerating {
-        /// Level of their density, in variances of a pose per fifth power of a step.
-        level: f64,
-        /// Whether the rates do as well, or the velocity of the centroid alone, as of an object that spins while it falls.
-        rates: bool,
-    },
-}
-
-impl Course {
-    /// Variances of accelerations of which nothing is known yet: such that they move the object by some deviations of a pose over the steps
-    /// that the level remembers. Larger ones are those of higher levels.
-    fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
-        let Self::Accelerating { level, rates } = self else { return CentredVector::zeros() };
-        let first = if rates { 0 } else { k - 2 };
-        let span = seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0);
-        let unit = (tuning::FIRST_ACCELERATION / (span * span)).powi(2);
-        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
-    }
-
-    /// Factor of the variance of a pose as the points of a frame tell it.
-    pub(super) fn shaking(self) -> f64 {
-        match self {
-            Self::Shaken { deviations } => 1.0 + deviations * deviations,
-            _ => 1.0,
-        }
-    }
-
-    /// Whether the state has entries behind the motion.
-    pub(super) fn has_more_than_motion(self) -> bool {
-        matches!(self, Self::Accelerating { .. } | Self::ConstantVelocity)
-    }
-}
+use super::{
+    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts},
+    course::Course,
+};
 
 /// State of one hypothesis for a model of k parameters, N = 3 k. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j`
 /// its acceleration; all about the centroid: rates first, then the velocity of the centroid.
@@ -124,6 +79,30 @@ impl<'a> Step<'a> {
 impl<const N: usize> Hypothesis<N> {
     /// Number of parameters.
     pub(super) const K: usize = N / 3;
+
+    /// Begins with mean and covariance of pose and motion, the motion being that of the step of so many seconds before.
+    pub(super) fn begin(
+        (course, model): (Course, MotionModel),
+        (mean, covariance): (SVector<f64, N>, SMatrix<f64, N, N>),
+        (pose_variance, seconds): (&CentredVector, f64),
+    ) -> Self {
+        let mut hypothesis = Self { course, mean, covariance };
+        if course.has_more_than_motion() {
+            hypothesis.add_unknown(model, (pose_variance, seconds), 1.0);
+        }
+        if let Course::Accelerating { .. } = course {
+            let k = Self::K;
+            // The motion known so far is the mean over the step: half of it ago.
+            for j in 0..k {
+                let (u, a) = (k + j, 2 * k + j);
+                let prior = hypothesis.covariance[(a, a)];
+                hypothesis.covariance[(u, u)] += 0.25 * seconds * seconds * prior;
+                hypothesis.covariance[(u, a)] = 0.5 * seconds * prior;
+                hypothesis.covariance[(a, u)] = 0.5 * seconds * prior;
+            }
+        }
+        hypothesis
+    }
 
     /// Number of entries in use.
     pub(super) fn size(&self) -> usize {
@@ -242,24 +221,7 @@ impl<const N: usize> Hypothesis<N> {
     ) -> SMatrix<f64, N, N> {
         let (model, k, dt) = (step.model, Self::K, step.seconds);
         let rates = k - 2;
-        let mut f = SMatrix::<f64, N, N>::identity();
-        if model <= MotionModel::Similarity {
-            // Turns and growth commute.
-            (0..rates).for_each(|i| f[(i, k + i)] = dt);
-        } else {
-            let map = as_map(turn);
-            let carried = model.adjoint(&map, &map.try_inverse().unwrap_or(map));
-            for i in 0..rates {
-                for j in 0..rates {
-                    let own = f64::from(u8::from(i == j));
-                    f[(i, j)] = carried[i][j];
-                    f[(i, k + j)] = 0.5 * dt * (own + carried[i][j]);
-                }
-            }
-        }
-        for i in rates..k {
-            f[(i, k + i)] = dt;
-        }
+        let mut f = Self::pose_transition(step, turn);
         match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {
                 let mean_velocity = 0.5 * (v + later);
@@ -297,7 +259,32 @@ impl<const N: usize> Hypothesis<N> {
         f
     }
 
-    /// Compares a measurement of the pose with what was predicted, and takes it; `None` where the numbers do not allow it.
+    /// That of the pose by itself, where the rates stay and its centroid does not turn.
+    fn pose_transition(step: &Step<'_>, turn: &Matrix2<f64>) -> SMatrix<f64, N, N> {
+        let (model, k, dt) = (step.model, Self::K, step.seconds);
+        let rates = k - 2;
+        let mut f = SMatrix::<f64, N, N>::identity();
+        if model <= MotionModel::Similarity {
+            // Turns and growth commute.
+            (0..rates).for_each(|i| f[(i, k + i)] = dt);
+        } else {
+            let map = as_map(turn);
+            let carried = model.adjoint(&map, &map.try_inverse().unwrap_or(map));
+            for i in 0..rates {
+                for j in 0..rates {
+                    let own = f64::from(u8::from(i == j));
+                    f[(i, j)] = carried[i][j];
+                    f[(i, k + j)] = 0.5 * dt * (own + carried[i][j]);
+                }
+            }
+        }
+        for i in rates..k {
+            f[(i, k + i)] = dt;
+        }
+        f
+    }
+
+    /// Compares a measurement of the pose with what was predicted, and corrects it; `None` where the numbers do not allow it.
     pub(super) fn update(&mut self, measurement: &CentredMeasurement) -> Option<Innovation> {
         match Self::K {
             3 => self.update_sized::<3>(measurement),

@@ -6,7 +6,8 @@ use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
     combination::centred,
     common_error::CommonError,
-    hypothesis::{CentredMeasurement, Course, Hypothesis, Step},
+    course::Course,
+    hypothesis::{CentredMeasurement, Hypothesis, Step},
     innovations::InnovationSeries,
     mixing::mix,
     setting::{Dynamics, DynamicsWeights},
@@ -71,7 +72,6 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         let pose_variance =
             CentredVector::from_fn(|j, _| if j < k { covariance[(j, j)].max(tuning::LEAST_VARIANCE) } else { 1.0 });
-        let courses = courses(setting);
         let mut filter = Self {
             model,
             setting,
@@ -86,27 +86,9 @@ impl<const N: usize> InteractingHypotheses<N> {
             leads: setting != Dynamics::Auto && setting != Dynamics::Generator,
             turn_is_of_path: false,
         };
-        for course in courses {
-            let mut hypothesis = Hypothesis { course, mean, covariance };
-            if course.has_more_than_motion() {
-                hypothesis.add_unknown(model, (&pose_variance, seconds), 1.0);
-            }
-            if let Course::Accelerating { .. } = course {
-                // The motion known so far is the mean over the step: half of it ago.
-                for j in 0..k {
-                    let (u, a) = (k + j, 2 * k + j);
-                    let prior = hypothesis.covariance[(a, a)];
-                    hypothesis.covariance[(u, u)] += 0.25 * seconds * seconds * prior;
-                    hypothesis.covariance[(u, a)] = 0.5 * seconds * prior;
-                    hypothesis.covariance[(a, u)] = 0.5 * seconds * prior;
-                }
-            }
-            filter.weights[filter.hypotheses.len()] = match course {
-                Course::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
-                Course::Shaken { .. } => tuning::PRIOR_OF_SHAKEN,
-                Course::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
-                Course::Accelerating { .. } => tuning::PRIOR_OF_EACH_LEVEL,
-            };
+        for course in Course::all_of(setting) {
+            filter.weights[filter.hypotheses.len()] = course.prior();
+            let hypothesis = Hypothesis::begin((course, model), (mean, covariance), (&filter.pose_variance, seconds));
             filter.hypotheses.push(hypothesis);
         }
         filter.normalise();
@@ -299,23 +281,6 @@ impl<const N: usize> InteractingHypotheses<N> {
     }
 }
 
-/// What the hypotheses of a setting say that the motion does.
-fn courses(setting: Dynamics) -> Vec<Course> {
-    let all = tuning::LEVELS.map(|level| Course::Accelerating { level, rates: true });
-    let of_velocity = tuning::LEVELS_OF_VELOCITY.map(|level| Course::Accelerating { level, rates: false });
-    let accelerating = all.into_iter().chain(of_velocity);
-    match setting {
-        Dynamics::Auto => {
-            let shaken = tuning::SHAKEN.map(|deviations| Course::Shaken { deviations });
-            let constant = [Course::ConstantGenerator, Course::ConstantVelocity];
-            constant.into_iter().chain(shaken).chain(accelerating).collect()
-        }
-        Dynamics::Generator => vec![Course::ConstantGenerator],
-        Dynamics::Velocity => vec![Course::ConstantVelocity],
-        Dynamics::Accelerating => accelerating.collect(),
-    }
-}
-
 /// Information on a pose that is off, besides, by these deviations: (W^-1 + C)^-1 = (I + W C)^-1 W.
 fn less_known(information: CentredMatrix, off: &CentredDeviations) -> Option<CentredMatrix> {
     if off.iter().all(|deviation| *deviation == 0.0) {
@@ -346,7 +311,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.model == model
             && Some(self.setting) == setting
             && 3 * model.parameter_count() == N
-            && followed.eq(courses(self.setting))
+            && followed.eq(Course::all_of(self.setting))
             && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
             && weights.iter().all(|weight| (0.0..=1.0).contains(weight))
             && (weights.iter().sum::<f64>() - 1.0).abs() < SUM_OFF
@@ -356,7 +321,8 @@ impl<const N: usize> InteractingHypotheses<N> {
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
             && self.common.is_valid(model)
             && self.series.is_valid()
-            && (self.shaking == 1.0 || courses(self.setting).iter().any(|course| course.shaking() == self.shaking))
+            && (self.shaking == 1.0
+                || Course::all_of(self.setting).iter().any(|course| course.shaking() == self.shaking))
     }
 }
 

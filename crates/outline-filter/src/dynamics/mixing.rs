@@ -4,7 +4,8 @@ use nalgebra::{SMatrix, SVector};
 
 use super::{
     centred::{CentredVector, parts},
-    hypothesis::{Course, Hypothesis},
+    course::Course,
+    hypothesis::Hypothesis,
 };
 use crate::{tuning::dynamics as tuning, vectors::vectorised};
 

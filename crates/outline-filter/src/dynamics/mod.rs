@@ -7,6 +7,7 @@ mod centred;
 mod combination;
 mod common_error;
 mod commuting;
+mod course;
 mod dynamics_filter;
 mod family;
 mod hypothesis;

@@ -72,6 +72,20 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
+    /// Of a frame that no pose was found for.
+    fn unsolved(measurement: FrameMeasurement, gate: &Gate) -> Self {
+        Self {
+            measurement,
+            verdict: gate.verdict(&measurement).and(Err(Rejection::NotFound)),
+            innovation: PoseInnovation::default(),
+            pose: None,
+            rounding: CentredDeviations::zeros(),
+            shift: SVector::zeros(),
+            disagrees: false,
+            likelihood: NegativeLogLikelihood::default(),
+        }
+    }
+
     pub(crate) fn is_accepted(&self) -> bool {
         self.verdict.is_ok()
     }
@@ -149,20 +163,7 @@ impl Track {
         let hold = hold(&self.belief, &self.map, &null);
         let proposal = match view.solve(frame, &null, hold.as_ref()) {
             Ok(proposal) => proposal,
-            Err(iterations) => {
-                let measurement = FrameMeasurement::unsolved(iterations);
-                let verdict = gate.verdict(&measurement).and(Err(Rejection::NotFound));
-                return Outcome {
-                    measurement,
-                    verdict,
-                    innovation: PoseInnovation::default(),
-                    pose: None,
-                    rounding: CentredDeviations::zeros(),
-                    shift: SVector::zeros(),
-                    disagrees: false,
-                    likelihood: NegativeLogLikelihood::default(),
-                };
-            }
+            Err(iterations) => return Outcome::unsolved(FrameMeasurement::unsolved(iterations), gate),
         };
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
         let [before, after] =
@@ -190,16 +191,7 @@ impl Track {
             disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
             self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);
-            if let Some(noise) = noise {
-                self.noise.update(noise / radius, measurement.weight);
-            }
-            if let Some(ratio) = correlation {
-                self.noise.update_correlation(ratio, measurement.weight);
-            }
-            self.reference.update_stated(frame.deviations.good());
-            if frame.deviations.ratios().is_some() {
-                self.noise.counted = Counted::ByDeviation;
-            }
+            self.learn_noise(frame, (noise.map(|noise| noise / radius), correlation), measurement.weight);
             if measurement.new_points >= tuning::FEWEST_NEW_POINTS {
                 let contours = frame.contours(&self.belief.pose);
                 self.grow_along(contours, frame);
@@ -208,6 +200,21 @@ impl Track {
         let pose = measured.map(|measured| measured.over(variance));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
         Outcome { measurement, verdict, innovation, pose, rounding, shift, disagrees, likelihood }
+    }
+
+    /// Updates the noise by that of good points in an accepted frame and its correlation, as far as they are told, the frame counting for a
+    /// share of one of good points.
+    fn learn_noise(&mut self, frame: &Frame, (noise, correlation): (Option<f64>, Option<f64>), share: f64) {
+        if let Some(noise) = noise {
+            self.noise.update(noise, share);
+        }
+        if let Some(ratio) = correlation {
+            self.noise.update_correlation(ratio, share);
+        }
+        self.reference.update_stated(frame.deviations.good());
+        if frame.deviations.ratios().is_some() {
+            self.noise.counted = Counted::ByDeviation;
+        }
     }
 
     /// Records the spread of a frame, used or not.

@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::pose_measurement::PoseMeasurement;
 use crate::{
-    belief::{Belief, STATE, StateMatrix, scaled_solution},
+    belief::{Belief, OffsetInformation, STATE, StateMatrix, scaled_solution},
     map::{Cell, OutlineMap},
     measurement::Frame,
     prediction::ErrorTransition,
@@ -166,18 +166,43 @@ impl Sensitivity {
         repeats: f64,
     ) -> Option<UnmodelledScore> {
         let at = self.instant(belief, pose, map)?;
-        let of_pose: [[f64; UNMODELLED]; K] = std::array::from_fn(|i| std::array::from_fn(|l| self.state[(i, l)]));
-        let mut sums = Sums::<K, S>::NOTHING;
         let [with, before] = [&frame.cells_with_frame, &belief.information.cells];
-        let (coupling, coupling_before) = (with.rows::<S>(), before.rows::<S>());
-        let (with, before) = (with.own(), before.own());
         let mut left = std::mem::take(&mut frame.values);
         left.resize(with.len() * UNMODELLED, 0.0);
+        let cells = (map.cells(), belief.offsets.as_slice());
+        let sums = self.sums::<K, S>(&at, cells, ([with, before], &frame.right), &mut left, repeats);
+        // The estimates move as such residuals would move them.
+        let right =
+            SMatrix::<f64, STATE, UNMODELLED>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
+        if let Some(steps) = scaled_solution(marginal, &right, K) {
+            self.move_offsets::<S>(with, &steps, &left);
+            for l in 0..UNMODELLED {
+                (0..S).for_each(|i| self.state[(i, l)] += steps[(i, l)]);
+            }
+        }
+        frame.values = left;
+        sums.score(measured)
+    }
+
+    /// Sums over the cells of a frame, and what is left of each of their displacements as far as the frame corrects it. The information on the
+    /// cells is that with the frame and that before.
+    fn sums<const K: usize, const S: usize>(
+        &self,
+        at: &Instant,
+        (cells, offsets): (&[Cell], &[f64]),
+        ([with, before], right): ([&OffsetInformation; 2], &[f64]),
+        left: &mut [f64],
+        repeats: f64,
+    ) -> Sums<K, S> {
+        let of_pose: [[f64; UNMODELLED]; K] = std::array::from_fn(|i| std::array::from_fn(|l| self.state[(i, l)]));
+        let mut sums = Sums::<K, S>::NOTHING;
+        let (coupling, coupling_before) = (with.rows::<S>(), before.rows::<S>());
+        let (with, before) = (with.own(), before.own());
         vectorised(
             #[inline(always)]
             || {
-                let of_cells = map.cells().iter().zip(&belief.offsets).zip(&self.offsets);
-                let known = with.iter().zip(before).zip(coupling.iter().zip(coupling_before)).zip(&frame.right);
+                let of_cells = cells.iter().zip(offsets).zip(&self.offsets);
+                let known = with.iter().zip(before).zip(coupling.iter().zip(coupling_before)).zip(right);
                 let left = left.as_chunks_mut::<UNMODELLED>().0;
                 for ((((cell, offset), taken_in), left), (((with, before), (coupling, coupling_before)), right)) in
                     of_cells.zip(left).zip(known)
@@ -199,38 +224,39 @@ impl Sensitivity {
                 }
             },
         );
-        // The estimates move as such residuals would move them.
-        let right =
-            SMatrix::<f64, STATE, UNMODELLED>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
-        if let Some(steps) = scaled_solution(marginal, &right, K) {
-            let by_entry: [[f64; UNMODELLED]; S] = std::array::from_fn(|i| std::array::from_fn(|l| steps[(i, l)]));
-            vectorised(
-                #[inline(always)]
-                || {
-                    let of_cells = self.offsets.iter_mut().zip(left.as_chunks::<UNMODELLED>().0);
-                    for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
-                        if *with > 0.0 {
-                            let mut along = [0.0; UNMODELLED];
-                            for (row, coupling) in by_entry.iter().zip(coupling) {
-                                for l in 0..UNMODELLED {
-                                    along[l] += coupling * row[l];
-                                }
-                            }
-                            let inverse = 1.0 / with;
-                            let offset = offset.as_mut_slice();
+        sums
+    }
+
+    /// Moves the offsets by what is left of the displacements, and by the steps of pose and motion.
+    fn move_offsets<const S: usize>(
+        &mut self,
+        cells: &OffsetInformation,
+        steps: &SMatrix<f64, STATE, UNMODELLED>,
+        left: &[f64],
+    ) {
+        let (with, coupling) = (cells.own(), cells.rows::<S>());
+        let by_entry: [[f64; UNMODELLED]; S] = std::array::from_fn(|i| std::array::from_fn(|l| steps[(i, l)]));
+        vectorised(
+            #[inline(always)]
+            || {
+                let of_cells = self.offsets.iter_mut().zip(left.as_chunks::<UNMODELLED>().0);
+                for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
+                    if *with > 0.0 {
+                        let mut along = [0.0; UNMODELLED];
+                        for (row, coupling) in by_entry.iter().zip(coupling) {
                             for l in 0..UNMODELLED {
-                                offset[l] += left[l] - along[l] * inverse;
+                                along[l] += coupling * row[l];
                             }
                         }
+                        let inverse = 1.0 / with;
+                        let offset = offset.as_mut_slice();
+                        for l in 0..UNMODELLED {
+                            offset[l] += left[l] - along[l] * inverse;
+                        }
                     }
-                },
-            );
-            for l in 0..UNMODELLED {
-                (0..S).for_each(|i| self.state[(i, l)] += steps[(i, l)]);
-            }
-        }
-        frame.values = left;
-        sums.score(measured)
+                }
+            },
+        );
     }
 
     /// `None` where the model has all of the motions, or the pose has collapsed.

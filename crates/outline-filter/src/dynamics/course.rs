@@ -1,0 +1,78 @@
+//! What a hypothesis says that the motion does between frames.
+use super::{centred::CentredVector, setting::Dynamics};
+use crate::tuning::dynamics as tuning;
+
+/// What the motion does between frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Course {
+    /// The velocity of the centroid turns with the object.
+    ConstantGenerator,
+    /// As that, seen by a camera that shakes: poses have errors of their own, in every frame others.
+    Shaken {
+        /// In standard deviations of a pose as the points of a frame tell it.
+        deviations: f64,
+    },
+    /// The velocity of a point of the object stays that is not quite the centroid. In place of accelerations its state has the part of the
+    /// velocity of the centroid that turns with the object.
+    ConstantVelocity,
+    /// The accelerations change at random.
+    Accelerating {
+        /// Level of their density, in variances of a pose per fifth power of a step.
+        level: f64,
+        /// Whether the rates do as well, or the velocity of the centroid alone, as of an object that spins while it falls.
+        rates: bool,
+    },
+}
+
+impl Course {
+    /// What the hypotheses of a setting say that the motion does.
+    pub(super) fn all_of(setting: Dynamics) -> Vec<Self> {
+        let all = tuning::LEVELS.map(|level| Self::Accelerating { level, rates: true });
+        let of_velocity = tuning::LEVELS_OF_VELOCITY.map(|level| Self::Accelerating { level, rates: false });
+        let accelerating = all.into_iter().chain(of_velocity);
+        match setting {
+            Dynamics::Auto => {
+                let shaken = tuning::SHAKEN.map(|deviations| Self::Shaken { deviations });
+                let constant = [Self::ConstantGenerator, Self::ConstantVelocity];
+                constant.into_iter().chain(shaken).chain(accelerating).collect()
+            }
+            Dynamics::Generator => vec![Self::ConstantGenerator],
+            Dynamics::Velocity => vec![Self::ConstantVelocity],
+            Dynamics::Accelerating => accelerating.collect(),
+        }
+    }
+
+    /// Variances of accelerations of which nothing is known yet: such that they move the object by some deviations of a pose over the steps
+    /// that the level remembers. Larger ones are those of higher levels.
+    pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
+        let Self::Accelerating { level, rates } = self else { return CentredVector::zeros() };
+        let first = if rates { 0 } else { k - 2 };
+        let span = seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0);
+        let unit = (tuning::FIRST_ACCELERATION / (span * span)).powi(2);
+        CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
+    }
+
+    /// Probability before the third frame.
+    pub(super) fn prior(self) -> f64 {
+        match self {
+            Self::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
+            Self::Shaken { .. } => tuning::PRIOR_OF_SHAKEN,
+            Self::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
+            Self::Accelerating { .. } => tuning::PRIOR_OF_EACH_LEVEL,
+        }
+    }
+
+    /// Factor of the variance of a pose as the points of a frame tell it.
+    pub(super) fn shaking(self) -> f64 {
+        match self {
+            Self::Shaken { deviations } => 1.0 + deviations * deviations,
+            _ => 1.0,
+        }
+    }
+
+    /// Whether the state has entries behind the motion.
+    pub(super) fn has_more_than_motion(self) -> bool {
+        matches!(self, Self::Accelerating { .. } | Self::ConstantVelocity)
+    }
+}
