@@ -1,9 +1,10 @@
 //! From the noisy points of one frame to places and normals along the contour, robust against outliers.
 use std::ops::RangeInclusive;
 
-use nalgebra::{Matrix3, Point2, Vector2, Vector3};
+use nalgebra::{Point2, Vector2};
 
 use super::{
+    local_fit::{LocalFit, Sums, direction_variance, wider_if_alike},
     medians::{median, median_of_nine},
     plain_regression::PlainRegression,
 };
@@ -21,15 +22,6 @@ pub(crate) struct Place {
 pub(crate) struct SmoothPiece {
     pub(crate) places: Vec<Place>,
     pub(crate) closed: bool,
-}
-
-/// Local quadratic at one point.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct LocalFit {
-    pub(super) position: Point2<f64>,
-    pub(super) tangent: Vector2<f64>,
-    /// Variance of the point's residual in units of the noise: below one if the point took part.
-    pub(super) residual_variance: f64,
 }
 
 /// Points of one piece with what is found of them.
@@ -101,7 +93,7 @@ impl Contour {
         let usual = self.half_window_for(sigma, tuning::NORMAL_NOISE).min(half_window);
         self.mark_outliers(usual, sigma);
         let mut fits: Vec<LocalFit> = self.widest_fits(usual..=half_window, sigma).into_iter().flatten().collect();
-        if fits.len() < 3 {
+        if fits.len() < tuning::FEWEST_RESAMPLED {
             return None;
         }
         if self.closed {
@@ -116,7 +108,7 @@ impl Contour {
             along.push(length);
         }
         let count = (length / spacing).round().max(1.0);
-        if length <= 0.0 || !length.is_finite() || count > 1e5 {
+        if length <= 0.0 || !length.is_finite() || count > tuning::MOST_PLACES {
             return None;
         }
         let step = length / count;
@@ -131,7 +123,7 @@ impl Contour {
             let t = if width > 0.0 { ((s - along[i]) / width).clamp(0.0, 1.0) } else { 0.5 };
             let centre = fits[i].position + t * (fits[i + 1].position - fits[i].position);
             let tangent = (1.0 - t) * fits[i].tangent + t * fits[i + 1].tangent;
-            if let Some(tangent) = tangent.try_normalize(1e-12) {
+            if let Some(tangent) = tangent.try_normalize(tuning::NO_DIRECTION) {
                 places.push(Place { centre, normal: Vector2::new(tangent.y, -tangent.x) });
             }
         }
@@ -170,7 +162,7 @@ impl Contour {
     }
 
     fn median_step(&self) -> f64 {
-        let chord = 8.min(self.points.len() / 3).max(1);
+        let chord = tuning::STEPS_OF_CHORD.min(self.points.len() / 3).max(1);
         let steps = (0..self.points.len()).filter_map(|i| {
             let j = self.neighbour(i, chord as isize)?;
             Some((self.points[j] - self.points[i]).norm() / chord as f64)
@@ -210,7 +202,7 @@ impl Contour {
 
     /// Distance of a point from the line of its neighbours, in units that make its variance that of the noise.
     fn residual(&self, i: usize, fit: &LocalFit) -> Option<f64> {
-        let tangent = fit.tangent.try_normalize(1e-12)?;
+        let tangent = fit.tangent.try_normalize(tuning::NO_DIRECTION)?;
         let deviation = fit.residual_variance.max(tuning::LEAST_RESIDUAL_VARIANCE).sqrt();
         Some(tangent.perp(&(self.points[i] - fit.position)).abs() / deviation)
     }
@@ -233,8 +225,7 @@ impl Contour {
             })
             .collect();
         let marks = self.without_long_runs(marks);
-        // A window that smooths corners away must not take half the contour for outliers.
-        if marks.iter().filter(|mark| **mark).count() * 4 < marks.len() {
+        if marks.iter().filter(|mark| **mark).count() * tuning::MOST_MARKED < marks.len() {
             self.outlier = marks;
         }
     }
@@ -312,66 +303,8 @@ impl Contour {
                 }
             }
         }
-        if sums.count < 4 {
-            return None;
-        }
-        let inverse = sums.gram().try_inverse()?;
-        let (x, y) = (inverse * sums.x, inverse * sums.y);
-        Some(LocalFit {
-            position: origin + Vector2::new(x[0], y[0]),
-            tangent: Vector2::new(x[1], y[1]),
-            // An outlier stays one unless it lies within the noise of its neighbours' line as if that were exact.
-            residual_variance: if self.outlier[i] { 1.0 } else { 1.0 - inverse[(0, 0)] },
-        })
+        sums.fit(origin, self.outlier[i])
     }
-}
-
-/// The regression over the wider window if its place is that of the narrower one as far as noise goes.
-fn wider_if_alike(wide: LocalFit, narrow: Option<LocalFit>, sigma: f64) -> Option<LocalFit> {
-    let Some(narrow) = narrow else { return Some(wide) };
-    let noise = sigma * (1.0 - narrow.residual_variance).max(0.0).sqrt();
-    let apart = narrow.tangent.try_normalize(1e-12)?.perp(&(wide.position - narrow.position)).abs();
-    Some(if apart <= tuning::OUTLYING * noise { wide } else { narrow })
-}
-
-/// Sums over the points of a local regression.
-#[derive(Debug, Default)]
-struct Sums {
-    count: usize,
-    /// Of the first four powers of the number of the point.
-    powers: [f64; 4],
-    /// Of the coordinates times its powers from 0 on.
-    x: Vector3<f64>,
-    y: Vector3<f64>,
-}
-
-impl Sums {
-    #[inline(always)]
-    fn add(&mut self, u: f64, p: Vector2<f64>) {
-        let square = u * u;
-        self.count += 1;
-        self.powers[0] += u;
-        self.powers[1] += square;
-        self.powers[2] += u * square;
-        self.powers[3] += square * square;
-        self.x.x += p.x;
-        self.x.y += u * p.x;
-        self.x.z += square * p.x;
-        self.y.x += p.y;
-        self.y.y += u * p.y;
-        self.y.z += square * p.y;
-    }
-
-    fn gram(&self) -> Matrix3<f64> {
-        let [first, second, third, fourth] = self.powers;
-        Matrix3::new(self.count as f64, first, second, first, second, third, second, third, fourth)
-    }
-}
-
-/// Variance of the direction of a local regression over so many points to either side, in rad squared, for noise in units of their distance.
-pub(super) fn direction_variance(noise: f64, half_window: usize) -> f64 {
-    let w = half_window as f64;
-    3.0 * noise * noise / (w * (w + 1.0) * (2.0 * w + 1.0))
 }
 
 /// Whether a contour may be smoothed over so many points to either side.

@@ -4,6 +4,7 @@ mod centring;
 mod chains;
 mod contour;
 mod growth;
+mod local_fit;
 mod medians;
 mod nearest_field;
 mod null_space;

@@ -1,7 +1,7 @@
 //! The nearest place on the map for any point of the plane, in constant time.
 use nalgebra::{Point2, Vector2};
 
-use crate::tuning::map::FIELD_PIXELS;
+use crate::tuning::map::{FIELD_MARGIN, FIELD_PIXELS, FINEST_PIXEL};
 
 /// From this number on doubles are whole numbers.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
@@ -30,8 +30,8 @@ impl NearestField {
             high = Point2::from(high.coords.sup(&p.coords));
         }
         let extent = (high - low).amax();
-        let margin = 0.1 * extent + spacing;
-        let pixel = ((extent + 2.0 * margin) / FIELD_PIXELS).max(0.5 * spacing);
+        let margin = FIELD_MARGIN * extent + spacing;
+        let pixel = ((extent + 2.0 * margin) / FIELD_PIXELS).max(FINEST_PIXEL * spacing);
         self.origin = low - Vector2::repeat(margin);
         self.per_length = 1.0 / pixel;
         let pixels = |length: f64| ((length + 2.0 * margin) / pixel).ceil() as usize + 1;

@@ -5,10 +5,13 @@ use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 use super::{
     OutlineMap,
     centring::{Centring, NormalByNeighbours},
-    contour::direction_variance,
+    local_fit::direction_variance,
     turn_evidence::{TurnEvent, TurnEvidence},
 };
-use crate::tuning::{contour::NORMAL_NOISE, null_space as tuning};
+use crate::tuning::{
+    contour::{NO_DIRECTION, NORMAL_NOISE},
+    null_space as tuning,
+};
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy)]
@@ -245,7 +248,7 @@ impl OutlineMap {
         let bend = (here - before).angle(&(after - here));
         let of_bend = bend * bend / tuning::BETWEEN_CHORDS;
         let chord = after - before;
-        match chord.try_normalize(1e-12) {
+        match chord.try_normalize(NO_DIRECTION) {
             Some(along) => {
                 let of_noise = (2.0 * noise * noise / chord.norm_squared()).min(tuning::ANY_DIRECTION);
                 NormalByNeighbours { direction: Vector2::new(along.y, -along.x), of_noise, of_bend }
@@ -318,7 +321,7 @@ fn of_its_rates(model: MotionModel, direction: ParameterVector) -> ParameterVect
     let kinds = rates.iter_mut().zip(model.parameter_kinds());
     kinds.filter(|(_, kind)| **kind != ParameterKind::Rate).for_each(|(rate, _)| *rate = 0.0);
     let squared: f64 = rates.iter().map(|rate| rate * rate).sum();
-    if squared > 0.5 { rates.map(|rate| rate / squared) } else { direction }
+    if squared > tuning::MOSTLY_RATES { rates.map(|rate| rate / squared) } else { direction }
 }
 
 /// A direction without its parts along others of length 1, with this length.

@@ -137,7 +137,7 @@ impl Resolution {
         }
         // Exact points have no noise; the floor keeps weights finite and is far below what any number can tell.
         let sigma = (variance / f64::max(count, 1.0)).sqrt().max(crate::tuning::noise::SMALLEST);
-        let finest = (count / tuning::POINTS_PER_CELL).clamp(4.0, tuning::MOST_CELLS);
+        let finest = (count / tuning::POINTS_PER_CELL).clamp(tuning::FEWEST_OF_FINEST, tuning::MOST_CELLS);
         let plenty = (tuning::LEAST_NOISE_PER_CELL * sigma).max(tuning::PLENTY_PER_CELL * length / points as f64);
         let spacing =
             plenty.min(tuning::NOISE_PER_CELL * sigma).max(length / finest).min(length / tuning::CELLS_PER_LENGTH);
@@ -157,7 +157,7 @@ impl OutlineMap {
                 && cell.neighbours.iter().all(|number| *number < count)
         };
         let NullSpace { in_body, frame, centroid, .. } = &self.null_space;
-        let is_valid = (3..=tuning::MOST_SAVED).contains(&count)
+        let is_valid = (tuning::FEWEST_CELLS..=tuning::MOST_SAVED).contains(&count)
             && self.cells.iter().all(is_cell)
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
             && super::contour::is_half_window(self.half_window)

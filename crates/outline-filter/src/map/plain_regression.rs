@@ -2,7 +2,7 @@
 //! in every window.
 use nalgebra::Point2;
 
-use super::contour::LocalFit;
+use super::local_fit::LocalFit;
 use crate::vectors::vectorised;
 
 /// The regressions with one window.

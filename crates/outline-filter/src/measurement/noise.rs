@@ -145,7 +145,7 @@ impl NoiseModel {
 
     /// Records the spread of a frame, used or not.
     pub(crate) fn record_spread(&mut self, spread: f64) {
-        self.level.frames[self.level.count % tuning::FRAMES] = spread.min(2.0 * tuning::LARGEST);
+        self.level.frames[self.level.count % tuning::FRAMES] = spread.min(tuning::LARGEST_REMEMBERED * tuning::LARGEST);
         self.level.count += 1;
     }
 
@@ -213,13 +213,13 @@ pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>) -> Option<f64> {
             weights += weight;
             number += 1.0;
         }
-        if 2.0 * number > length as f64 {
+        if tuning::ONE_IN_COUNTS * number > length as f64 {
             sum += total * total / number;
             count += weights / number;
             stretches += 1.0;
         }
     }
-    (2.0 * stretches > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
+    (tuning::ONE_IN_COUNTS * stretches > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
 }
 
 /// Robust deviation of all residuals, as if all points were good ones, which is expected to be `noise`; infinite where there are none.

@@ -131,7 +131,7 @@ impl Scenery {
             let cell = &self.map.cells()[m.cell];
             let q = map_point(&inverse, p);
             let tangent = Vector2::new(-cell.normal.y, cell.normal.x);
-            let most = 2.0 * self.map.spacing();
+            let most = tuning::BEND_REACHES * self.map.spacing();
             let along = tangent.dot(&(q - cell.centre)).clamp(-most, most);
             // The noise along the outline adds its variance to the square, and a different one as the plane comes nearer or tilts.
             let noise = self.sigma() * pull_back(&inverse, p, &q, &tangent).norm();

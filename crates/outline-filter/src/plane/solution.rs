@@ -1,6 +1,6 @@
 //! One motion of a plane that explains the frames.
 use freeform_curve_fit::Outline;
-use freeform_riccati::PlaneMotion;
+use freeform_riccati::{MAX_PARAMETERS, PlaneMotion};
 use nalgebra::Matrix3;
 
 use super::{
@@ -60,7 +60,7 @@ impl Agreement {
 
     /// Mean square of the innovations over what is expected; what chance makes of it taken off, at least 1.
     pub(super) fn excess(&self) -> f64 {
-        let degrees = 8.0 * self.frames;
+        let degrees = MAX_PARAMETERS as f64 * self.frames;
         if self.frames < tuning::FEWEST_INNOVATIONS {
             return 1.0;
         }
@@ -155,7 +155,7 @@ impl Solution {
             if let Some((motion, offsets, step, share, before)) = &mut last
                 && sums.as_ref().is_none_or(|(_, now)| is_worse(*before, *now))
             {
-                *share *= 0.25;
+                *share *= tuning::LESS_SHARE;
                 (self.motion, self.belief.offsets) = (*motion, offsets.clone());
                 let (step, share) = (step.clone(), *share);
                 if share < tuning::LEAST_SHARE {

@@ -11,7 +11,11 @@ use crate::{
     map::{Contour, OutlineMap, Resolution},
     measurement::{Counted, Frame, NoiseModel, Reference, Rounding},
     prediction::ShapeNoise,
-    tuning::{contour::NORMAL_NOISE, map::FEWEST_POINTS, update as tuning},
+    tuning::{
+        contour::NORMAL_NOISE,
+        map::{FEWEST_CELLS, FEWEST_POINTS},
+        update as tuning,
+    },
     update::Sensitivity,
 };
 
@@ -77,7 +81,7 @@ impl Track {
             track.noise.counted = Counted::ByDeviation;
         }
         track.grow_along(contours, frame);
-        if track.map.cells().len() < 3 {
+        if track.map.cells().len() < FEWEST_CELLS {
             return None;
         }
         track.belief.marginal = track.belief.information.marginal();

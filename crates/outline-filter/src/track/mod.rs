@@ -6,16 +6,16 @@ mod estimate;
 mod first_pose;
 mod growth;
 #[cfg(test)]
-mod jacobians;
+mod jacobians_tests;
 mod known_outline;
 mod outline;
 mod remapping;
 mod rounding;
 mod shape_change;
 #[cfg(test)]
-mod side_by_side;
+mod side_by_side_tests;
 #[cfg(test)]
-mod sides;
+mod sides_tests;
 #[expect(clippy::module_inception, reason = "the module holds the type that the layer is about")]
 mod track;
 mod turn;

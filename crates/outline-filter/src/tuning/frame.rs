@@ -42,12 +42,16 @@ pub(crate) mod noise {
     pub(crate) const LARGEST_RATIO: f64 = 1.8;
     /// Nor does one with more than this: outlines of different objects differ by more.
     pub(crate) const LARGEST: f64 = 0.05;
+    /// Spread that is remembered of a frame at most, in [`LARGEST`]: beyond, it is one that shows something else.
+    pub(crate) const LARGEST_REMEMBERED: f64 = 2.0;
     /// As [`LARGEST`], while no frame has been compared with another.
     pub(crate) const LARGEST_AT_FIRST: f64 = 0.03;
     /// Stretches that the contour is cut into to see whether its errors are correlated.
     pub(crate) const STRETCHES: usize = 24;
     /// Fewest points of a stretch whose mean tells something of correlation.
     pub(crate) const FEWEST_IN_STRETCH: usize = 3;
+    /// One in so many of the points of a stretch must count, and of the stretches, for the correlation to be told: most of the contour.
+    pub(crate) const ONE_IN_COUNTS: f64 = 2.0;
     /// Frames that the correlation is averaged over.
     pub(crate) const CORRELATION_MEMORY: f64 = 50.0;
     /// Deviations of its estimate by which a correlation must be larger than none.
@@ -126,6 +130,13 @@ pub(crate) mod update {
     pub(crate) const NEW_POINTS_PER_POINT: f64 = 3.0;
     /// Share of what is known of a cell beyond which a point says nothing of the noise: the cell follows it.
     pub(crate) const LARGEST_LEVERAGE: f64 = 0.8;
+    /// One in so many of the points must tell of the noise, or that of the frame is not known: a few that happen to lie on known cells may be
+    /// any.
+    pub(crate) const ONE_IN_TELLS: usize = 4;
+    /// Share of the variances of a pose that is added to what a frame has told of it, so that it can be inverted where the frame tells nothing.
+    pub(crate) const REGULAR_GAIN: f64 = 1e-9;
+    /// What is added to the diagonal of an information matrix, scaled to ones, so that it can be inverted: some thousand times rounding.
+    pub(crate) const REGULAR_INFORMATION: f64 = 1e-12;
     /// Fewest points beyond the known ends that make the map grow.
     pub(crate) const FEWEST_NEW_POINTS: usize = 4;
     /// Squared innovation per parameter beyond which the motion has not gone on as it was: five deviations in every one. Chance does

@@ -17,6 +17,10 @@ pub(crate) mod map {
     pub(crate) const MOST_CELLS: f64 = 800.0;
     /// An outline is cut into so many cells at least, so that it has sides.
     pub(crate) const CELLS_PER_LENGTH: f64 = 12.0;
+    /// Fewest cells of a map: fewer enclose nothing.
+    pub(crate) const FEWEST_CELLS: usize = 3;
+    /// An outline of a few points is cut into so many cells all the same where its noise allows it, so that it has sides.
+    pub(crate) const FEWEST_OF_FINEST: f64 = 4.0;
     /// Places further than this many spacings from all cells are new: a cell reaches half a spacing, and its neighbour half of one more.
     pub(crate) const UNCOVERED: f64 = 1.1;
     /// A map of so many times the places that any frame has shown at once holds what is not of the object, and grows no more: an
@@ -27,6 +31,10 @@ pub(crate) mod map {
     pub(crate) const SHORTEST_RUN: usize = 2;
     /// Longest side of the picture of nearest cells, pixels: it stays within the second cache of a processor.
     pub(crate) const FIELD_PIXELS: f64 = 192.0;
+    /// Margin of that picture around the cells, in their extent: points of frames that are not yet aligned lie there.
+    pub(crate) const FIELD_MARGIN: f64 = 0.1;
+    /// Smallest pixel of that picture, in spacings: finer ones would not make the cell that a pixel names a nearer one.
+    pub(crate) const FINEST_PIXEL: f64 = 0.5;
     /// Farthest that anything on a saved map may be from the centre of the first outline, in its radii; nothing followed comes near it.
     #[cfg(feature = "serde")]
     pub(crate) const FARTHEST: f64 = 1e9;
@@ -57,6 +65,19 @@ pub(crate) mod contour {
     pub(crate) const OF_RUN: f64 = 3.0;
     /// Share of the points of such a row that are no further from the next: a single step over a gap is no sign of outliers.
     pub(crate) const CLOSE_OF_RUN: f64 = 0.75;
+    /// One in so many of the points may be marked as outliers at most: a window that smooths corners away must not take half the contour for
+    /// them.
+    pub(crate) const MOST_MARKED: usize = 4;
+    /// Points that the mean distance from one to the next is taken over: noise makes single steps longer.
+    pub(crate) const STEPS_OF_CHORD: usize = 8;
+    /// Fewest points of a local quadratic: three leave no residual.
+    pub(crate) const FEWEST_FITTED: usize = 4;
+    /// Fewest points, not outliers, of a contour that is resampled.
+    pub(crate) const FEWEST_RESAMPLED: usize = 3;
+    /// Most places of a resampled contour: a spacing that asks for more than a hundred times the cells of a map comes from damaged numbers.
+    pub(crate) const MOST_PLACES: f64 = 1e5;
+    /// Length of a tangent or chord, normalised, below which its direction is rounding.
+    pub(crate) const NO_DIRECTION: f64 = 1e-12;
     /// Deviation of a normal's direction that the window is chosen for, rad: its cosine is then within 0.2 %.
     pub(crate) const NORMAL_NOISE: f64 = 0.05;
     /// As [`NORMAL_NOISE`], for the pilot regression.
@@ -105,6 +126,8 @@ pub(crate) mod null_space {
     pub(crate) const ANY_DIRECTION: f64 = 0.5;
     /// Points of a window over which a quadratic is fitted, for each that its middle is worth.
     pub(crate) const QUADRATIC: f64 = 2.25;
+    /// Share of the square of a null direction from which on its rates are most of it.
+    pub(crate) const MOSTLY_RATES: f64 = 0.5;
     /// Steps of Newton's method to the least of the motions that look alike; each doubles the digits.
     pub(crate) const LEAST_STEPS: usize = 3;
     /// Turn, in rad, of a unit step in a direction that counts as turning.

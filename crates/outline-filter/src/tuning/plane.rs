@@ -39,6 +39,10 @@ pub(crate) const MOST_STEPS: usize = 8;
 pub(crate) const SETTLED: f64 = 0.02;
 pub(crate) const WORSE: f64 = 3.0;
 pub(crate) const LEAST_SHARE: f64 = 1e-2;
+/// By which the share of a step is multiplied that has made the sum of squares larger.
+pub(crate) const LESS_SHARE: f64 = 0.25;
+/// Half the length, in spacings, over which the bend of an outline at a cell is taken to go on: further off, points belong to other cells.
+pub(crate) const BEND_REACHES: f64 = 2.0;
 /// Frames are linearised anew when the parameters have moved by this many deviations: what is of second order is then a few hundredths.
 pub(crate) const STALE: f64 = 0.3;
 /// Solutions nearer to each other than this many deviations are one.

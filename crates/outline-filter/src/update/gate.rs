@@ -146,7 +146,7 @@ impl View<'_> {
             ),
             Some(ratios) => told_by_deviations((measurements.as_slice(), ratios), cells.own(), limit, weighted),
         };
-        let enough = told * 4 > measurements.len();
+        let enough = told * tuning::ONE_IN_TELLS > measurements.len();
         // Points count by their weights: what those that count most scatter by must not hide behind others that say too much of theirs.
         let guess = self.noise.sigma / MEDIAN_TO_DEVIATION;
         let middle =

@@ -4,6 +4,7 @@ use nalgebra::{Point2, SMatrix};
 use crate::{
     belief::{Belief, StateMatrix, StateVector},
     prediction::{ByKind, centred_change, kind_index},
+    tuning::update as tuning,
 };
 
 /// Innovation of the pose in one frame.
@@ -51,7 +52,7 @@ impl Belief {
         let step = state.fixed_rows::<K>(0).into_owned();
         let gained = p - p_after;
         // Directions that the frame does not show have no step either.
-        let regular = gained + SMatrix::from_diagonal(&(p.diagonal() * 1e-9));
+        let regular = gained + SMatrix::from_diagonal(&(p.diagonal() * tuning::REGULAR_GAIN));
         let squared = step.dot(&(inverse(&regular)? * step)) / variance;
         let weighted = before * step / variance.sqrt();
         let by_change = centred_change(self.model, &self.pose, centroid)?.fixed_view::<K, K>(0, 0).into_owned();
@@ -89,7 +90,7 @@ fn inverse<const K: usize>(matrix: &SMatrix<f64, K, K>) -> Option<SMatrix<f64, K
         if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 }
     });
     let mut scaled = SMatrix::<f64, K, K>::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
-    (0..K).for_each(|i| scaled[(i, i)] += 1e-12);
+    (0..K).for_each(|i| scaled[(i, i)] += tuning::REGULAR_INFORMATION);
     let inverse = scaled.cholesky()?.inverse();
     Some(SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
