@@ -1,6 +1,7 @@
 //! One program for all of them, since each costs a link and its share of compiling.
 mod doubtful_starts;
 mod filter_changes;
+mod filter_input;
 mod filter_motion;
 mod filter_observability;
 mod filter_support;

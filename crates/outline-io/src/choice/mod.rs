@@ -2,6 +2,7 @@
 mod evidence;
 mod sample;
 mod scaled;
+mod sight;
 
 use std::sync::Arc;
 
