@@ -243,9 +243,9 @@ impl Sensitivity {
                 for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
                     if *with > 0.0 {
                         let mut along = [0.0; UNMODELLED];
-                        for (row, coupling) in by_entry.iter().zip(coupling) {
+                        for i in 0..S {
                             for l in 0..UNMODELLED {
-                                along[l] += coupling * row[l];
+                                along[l] += coupling[i] * by_entry[i][l];
                             }
                         }
                         let inverse = 1.0 / with;
@@ -326,10 +326,10 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             left[l] = whole[l] - taken_in[l];
         }
         let inverse = 1.0 / own;
-        for (row, added) in of_pose.iter().zip(added) {
-            let factor = added * inverse;
+        for i in 0..K {
+            let factor = added[i] * inverse;
             for l in 0..UNMODELLED {
-                left[l] -= factor * row[l];
+                left[l] -= factor * of_pose[i][l];
             }
         }
         let by_known = own / with;
@@ -344,15 +344,15 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             // Only what was known before can be compared with.
             let share = before / with;
             let shared = left.map(|left| share * left);
-            for (row, shared) in self.information.iter_mut().zip(&shared) {
-                let of_own = shared * own;
+            for m in 0..UNMODELLED {
+                let of_own = shared[m] * own;
                 for l in 0..UNMODELLED {
-                    row[l] += of_own * left[l];
+                    self.information[m][l] += of_own * left[l];
                 }
             }
-            for (row, added) in self.with_pose.iter_mut().zip(added) {
+            for i in 0..K {
                 for l in 0..UNMODELLED {
-                    row[l] += shared[l] * added;
+                    self.with_pose[i][l] += shared[l] * added[i];
                 }
             }
             for l in 0..UNMODELLED {
