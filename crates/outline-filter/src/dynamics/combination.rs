@@ -22,13 +22,24 @@ pub(crate) enum Purpose {
     Statement,
 }
 
+impl Purpose {
+    /// Probability of what is left out.
+    fn outside(self) -> f64 {
+        match self {
+            Self::Prediction => tuning::OUTSIDE_INTERVAL,
+            Self::Statement => tuning::OUTSIDE_THREE_DEVIATIONS,
+        }
+    }
+}
+
 /// A hypothesis that is not left out, as it is taken together with others: the velocity is that of the plane of the object where the centroid
 /// of the reference pose is.
 #[derive(Debug, Clone, Copy)]
 struct Part<const N: usize> {
     weight: f64,
     mean: SVector<f64, N>,
-    covariance: SMatrix<f64, N, N>,
+    /// None where it is less probable than what lies outside of an interval of 95 %: then its mean alone counts.
+    covariance: Option<SMatrix<f64, N, N>>,
     /// Whether its pose is measured against the outline, and is not known together with it.
     is_measured: bool,
     /// Whether the centroid of the object accelerates, and no point aside.
@@ -36,8 +47,8 @@ struct Part<const N: usize> {
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
-    /// The weight below which hypotheses are left out: all of them together are less probable than what lies outside of an interval of 95 %.
-    fn least_weight(&self) -> f64 {
+    /// The weight below which hypotheses are left out: all of them together are less probable than what lies outside of an interval.
+    fn least_weight(&self, outside: f64) -> f64 {
         let mut sorted = self.weights;
         sorted.sort_unstable_by(f64::total_cmp);
         let mut sum = 0.0;
@@ -45,7 +56,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             .into_iter()
             .find(|weight| {
                 sum += weight;
-                sum > tuning::OUTSIDE_INTERVAL
+                sum > outside
             })
             .unwrap_or(0.0)
     }
@@ -86,16 +97,18 @@ impl<const N: usize> InteractingHypotheses<N> {
             Some(given) => Some(self.of_generator(given)?),
             None => None,
         };
-        let least = self.least_weight();
+        let [least, likely] = [purpose.outside(), tuning::OUTSIDE_INTERVAL].map(|outside| self.least_weight(outside));
         let part = |number: usize| {
             let (hypothesis, weight) = (self.hypotheses.get(number)?, self.weights[number]);
             let is_generator = hypothesis.course == Course::ConstantGenerator;
             (weight >= least).then(|| match of_generator.filter(|_| is_generator) {
                 Some((mean, covariance)) => {
+                    let covariance = Some(covariance);
                     Part { weight, mean, covariance, is_measured: self.outline_has_moved, accelerates: false }
                 }
                 None => {
                     let (mean, covariance) = self.of_measured(hypothesis);
+                    let covariance = (weight >= likely).then_some(covariance);
                     let accelerates = matches!(hypothesis.course, Course::Accelerating { .. });
                     Part { weight, mean, covariance, is_measured: true, accelerates }
                 }
@@ -110,17 +123,22 @@ impl<const N: usize> InteractingHypotheses<N> {
             _ => all().fold(SVector::zeros(), |mean, part| mean + part.mean * (part.weight / sum)),
         };
         let mut covariance = SMatrix::<f64, N, N>::zeros();
-        // Where one of them is stated, its interval reaches the others that are not left out.
+        // Where one of them is stated, its interval of 95 % reaches others that have as much as lies outside; others count by their weight.
         let others = 1.0 - self.weights().generator / sum;
-        let reach = if of_generator.is_some() && others > 0.0 { (REACH / others).max(1.0) } else { 1.0 };
+        let reach = if of_generator.is_some() && others > 0.0 {
+            (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0)
+        } else {
+            1.0
+        };
         let (mut measured, mut accelerated) = (0.0, 0.0);
         for part in all() {
-            let (weight, x, p) = (part.weight / sum, &part.mean, &part.covariance);
+            let (weight, x) = (part.weight / sum, &part.mean);
             measured += if part.is_measured { weight } else { 0.0 };
             accelerated += if part.accelerates { weight } else { 0.0 };
             for j in 0..2 * k {
                 for i in 0..2 * k {
-                    covariance[(i, j)] += weight * (p[(i, j)] + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
+                    let own = part.covariance.as_ref().map_or(0.0, |p| p[(i, j)]);
+                    covariance[(i, j)] += weight * (own + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
                 }
             }
         }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::{
     centred::{carried, parts},
     course::Course,
-    hypothesis::{Hypothesis, Step},
+    hypothesis::{Hypothesis, Step, turned_along},
 };
 use crate::vectors::vectorised;
 
@@ -30,17 +30,17 @@ impl<const N: usize> Hypothesis<N> {
             self.add_change_of_accelerations(step);
         } else {
             let motion = &self.mean.as_slice()[k..2 * k];
-            let (a, v) = parts(&model.generator(motion));
+            let v = parts(&model.generator(motion)).1;
+            let along = model.integrated_linear_flow(motion, dt);
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
             let (turn, shift, later) = if self.course == Course::ConstantVelocity {
                 let turn = model.linear_flow(motion, dt);
-                let turned = turn * turning - turning;
-                (turn, v * dt + 0.5 * dt * turned, v + turned)
+                (turn, v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning)
             } else {
-                let (turn, shift) = parts(&model.flow(motion, dt).into_inner());
-                (turn, shift, turn * v)
+                let turn = model.linear_flow(motion, dt);
+                (turn, along * v, turn * v)
             };
-            let transition = self.transition(step, (&turn, &a, &v, &later));
+            let transition = self.transition(step, (&turn, &along, &v, &later));
             self.covariance = carried(&transition, &self.covariance, self.size());
             self.set_velocity(&turn, &shift, &later);
             for j in 0..k - 2 {

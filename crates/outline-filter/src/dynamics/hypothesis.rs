@@ -76,6 +76,12 @@ impl<'a> Step<'a> {
     }
 }
 
+/// How much farther than at the velocity before a step its part that turns with the object carries over the step, from the integral of the
+/// turn.
+pub(super) fn turned_along(along: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
+    along - Matrix2::identity() * seconds
+}
+
 impl<const N: usize> Hypothesis<N> {
     /// Number of parameters.
     pub(super) const K: usize = N / 3;
@@ -159,9 +165,10 @@ impl<const N: usize> Hypothesis<N> {
         if self.course == Course::ConstantVelocity {
             acceleration.fill(0.0);
         }
-        let (a, v) = parts(&model.generator(&motion.as_slice()[..k]));
+        let v = parts(&model.generator(&motion.as_slice()[..k])).1;
         let w = parts(&model.generator(&acceleration.as_slice()[..k])).1;
         let of_rates = |of: &CentredVector, seconds: f64| model.linear_flow(&of.as_slice()[..k], seconds);
+        let along = model.integrated_linear_flow(&motion.as_slice()[..k], dt);
         let (turn, shift, later) = match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {
                 let (turn, shift) = parts(&model.flow(&motion.as_slice()[..k], dt).into_inner());
@@ -169,8 +176,8 @@ impl<const N: usize> Hypothesis<N> {
             }
             Course::ConstantVelocity => {
                 let turn = of_rates(&motion, dt);
-                let turned = turn * turning - turning;
-                (turn, v * dt + 0.5 * dt * turned, v + turned)
+                let beyond = turned_along(&along, dt) * turning;
+                (turn, v * dt + beyond, v + turn * turning - turning)
             }
             Course::Accelerating { .. } => {
                 (of_rates(&(motion + 0.5 * dt * acceleration), dt), v * dt + 0.5 * dt * dt * w, v + dt * w)
@@ -179,7 +186,7 @@ impl<const N: usize> Hypothesis<N> {
         let relative = turn * of_rates(&error, 1.0) * step.turned;
         let Some(off) = model.motion_between(&as_map(&relative), 1.0) else { return false };
         let centre = step.centre + Vector2::new(error[k - 2], error[k - 1]) + shift;
-        let transition = self.transition(step, (&turn, &a, &v, &later));
+        let transition = self.transition(step, (&turn, &along, &v, &later));
         for j in 0..rates {
             self.mean[j] = off[j];
             self.mean[k + j] += dt * acceleration[j];
@@ -212,12 +219,12 @@ impl<const N: usize> Hypothesis<N> {
         }
     }
 
-    /// Propagation of errors over a step: `turn` is the linear part of the motion over it, a and v are rates and velocity before it, and
-    /// `later` is the velocity after it.
+    /// Propagation of errors over a step: `turn` is the linear part of the motion over it and `along` its integral, v is the velocity before
+    /// it, and `later` that after it.
     pub(super) fn transition(
         &self,
         step: &Step<'_>,
-        (turn, a, v, later): (&Matrix2<f64>, &Matrix2<f64>, &Vector2<f64>, &Vector2<f64>),
+        (turn, along, v, later): (&Matrix2<f64>, &Matrix2<f64>, &Vector2<f64>, &Vector2<f64>),
     ) -> SMatrix<f64, N, N> {
         let (model, k, dt) = (step.model, Self::K, step.seconds);
         let rates = k - 2;
@@ -225,10 +232,9 @@ impl<const N: usize> Hypothesis<N> {
         match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {
                 let mean_velocity = 0.5 * (v + later);
-                let by_velocity = Matrix2::identity() * dt + 0.5 * dt * dt * a;
                 for i in 0..2 {
                     for j in 0..2 {
-                        f[(rates + i, k + rates + j)] = by_velocity[(i, j)];
+                        f[(rates + i, k + rates + j)] = along[(i, j)];
                         f[(k + rates + i, k + rates + j)] = turn[(i, j)];
                     }
                 }
@@ -241,10 +247,10 @@ impl<const N: usize> Hypothesis<N> {
                 }
             }
             Course::ConstantVelocity => {
-                let less = turn - Matrix2::identity();
+                let (less, beyond) = (turn - Matrix2::identity(), turned_along(along, dt));
                 for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                     let (row, column) = (rates + i, 2 * k + rates + j);
-                    f[(row, column)] = 0.5 * dt * less[(i, j)];
+                    f[(row, column)] = beyond[(i, j)];
                     f[(k + row, column)] = less[(i, j)];
                     f[(2 * k + row, column)] = turn[(i, j)];
                 }

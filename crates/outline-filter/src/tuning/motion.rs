@@ -58,9 +58,10 @@ pub(crate) mod dynamics {
     /// How often a change is that a camera begins to shake, in one to a certain motion: cameras that do shake from the start. A motion that changes
     /// slowly looks for some frames like one seen by a camera that shakes.
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.01;
-    /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate.
-    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.93;
-    pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.046;
+    /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate. Where frames
+    /// do not tell a constant velocity from a constant generator, as where an object turns slowly, chance must not leave it out.
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.886;
+    pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.09;
     /// Of each of [`SHAKEN`].
     pub(crate) const PRIOR_OF_SHAKEN: f64 = 0.002;
     pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
@@ -81,6 +82,8 @@ pub(crate) mod dynamics {
     pub(crate) const LARGEST_STEP_OF_PATH: f64 = 0.5;
     /// Probability of what lies outside of an interval of 95 %.
     pub(crate) const OUTSIDE_INTERVAL: f64 = 0.05;
+    /// Probability of what lies outside of an interval of three deviations: what is less improbable widens the deviations that are stated.
+    pub(crate) const OUTSIDE_THREE_DEVIATIONS: f64 = 0.0027;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
     /// Share of a hypothesis below which it counts for nothing.

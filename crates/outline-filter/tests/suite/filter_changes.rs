@@ -4,7 +4,7 @@ use freeform_estimate::ProcessNoise;
 use freeform_outline_filter::{FilterSettings, MotionFilter, Phase, Rejection};
 use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
 use freeform_sim_camera::{BuiltInShape, Frame, Motion, Settings};
-use nalgebra::Affine2;
+use nalgebra::{Affine2, Vector2};
 
 #[test]
 fn a_change_of_motion_is_noticed_and_the_new_motion_found() {
@@ -123,6 +123,47 @@ fn an_object_that_spins_evenly_and_travels_straight_keeps_its_angular_velocity_t
             assert!(run.motion_changed() && run.frames_rejected() == 0, "{context}: {}", run.frames_rejected());
         }
     }
+}
+
+/// A rigid motion with a constant angular velocity whose point that is at `from` first moves at a constant velocity: the motion at a time.
+fn thrown(omega: f64, [v, w]: [f64; 2], [x, y]: [f64; 2]) -> impl Fn(f64) -> RigidMotion + Clone + Send + Sync {
+    move |t| RigidMotion { omega, b1: v - omega * (y + w * t), b2: w + omega * (x + v * t) }
+}
+
+#[test]
+fn a_body_that_spins_fast_about_a_point_aside_of_its_centroid_has_the_velocity_of_its_centroid() {
+    for omega in [10.0, -24.0, 44.0] {
+        for (seed, aside) in [(0, 0.02), (1, 0.06), (2, 0.1), (3, -0.04)] {
+            let motion = thrown(omega, [0.4, 0.2], [aside, 0.0]);
+            let settings = Settings { points: 300, noise: 0.003, ..settings(60, seed) };
+            let frames = frames_of(BuiltInShape::Bird, Motion::varying(motion.clone()), settings);
+            let run = filtered(MotionModel::Rigid, &frames);
+            let truth = motion(frames[59].time);
+            let estimate = run.estimate().expect("an estimate");
+            for (parameter, truth) in estimate.parameters().zip([truth.omega, truth.b1, truth.b2]) {
+                let (Some(value), Some(deviation)) = (parameter.value, parameter.standard_deviation) else { continue };
+                let off = (value - truth) / deviation;
+                assert!(off.abs() < 4.5, "{omega} {aside} {}: {value} +- {deviation} for {truth}", parameter.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_slow_object_is_within_its_deviations_where_frames_do_not_tell_how_its_motion_goes_on() {
+    let motion = thrown(0.02, [0.01, 0.0], [0.0, 0.0]);
+    let mut squares = 0.0;
+    for seed in 0..16 {
+        let settings = Settings { points: 300, noise: 0.004, ..settings(75, seed) };
+        let frames = frames_of(BuiltInShape::Van, Motion::varying(motion.clone()), settings);
+        let found = filtered(MotionModel::Rigid, &frames).velocity().expect("a velocity");
+        let RigidMotion { omega, b1, b2 } = motion(frames[74].time);
+        let truth = Vector2::new(omega * found.point.y + b1, -omega * found.point.x + b2);
+        let off = (found.velocity - truth).component_div(&found.standard_deviations());
+        assert!(off.amax() < 4.0, "seed {seed}: {off}");
+        squares += off.norm_squared();
+    }
+    assert!(squares > 0.3 * 32.0, "deviations are much wider than errors: {squares}");
 }
 
 #[test]

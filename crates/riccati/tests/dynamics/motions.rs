@@ -32,6 +32,23 @@ fn closed_forms_agree_with_the_exponential_however_small_the_turn() {
 }
 
 #[test]
+fn the_integral_of_the_linear_flow_grows_by_the_linear_flow() {
+    let parameters = [[0.3, 1.4, -0.2, 0.1, 5.0, -3.0], [-0.4, 2.2, -1.9, 0.6, 0.0, 1.0]];
+    for model in [MotionModel::Rigid, MotionModel::Similarity, MotionModel::Affine] {
+        for parameters in parameters {
+            let parameters = &parameters[..model.parameter_count()];
+            let along = |seconds: f64| model.integrated_linear_flow(parameters, seconds);
+            assert_eq!(along(0.0), Matrix2::zeros());
+            for seconds in [-0.7, 0.01, 0.9, 2.0] {
+                let step = 1e-3;
+                let grown = (along(seconds + step) - along(seconds - step)) / (2.0 * step);
+                assert_relative_eq!(grown, model.linear_flow(parameters, seconds), epsilon = 1e-4);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_tiny_turn_bends_the_path_by_half_omega_t_squared() {
     for omega in [1e-3, 1e-7, 1e-9, 1e-11, 1e-15] {
         let shift = RigidMotion { omega, b1: 1.0, b2: 0.0 }.flow(1.0).matrix().column(2).into_owned();
