@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod adaptive_progress;
+mod fitted_outline;
 mod followed_pose;
 mod frame_ranges;
 mod matched_frame;
@@ -47,9 +48,11 @@ mod regular_map;
 mod rejection;
 mod settling;
 pub mod tracker;
+mod truth;
 mod warning;
 
 pub use adaptive_progress::AdaptiveProgress;
+pub use fitted_outline::{CurveDeviations, CurveParts, FittedOutline};
 pub use freeform_curve_fit as curve_fit;
 pub use freeform_decompose as decompose;
 pub use freeform_estimate as estimate;
@@ -59,7 +62,7 @@ pub use freeform_outline_io as outline_io;
 pub use freeform_recognise as recognise;
 pub use freeform_riccati as riccati;
 pub use freeform_sim_camera as sim_camera;
-pub use number::significant;
+pub use number::{short, significant, with_deviation};
 pub use pipeline::{FrameResult, Pipeline};
 pub use pipeline_error::PipelineError;
 pub use pipeline_settings::PipelineSettings;
@@ -67,6 +70,7 @@ pub use plane_by_outline::{PlaneByOutline, PlaneByOutlineError, plane_by_outline
 pub use rectification::{Rectification, RectifyError};
 pub use rejection::with_causes;
 pub use tracker::{Tracker, TrackerSettings};
+pub use truth::{SimulatedMotion, Truth};
 pub use warning::Warning;
 
 #[cfg(doctest)]

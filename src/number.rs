@@ -20,9 +20,39 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
+/// Most digits of a value with a standard deviation.
+const MOST_DIGITS: i32 = 8;
+
+/// A value to the place of the second digit of its standard deviation, and the standard deviation with two digits. The value has six digits
+/// where the standard deviation tells no place.
+///
+/// ```
+/// use freeform_motion::with_deviation;
+///
+/// assert_eq!(with_deviation(1.2345678, 0.00012), ["1.23457", "0.00012"]);
+/// ```
+#[must_use]
+pub fn with_deviation(value: f64, deviation: f64) -> [String; 2] {
+    let exponent = |number: f64| number.abs().log10().floor() as i32;
+    let is_proper = deviation.is_finite() && deviation > 0.0 && value != 0.0;
+    let digits = if is_proper { (exponent(value) - exponent(deviation) + 2).clamp(1, MOST_DIGITS) as usize } else { 6 };
+    [significant(value, digits), significant(deviation, 2)]
+}
+
+/// A number with at most six significant digits and no zeros at its end.
+///
+/// ```
+/// assert_eq!(freeform_motion::short(0.2 / 3.0), "0.0666667");
+/// ```
+#[must_use]
+pub fn short(value: f64) -> String {
+    let text = significant(value, 6);
+    text.parse::<f64>().map_or(text, |rounded| rounded.to_string())
+}
+
 #[cfg(test)]
 mod tests {
-    use super::significant;
+    use super::{short, significant, with_deviation};
 
     #[test]
     fn numbers_keep_their_significant_digits() {
@@ -38,5 +68,25 @@ mod tests {
         ] {
             assert_eq!(significant(value, digits), text);
         }
+    }
+
+    #[test]
+    fn a_value_has_the_places_of_its_deviation() {
+        for (value, deviation, texts) in [
+            (1.234_567_8, 0.000_12, ["1.23457", "0.00012"]),
+            (-0.003_735_14, 0.026, ["-0.004", "0.026"]),
+            (57.9165, 6.3, ["57.9", "6.3"]),
+            (12_345.678, 250.0, ["12346", "250"]),
+            (3.0, 1e-12, ["3.0000000", "1.0e-12"]),
+            (2.5, 0.0, ["2.50000", "0"]),
+            (0.0, 0.1, ["0", "0.10"]),
+        ] {
+            assert_eq!(with_deviation(value, deviation), texts);
+        }
+    }
+
+    #[test]
+    fn a_short_number_has_no_zeros_at_its_end() {
+        assert_eq!([0.2 / 3.0, 5.0, 0.0, 120.25].map(short), ["0.0666667", "5", "0", "120.25"]);
     }
 }

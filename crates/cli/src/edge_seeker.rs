@@ -4,12 +4,12 @@ use std::rc::Rc;
 
 use freeform_motion::Tracker;
 use freeform_motion::curve_fit::{Outline, Piece};
-use freeform_motion::outline_io::{EdgeProfile, readable};
+use freeform_motion::outline_io::{EdgeProfile, SourcePicture, readable};
 use freeform_motion::tracker::{ExpectedOutline, Followed, FrameRanges, Recorded};
 use nalgebra::Point2;
 
 use crate::reader::Event;
-use crate::seen::{Item, SeenIn};
+use crate::seen::Item;
 
 /// Pictures in a row that an object is looked for in by its edges alone: half a second at 30 frames/s. What is looked for where it is expected, and
 /// found there, confirms what was expected.
@@ -53,11 +53,11 @@ impl Known {
     fn seek(
         &self,
         name: &str,
-        seen_in: &SeenIn,
+        seen_in: &SourcePicture,
         expected: &ExpectedOutline,
         taken: &[(String, Outline)],
     ) -> Option<Outline> {
-        let SeenIn { frame, picture, grid, .. } = seen_in;
+        let SourcePicture { frame, picture, grid, .. } = seen_in;
         if frame.saturating_sub(self.traced) > MOST_IN_A_ROW {
             return None;
         }
@@ -126,7 +126,7 @@ impl EdgeSeeker {
     }
 
     /// Looks for the objects that nothing was found of in a picture. What is found comes in the order of their names.
-    pub(crate) fn seek_others(&mut self, tracker: &mut Tracker, seen_in: &Rc<SeenIn>) -> Vec<Event> {
+    pub(crate) fn seek_others(&mut self, tracker: &mut Tracker, seen_in: &Rc<SourcePicture>) -> Vec<Event> {
         self.begin(seen_in.frame);
         let is_missing = |known: &Known| known.looked_for != Some(seen_in.frame) && known.profile.is_known();
         let mut missing: Vec<(&String, &mut Known)> =

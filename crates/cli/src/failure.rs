@@ -1,5 +1,6 @@
 use std::fmt::Display;
 use std::io::{self, Write as _};
+use std::path::Path;
 use std::process::ExitCode;
 
 use freeform_experiments::ExperimentError;
@@ -61,6 +62,11 @@ impl Failure {
         say(reason);
         ExitCode::from(status)
     }
+}
+
+/// An error of the system in reading or writing a file.
+pub(crate) fn file_failure(path: &Path, error: &io::Error) -> Failure {
+    Failure::unusable(format_args!("{}: {}", path.display(), plain(error)))
 }
 
 /// An error, which may be one of the system, without the number that Rust adds to those.

@@ -3,6 +3,7 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
+use freeform_motion::SimulatedMotion;
 use freeform_motion::outline_io::{
     OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind, TableFormat,
     VerticalAxis, picture_files,
@@ -13,7 +14,6 @@ use crate::awaited::Awaited;
 use crate::failure::{Failure, note, plain, warn};
 use crate::picture_input::{ASSUMED_RATE, PictureInput};
 use crate::seen::Item;
-use crate::truth::SimulatedMotion;
 
 /// Options for pictures that hold for polygons in pictures too.
 const OPTIONS_OF_POLYGONS: [&str; 4] = ["--fps", "--pixel-size", "--y-up", "--y-down"];

@@ -1,4 +1,5 @@
 //! Pictures that gave no outline.
+use freeform_drawing::PicturesLeftOut;
 use freeform_motion::tracker::FrameRanges;
 
 use crate::seen::{Missing, MissingKind};
@@ -23,6 +24,11 @@ impl LeftOut {
         if self.pictures.len() < PICTURES_KEPT {
             self.pictures.push((missing.frame, missing.reason.clone()));
         }
+    }
+
+    /// As a report tells it.
+    pub(crate) fn told(&self) -> PicturesLeftOut<'_> {
+        PicturesLeftOut { count: self.count, first: &self.pictures }
     }
 }
 

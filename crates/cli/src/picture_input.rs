@@ -2,30 +2,31 @@
 use std::collections::VecDeque;
 use std::io::{BufRead, Cursor, Read as _};
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 use std::thread::available_parallelism;
 
+use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
-    Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineFrame, PictureError, PictureErrorKind,
-    PictureFrame, PictureOutlines, PictureSequence, PictureSettings, PixelAspectCheck, Ring, SequenceSettings,
-    Smoothing, Threshold, TraceError, TraceSettings, TracedOutline, read_picture_channel,
+    Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineFrame, OutlineUncertainty,
+    PictureError, PictureErrorKind, PictureFrame, PictureOutlines, PicturePreview, PictureSequence, PictureSettings,
+    PixelAspectCheck, Ring, SequenceSettings, Smoothing, SourcePicture, Threshold, TraceError, TraceSettings,
+    TracedOutline, TracingEvidence, read_picture_channel,
 };
 use freeform_motion::riccati::CameraScale;
+use freeform_motion::short;
+use image::ImageFormat;
 
 use crate::args::{PictureOptions, through_ffmpeg};
 use crate::awaited::Awaited;
-use crate::candidate_sheet::draw_candidates;
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::input::Waiting;
 use crate::interrupt;
-use crate::meaning_of_b::MeaningOfB;
-use crate::outline_error::OutlineError;
-use crate::output::short;
-use crate::seen::{Item, Missing, MissingKind, SeenIn};
-use crate::tracing_choice::{Chosen, Preview, choose};
+use crate::output::WholeFile;
+use crate::seen::{Item, Missing, MissingKind};
+use crate::tracing_choice::{Chosen, choose, options_of};
 
 /// Pictures that the running median is taken of where no other number is given.
 const MEDIAN_SIZE: u8 = 25;
@@ -58,7 +59,7 @@ pub(crate) struct PictureInput {
     chosen: Option<Chosen>,
     /// Whether nothing was given or chosen, as a stream is not to be waited for.
     is_traced_unseen: bool,
-    outline_error: Option<OutlineError>,
+    outline_uncertainty: Option<OutlineUncertainty>,
     /// Of the first object.
     aspect: PixelAspectCheck,
     /// Objects of the present picture that have not been handed on.
@@ -101,7 +102,7 @@ impl PictureInput {
                 .map_err(|error| Failure::unusable(described(&error, paths)))
         };
         let mut sequence = open(options)?;
-        let preview = Preview::of_paths(paths, &sequence);
+        let preview = PicturePreview::of_paths(paths, &sequence);
         let base = picture_settings(options, sequence.pixel_aspect(), None)?;
         base.check().map_err(Failure::unusable)?;
         let (options, chosen) = choose(&preview, &base, options);
@@ -150,7 +151,7 @@ impl PictureInput {
             interrupt::put_off();
         }
         let beginning: Arc<[u8]> = beginning.into();
-        let preview = Preview::Beginning(Arc::clone(&beginning));
+        let preview = PicturePreview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
         let (options, chosen) = choose(&preview, &settings, options);
         draw_candidates(options.candidates.as_deref(), &preview, &settings, chosen.as_ref())?;
@@ -163,7 +164,7 @@ impl PictureInput {
 
     fn of(
         sequence: PictureSequence,
-        preview: Option<Preview>,
+        preview: Option<PicturePreview>,
         inputs: Vec<PathBuf>,
         (options, chosen): (PictureOptions, Option<Chosen>),
     ) -> Result<Self, Failure> {
@@ -174,7 +175,8 @@ impl PictureInput {
             ));
         }
         let trace = settings.trace;
-        let outline_error = preview.and_then(|preview| preview.outline_error(&settings, options.channel().channel()));
+        let outline_uncertainty =
+            preview.and_then(|preview| preview.outline_uncertainty(&settings, options.channel().channel()));
         let outlines = PictureOutlines::new(sequence, settings).map_err(Failure::unusable)?;
         let (waiting, found) = (VecDeque::new(), Found::default());
         Ok(Self {
@@ -184,7 +186,7 @@ impl PictureInput {
             trace,
             chosen,
             is_traced_unseen: false,
-            outline_error,
+            outline_uncertainty,
             aspect: PixelAspectCheck::default(),
             waiting,
             frames: 0,
@@ -198,8 +200,8 @@ impl PictureInput {
     }
 
     /// How far the outlines may lie off; `None` where nothing tells.
-    pub(crate) fn outline_error(&self) -> Option<OutlineError> {
-        self.outline_error
+    pub(crate) fn outline_uncertainty(&self) -> Option<OutlineUncertainty> {
+        self.outline_uncertainty
     }
 
     /// What should be known of how the pictures are traced.
@@ -261,7 +263,7 @@ impl PictureInput {
 
     /// Which velocity b is in these pictures.
     pub(crate) fn meaning_of_b(&self, scale: Option<CameraScale>) -> MeaningOfB {
-        MeaningOfB::in_pictures(&self.options, self.trace.pixel_aspect, scale)
+        MeaningOfB::in_pictures(self.options.y_down, self.options.pixel_size, self.trace.pixel_aspect, scale)
     }
 
     /// How outlines were found, as a report lists it: the options, and what those that were left open came to.
@@ -318,7 +320,8 @@ impl PictureInput {
                 }
                 self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
                 let PictureFrame { frame, time, file, picture } = traced.frame;
-                let seen_in = Rc::new(SeenIn { frame, time, grid: self.trace.pixel_grid(picture.height()), picture });
+                let seen_in =
+                    Rc::new(SourcePicture { frame, time, grid: self.trace.pixel_grid(picture.height()), picture });
                 match traced.objects {
                     Err(error) => {
                         let reason = format!("{file}: frame {frame}: {error}");
@@ -347,6 +350,22 @@ impl Iterator for PictureInput {
         }
         self.waiting.pop_front()
     }
+}
+
+/// Draws the best ways of a choice where that is asked for and there was one.
+fn draw_candidates(
+    path: Option<&Path>,
+    preview: &PicturePreview,
+    base: &PictureSettings,
+    chosen: Option<&Chosen>,
+) -> Result<(), Failure> {
+    let Some((path, Chosen { choice, .. })) = path.zip(chosen) else { return Ok(()) };
+    let name = |candidate: &TracingEvidence| options_of(&candidate.tracing).join(" ");
+    let sheet = candidate_sheet(preview, base, &choice.candidates, name);
+    let mut bytes = Cursor::new(Vec::new());
+    let written = sheet.write_to(&mut bytes, ImageFormat::Png);
+    written.map_err(|error| Failure::unusable(format_args!("{}: {error}", path.display())))?;
+    WholeFile::write_bytes(path, bytes.get_ref())
 }
 
 /// Bytes that so many pictures of an uncompressed video have at most, by its header; `None` where it is no such video.
@@ -404,7 +423,7 @@ fn sequence_settings(options: &PictureOptions) -> SequenceSettings {
 fn picture_settings(
     options: &PictureOptions,
     aspect: Option<f64>,
-    preview: Option<&Preview>,
+    preview: Option<&PicturePreview>,
 ) -> Result<PictureSettings, Failure> {
     let channel = options.channel().channel();
     let is_median = options.background.as_ref().is_some_and(|path| path.as_os_str() == "median");

@@ -2,6 +2,7 @@
 use std::rc::Rc;
 
 use freeform_motion::Tracker;
+use freeform_motion::outline_io::SourcePicture;
 use freeform_motion::tracker::{Attendance, Followed, ObjectResult, ReadAhead, Recorded, Sighting};
 
 use crate::edge_seeker::EdgeSeeker;
@@ -10,11 +11,11 @@ use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
 use crate::progress::{Progress, would_stand_in_output};
-use crate::seen::{Item, Missing, SeenIn};
+use crate::seen::{Item, Missing};
 
 /// What comes of reading on: a frame of an object, as far as it could be read, with the picture that it was seen in, if it was; or a
 /// picture without an outline.
-pub(crate) type Event = Followed<Option<Rc<SeenIn>>, Missing>;
+pub(crate) type Event = Followed<Option<Rc<SourcePicture>>, Missing>;
 
 /// An object of a stream that has left.
 pub(crate) struct Left {

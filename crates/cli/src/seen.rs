@@ -2,27 +2,16 @@
 use std::io::ErrorKind;
 use std::mem::{Discriminant, discriminant};
 use std::rc::Rc;
-use std::sync::Arc;
 
-use freeform_motion::curve_fit::{OutlineError, PixelGrid};
-use freeform_motion::outline_io::{GrayImage, PictureErrorKind, TraceError};
+use freeform_motion::curve_fit::OutlineError;
+use freeform_motion::outline_io::{PictureErrorKind, SourcePicture, TraceError};
 use freeform_motion::tracker::Recorded;
 
 use crate::failure::Failure;
 
-/// A picture that outlines were seen in.
-#[derive(Debug)]
-pub(crate) struct SeenIn {
-    pub(crate) frame: u64,
-    /// In seconds.
-    pub(crate) time: f64,
-    pub(crate) picture: Arc<GrayImage>,
-    pub(crate) grid: PixelGrid,
-}
-
 /// The next thing in an input: an outline, with the picture that it was seen in, if it was; or a picture without an object, or one that
 /// cannot be read.
-pub(crate) type Item = Recorded<Option<Rc<SeenIn>>, Missing>;
+pub(crate) type Item = Recorded<Option<Rc<SourcePicture>>, Missing>;
 
 /// A picture without an outline.
 #[derive(Debug)]
@@ -34,7 +23,7 @@ pub(crate) struct Missing {
     pub(crate) hint: Option<&'static str>,
     pub(crate) kind: MissingKind,
     /// The picture, if it could be read.
-    pub(crate) seen_in: Option<Rc<SeenIn>>,
+    pub(crate) seen_in: Option<Rc<SourcePicture>>,
 }
 
 /// The kind of reason, without its numbers.

@@ -44,12 +44,12 @@
 //! ```
 pub mod baseline;
 mod error;
-pub mod figure;
 pub mod monte_carlo;
 pub mod paper;
 pub mod stress;
 
 pub use error::ExperimentError;
+pub use freeform_drawing::figure;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -20,6 +20,7 @@
 //! - [`OutlineFile`] reads Parquet, and polygons of COCO, labelme and TrackMate.
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
+//! - [`PicturePreview`] looks at pictures before they are read, and [`choose_tracing`] chooses how they are traced.
 //! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
 //! - [`OutlineColumns`] are outlines as columns of a table in memory with one row per point, [`OutlineLists`] with one row per outline.
 //! - [`read_shape`] reads one closed outline from either.
@@ -87,6 +88,7 @@ mod picture;
 mod picture_error;
 mod picture_files;
 mod picture_outlines;
+mod picture_preview;
 mod picture_sequence;
 mod pixel_aspect;
 mod polygon_error;
@@ -95,6 +97,7 @@ mod ring;
 mod rounding;
 mod segment;
 mod shape;
+mod source_picture;
 mod table_keys;
 mod threshold;
 mod tiff_pages;
@@ -130,12 +133,14 @@ pub use picture::{decode_picture, read_picture, read_picture_channel};
 pub use picture_error::{PictureError, PictureErrorKind, TraceError};
 pub use picture_files::{has_picture_extension, picture_files};
 pub use picture_outlines::{PictureOutlines, PictureSettings, TracedFrame};
+pub use picture_preview::{OutlineUncertainty, PicturePreview};
 pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings};
 pub use pixel_aspect::PixelAspectCheck;
 pub use polygon_error::PolygonError;
 pub use polygons::{PolygonSettings, VerticalAxis};
 pub use ring::Ring;
 pub use shape::read_shape;
+pub use source_picture::SourcePicture;
 pub use table_keys::ColumnsError;
 pub use threshold::Threshold;
 pub use trace::{TracedOutline, is_two_valued, trace_mask, trace_objects};

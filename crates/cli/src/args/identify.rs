@@ -6,6 +6,7 @@ use clap::error::ErrorKind;
 use clap::{Arg, Args, Command, ValueEnum};
 use freeform_motion::curve_fit::{Degree, FitSettings};
 use freeform_motion::outline_filter::{Dynamics, FilterSettings};
+use freeform_motion::outline_io::OutlineUncertainty;
 use freeform_motion::riccati::{CameraScale, MotionModel, ProjectiveMotion};
 use freeform_motion::tracker::{Method, MethodSettings, MotionFamily};
 use freeform_motion::{Rectification, TrackerSettings};
@@ -15,7 +16,6 @@ use super::pictures::{PictureOptions, picture_inputs};
 use super::space::PerspectiveArgs;
 use super::values::{GivenRectification, camera_scale, degree, length, motion, rectification};
 use crate::failure::Failure;
-use crate::outline_error::OutlineError;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -104,7 +104,7 @@ pub(crate) struct IdentifyArgs {
 
 impl IdentifyArgs {
     /// The settings of a tracker with all options, for outlines that may lie off as pictures say.
-    pub(crate) fn tracker_settings(&self, by_pictures: Option<OutlineError>) -> Result<TrackerSettings, Failure> {
+    pub(crate) fn tracker_settings(&self, by_pictures: Option<OutlineUncertainty>) -> Result<TrackerSettings, Failure> {
         let mut settings = match by_pictures {
             Some(error) => self.options.tracker_settings_for(error),
             None => self.options.tracker_settings(),
@@ -258,12 +258,12 @@ impl TrackOptions {
 
     /// Settings of the tracker for outlines whose edges are as uncertain as pictures say, in the unit of the pictures. Options that are given
     /// go before it, and so does another plane, whose unit is another.
-    pub(crate) fn tracker_settings_for(&self, by_pictures: OutlineError) -> TrackerSettings {
+    pub(crate) fn tracker_settings_for(&self, by_pictures: OutlineUncertainty) -> TrackerSettings {
         let mut options = self.clone();
         if self.edge_uncertainty.is_none() && self.mask_pixel.is_none() && self.rectify.is_none() {
             match by_pictures {
-                OutlineError::Edges(length) => options.edge_uncertainty = Some(length),
-                OutlineError::MaskPixel(length) => options.mask_pixel = Some(length),
+                OutlineUncertainty::Edges(length) => options.edge_uncertainty = Some(length),
+                OutlineUncertainty::MaskPixel(length) => options.mask_pixel = Some(length),
             }
         }
         options.tracker_settings()

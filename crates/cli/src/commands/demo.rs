@@ -2,25 +2,24 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use freeform_motion::outline_io::{OutlineFrame, TableFormat, WriteError};
+use freeform_drawing::{
+    Findings, Histories, MeaningOfB, OBJECTS_PLAYED, PicturesLeftOut, Purpose, Report, fit_figure, parameter_figure,
+    write_report,
+};
+use freeform_motion::curve_fit::Outline;
+use freeform_motion::outline_io::{OutlineFrame, TableFormat};
+use freeform_motion::riccati::CameraScale;
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 use freeform_motion::tracker::{Method, ObjectResult, Observation};
-use freeform_motion::{PipelineSettings, Tracker};
+use freeform_motion::{FittedOutline, PipelineSettings, SimulatedMotion, Tracker, Truth};
 
-use super::identify::{file_failure, fit_settings, settings};
-use super::simulate::{SequenceError, write_sequence};
+use super::listed_settings::{fit_settings, settings, version};
+use super::simulate::write_sequence;
 use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, PerspectiveArgs, TrackOptions};
 use crate::command_line::command_line;
-use crate::failure::{Failure, plain, warn};
-use crate::fitted_outline::FittedOutline;
-use crate::history::{Histories, OBJECTS_PLAYED, Purpose};
-use crate::left_out::LeftOut;
-use crate::meaning_of_b::MeaningOfB;
-use crate::output::{
-    Findings, Report, Sink, TraceWriter, WholeFile, fit_figure, parameter_figure, write_identify_table, write_report,
-};
-use crate::overlay::CurveFitter;
-use crate::truth::{SimulatedMotion, Truth};
+use crate::failure::{Failure, file_failure, plain, warn};
+use crate::output::{Sink, TraceWriter, WholeFile, write_identify_table};
+use crate::overlay::curves;
 
 /// Length of the sequence in seconds: the time that the paper's figures show.
 const SECONDS: f64 = 30.0;
@@ -38,30 +37,56 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
     let folder = &args.out;
     fs::create_dir_all(folder)
         .map_err(|error| Failure::unusable(format_args!("{}: {}", folder.display(), plain(&error))))?;
+    let simulator = flight_bird()?;
+    let scale = simulator.scene().camera().scale();
+    let truth = SimulatedMotion::of(&simulator).seen_at(Some(scale));
+    let mut filter = Identification::new(options(IdentifyMethod::Filter, scale), &folder.join(TRACE))?;
+    let mut adaptive = Identification::new(options(IdentifyMethod::Adaptive, scale), &folder.join(TRACE_ADAPTIVE))?;
+    let first = identify(&simulator, &folder.join(OUTLINES), &mut filter, &mut adaptive)?;
+    let filter = filter.finish(&folder.join(PARAMETERS), &truth)?;
+    let adaptive = adaptive.finish(&folder.join(PARAMETERS_ADAPTIVE), &truth)?;
+    WholeFile::write(&folder.join(CURVE), &fit_figure(first.as_slice()))?;
+    let b = MeaningOfB::in_coordinates(Some(scale));
+    report(&folder.join(REPORT), &simulator, [&filter, &adaptive], &truth, &b)?;
+    let mut sink = Sink::stdout();
+    let printed = print(&mut sink, [&filter, &adaptive], &truth, &b, folder);
+    printed.map_err(|error| sink.failure(&error))?;
+    sink.finish()
+}
+
+/// The simulation of the paper's first experiment.
+fn flight_bird() -> Result<Simulator, Failure> {
     let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).map_err(Failure::unusable)?;
-    let scale = scene.camera().scale();
     let length = SequenceLength::Seconds(SECONDS);
     let camera = Settings { fps: 30.0, length, noise: PaperExperiment::NOISE, ..Settings::default() };
-    let simulator = Simulator::new(scene, camera).map_err(Failure::unusable)?;
-    let truth = SimulatedMotion::of(&simulator).seen_at(Some(scale));
-    let by_filter = TrackOptions {
+    Simulator::new(scene, camera).map_err(Failure::unusable)
+}
+
+/// Options to identify a rigid motion by a method.
+fn options(method: IdentifyMethod, scale: CameraScale) -> TrackOptions {
+    TrackOptions {
         motion: MotionChoice::Rigid,
         perspective: PerspectiveArgs::default(),
-        method: IdentifyMethod::Filter,
+        method,
         degree: None,
         scale: Some(scale),
         rectify: None,
         dynamics: DynamicsChoice::Auto,
         edge_uncertainty: None,
         mask_pixel: None,
-    };
-    let by_adaptive_law = TrackOptions { method: IdentifyMethod::Adaptive, ..by_filter.clone() };
+    }
+}
 
-    let mut filter = Identification::new(by_filter.clone(), &folder.join(TRACE))?;
-    let mut adaptive = Identification::new(by_adaptive_law.clone(), &folder.join(TRACE_ADAPTIVE))?;
-    let mut outlines = WholeFile::create(&folder.join(OUTLINES))?;
+/// Writes the outlines and has both methods take them. Returns the first outline with the curve that the adaptive law fits to it.
+fn identify(
+    simulator: &Simulator,
+    path: &Path,
+    filter: &mut Identification,
+    adaptive: &mut Identification,
+) -> Result<Option<(FittedOutline, Outline)>, Failure> {
+    let mut outlines = WholeFile::create(path)?;
     let mut first = None;
-    let written = write_sequence(&mut outlines, TableFormat::Csv, &simulator, |frame| {
+    let written = write_sequence(&mut outlines, TableFormat::Csv, simulator, |frame| {
         filter.take(frame)?;
         let observation = adaptive.take(frame)?;
         if let (None, Some(fit)) = (&first, observation.fit) {
@@ -69,43 +94,43 @@ pub(crate) fn run(args: &DemoArgs) -> Result<(), Failure> {
         }
         Ok(())
     });
-    written.map_err(|error| match error {
-        SequenceError::Write(WriteError::Io(error)) => outlines.failure(&error),
-        SequenceError::Write(error) => Failure::unusable(error),
-        SequenceError::Other(failure) => failure,
-    })?;
+    written.map_err(|error| error.into_failure(|error| outlines.failure(error)))?;
     outlines.finish()?;
-    let filter = filter.finish(&folder.join(PARAMETERS), &truth)?;
-    let adaptive = adaptive.finish(&folder.join(PARAMETERS_ADAPTIVE), &truth)?;
-    WholeFile::write(&folder.join(CURVE), &fit_figure(first.as_slice()))?;
+    Ok(first)
+}
 
-    let mut listed = settings(&by_filter, "simulated: the flight bird of the paper");
-    listed.push(("For comparison", Method::from(by_adaptive_law.method).to_string()));
+/// Writes the report of both methods, the filter first.
+fn report(
+    path: &Path,
+    simulator: &Simulator,
+    found: [&Found; 2],
+    truth: &Truth,
+    b: &MeaningOfB,
+) -> Result<(), Failure> {
+    let [filter, adaptive] = found.map(|found| &found.options);
+    let mut listed = settings(filter, "simulated: the flight bird of the paper");
+    listed.push(("For comparison", Method::from(adaptive.method).to_string()));
     listed.extend(fit_settings(&PipelineSettings::default().fit));
     listed.extend([
         ("Frames per second", simulator.settings().fps.to_string()),
         ("Points on the outline", simulator.settings().points.to_string()),
         ("Noise on each coordinate", simulator.settings().noise.to_string()),
         ("Seed", simulator.settings().seed.to_string()),
+        version(),
     ]);
-    let b = MeaningOfB::in_coordinates(Some(scale));
     let report = Report {
         title: "The flight bird: motion from nothing but its outlines".to_owned(),
         command: command_line(),
         settings: listed,
         meaning_of_b: b.clone(),
-        findings: [&filter, &adaptive].map(Found::findings).into(),
-        truth: Some(&truth),
+        findings: found.map(Found::findings).into(),
+        truth: Some(truth),
         no_motion: None,
         read_error: None,
-        left_out: &LeftOut::default(),
+        left_out: PicturesLeftOut::default(),
+        all_poses: None,
     };
-    WholeFile::create(&folder.join(REPORT))?.finish_by(|file| write_report(file, &report))?;
-
-    let mut sink = Sink::stdout();
-    let printed = print(&mut sink, [&filter, &adaptive], &truth, &b, folder);
-    printed.map_err(|error| sink.failure(&error))?;
-    sink.finish()
+    WholeFile::create(path)?.finish_by(|file| write_report(file, &report))
 }
 
 fn print(
@@ -130,12 +155,12 @@ struct Identification {
     tracker: Tracker,
     trace: TraceWriter<WholeFile>,
     trace_path: PathBuf,
-    curves: CurveFitter,
     histories: Histories,
 }
 
 /// What one method found.
 struct Found {
+    options: TrackOptions,
     results: Vec<ObjectResult>,
     histories: Histories,
 }
@@ -146,29 +171,28 @@ impl Identification {
         let tracker = tracker.with_known_outlines(OBJECTS_PLAYED);
         let trace = TraceWriter::new(WholeFile::create(trace_path)?, options.motion.family(), None)
             .map_err(|error| file_failure(trace_path, &error))?;
-        let curves = CurveFitter::new(&options)?;
-        let histories = Histories::new(Purpose::Report(None));
-        Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), curves, histories })
+        let histories = Histories::new(Purpose::Report(None), curves(&options)?);
+        Ok(Self { options, tracker, trace, trace_path: trace_path.to_owned(), histories })
     }
 
     fn take(&mut self, frame: &OutlineFrame) -> Result<Observation, Failure> {
         let observation = self.tracker.push(frame);
         self.trace.write(&observation).map_err(|error| file_failure(&self.trace_path, &error))?;
-        self.histories.take(&observation, Some(frame), &mut self.curves);
+        self.histories.take(&observation, Some(frame));
         Ok(observation)
     }
 
     /// Writes the trace and the figure, and prints the warnings.
     fn finish(self, figure: &Path, truth: &Truth) -> Result<Found, Failure> {
-        let Self { options, tracker, trace, trace_path, mut histories, .. } = self;
+        let Self { options, tracker, trace, trace_path, mut histories } = self;
         histories.close();
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
-        WholeFile::write(figure, &parameter_figure(&histories.list, options.motion.family(), Some(truth)))?;
+        WholeFile::write(figure, &parameter_figure(&histories, options.motion.family(), Some(truth)))?;
         let results = tracker.results();
         for warning in results.iter().flat_map(|result| &result.warnings) {
             warn(&format!("{} method: {warning}", tracker.settings().method()));
         }
-        Ok(Found { results, histories })
+        Ok(Found { options, results, histories })
     }
 }
 

@@ -1,5 +1,7 @@
 use std::io;
 
+use freeform_drawing::fit_figure;
+use freeform_motion::FittedOutline;
 use freeform_motion::curve_fit::{Fitter, Outline};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::tracker::FrameRanges;
@@ -7,12 +9,9 @@ use rayon::prelude::*;
 
 use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
-use crate::fitted_outline::FittedOutline;
 use crate::input::{Input, Waiting};
 use crate::left_out::MissingWarnings;
-use crate::output::{
-    FitsJson, Sink, WholeFile, fit_figure, refuse_overwriting, refuse_standard_output, write_fit_table,
-};
+use crate::output::{FitsJson, Sink, WholeFile, refuse_overwriting, refuse_standard_output, write_fit_table};
 use crate::progress::Progress;
 use crate::seen::{Item, Missing};
 
@@ -33,60 +32,14 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
     input.tell_tracing();
     let mut sink = Sink::stdout();
-    let mut collected = Collected::default();
-    let (mut first_missing, mut warnings) = (None::<Missing>, MissingWarnings::default());
-    let mut failure = None;
-    let mut frames = FrameRanges::default();
-    let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
-    let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
-    // A stream may stand still: what has come is not kept waiting.
-    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
-    let mut waiting = Batch { input: &name, fitter, items: Vec::new(), points: 0 };
-    for item in input {
-        progress.advance();
-        match item {
-            Ok(Item::Outline(frame, _)) => {
-                frames.add(frame.frame);
-                if is_wanted(frame.frame) {
-                    waiting.add(Ok(frame));
-                }
-            }
-            Ok(Item::NoOutline { reason, frame, .. }) => {
-                if is_wanted(frame) {
-                    waiting.add(Err(reason));
-                }
-            }
-            Ok(Item::Gap(missing)) => {
-                if is_wanted(missing.frame) {
-                    warnings.take(&missing).into_iter().for_each(|reason| waiting.add(Err(reason)));
-                    first_missing.get_or_insert(missing);
-                }
-            }
-            Err(error) => {
-                failure = Some(error);
-                break;
-            }
-        }
-        if waiting.items.len() >= at_once || waiting.points >= POINTS_AT_ONCE {
-            collected.take_all(args, &mut sink, waiting.fit()).map_err(|error| sink.failure(&error))?;
-        }
-    }
-    collected.take_all(args, &mut sink, waiting.fit()).map_err(|error| sink.failure(&error))?;
-    drop(progress);
-    let Collected { count, with_stray_parts, mut reasons, json, drawn } = collected;
-    if count == 0 {
-        let nothing = match (reasons.into_iter().next(), first_missing, args.frame) {
-            (_, Some(missing), _) => missing.into_failure(),
-            (Some(reason), None, _) => Failure::no_result(reason),
-            (None, None, Some(frame)) if !frames.is_empty() => {
-                Failure::no_result(format_args!("{name}: no frame {frame}, there are frames {frames}"))
-            }
-            (None, None, _) => Failure::no_result(format_args!("{name}: no outline in the file")),
-        };
+    let Fitted { collected, first_missing, warnings, frames, failure } = fit_all(args, input, fitter, &mut sink)?;
+    if collected.count == 0 {
+        let nothing = nothing_fitted(args, &name, &collected, first_missing, &frames);
         return Err(failure.unwrap_or(nothing));
     }
-    reasons.extend(warnings.finish());
-    reasons.iter().for_each(|reason| warn(reason));
+    collected.reasons.iter().for_each(|reason| warn(reason));
+    warnings.finish().for_each(|reason| warn(&reason));
+    let Collected { count, with_stray_parts, json, drawn, .. } = collected;
     if with_stray_parts > 0 {
         warn(&format!(
             "{with_stray_parts} of {count} curve(s) have a stray part away from the outline, where the polynomial is zero too"
@@ -102,17 +55,83 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     failure.map_or(printed, Err)
 }
 
+/// What has come of an input.
+#[derive(Default)]
+struct Fitted {
+    collected: Collected,
+    first_missing: Option<Missing>,
+    warnings: MissingWarnings,
+    /// All frames with an outline.
+    frames: FrameRanges,
+    /// What ended the reading before its time.
+    failure: Option<Failure>,
+}
+
+/// Fits the outlines of an input, as many side by side as need not be waited for, and prints the fits.
+fn fit_all(args: &FitArgs, input: Input, fitter: Fitter, sink: &mut Sink) -> Result<Fitted, Failure> {
+    let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
+    let is_wanted = |frame: u64| args.frame.is_none_or(|wanted| wanted == frame);
+    // A stream may stand still: what has come is not kept waiting.
+    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
+    let mut waiting = Batch { input: input.name.clone(), fitter, items: Vec::new(), points: 0 };
+    let mut fitted = Fitted::default();
+    for item in input {
+        progress.advance();
+        match item {
+            Ok(Item::Outline(frame, _)) => {
+                fitted.frames.add(frame.frame);
+                if is_wanted(frame.frame) {
+                    waiting.add(Ok(frame));
+                }
+            }
+            Ok(Item::NoOutline { reason, frame, .. }) if is_wanted(frame) => waiting.add(Err(reason)),
+            Ok(Item::Gap(missing)) if is_wanted(missing.frame) => {
+                fitted.warnings.take(&missing).into_iter().for_each(|reason| waiting.add(Err(reason)));
+                fitted.first_missing.get_or_insert(missing);
+            }
+            Ok(_) => {}
+            Err(error) => {
+                fitted.failure = Some(error);
+                break;
+            }
+        }
+        if waiting.items.len() >= at_once || waiting.points >= POINTS_AT_ONCE {
+            fitted.collected.take_all(args, sink, waiting.fit()).map_err(|error| sink.failure(&error))?;
+        }
+    }
+    fitted.collected.take_all(args, sink, waiting.fit()).map_err(|error| sink.failure(&error))?;
+    Ok(fitted)
+}
+
+/// Why there is no fit at all.
+fn nothing_fitted(
+    args: &FitArgs,
+    name: &str,
+    collected: &Collected,
+    first_missing: Option<Missing>,
+    frames: &FrameRanges,
+) -> Failure {
+    match (collected.reasons.first(), first_missing, args.frame) {
+        (_, Some(missing), _) => missing.into_failure(),
+        (Some(reason), None, _) => Failure::no_result(reason),
+        (None, None, Some(frame)) if !frames.is_empty() => {
+            Failure::no_result(format_args!("{name}: no frame {frame}, there are frames {frames}"))
+        }
+        (None, None, _) => Failure::no_result(format_args!("{name}: no outline in the file")),
+    }
+}
+
 /// Outlines that wait to be fitted, and why others are none, in their order.
-struct Batch<'a> {
+struct Batch {
     /// Name of the input, for messages.
-    input: &'a str,
+    input: String,
     fitter: Fitter,
     items: Vec<Result<OutlineFrame, String>>,
     /// Points of the outlines.
     points: usize,
 }
 
-impl Batch<'_> {
+impl Batch {
     fn add(&mut self, item: Result<OutlineFrame, String>) {
         self.points += item.as_ref().map_or(0, |frame| frame.outline.point_count());
         self.items.push(item);

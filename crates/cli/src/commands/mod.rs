@@ -4,6 +4,8 @@ mod demo;
 mod evaluate;
 mod fit;
 mod identify;
+mod identify_files;
+mod listed_settings;
 mod man;
 mod outline;
 mod recognise;
@@ -13,8 +15,6 @@ mod simulate;
 mod simulate_pictures;
 mod stress;
 mod track;
-
-pub(crate) use recognise::RecognisedObject;
 
 use crate::args::{Cli, Command};
 use crate::failure::Failure;

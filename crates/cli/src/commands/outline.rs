@@ -1,12 +1,15 @@
-use freeform_motion::outline_io::{TableFormat, TableWriter, WriteError, WriterOptions};
+use std::path::Path;
 
+use freeform_drawing::{Drawn, Overlay};
+use freeform_motion::outline_io::{OutlineFrame, SourcePicture, TableFormat, TableWriter, WriteError, WriterOptions};
+
+use super::simulate::SequenceError;
 use crate::args::OutlineArgs;
 use crate::failure::{Failure, warn};
 use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
-use crate::output::{Sink, refuse_overwriting};
-use crate::overlay::{Drawn, Overlay};
+use crate::output::{DrawnPictures, Sink, refuse_overwriting};
 use crate::progress::Progress;
 use crate::seen::{Item, Missing};
 
@@ -29,38 +32,29 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     if !args.quiet {
         input.tell();
     }
-    let outcome = match trace_all(args, input, &mut sink)? {
-        Ok(outcome) => outcome,
-        Err(WriteError::Io(error)) => return Err(sink.failure(&error)),
-        Err(error) => return Err(Failure::unusable(error)),
-    };
-    match outcome {
-        Outcome { outlines: 0, first_missing: Some(missing) } => Err(missing.into_failure()),
-        Outcome { outlines: 0, first_missing: None } => Err(Failure::no_result(format_args!("{name}: no outline"))),
+    let traced = trace_all(args, input, &mut sink);
+    let traced = traced.map_err(|error| error.into_failure(|error| sink.failure(error)))?;
+    match (traced.outlines, traced.first_missing) {
+        (0, Some(missing)) => Err(missing.into_failure()),
+        (0, None) => Err(Failure::no_result(format_args!("{name}: no outline"))),
         _ => sink.finish(),
     }
 }
 
 /// What became of the pictures.
-struct Outcome {
+struct Traced {
     outlines: u64,
     first_missing: Option<Missing>,
 }
 
-type Written = Result<Outcome, WriteError>;
-
-fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Written, Failure> {
-    let mut overlay = args.overlay.as_deref().map(|path| Overlay::open(path, &args.inputs)).transpose()?;
-    let mut outcome = Outcome { outlines: 0, first_missing: None };
+/// Writes and draws every outline of an input, and says which pictures have none.
+fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Traced, SequenceError> {
+    let drawings = args.overlay.as_deref().map(|path| Drawings::open(path, args, &input));
+    let mut drawings = drawings.transpose()?;
     let progress = Progress::of_frames(input.frame_count(), args.quiet || sink.is_disturbed_by_progress());
     let single = input.frame_count() == Some(1);
-    let (mut writer, mut sink) = (None, Some(sink));
-    // What a file holds is not known before all of it has been read.
-    let object_column = input.pictures().is_none_or(|pictures| pictures.options().follows_all());
-    let contour_column = input.pictures().is_none_or(|pictures| pictures.options().traces_contours());
-    // A copy of a table says no less than the table.
-    let deviation_column = args.deviations || input.has_deviation_column();
-    let comments = std::mem::take(&mut input.comments);
+    let mut table = Table::new(args, &mut input, sink);
+    let mut first_missing = None;
     let mut warnings = MissingWarnings::default();
     for item in input.by_ref() {
         // What came after Ctrl-C may be cut short.
@@ -69,29 +63,10 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
         }
         progress.advance();
         match item? {
-            Item::Outline(frame, seen_in) => {
-                // The header waits for the first outline, so that nothing is printed where there is none.
-                if let Some(sink) = sink.take() {
-                    let options = WriterOptions {
-                        arc_column: true,
-                        object_column,
-                        contour_column,
-                        deviation_column,
-                        resolution: None,
-                    };
-                    match TableWriter::new(sink, TableFormat::of(&args.output), options, &comments) {
-                        Ok(new) => writer = Some(new),
-                        Err(error) => return Ok(Err(error)),
-                    }
-                }
-                if let Some(Err(error)) = writer.as_mut().map(|writer| writer.write(&frame)) {
-                    return Ok(Err(error));
-                }
-                outcome.outlines += 1;
-                if let (Some(overlay), Some(seen_in)) = (&mut overlay, &seen_in) {
-                    let name = object_column.then_some(frame.object.as_str());
-                    let drawn = Drawn { outline: &frame.outline, name, accepted: true, fit: None, generator: None };
-                    overlay.draw(seen_in, &drawn)?;
+            Item::Outline(frame, source) => {
+                table.write(&frame)?;
+                if let (Some(drawings), Some(source)) = (&mut drawings, &source) {
+                    drawings.draw(source, &frame)?;
                 }
             }
             Item::NoOutline { reason, .. } if !args.quiet => progress.pause(|| warn(&reason)),
@@ -101,10 +76,10 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
                 if let Some(warning) = warnings.take(&missing).filter(|_| !args.quiet && !single) {
                     progress.pause(|| warn(&warning));
                 }
-                if let (Some(overlay), Some(seen_in)) = (&mut overlay, &missing.seen_in) {
-                    overlay.draw_nothing(seen_in)?;
+                if let (Some(drawings), Some(source)) = (&mut drawings, &missing.seen_in) {
+                    drawings.draw_nothing(source)?;
                 }
-                outcome.first_missing.get_or_insert(missing);
+                first_missing.get_or_insert(missing);
             }
         }
     }
@@ -112,11 +87,84 @@ fn trace_all(args: &OutlineArgs, mut input: Input, sink: &mut Sink) -> Result<Wr
         progress.pause(|| input.tell_in_the_end());
     }
     warnings.finish().filter(|_| !args.quiet).for_each(|warning| progress.pause(|| warn(&warning)));
-    if let Some(overlay) = overlay {
-        overlay.finish()?;
+    drawings.map_or(Ok(()), Drawings::finish)?;
+    Ok(Traced { outlines: table.finish()?, first_missing })
+}
+
+/// The table that outlines are written to. Its header waits for the first of them, so that nothing is printed where there is none.
+struct Table<'a> {
+    sink: Option<&'a mut Sink>,
+    writer: Option<TableWriter<&'a mut Sink>>,
+    format: TableFormat,
+    options: WriterOptions,
+    comments: Vec<String>,
+    outlines: u64,
+}
+
+impl<'a> Table<'a> {
+    fn new(args: &OutlineArgs, input: &mut Input, sink: &'a mut Sink) -> Self {
+        let options = WriterOptions {
+            arc_column: true,
+            object_column: names_objects(input),
+            contour_column: input.pictures().is_none_or(|pictures| pictures.options().traces_contours()),
+            // A copy of a table says no less than the table.
+            deviation_column: args.deviations || input.has_deviation_column(),
+            resolution: None,
+        };
+        let (format, comments) = (TableFormat::of(&args.output), std::mem::take(&mut input.comments));
+        Self { sink: Some(sink), writer: None, format, options, comments, outlines: 0 }
     }
-    Ok(match writer {
-        Some(writer) => writer.finish().map(|_| outcome),
-        None => Ok(outcome),
-    })
+
+    fn write(&mut self, frame: &OutlineFrame) -> Result<(), WriteError> {
+        if let Some(sink) = self.sink.take() {
+            self.writer = Some(TableWriter::new(sink, self.format, self.options, &self.comments)?);
+        }
+        if let Some(writer) = &mut self.writer {
+            writer.write(frame)?;
+        }
+        self.outlines += 1;
+        Ok(())
+    }
+
+    /// Writes what is left. Returns the number of outlines.
+    fn finish(self) -> Result<u64, WriteError> {
+        if let Some(writer) = self.writer {
+            writer.finish()?;
+        }
+        Ok(self.outlines)
+    }
+}
+
+/// Drawings of the outlines on their pictures.
+struct Drawings {
+    overlay: Overlay,
+    pictures: DrawnPictures,
+    /// Whether the objects are named.
+    names: bool,
+}
+
+impl Drawings {
+    fn open(path: &Path, args: &OutlineArgs, input: &Input) -> Result<Self, Failure> {
+        let pictures = DrawnPictures::open(path, &args.inputs)?;
+        Ok(Self { overlay: Overlay::default(), pictures, names: names_objects(input) })
+    }
+
+    fn draw(&mut self, source: &SourcePicture, frame: &OutlineFrame) -> Result<(), Failure> {
+        let name = self.names.then_some(frame.object.as_str());
+        let drawn = Drawn { outline: &frame.outline, name, accepted: true, fit: None, generator: None };
+        self.pictures.take(self.overlay.draw(source, &drawn))
+    }
+
+    fn draw_nothing(&mut self, source: &SourcePicture) -> Result<(), Failure> {
+        self.pictures.take(self.overlay.draw_nothing(source))
+    }
+
+    fn finish(self) -> Result<(), Failure> {
+        self.pictures.finish(self.overlay.finish())
+    }
+}
+
+/// Whether objects need their names. What a file holds is not known before all of it has been read.
+fn names_objects(input: &Input) -> bool {
+    input.pictures().is_none_or(|pictures| pictures.options().follows_all())
 }

@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 
 use freeform_motion::outline_io::{OutlineFrame, read_shape};
-use freeform_motion::recognise::{Comparison, Evidence, RecogniseError, RecogniseSettings, Recogniser, Recognition};
+use freeform_motion::recognise::{Comparison, Evidence, RecogniseError, RecogniseSettings, Recogniser};
 use rayon::prelude::*;
 
 use super::fit::{OUTLINES_AT_ONCE, POINTS_AT_ONCE};
@@ -9,18 +9,11 @@ use crate::args::{RecogniseArgs, RecogniseFormat};
 use crate::failure::{Failure, warn};
 use crate::input::{Input, Waiting};
 use crate::left_out::MissingWarnings;
-use crate::output::{Sink, refuse_overwriting, refuse_standard_output, write_recognised_json, write_recognised_table};
+use crate::output::{
+    RecognisedObject, Sink, refuse_overwriting, refuse_standard_output, write_recognised_json, write_recognised_table,
+};
 use crate::progress::Progress;
 use crate::seen::Item;
-
-/// What is known of one object.
-pub(crate) struct RecognisedObject {
-    pub(crate) object: String,
-    /// Frames that were compared, and frames that could not be.
-    pub(crate) frames: usize,
-    pub(crate) frames_rejected: usize,
-    pub(crate) recognition: Recognition,
-}
 
 /// Names every object of the input.
 pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
@@ -33,43 +26,8 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     let name = input.name.clone();
     input.tell_tracing();
     let mut sink = Sink::stdout();
-    let mut objects = SeenObjects::default();
-    // A stream may stand still: what has come is not kept waiting.
-    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
-    let (mut waiting, mut points) = (Vec::new(), 0);
-    let (mut reasons, mut warnings, mut failure) = (Vec::new(), MissingWarnings::default(), None);
-    let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
-    for item in input {
-        progress.advance();
-        match item {
-            Ok(Item::Outline(frame, _)) => {
-                points += frame.outline.point_count();
-                waiting.push(frame);
-                if waiting.len() >= at_once || points >= POINTS_AT_ONCE {
-                    objects.take(&recogniser, &std::mem::take(&mut waiting));
-                    points = 0;
-                }
-            }
-            Ok(Item::NoOutline { object, reason, .. }) => {
-                // Objects come in the order in which they are seen.
-                objects.take(&recogniser, &std::mem::take(&mut waiting));
-                objects.of(&object).frames_rejected += 1;
-                reasons.push(reason);
-            }
-            Ok(Item::Gap(missing)) => reasons.extend(warnings.take(&missing)),
-            Err(error) => {
-                failure = Some(error);
-                break;
-            }
-        }
-    }
-    objects.take(&recogniser, &waiting);
-    drop(progress);
-    let refused = |object: &SeenObject| {
-        let error = object.first_refusal.as_ref()?;
-        Some(format!("{name}: {} frame(s) of object {:?} left out: {error}", object.frames_rejected, object.object))
-    };
-    reasons.extend(objects.list.iter().filter_map(refused));
+    let Compared { objects, mut reasons, warnings, failure } = compare_all(input, &recogniser, &sink);
+    reasons.extend(objects.list.iter().filter_map(|object| object.refusal(&name)));
     let recognised: Vec<_> = objects.list.into_iter().filter_map(|object| object.recognised(&recogniser)).collect();
     if recognised.is_empty() {
         let nothing = reasons.into_iter().next().unwrap_or_else(|| format!("{name}: no outline in the file"));
@@ -78,13 +36,59 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     reasons.extend(warnings.finish());
     reasons.iter().for_each(|reason| warn(reason));
     let names: Vec<&str> = recogniser.names().collect();
-    match args.format {
+    let written = match args.format {
         RecogniseFormat::Table => write_recognised_table(&mut sink, &recognised, &names),
         RecogniseFormat::Json => write_recognised_json(&mut sink, &recognised, &names),
-    }
-    .map_err(|error| sink.failure(&error))?;
+    };
+    written.map_err(|error| sink.failure(&error))?;
     let printed = sink.finish();
     failure.map_or(printed, Err)
+}
+
+/// What has come of an input.
+#[derive(Default)]
+struct Compared {
+    objects: SeenObjects,
+    /// Why there is no outline in some frames.
+    reasons: Vec<String>,
+    warnings: MissingWarnings,
+    /// What ended the reading before its time.
+    failure: Option<Failure>,
+}
+
+/// Compares the outlines of an input with the known ones, as many side by side as need not be waited for.
+fn compare_all(input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
+    let progress = Progress::of_frames(input.frame_count(), sink.is_disturbed_by_progress());
+    // A stream may stand still: what has come is not kept waiting.
+    let at_once = if input.is_stream() { 1 } else { OUTLINES_AT_ONCE };
+    let (mut waiting, mut points) = (Vec::new(), 0);
+    let mut compared = Compared::default();
+    for item in input {
+        progress.advance();
+        match item {
+            Ok(Item::Outline(frame, _)) => {
+                points += frame.outline.point_count();
+                waiting.push(frame);
+                if waiting.len() >= at_once || points >= POINTS_AT_ONCE {
+                    compared.objects.take(recogniser, &std::mem::take(&mut waiting));
+                    points = 0;
+                }
+            }
+            Ok(Item::NoOutline { object, reason, .. }) => {
+                // Objects come in the order in which they are seen.
+                compared.objects.take(recogniser, &std::mem::take(&mut waiting));
+                compared.objects.of(&object).frames_rejected += 1;
+                compared.reasons.push(reason);
+            }
+            Ok(Item::Gap(missing)) => compared.reasons.extend(compared.warnings.take(&missing)),
+            Err(error) => {
+                compared.failure = Some(error);
+                break;
+            }
+        }
+    }
+    compared.objects.take(recogniser, &waiting);
+    compared
 }
 
 /// A recogniser that has learnt the known outlines under the names of their files, as given.
@@ -146,6 +150,12 @@ impl SeenObject {
                 self.first_refusal.get_or_insert(error);
             }
         }
+    }
+
+    /// Why frames were left out, if some were.
+    fn refusal(&self, input: &str) -> Option<String> {
+        let error = self.first_refusal.as_ref()?;
+        Some(format!("{input}: {} frame(s) of object {:?} left out: {error}", self.frames_rejected, self.object))
     }
 
     /// `None` where no frame could be compared.

@@ -3,15 +3,19 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
+use freeform_drawing::write_page;
 use freeform_experiments::paper::{Part, Reproduction, Section};
 
+use super::listed_settings::version;
 use crate::args::ReproduceArgs;
 use crate::command_line::command_line;
 use crate::failure::{Failure, plain};
-use crate::output::{Sink, WholeFile, table_text, write_page, write_section_files};
+use crate::output::{Sink, WholeFile, table_text, write_section_files};
 use crate::progress::Progress;
 
 const PAGE: &str = "index.html";
+
+const TITLE: &str = "Motion identification of planar free-form objects, reproduced";
 
 const INTRODUCTION: &str = "The figures and experiments of M. Unel and B. K. Ghosh, Motion identification of planar \
     free-form objects, made anew from simulated outlines, and beside them what the paper leaves open or only announces. \
@@ -29,15 +33,16 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<(), Failure> {
     let sections = reproduction.run(&|| progress.advance()).map_err(Failure::of_experiment)?;
     drop(progress);
     sections.iter().try_for_each(|section| write_section_files(section, folder))?;
-    let page = write_page(
-        "Motion identification of planar free-form objects, reproduced",
-        INTRODUCTION,
-        &sections,
-        &reproduction.settings(),
-        &command_line(),
-    );
+    let mut settings = reproduction.settings();
+    settings.push(version());
+    let parts: Vec<_> = sections.iter().map(part_of_page).collect();
+    let page = write_page(TITLE, INTRODUCTION, &parts, &settings, &command_line());
     WholeFile::write(&folder.join(PAGE), &page)?;
     print(&sections, folder)
+}
+
+fn part_of_page(Section { heading, text, drawings, tables, .. }: &Section) -> freeform_drawing::Section<'_> {
+    freeform_drawing::Section { heading, text, drawings, tables }
 }
 
 fn print(sections: &[Section], folder: &Path) -> Result<(), Failure> {

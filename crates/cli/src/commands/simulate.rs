@@ -1,6 +1,7 @@
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use freeform_motion::SimulatedMotion;
 use freeform_motion::outline_io::{
     DEFAULT_OBJECT, OutlineFrame, TableFormat, TableWriter, WriteError, WriterOptions, read_shape,
 };
@@ -11,7 +12,6 @@ use crate::command_line::command_line;
 use crate::failure::Failure;
 use crate::output::{Sink, refuse_overwriting};
 use crate::progress::Progress;
-use crate::truth::SimulatedMotion;
 
 use super::simulate_pictures::write_pictures;
 
@@ -24,12 +24,8 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<(), Failure> {
     refuse_overwriting(&shape_files(std::slice::from_ref(&args.shape)), &[&args.output])?;
     let mut sink = Sink::open(&args.output)?;
     let written = write_sequence(&mut sink, TableFormat::of(&args.output), &simulator, |_| Ok(()));
-    match written {
-        Ok(()) => sink.finish(),
-        Err(SequenceError::Write(WriteError::Io(error))) => Err(sink.failure(&error)),
-        Err(SequenceError::Write(error)) => Err(Failure::unusable(error)),
-        Err(SequenceError::Other(failure)) => Err(failure),
-    }
+    written.map_err(|error| error.into_failure(|error| sink.failure(error)))?;
+    sink.finish()
 }
 
 /// Length of a sequence of outlines where none is given.
@@ -39,13 +35,36 @@ const SECONDS: f64 = 10.0;
 const RESOLUTION: f64 = 1e-7;
 
 /// Why a sequence could not be written.
-pub(crate) enum SequenceError {
+pub(super) enum SequenceError {
     Write(WriteError),
     Other(Failure),
 }
 
+impl SequenceError {
+    /// The failure; `of_sink` says where the sink failed.
+    pub(super) fn into_failure(self, of_sink: impl FnOnce(&io::Error) -> Failure) -> Failure {
+        match self {
+            Self::Write(WriteError::Io(error)) => of_sink(&error),
+            Self::Write(error) => Failure::unusable(error),
+            Self::Other(failure) => failure,
+        }
+    }
+}
+
+impl From<WriteError> for SequenceError {
+    fn from(error: WriteError) -> Self {
+        Self::Write(error)
+    }
+}
+
+impl From<Failure> for SequenceError {
+    fn from(failure: Failure) -> Self {
+        Self::Other(failure)
+    }
+}
+
 /// Writes the head with the truth and all outlines; hands every outline on after it has been written.
-pub(crate) fn write_sequence(
+pub(super) fn write_sequence(
     sink: &mut impl Write,
     format: TableFormat,
     simulator: &Simulator,
@@ -56,15 +75,16 @@ pub(crate) fn write_sequence(
     // Objects have about unit size in the image; far below the noise there is nothing to tell.
     let resolution = (simulator.settings().noise > 1e3 * RESOLUTION).then_some(RESOLUTION);
     let options = WriterOptions { arc_column, resolution, ..WriterOptions::default() };
-    let mut writer = TableWriter::new(sink, format, options, &head).map_err(SequenceError::Write)?;
+    let mut writer = TableWriter::new(sink, format, options, &head)?;
     let progress = Progress::of_frames(Some(simulator.frame_count() as u64), false);
     for Frame { index, time, outline, .. } in simulator.frames() {
         let frame = OutlineFrame { frame: index as u64, time, object: DEFAULT_OBJECT.to_owned(), outline };
-        writer.write(&frame).map_err(SequenceError::Write)?;
-        observe(&frame).map_err(SequenceError::Other)?;
+        writer.write(&frame)?;
+        observe(&frame)?;
         progress.advance();
     }
-    writer.finish().map(drop).map_err(SequenceError::Write)
+    writer.finish()?;
+    Ok(())
 }
 
 fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
@@ -98,13 +118,13 @@ fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
     Simulator::new(scene, settings).map_err(Failure::unusable)
 }
 
-/// A built-in shape, or that of a file at unit size.
 /// Those of these shapes that are files.
 pub(super) fn shape_files(names_or_files: &[String]) -> Vec<PathBuf> {
     let is_file = |name: &&String| name.parse::<BuiltInShape>().is_err();
     names_or_files.iter().filter(is_file).map(PathBuf::from).collect()
 }
 
+/// A built-in shape, or that of a file at unit size.
 pub(super) fn shape(name_or_file: &str) -> Result<Shape, Failure> {
     let unknown = match name_or_file.parse::<BuiltInShape>() {
         Ok(shape) => return Ok(shape.shape()),

@@ -7,7 +7,7 @@ use crate::failure::{Failure, warn};
 use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::output::{Sink, closing_line, refuse_overwriting, refuse_standard_output, track_line};
-use crate::overlay::ObservedOverlay;
+use crate::overlay::InputOverlay;
 use crate::picture_input::PictureInput;
 use crate::reader::{Event, follow_stream};
 
@@ -19,11 +19,11 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     args.options.check()?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None)?;
-    if let Some(error) = input.pictures().and_then(PictureInput::outline_error) {
+    if let Some(error) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         let settings = args.options.tracker_settings_for(error);
         tracker = Tracker::new(settings).map_err(Failure::unusable)?;
     }
-    let mut overlay = ObservedOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
+    let mut overlay = InputOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::stdout();

@@ -1,9 +1,10 @@
 use std::io::{self, Write};
 
+use freeform_motion::{short, significant};
+
 use freeform_experiments::monte_carlo::{Acquisition, Evaluation, Report, Setting};
 
 use super::aligned::write_aligned;
-use super::number::{short, significant};
 
 const COLUMNS: [&str; 12] = [
     "method",

@@ -2,9 +2,8 @@ use std::io::{self, Write};
 
 use freeform_motion::curve_fit::exponents;
 use freeform_motion::decompose::{AffineInvariants, DecompositionError};
+use freeform_motion::{CurveDeviations, CurveParts, FittedOutline};
 use serde_json::{Map, Value, json};
-
-use crate::fitted_outline::{Deviations, FittedOutline, Parts};
 
 /// Writes fits one by one as one JSON object, so that they need not be held.
 #[derive(Debug, Default)]
@@ -57,7 +56,7 @@ fn outline_json(fitted: &FittedOutline) -> Value {
     })
 }
 
-fn levels_json(parts: &Parts) -> Vec<Value> {
+fn levels_json(parts: &CurveParts) -> Vec<Value> {
     let decomposition = &parts.decomposition;
     let level = |level: usize| {
         let lines = decomposition.level(level).iter();
@@ -69,7 +68,7 @@ fn levels_json(parts: &Parts) -> Vec<Value> {
     decomposition.levels().map(level).chain([constant]).collect()
 }
 
-fn related_points_json(parts: &Parts, deviations: Option<&Deviations>) -> Vec<Value> {
+fn related_points_json(parts: &CurveParts, deviations: Option<&CurveDeviations>) -> Vec<Value> {
     let points = parts.related_points.as_slice().iter().enumerate();
     points
         .map(|(index, d)| {

@@ -2,10 +2,9 @@ use std::io::{self, Write};
 
 use freeform_motion::curve_fit::exponents;
 use freeform_motion::outline_io::readable;
+use freeform_motion::{CurveDeviations, CurveParts, FittedOutline};
+use freeform_motion::{short, significant};
 use nalgebra::{Complex, Point2};
-
-use super::number::{short, significant};
-use crate::fitted_outline::{Deviations, FittedOutline, Parts};
 
 /// Digits of coefficients and lines.
 const DIGITS: usize = 6;
@@ -46,7 +45,7 @@ pub(crate) fn write_fit_table(sink: &mut impl Write, fitted: &FittedOutline, bla
     }
 }
 
-fn write_parts(sink: &mut impl Write, parts: &Parts, deviations: Option<&Deviations>) -> io::Result<()> {
+fn write_parts(sink: &mut impl Write, parts: &CurveParts, deviations: Option<&CurveDeviations>) -> io::Result<()> {
     let decomposition = &parts.decomposition;
     for level in decomposition.levels() {
         let coefficient = significant(decomposition.coefficient(level), DIGITS);

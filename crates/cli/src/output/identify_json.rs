@@ -1,5 +1,6 @@
 use std::io::{self, Write};
 
+use freeform_drawing::MeaningOfB;
 use freeform_motion::Warning;
 use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
@@ -8,9 +9,8 @@ use freeform_motion::tracker::{MotionFamily, ObjectPhase, ObjectResult, Observat
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
 use super::plane_json::{NormalJson, PlanesJson};
-use super::velocity::VelocityJson;
+use super::velocity_json::VelocityJson;
 use crate::left_out::LeftOut;
-use crate::meaning_of_b::MeaningOfB;
 use crate::reader::Left;
 
 /// The result as one JSON object.

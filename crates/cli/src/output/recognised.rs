@@ -1,13 +1,22 @@
 use std::io::{self, Write};
 
-use freeform_motion::recognise::Candidate;
+use freeform_motion::recognise::{Candidate, Recognition};
+use freeform_motion::significant;
 use serde_json::{Value, json};
 
-use super::{aligned::write_aligned, number::significant};
-use crate::commands::RecognisedObject;
+use super::aligned::write_aligned;
 
 /// Known outlines that are listed, most probable first.
 const CANDIDATES: usize = 5;
+
+/// What is known of one object.
+pub(crate) struct RecognisedObject {
+    pub(crate) object: String,
+    /// Frames that were compared, and frames that could not be.
+    pub(crate) frames: usize,
+    pub(crate) frames_rejected: usize,
+    pub(crate) recognition: Recognition,
+}
 
 /// One row per object for reading.
 pub(crate) fn write_recognised_table(

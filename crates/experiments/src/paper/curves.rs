@@ -2,9 +2,9 @@
 use freeform_curve_fit::{Fit, FitSettings, Fitter, Outline, Rectangle};
 use nalgebra::Point2;
 
-use super::document::Table;
 use crate::ExperimentError;
 use crate::figure::{Curve, Look, Panel};
+use freeform_drawing::Table;
 
 /// What is looked through for a curve around its points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.3;

@@ -9,7 +9,7 @@ use freeform_sim_camera::{BuiltInShape, Camera, Motion, PaperExperiment, Scene};
 
 use super::Run;
 use super::curves::curve;
-use super::document::{Drawing, Section, Table};
+use super::document::Section;
 use super::method::Method;
 use super::outcome::{Outcome, outcomes_in_words, rules};
 use super::sequence::{Sequence, paper_settings};
@@ -20,6 +20,7 @@ use super::traces::{
 use super::track::Track;
 use crate::ExperimentError;
 use crate::figure::{Figure, Look, Panel};
+use freeform_drawing::{Drawing, Table};
 
 /// Runs of the experiment with affine motion.
 pub(super) const AFFINE_RUNS: u64 = 5;

@@ -7,11 +7,12 @@ use nalgebra::{Point2, Vector2};
 
 use super::Run;
 use super::curves::{curve, curve_near, data_of, image_panel, points_of, xy};
-use super::document::{Drawing, Section, Table};
+use super::document::Section;
 use super::method::fit_in_words;
 use super::sequence::{Sequence, paper_settings};
 use crate::ExperimentError;
 use crate::figure::{Figure, Look};
+use freeform_drawing::{Drawing, Table};
 use freeform_motion::significant;
 
 /// The outer level sets of the fit are so far from the points, in RMS radii. With those of the other figures, twice as far away, the

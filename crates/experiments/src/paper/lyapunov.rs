@@ -8,13 +8,14 @@ use nalgebra::SMatrix;
 
 use super::Run;
 use super::curves::curve;
-use super::document::{Drawing, Section, Table};
+use super::document::Section;
 use super::exact_lines::{ExactLines, LawState};
 use super::paper_figure::SIZE;
 use super::sequence::FPS;
 use super::traces::look_of;
 use crate::ExperimentError;
 use crate::figure::{Curve, Figure, Look, Panel};
+use freeform_drawing::{Drawing, Table};
 
 const EXPERIMENTS: [PaperExperiment; 3] =
     [PaperExperiment::FLIGHT_BIRD, PaperExperiment::GLIDER_OF_TEXT, PaperExperiment::CELLULAR_PHONE];

@@ -29,7 +29,8 @@ use freeform_sim_camera::PaperExperiment;
 use nalgebra::Matrix4;
 use rayon::prelude::*;
 
-pub use document::{Drawing, Section, Table};
+pub use document::Section;
+pub use freeform_drawing::{Drawing, Table};
 pub use part::Part;
 
 use crate::ExperimentError;

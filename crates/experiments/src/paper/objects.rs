@@ -6,11 +6,12 @@ use nalgebra::Vector2;
 
 use super::Run;
 use super::curves::{FAR_OVALS, closed_quartic, curve, curve_near, data_of, image_panel, points_of};
-use super::document::{Drawing, Section, Table};
+use super::document::Section;
 use super::method::fit_in_words;
 use super::sequence::{POINTS, Sequence, paper_settings};
 use crate::ExperimentError;
 use crate::figure::{Figure, Look, Panel};
+use freeform_drawing::{Drawing, Table};
 use freeform_motion::significant;
 
 /// Half the side of each picture in image lengths; the objects are of size 1.

@@ -5,13 +5,14 @@ use freeform_sim_camera::PaperExperiment;
 use rayon::prelude::*;
 
 use super::Run;
-use super::document::{Section, Table};
+use super::document::Section;
 use super::method::{Method, random_start, start_range_in_words};
 use super::outcome::{Outcome, percent, rules};
 use super::questions::{Condition, Question, questions};
 use super::sequence::Sequence;
 use super::track::Track;
 use crate::ExperimentError;
+use freeform_drawing::Table;
 
 const EXPERIMENTS: [PaperExperiment; 3] =
     [PaperExperiment::FLIGHT_BIRD, PaperExperiment::GLIDER_OF_TEXT, PaperExperiment::CELLULAR_PHONE];

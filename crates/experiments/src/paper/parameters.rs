@@ -4,7 +4,7 @@ use freeform_riccati::MotionModel;
 use freeform_sim_camera::PaperExperiment;
 
 use super::Run;
-use super::document::{Drawing, Section, Table};
+use super::document::Section;
 use super::method::{Method, random_start};
 use super::outcome::{Outcome, outcomes_in_words, rules};
 use super::paper_figure::{PaperFigure, SIZE};
@@ -13,6 +13,7 @@ use super::traces::{ERROR_LIMITS, error_figure, errors_data, estimates_data, par
 use super::track::Track;
 use crate::ExperimentError;
 use crate::figure::{Figure, Panel};
+use freeform_drawing::{Drawing, Table};
 
 /// Heads of the table of final errors.
 pub(super) const FINDINGS: [&str; 8] =

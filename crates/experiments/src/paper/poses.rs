@@ -8,12 +8,13 @@ use nalgebra::Point2;
 
 use super::Run;
 use super::curves::{FAR_OVALS, closed_quartic, curve, curve_near, data_of, image_panel, points_of, xy};
-use super::document::{Drawing, Section};
+use super::document::Section;
 use super::method::fit_in_words;
 use super::paper_figure::PaperFigure;
 use super::sequence::{POINTS, paper_settings};
 use crate::ExperimentError;
 use crate::figure::{Figure, Look};
+use freeform_drawing::Drawing;
 
 /// Moments shown of one turn.
 const MOMENTS: usize = 6;

@@ -4,11 +4,11 @@ use std::ops::Range;
 use freeform_riccati::{MotionModel, ProjectiveMotion};
 
 use super::curves::curve;
-use super::document::Table;
 use super::relative_error::RelativeError;
 use super::sequence::Sequence;
 use super::track::Track;
 use crate::figure::{Curve, Figure, Look, Panel};
+use freeform_drawing::Table;
 
 /// Ends of the axis of relative errors, in percent, where the motion is constant.
 pub(super) const ERROR_LIMITS: [f64; 2] = [1e-4, 1e3];

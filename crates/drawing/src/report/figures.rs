@@ -1,0 +1,221 @@
+use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
+use freeform_motion::estimate::ParameterEstimate;
+use freeform_motion::tracker::MotionFamily;
+use freeform_motion::{FittedOutline, Truth, short};
+use nalgebra::Point2;
+
+use crate::figure::{Curve, Look, Panel};
+use crate::history::{Histories, History};
+use crate::plot::stacked_svg;
+
+/// What is seen around the points, as a share of their extent.
+const SURROUNDINGS: f64 = 0.15;
+
+/// Standard deviations on each side of a band that 95 of 100 true values lie in.
+pub(super) const BAND: f64 = 1.96;
+
+/// Outlines of one frame with their fitted curves and related points, as an SVG file.
+///
+/// ```
+/// use freeform_drawing::fit_figure;
+/// use freeform_motion::FittedOutline;
+/// use freeform_motion::curve_fit::{FitSettings, Fitter};
+/// use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
+/// use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+///
+/// let settings = Settings { length: SequenceLength::Frames(1), ..Settings::default() };
+/// let simulator = Simulator::new(PaperExperiment::FLIGHT_BIRD.scene(0.1)?, settings)?;
+/// let outline = simulator.frames().next().expect("a frame").outline;
+/// let frame = OutlineFrame { frame: 0, time: 0.0, object: DEFAULT_OBJECT.to_owned(), outline };
+/// let fit = Fitter::new(FitSettings::default())?.fit(&frame.outline)?;
+/// let svg = fit_figure(&[(FittedOutline::new(&frame, fit), frame.outline)]);
+/// assert!(svg.contains("fitted curve"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[must_use]
+pub fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
+    let title = drawn.first().map_or_else(String::new, |(fitted, _)| {
+        format!("Frame {} at {} s, degree {}", fitted.frame, short(fitted.time), fitted.fit.working().degree())
+    });
+    stacked_svg(&[fit_panel(title, drawn)], 640.0, 640.0)
+}
+
+/// Outlines with their fitted curves and related points, in one pair of axes.
+pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Panel {
+    let xy = |p: &Point2<f64>| [p.x, p.y];
+    let (mut points, mut curves, mut beside, mut related) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut outside = 0;
+    let whole = Rectangle::around(drawn.iter().flat_map(|(_, outline)| outline.points()));
+    let view = whole.map(|area| area.widened(SURROUNDINGS).square());
+    for (fitted, outline) in drawn {
+        points.extend(outline.pieces().map(|piece| piece.points.iter().map(xy).collect::<Vec<_>>()));
+        let Some(area) = view else { continue };
+        // Beyond what is seen, so that a curve that leaves it goes on to the frame.
+        let traced = fitted.fit.curve_within(&area.widened(SURROUNDINGS));
+        for (run, stray) in traced.iter().zip(stray_parts(&traced, outline)) {
+            let runs = if stray { &mut beside } else { &mut curves };
+            runs.push(run.iter().map(xy).collect());
+        }
+        let all = fitted.parts.iter().flat_map(|parts| parts.related_points.as_slice());
+        let (inside, far): (Vec<_>, Vec<_>) = all.map(|d| d.point).partition(|point| area.contains(point));
+        related.push(inside.iter().map(xy).collect());
+        outside += far.len();
+    }
+    let related_name = match outside {
+        0 => "related points".to_owned(),
+        count => format!("related points ({count} outside)"),
+    };
+    let mut curves = vec![
+        Curve { name: "outline".to_owned(), look: Look::Dots, runs: points },
+        Curve { name: "fitted curve".to_owned(), look: Look::Line, runs: curves },
+        Curve { name: related_name, look: Look::Crosses, runs: related },
+    ];
+    if !beside.is_empty() {
+        curves.push(Curve { name: "stray part".to_owned(), look: Look::Dashed(0), runs: beside });
+    }
+    Panel {
+        title,
+        x_label: "x (image length)".to_owned(),
+        y_label: "y (image length)".to_owned(),
+        curves,
+        view: view.map(|area| [xy(&area.low), xy(&area.high)]),
+        ..Panel::default()
+    }
+}
+
+/// The parameters of all objects against time with 95 % bands, as an SVG file; beside them the truth, where it is known and constant.
+#[must_use]
+pub fn parameter_figure(histories: &Histories, family: MotionFamily, truth: Option<&Truth>) -> String {
+    let several = histories.list.len() > 1;
+    let panels = histories.list.iter().flat_map(|history| {
+        let prefix = if several { format!("Object {}: ", history.object) } else { String::new() };
+        parameter_panels(history, &prefix, family, truth)
+    });
+    stacked_svg(&panels.collect::<Vec<_>>(), 720.0, 270.0)
+}
+
+/// The parameters of one object against time, one panel each.
+pub(crate) fn parameter_panels(
+    history: &History,
+    prefix: &str,
+    family: MotionFamily,
+    truth: Option<&Truth>,
+) -> Vec<Panel> {
+    // A level line would be wrong of a motion that changes.
+    let truth = truth.and_then(|truth| truth.constant_parameters_in(family));
+    let names = family.parameter_names().iter().zip(family.units()).enumerate();
+    names
+        .map(|(index, (name, unit))| {
+            let mut curves = history.curves(index);
+            if let (Some(truth), Some((first, last))) = (&truth, history.time_range()) {
+                let runs = vec![vec![[first, truth[index]], [last, truth[index]]]];
+                curves.push(Curve { name: "true value".to_owned(), look: Look::Truth, runs });
+            }
+            Panel {
+                title: format!("{prefix}{}", meaning(name)),
+                x_label: "time (s)".to_owned(),
+                y_label: format!("{name} ({unit})"),
+                curves,
+                x_from: history.start,
+                ..Panel::default()
+            }
+        })
+        .collect()
+}
+
+/// How well the frames of one object fit, one panel for each measure that its method gives. Rejected frames, which have no
+/// value that others could be held against, are marked at their times.
+pub(crate) fn residual_panels(history: &History) -> Vec<Panel> {
+    let measures = [
+        ("Residual of the points", "rms (image length)", &history.residuals),
+        ("Innovation of the motion", "squared, in units of its variance", &history.innovations),
+    ];
+    let times = history.rejected.iter().filter_map(|(_, time)| *time);
+    let rejected: Vec<[f64; 2]> = times.map(|time| [time, 0.0]).collect();
+    let drawn = measures.into_iter().filter(|(_, _, values)| !values.is_empty());
+    drawn
+        .map(|(title, y_label, values)| Panel {
+            title: title.to_owned(),
+            x_label: "time (s)".to_owned(),
+            y_label: y_label.to_owned(),
+            curves: vec![
+                Curve { name: "frames used".to_owned(), look: Look::Dots, runs: vec![values.clone()] },
+                Curve { name: "rejected frames".to_owned(), look: Look::Marks, runs: vec![rejected.clone()] },
+            ],
+            x_from: history.start,
+            ..Panel::default()
+        })
+        .collect()
+}
+
+/// What a parameter is, in words.
+fn meaning(name: &str) -> String {
+    match name {
+        "omega" => "Angular velocity omega".to_owned(),
+        "sigma" => "Rate of growth sigma".to_owned(),
+        "b1" | "b2" => format!("Velocity {name} at the origin"),
+        "wx" | "wy" | "wz" => format!("Angular velocity {name} in space"),
+        "vx" | "vy" | "vz" => format!("Velocity {name} in space"),
+        _ => format!("Parameter {name}"),
+    }
+}
+
+impl History {
+    fn time_range(&self) -> Option<(f64, f64)> {
+        let mut known = self.estimates.iter().filter(|(_, estimate)| estimate.is_some()).map(|(time, _)| *time);
+        let first = known.next()?;
+        Some((first, known.next_back().unwrap_or(first)))
+    }
+
+    /// What was identified of a parameter, with a band where its standard deviation is known; both with gaps where it was not.
+    fn curves(&self, parameter: usize) -> Vec<Curve> {
+        let found = |list: &Vec<ParameterEstimate>| list.get(parameter).copied().filter(|p| p.value.is_some());
+        let estimates = self.estimates.iter().map(|(time, estimate)| (*time, estimate.as_ref().and_then(found)));
+        let estimates: Vec<_> = estimates.collect();
+        let (mut runs, mut band) = (Vec::new(), Vec::new());
+        for run in estimates.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
+            let known = || run.iter().filter_map(|(time, found)| found.map(|p| (*time, p)));
+            let edge = |side: f64| {
+                let offset = move |p: ParameterEstimate| Some(p.value? + side * BAND * p.standard_deviation?);
+                known().filter_map(move |(time, p)| Some([time, offset(p)?]))
+            };
+            let outer: Vec<_> = edge(1.0).collect();
+            runs.push(known().filter_map(|(time, p)| Some([time, p.value?])).collect());
+            band.push(edge(-1.0).chain(outer.into_iter().rev()).collect());
+        }
+        let is_drawn = |run: &Vec<[f64; 2]>| !run.is_empty();
+        runs.retain(is_drawn);
+        band.retain(is_drawn);
+        vec![
+            Curve { name: "95 % band".to_owned(), look: Look::Band, runs: band },
+            Curve { name: "identified".to_owned(), look: Look::Line, runs },
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::estimate::MotionEstimate;
+    use freeform_motion::riccati::MotionModel;
+
+    use super::*;
+
+    #[test]
+    fn neither_line_nor_band_bridges_a_time_at_which_nothing_was_known() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.0, 2.0, 3.0], Some(&[0.1, 0.1, 0.1]));
+        let estimates = (0..9).map(|frame| {
+            let found = if frame == 2 { estimate.with_unobservable(0) } else { estimate };
+            // Nothing at all in the first frame of all, and while the object is lost.
+            let is_lost = frame == 0 || frame == 5;
+            (f64::from(frame), (!is_lost).then(|| found.parameters().collect()))
+        });
+        let mut history = History::of("0".to_owned());
+        history.estimates = estimates.collect();
+        let curves = history.curves(0);
+        assert_eq!(curves[0].runs[1], [[3.0, 0.804], [4.0, 0.804], [4.0, 1.196], [3.0, 1.196]]);
+        let lengths = |curve: &Curve| curve.runs.iter().map(Vec::len).collect::<Vec<_>>();
+        assert_eq!((lengths(&curves[0]), lengths(&curves[1])), (vec![2, 4, 6], vec![1, 2, 3]));
+        assert_eq!(lengths(&history.curves(1)[1]), [4, 3]);
+        assert_eq!(history.time_range(), Some((1.0, 8.0)));
+    }
+}

@@ -1,0 +1,167 @@
+use freeform_motion::estimate::{PlaneEstimate, PointVelocity};
+use freeform_motion::riccati::{ParameterKind, PlaneMotion};
+use freeform_motion::tracker::{MotionFamily, ObjectResult};
+use freeform_motion::{Truth, Warning, significant, with_deviation};
+
+use super::meaning_of_b::MeaningOfB;
+
+/// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
+pub const PARAMETER_COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
+
+/// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
+#[must_use]
+pub fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningOfB) -> Vec<Vec<String>> {
+    let model = result.motion;
+    let truth = truth.and_then(|truth| Some((truth, truth.parameters_in(model)?)));
+    let found = result.parameters().unwrap_or_default();
+    let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
+    let names = model.parameter_names().iter().zip(model.units()).zip(model.parameter_kinds());
+    let mut rows: Vec<Vec<String>> = names
+        .enumerate()
+        .map(|(index, ((name, unit), kind))| {
+            let parameter = found.get(index);
+            let unknown = parameter.map_or("-", |_| in_place_of_value(result, name));
+            let unit = if *kind == ParameterKind::Velocity { unit_of_b(unit) } else { unit };
+            let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
+            row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
+        })
+        .collect();
+    if result.motion == MotionFamily::Plane {
+        rows.extend(normal_rows(result, truth.as_ref().and_then(|(truth, _)| truth.plane)));
+    }
+    if let Some(velocity) = &result.velocity {
+        let deviations = velocity.standard_deviations();
+        // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
+        // middle is only near that centre, and the true velocity differs between the two by the turn times their distance.
+        let kinds = model.parameter_kinds().iter();
+        let turn_is_known = kinds.zip(&found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
+        let (is_told, true_velocity) = match truth {
+            Some((truth, _)) if turn_is_known => (true, Some(truth.velocity_at(&velocity.point))),
+            Some((truth, _)) => (true, truth.middle_velocity),
+            None => (false, None),
+        };
+        rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
+            let known = Some((velocity.velocity[i], Some(deviations[i])));
+            let mut row = row([name, "-", unit_of_b("1/s")], known, true_velocity.map(|truth| truth[i]));
+            if is_told && true_velocity.is_none() {
+                row.extend(["-", "-"].map(str::to_owned));
+            }
+            row
+        }));
+    }
+    rows
+}
+
+/// What stands in place of a value that is not stated: `ambiguous`; `unobservable` where the outlines do not show it; `unknown` where they do, but
+/// it is not known well enough, or no longer.
+fn in_place_of_value(result: &ObjectResult, name: &str) -> &'static str {
+    let names = |parameters: &[&str]| parameters.contains(&name);
+    let is_ambiguous = result.ambiguity.as_ref().is_some_and(|turns| names(&turns.parameters))
+        || result.plane_ambiguity.as_ref().is_some_and(|planes| names(&planes.parameters));
+    let is_hidden = result.warnings.iter().any(|warning| match warning {
+        Warning::NotObservable { parameters }
+        | Warning::RotationNotObservable { parameters }
+        | Warning::PlaneHardlyMoves { parameters } => names(parameters),
+        _ => false,
+    });
+    match (is_ambiguous, is_hidden) {
+        (true, _) => "ambiguous",
+        (_, true) => "unobservable",
+        _ => "unknown",
+    }
+}
+
+/// The normal of a plane at the first frame, two rows; its z is 1.
+fn normal_rows(result: &ObjectResult, truth: Option<PlaneMotion>) -> [Vec<String>; 2] {
+    let normal = result.plane.as_deref().and_then(PlaneEstimate::normal);
+    let unknown = result.plane.as_ref().map_or("-", |_| in_place_of_value(result, "normal"));
+    [("normal x", 0), ("normal y", 1)].map(|(name, i)| {
+        let known = normal.map(|normal| (normal.value[i], Some(normal.covariance[(i, i)].max(0.0).sqrt())));
+        row([name, unknown, "1"], known, truth.map(|truth| truth.normal[i]))
+    })
+}
+
+/// One row: a value with its standard deviation, or why there is none, and the truth if it is known.
+fn row([name, unknown, unit]: [&str; 3], known: Option<(f64, Option<f64>)>, truth: Option<f64>) -> Vec<String> {
+    let none = || "-".to_owned();
+    let [value, deviation] = match known {
+        Some((value, Some(deviation))) => with_deviation(value, deviation),
+        Some((value, None)) => [significant(value, 6), none()],
+        None => [unknown.to_owned(), none()],
+    };
+    let mut row = vec![name.to_owned(), value, deviation, unit.to_owned()];
+    if let Some(truth) = truth {
+        row.push(significant(truth, 6));
+        row.push(known.map_or_else(none, |(value, _)| error_text(value, truth)));
+    }
+    row
+}
+
+/// The difference from the truth, with its share of the truth where that is not 0.
+fn error_text(value: f64, truth: f64) -> String {
+    let difference = significant(value - truth, 2);
+    if truth == 0.0 {
+        return difference;
+    }
+    format!("{difference} ({} %)", significant(100.0 * ((value - truth) / truth).abs(), 2))
+}
+
+/// Names of its components in a table.
+const VELOCITY_NAMES: [&str; 2] = ["v1", "v2"];
+
+/// What v is in a table, on one line.
+#[must_use]
+pub fn meaning_of_v(velocity: &PointVelocity) -> String {
+    let [x, y] = [0, 1].map(|i| significant(velocity.point[i], 4));
+    format!("v: velocity of the object's middle, at ({x}, {y}), in the unit of b")
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_motion::estimate::{MotionEstimate, PointVelocity};
+    use freeform_motion::outline_filter::Ambiguity;
+    use freeform_motion::riccati::{MotionModel, RigidMotion};
+    use freeform_motion::tracker::Method;
+    use nalgebra::{Matrix2, Point2, Vector2};
+
+    use super::*;
+
+    #[test]
+    fn beside_the_velocity_of_an_object_without_an_observable_turn_stands_that_of_its_true_middle_or_none() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[0.0, 0.3, 0.4], Some(&[0.1, 0.01, 0.01]));
+        let velocity = PointVelocity {
+            point: Point2::new(0.001, 0.0),
+            velocity: Vector2::new(0.3, 0.4),
+            covariance: Matrix2::identity() * 1e-6,
+        };
+        let result = |estimate| ObjectResult {
+            object: "0".to_owned(),
+            method: Method::Filter,
+            motion: MotionModel::Rigid.into(),
+            frames: 30,
+            frames_rejected: 0,
+            first_rejection: None,
+            estimate: Some(estimate),
+            covariance: None,
+            velocity: Some(velocity),
+            ambiguity: None,
+            plane: None,
+            plane_ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
+            warnings: Vec::new(),
+        };
+        let motion = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 };
+        let truth = Truth::from(motion);
+        let rows_beside =
+            |estimate, truth| parameter_rows(&result(estimate), Some(truth), &MeaningOfB::in_coordinates(None));
+        let rows = |estimate| rows_beside(estimate, &truth);
+        let truth_of_v1 = |rows: &[Vec<String>]| rows[3][4..].to_vec();
+        assert_eq!(truth_of_v1(&rows(estimate.with_unobservable(0))), ["-", "-"]);
+        assert_eq!(truth_of_v1(&rows(estimate))[0], "0.300000");
+        // That of the true middle may be told, which the point of the estimate is not quite.
+        let truth = Truth { middle_velocity: Some([0.3125, 0.4]), ..truth };
+        assert_eq!(truth_of_v1(&rows_beside(estimate.with_unobservable(0), &truth))[0], "0.312500");
+        assert_eq!(truth_of_v1(&rows_beside(estimate, &truth))[0], "0.300000");
+    }
+}

@@ -1,0 +1,166 @@
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use image::GrayImage;
+
+use crate::{
+    background::{Background, median_picture},
+    channel::Channel,
+    choice::{PictureSample, SamplePlan},
+    identity::Selection,
+    picture_error::PictureError,
+    picture_files::picture_files,
+    picture_outlines::{PictureOutlines, PictureSettings},
+    picture_sequence::{PictureFrame, PictureSequence, SequenceSettings},
+    trace::is_two_valued,
+};
+
+/// Pictures whose edges tell how well outlines are known.
+const EDGES_LOOKED_AT: usize = 6;
+
+/// Most pixels of these pictures, all together: those of one of the largest.
+const EDGE_PIXELS: usize = 1 << 26;
+
+/// Pixels of all pictures that a ground is the median of.
+const GROUND_PIXELS: usize = 1 << 28;
+
+/// How far the outlines of a sequence may lie off, in their unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OutlineUncertainty {
+    /// As far as their edges say.
+    Edges(f64),
+    /// As the rounding of masks whose pixels have this size.
+    MaskPixel(f64),
+}
+
+/// Pictures that can be looked at before they are read for good, to choose how they are traced.
+///
+/// ```
+/// use freeform_outline_io::{Channel, PicturePreview, PictureSequence, SequenceSettings};
+///
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("0.png");
+/// # image::GrayImage::from_fn(40, 30, |x, y| image::Luma([if x.abs_diff(20) + y.abs_diff(15) < 9 { 255 } else { 0 }])).save(&path)?;
+/// let paths = [path];
+/// let sequence = PictureSequence::open(&paths, SequenceSettings::default())?;
+/// let preview = PicturePreview::of_paths(&paths, &sequence);
+/// let sample = preview.sample(&[Channel::Luminance]);
+/// assert_eq!((sample.len(), preview.ground(Channel::Luminance).is_some()), (1, true));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub enum PicturePreview {
+    /// Files of one picture each.
+    Pictures(Vec<PathBuf>),
+    /// Files some of which hold several.
+    Files(Vec<PathBuf>),
+    /// The beginning of a stream.
+    Beginning(Arc<[u8]>),
+}
+
+/// Pictures of a sample, one after the other.
+type Previewed = Box<dyn Iterator<Item = Result<PictureFrame, PictureError>>>;
+
+impl PicturePreview {
+    /// That of files, folders and patterns, which have been opened as a sequence.
+    #[must_use]
+    pub fn of_paths(paths: &[PathBuf], sequence: &PictureSequence) -> Self {
+        let files: Result<Vec<Vec<PathBuf>>, PictureError> = paths.iter().map(|path| picture_files(path)).collect();
+        match files {
+            Ok(files) if sequence.frame_count().is_some() => Self::Pictures(files.concat()),
+            _ => Self::Files(paths.to_owned()),
+        }
+    }
+
+    /// Whether nothing can be looked at before it is read for good, as what is no file can be read only once.
+    #[must_use]
+    pub fn is_read_once(&self) -> bool {
+        let is_pipe = |path: &PathBuf| path.exists() && !path.is_file() && !path.is_dir();
+        matches!(self, Self::Files(paths) if paths.iter().any(is_pipe))
+    }
+
+    fn plan(&self) -> SamplePlan {
+        match self {
+            Self::Pictures(files) => SamplePlan::Spread(files.len() as u64),
+            _ => SamplePlan::Ahead,
+        }
+    }
+
+    /// The pictures of a sample, in one channel; `None` where nothing can be looked at.
+    #[must_use]
+    pub fn pictures(&self, channel: Channel) -> Option<Previewed> {
+        let settings = SequenceSettings { frames_per_second: None, channel };
+        let frames = self.plan().frames();
+        let sequence = match self {
+            Self::Pictures(files) => {
+                let wanted: Vec<(u64, PathBuf)> = frames.into_iter().map(|k| (k, files[k as usize].clone())).collect();
+                // To open a pipe among them is to wait for somebody who writes to it.
+                let wanted = wanted.into_iter().filter(|(_, path)| path.is_file());
+                return Some(Box::new(wanted.filter_map(move |(frame, path)| {
+                    let picture = PictureSequence::open(&[path], settings).ok()?.next()?;
+                    Some(picture.map(|picture| PictureFrame { frame, ..picture }))
+                })));
+            }
+            Self::Files(_) if self.is_read_once() => return None,
+            Self::Files(paths) => PictureSequence::open(paths, settings).ok()?,
+            Self::Beginning(bytes) => {
+                PictureSequence::from_stream(Cursor::new(Arc::clone(bytes)), "<preview>", settings).ok()?
+            }
+        };
+        let last = frames.last().copied().unwrap_or(0);
+        let is_ahead = move |picture: &Result<PictureFrame, PictureError>| {
+            picture.as_ref().is_ok_and(|picture| picture.frame <= last)
+        };
+        let is_wanted = move |picture: &Result<PictureFrame, PictureError>| {
+            picture.as_ref().is_ok_and(|picture| frames.binary_search(&picture.frame).is_ok())
+        };
+        Some(Box::new(sequence.take_while(is_ahead).filter(is_wanted)))
+    }
+
+    /// A sample in these channels.
+    #[must_use]
+    pub fn sample(&self, channels: &[Channel]) -> PictureSample {
+        PictureSample::read(channels, |channel| self.pictures(channel))
+    }
+
+    /// How far outlines that are traced with these settings may lie off, by some of the pictures; `None` where nothing tells.
+    #[must_use]
+    pub fn outline_uncertainty(&self, settings: &PictureSettings, channel: Channel) -> Option<OutlineUncertainty> {
+        let mut pixels = 0;
+        let is_looked_at = |frame: &PictureFrame| {
+            pixels += frame.picture.as_raw().len();
+            pixels <= EDGE_PIXELS
+        };
+        let pictures: Vec<PictureFrame> =
+            self.pictures(channel)?.flatten().take(EDGES_LOOKED_AT).take_while(is_looked_at).collect();
+        if !pictures.is_empty() && pictures.iter().all(|frame| is_two_valued(&frame.picture)) {
+            return Some(OutlineUncertainty::MaskPixel(settings.trace.pixel()));
+        }
+        if matches!(settings.background, Some(Background::RunningMedian(_))) || settings.trace.ring.is_some() {
+            return None;
+        }
+        let settings = PictureSettings { selection: Selection::Largest, ..settings.clone() };
+        let traced = PictureOutlines::new(pictures.into_iter().map(Ok), settings).ok()?.flatten();
+        let edges = traced.flat_map(|traced| traced.objects.unwrap_or_default()).filter_map(|(_, traced)| traced.edges);
+        let mut lengths: Vec<f64> = edges.map(|edges| edges.systematic).collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.get(lengths.len() / 2).copied().map(OutlineUncertainty::Edges)
+    }
+
+    /// The median of the pictures of the sample, at their full size; `None` where nothing can be looked at.
+    #[must_use]
+    pub fn ground(&self, channel: Channel) -> Option<Arc<GrayImage>> {
+        let mut pictures = Vec::new();
+        let mut pixels = 0;
+        for PictureFrame { picture, .. } in self.pictures(channel)?.flatten() {
+            pixels += picture.as_raw().len();
+            if pictures.len() >= 3 && pixels > GROUND_PIXELS {
+                break;
+            }
+            pictures.push(picture);
+        }
+        // Bursts show nearly the same three times: one of each is as good, and the others make the median no worse.
+        median_picture(&pictures)
+    }
+}
