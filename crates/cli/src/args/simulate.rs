@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use freeform_motion::sim_camera::PictureScene;
+use freeform_motion::sim_camera::{BuiltInShape, PictureScene};
 
 use super::dynamics::DynamicsArgs;
 use super::identify::MotionChoice;
@@ -19,17 +19,24 @@ Examples:
   freeform simulate --dynamics accelerating --velocity 3,8 --acceleration 0,0,-9.81
   freeform simulate --dynamics oscillating --omega 1 --velocity 2,0 --period 3 --amplitude 0.5
   freeform simulate --occlusion 0.2 --outliers 0.05 --seed 7 | freeform identify -
-  freeform simulate --pictures frames --scene belt-shadow --seed 3
+  freeform simulate --pictures frames --scene belt-shadow --seed 3";
 
-Shapes: plane, van, glass_vase, cd_box, shoe, car, vase, glider, phone, hat, bird, boomerang, circle, ellipse, square.
-
+const OUTPUT: &str = "\
 The first lines of the output are comments with the command and the true motion: omega and b, and the velocity v of the \
 middle of the object in the last frame. Where the motion changes with time, all of it is that in the last frame, whose \
-time is told. 'freeform identify' prints this truth next to its result.
+time is told. 'freeform identify' prints this truth next to its result.";
 
-Scenes of --pictures: gear, coin, belt, belt-shadow, discs, marked-discs, accelerating-l, outlined. The folder gets \
+const PICTURES: &str = "\
+The folder gets \
 000000.png, 000001.png, ... and truth.csv, a row for each body in each picture: its middle in pixels (y upwards from the lower \
 left corner), its angle and omega (rad, positive clockwise), its velocity, and whether it is whole and seen.";
+
+/// What stands behind the options: examples, shapes, the output, scenes.
+fn after_help() -> String {
+    let shapes = BuiltInShape::ALL.map(BuiltInShape::name).join(", ");
+    let scenes = PictureScene::ALL.map(PictureScene::name).join(", ");
+    format!("{EXAMPLES}\n\nShapes: {shapes}.\n\n{OUTPUT}\n\nScenes of --pictures: {scenes}. {PICTURES}")
+}
 
 /// Make outlines of a moving object as CSV, or test pictures of moving objects.
 ///
@@ -37,7 +44,7 @@ left corner), its angle and omega (rad, positive clockwise), its velocity, and w
 /// Each frame has new random points of the outline. The motion is given in space: the image moves with b times f/Z0. It is
 /// that at time 0 where --dynamics lets it change.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = after_help())]
 pub(crate) struct SimulateArgs {
     /// A built-in shape, or a file: a CSV polygon with columns x and y, or a mask picture (PNG)
     ///
