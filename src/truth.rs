@@ -1,6 +1,7 @@
 use std::fmt;
 
 use crate::tracker::MotionFamily;
+use freeform_estimate::MotionEstimate;
 use freeform_riccati::{CameraScale, MotionModel, PlaneMotion, ProjectiveMotion, RigidMotion};
 use freeform_sim_camera::Simulator;
 use nalgebra::Point2;
@@ -56,6 +57,15 @@ impl Truth {
     #[must_use]
     pub fn constant_parameters_in(&self, family: MotionFamily) -> Option<Vec<f64>> {
         self.parameters_in(family).filter(|_| self.is_constant || family == MotionFamily::Plane)
+    }
+
+    /// The motion in the image as an estimate without deviations, where it is the same in all frames and the model has it. `scale` is what its
+    /// velocities were divided by.
+    #[must_use]
+    pub fn constant_in_image(&self, model: MotionModel, scale: Option<CameraScale>) -> Option<MotionEstimate> {
+        self.constant_parameters_in(model.into())?;
+        let in_image = scale.unwrap_or_default().generator_in_image(&self.motion.generator());
+        Some(MotionEstimate::new(model, &model.parameters_of(&in_image)[..model.parameter_count()], None))
     }
 
     /// Velocity of the point of the object that is at `[x, y]` in the last frame.

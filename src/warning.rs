@@ -200,12 +200,7 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::PointsOutOfOrder { frame, perimeters } => write!(
-                f,
-                "frame {frame}: the points do not follow the contour: a line through them in the order of the rows is {} times \
-                 as long as the perimeter of their bounding box; sort the rows along the contour",
-                significant(*perimeters, 2)
-            ),
+            Self::PointsOutOfOrder { frame, perimeters } => write_out_of_order(f, *frame, *perimeters),
             Self::NotObservable { parameters } => {
                 write!(f, "not observable from these outlines: {}", parameters.join(", "))
             }
@@ -215,76 +210,115 @@ impl fmt::Display for Warning {
             Self::RotationNotObservable { parameters } => {
                 write!(f, "rotation is not observable from these outlines; unknown: {}", parameters.join(", "))
             }
-            Self::RotationFromPath => f.write_str(
-                "the outline does not show its rotation: omega is told by the path alone, and right only if the object turns with its path",
-            ),
+            Self::RotationFromPath => f.write_str(ROTATION_FROM_PATH),
             Self::Lost => f.write_str("the object was lost at the end"),
-            Self::Reacquiring { last_known } => write!(
-                f,
-                "the object was lost and searched for at the end; its motion was last known at {} s",
-                significant(*last_known, 4)
-            ),
+            Self::Reacquiring { last_known } => write_reacquiring(f, *last_known),
             Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
             Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
-            Self::MotionChanged { dynamics: Some(Dynamics::Velocity) } => f.write_str(
-                "the middle of the object moves at a constant velocity, not about a fixed point, so that b changes: the values are those at the end",
-            ),
-            Self::MotionChanged { .. } => f.write_str("the motion changed: the values are those at the end"),
-            Self::TwoPlanes(ambiguity) => write!(
-                f,
-                "two motions of a plane explain the outlines, with probabilities {} and {}; they differ in {}",
-                significant(ambiguity.solutions[0].probability, 2),
-                significant(ambiguity.solutions[1].probability, 2),
-                ambiguity.parameters.join(", ")
-            ),
-            Self::PlaneHardlyMoves { parameters } => write!(
-                f,
-                "the plane hardly moves along, and a turn alone tells of no plane; unknown: {}",
-                parameters.join(", ")
-            ),
-            Self::PlaneMisfit { excess } => write!(
-                f,
-                "the outlines are not where a plane of constant angular velocity and velocity would be seen (mean square {} of \
-                 what is expected): the motion may change, or --focal or --principal be wrong; deviations are widened",
-                significant(*excess, 2)
-            ),
-            Self::TooManyRejected { rejected, frames } => write!(
-                f,
-                "{rejected} of {frames} frames do not fit the others, so that no motion is stated: the outlines may be of \
-                 several things, or turn by about half a turn (of their symmetry) from frame to frame"
-            ),
-            Self::WrongFamily { family, motion } => write_wrong_family(f, *family, *motion),
-            Self::Aliases { omega } => {
-                let list: Vec<String> = omega.iter().take(MOST_ALIASES).map(|omega| significant(*omega, 4)).collect();
-                write!(
-                    f,
-                    "the outline has a symmetry: omega may also be {} rad/s; the smallest turn from frame to frame was taken",
-                    list.join(" or ")
-                )
+            Self::MotionChanged { dynamics } => f.write_str(change_of_motion(*dynamics)),
+            Self::TwoPlanes(ambiguity) => write_two_planes(f, ambiguity),
+            Self::PlaneHardlyMoves { parameters } => {
+                let unknown = parameters.join(", ");
+                write!(f, "the plane hardly moves along, and a turn alone tells of no plane; unknown: {unknown}")
             }
+            Self::PlaneMisfit { excess } => write_plane_misfit(f, *excess),
+            Self::TooManyRejected { rejected, frames } => write_too_many_rejected(f, *rejected, *frames),
+            Self::WrongFamily { family, motion } => write_wrong_family(f, *family, *motion),
+            Self::Aliases { omega } => write_aliases(f, omega),
             Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
             Self::StateLost { reason } => write_state_lost(f, reason),
             Self::FrameRejected(rejection) => write!(f, "rejected: {rejection}"),
             Self::MoreFramesRejected { count, frames } => write!(f, "rejected: {count} more frame(s), {frames}"),
-            Self::AmbiguousCorrespondence { ambiguous, matched } => write!(
-                f,
-                "lines matched ambiguously in {ambiguous} of {matched} frames: \
-                 the turn between frames is large or the outline nearly symmetric"
-            ),
+            Self::AmbiguousCorrespondence { ambiguous, matched } => write_ambiguous_lines(f, *ambiguous, *matched),
             Self::MayNotHaveSettled { seconds } => {
                 write!(f, "the adaptive law may not have settled after {seconds:.1} s")
             }
-            Self::LinesNotFollowed { skipped, intervals } => write!(
-                f,
-                "lines not followed over {skipped} of {intervals} intervals between frames: \
-                 the outline turns by more than about half a radian"
-            ),
-            Self::AffineBias => f.write_str(
-                "the six parameters are biased, because the curve fit is not affine-equivariant: use the motion filter",
-            ),
+            Self::LinesNotFollowed { skipped, intervals } => write_lines_not_followed(f, *skipped, *intervals),
+            Self::AffineBias => f.write_str(AFFINE_BIAS),
         }
     }
+}
+
+const ROTATION_FROM_PATH: &str = "the outline does not show its rotation: omega is told by the path alone, and right only if the object \
+                                  turns with its path";
+
+const AFFINE_BIAS: &str =
+    "the six parameters are biased, because the curve fit is not affine-equivariant: use the motion filter";
+
+fn write_out_of_order(f: &mut fmt::Formatter<'_>, frame: u64, perimeters: f64) -> fmt::Result {
+    write!(
+        f,
+        "frame {frame}: the points do not follow the contour: a line through them in the order of the rows is {} times \
+         as long as the perimeter of their bounding box; sort the rows along the contour",
+        significant(perimeters, 2)
+    )
+}
+
+fn write_reacquiring(f: &mut fmt::Formatter<'_>, last_known: f64) -> fmt::Result {
+    let last_known = significant(last_known, 4);
+    write!(f, "the object was lost and searched for at the end; its motion was last known at {last_known} s")
+}
+
+/// How the motion goes on at the end.
+const fn change_of_motion(dynamics: Option<Dynamics>) -> &'static str {
+    match dynamics {
+        Some(Dynamics::Velocity) => {
+            "the middle of the object moves at a constant velocity, not about a fixed point, so that b changes: the values are those at the end"
+        }
+        _ => "the motion changed: the values are those at the end",
+    }
+}
+
+fn write_two_planes(f: &mut fmt::Formatter<'_>, ambiguity: &PlaneAmbiguity) -> fmt::Result {
+    let [first, second] = [0, 1].map(|i| significant(ambiguity.solutions[i].probability, 2));
+    let parameters = ambiguity.parameters.join(", ");
+    write!(
+        f,
+        "two motions of a plane explain the outlines, with probabilities {first} and {second}; they differ in {parameters}"
+    )
+}
+
+fn write_plane_misfit(f: &mut fmt::Formatter<'_>, excess: f64) -> fmt::Result {
+    write!(
+        f,
+        "the outlines are not where a plane of constant angular velocity and velocity would be seen (mean square {} of \
+         what is expected): the motion may change, or --focal or --principal be wrong; deviations are widened",
+        significant(excess, 2)
+    )
+}
+
+fn write_too_many_rejected(f: &mut fmt::Formatter<'_>, rejected: usize, frames: usize) -> fmt::Result {
+    write!(
+        f,
+        "{rejected} of {frames} frames do not fit the others, so that no motion is stated: the outlines may be of \
+         several things, or turn by about half a turn (of their symmetry) from frame to frame"
+    )
+}
+
+fn write_aliases(f: &mut fmt::Formatter<'_>, omega: &[f64]) -> fmt::Result {
+    let list: Vec<String> = omega.iter().take(MOST_ALIASES).map(|omega| significant(*omega, 4)).collect();
+    write!(
+        f,
+        "the outline has a symmetry: omega may also be {} rad/s; the smallest turn from frame to frame was taken",
+        list.join(" or ")
+    )
+}
+
+fn write_ambiguous_lines(f: &mut fmt::Formatter<'_>, ambiguous: usize, matched: usize) -> fmt::Result {
+    write!(
+        f,
+        "lines matched ambiguously in {ambiguous} of {matched} frames: \
+         the turn between frames is large or the outline nearly symmetric"
+    )
+}
+
+fn write_lines_not_followed(f: &mut fmt::Formatter<'_>, skipped: usize, intervals: usize) -> fmt::Result {
+    write!(
+        f,
+        "lines not followed over {skipped} of {intervals} intervals between frames: \
+         the outline turns by more than about half a radian"
+    )
 }
 
 /// What the outlines do and what to try.

@@ -6,6 +6,7 @@
 //! [`Trajectory`] keeps the poses.
 mod attendance;
 mod contour_order;
+mod edge_seeker;
 mod family;
 mod identifier;
 mod object;
@@ -16,11 +17,13 @@ mod recording;
 #[cfg(feature = "serde")]
 mod resting;
 mod result;
+mod result_csv;
 mod seeking;
 mod settings;
 #[cfg(feature = "serde")]
 mod state_bytes;
 mod trajectory;
+mod trajectory_csv;
 
 use std::collections::HashMap;
 
@@ -37,12 +40,15 @@ pub use freeform_outline_filter::ExpectedOutline;
 
 pub use self::{
     attendance::{Attendance, Sighting},
+    edge_seeker::EdgeSeeker,
     family::MotionFamily,
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
     result::ObjectResult,
+    result_csv::{AdaptiveColumns, TraceWriter, write_results},
     settings::{Method, MethodSettings, TrackerError, TrackerSettings},
     trajectory::{PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
+    trajectory_csv::write_trajectory,
 };
 pub use crate::{
     frame_ranges::FrameRanges,

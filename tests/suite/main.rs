@@ -22,3 +22,4 @@ mod soak;
 mod tracker;
 #[cfg(feature = "serde")]
 mod tracker_state;
+mod warnings;

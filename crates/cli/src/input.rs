@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use freeform_motion::SimulatedMotion;
 use freeform_motion::outline_io::{
     OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind, TableFormat,
-    VerticalAxis, picture_files,
+    VerticalAxis, labelme_files, read_comments,
 };
 
 use crate::args::PictureOptions;
@@ -17,9 +17,6 @@ use crate::seen::Item;
 
 /// Options for pictures that hold for polygons in pictures too.
 const OPTIONS_OF_POLYGONS: [&str; 4] = ["--fps", "--pixel-size", "--y-up", "--y-down"];
-
-/// Longest head of comment lines that is looked through for the truth, in bytes.
-const HEAD_LIMIT: u64 = 1 << 16;
 
 /// Whether the beginning of a stream may be read before its first picture is dealt with, to choose how it is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +59,7 @@ impl Input {
             let reason = format_args!("outlines are read from one {format} file, several inputs are pictures");
             return Err(Failure::unusable(format_args!("{}: {reason}", table.display())));
         }
-        if let Some(files) = labelme_files(paths)? {
+        if let Some(files) = labelme_files(paths).map_err(Failure::unusable)? {
             return Self::of_polygons(|settings| OutlineFile::open_polygons(&files, settings), name, options);
         }
         let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
@@ -96,7 +93,7 @@ impl Input {
     }
 
     fn of_file(file: Result<OutlineFile, ReadError>, name: String) -> Result<Self, Failure> {
-        let file = file.map_err(|error| unreadable(&error))?;
+        let file = file.map_err(Failure::unusable)?;
         let comments = file.comments().lines().map(str::to_owned).collect();
         Ok(Self { name, comments, source: Source::File(file), is_stream: false })
     }
@@ -137,12 +134,12 @@ impl Input {
             );
         }
         refuse_options(&options.given(), &name, "CSV")?;
-        let head = comment_lines(&mut source).map_err(failed)?;
+        let head = read_comments(&mut source).map_err(failed)?;
         let comment = |line: &str| line.trim_start_matches('#').trim().to_owned();
         let comments = String::from_utf8_lossy(&head).lines().map(comment).collect();
         // The head is read again with the rest, so that line numbers are right.
         let whole: Box<dyn Read> = Box::new(Cursor::new(head).chain(source));
-        let outlines = OutlineReader::new(whole, name.clone()).map_err(|error| unreadable(&error))?;
+        let outlines = OutlineReader::new(whole, name.clone()).map_err(Failure::unusable)?;
         Ok(Self { name, comments, source: Source::Csv(Box::new(outlines)), is_stream: false })
     }
 
@@ -252,25 +249,6 @@ fn refuse_options(given: &[&str], name: &str, format: &str) -> Result<(), Failur
     }
 }
 
-/// The files of labelme that paths stand for: several, a pattern of them, or a folder without pictures.
-fn labelme_files(paths: &[PathBuf]) -> Result<Option<Vec<PathBuf>>, Failure> {
-    let is_json = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-    if let [folder] = paths
-        && folder.is_dir()
-        && picture_files(folder).is_err()
-    {
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        let files: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| is_json(path)).collect();
-        return Ok(Some(files).filter(|files| !files.is_empty()));
-    }
-    let is_one_file = matches!(paths, [path] if path.exists() || !PictureSequence::is_named_by(path));
-    if is_one_file || !paths.iter().all(|path| is_json(path)) {
-        return Ok(None);
-    }
-    let files: Result<Vec<_>, _> = paths.iter().map(|path| picture_files(path)).collect();
-    files.map(|files| Some(files.concat())).map_err(Failure::unusable)
-}
-
 fn item(outline: Result<OutlineFrame, ReadError>) -> Result<Item, Failure> {
     match outline {
         Ok(frame) => Ok(Item::Outline(frame, None)),
@@ -287,52 +265,10 @@ fn rejected(error: ReadError) -> Result<Item, Failure> {
     }
 }
 
-/// What is said of a file that cannot be read.
-fn unreadable(error: &ReadError) -> Failure {
-    Failure::unusable(error)
-}
-
 /// The format of a table that the extension says.
 fn table(path: &Path) -> Option<&'static str> {
     if TableFormat::of(path) == TableFormat::Parquet {
         return Some("Parquet");
     }
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv")).then_some("CSV")
-}
-
-/// The lines at the beginning that start with `#`. Nothing beyond them is taken from the source.
-fn comment_lines(source: &mut impl BufRead) -> io::Result<Vec<u8>> {
-    let mut head = Vec::new();
-    loop {
-        let buffer = match source.fill_buf() {
-            Ok(buffer) => buffer,
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(error),
-        };
-        let left = HEAD_LIMIT.saturating_sub(head.len() as u64);
-        if buffer.first() != Some(&b'#') || left == 0 {
-            return Ok(head);
-        }
-        source.by_ref().take(left).read_until(b'\n', &mut head)?;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_head_ends_where_the_comments_end_and_the_rest_stays_in_the_source() {
-        let mut source = BufReader::with_capacity(4, &b"# one\n# two\nframe,time,x,y\n# later\n"[..]);
-        assert_eq!(comment_lines(&mut source).expect("memory"), b"# one\n# two\n");
-        let mut rest = String::new();
-        source.read_to_string(&mut rest).expect("memory");
-        assert_eq!(rest, "frame,time,x,y\n# later\n");
-    }
-
-    #[test]
-    fn an_endless_comment_is_not_read_to_its_end() {
-        let mut source = BufReader::new(io::repeat(b'#'));
-        assert_eq!(comment_lines(&mut source).expect("no error").len() as u64, HEAD_LIMIT);
-    }
 }

@@ -3,7 +3,6 @@ mod args;
 mod awaited;
 mod command_line;
 mod commands;
-mod edge_seeker;
 mod failure;
 mod handful;
 mod input;

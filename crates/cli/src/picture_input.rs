@@ -3,16 +3,14 @@ use std::collections::VecDeque;
 use std::io::{BufRead, Cursor, Read as _};
 use std::num::NonZero;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 use std::sync::Arc;
 use std::thread::available_parallelism;
 
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
-    Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineFrame, OutlineUncertainty,
-    PictureError, PictureErrorKind, PictureFrame, PictureOutlines, PicturePreview, PictureSequence, PictureSettings,
-    PixelAspectCheck, Ring, SequenceSettings, Smoothing, SourcePicture, Threshold, TraceError, TraceSettings,
-    TracedOutline, TracingEvidence, read_picture_channel,
+    Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineUncertainty, PictureError,
+    PictureErrorKind, PicturePreview, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold,
+    TraceError, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, read_ahead, read_picture_channel,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -34,18 +32,6 @@ const MEDIAN_SIZE: u8 = 25;
 /// Pictures that are traced side by side for each core, so that none stands still while the next ones are read.
 const PICTURES_OF_CORE: usize = 2;
 
-/// Most bytes of a stream that are read ahead to choose how it is traced.
-const READ_AHEAD: u64 = 1 << 26;
-
-/// Pictures of a video that are read ahead.
-const PICTURES_AHEAD: u64 = 60;
-
-/// Most bytes of the header of a video.
-const LONGEST_HEADER: u64 = 1 << 12;
-
-/// Bytes before each picture of a video.
-const FRAME_HEADER: u64 = 6;
-
 /// Frames per second of pictures that do not tell.
 pub(crate) const ASSUMED_RATE: u32 = 30;
 
@@ -53,42 +39,16 @@ pub(crate) const ASSUMED_RATE: u32 = 30;
 pub(crate) struct PictureInput {
     /// What was named for input.
     inputs: Vec<PathBuf>,
-    outlines: PictureOutlines<PictureSequence>,
+    traced: TracedPictures<PictureSequence>,
     options: PictureOptions,
-    trace: TraceSettings,
     chosen: Option<Chosen>,
     /// Whether nothing was given or chosen, as a stream is not to be waited for.
     is_traced_unseen: bool,
     outline_uncertainty: Option<OutlineUncertainty>,
-    /// Of the first object.
-    aspect: PixelAspectCheck,
     /// Objects of the present picture that have not been handed on.
     waiting: VecDeque<Item>,
     /// Pictures read.
     frames: u64,
-    found: Found,
-}
-
-/// What the settings that were left open came to.
-#[derive(Debug, Default)]
-struct Found {
-    /// Lowest and highest grey value on an outline.
-    thresholds: Option<(f64, f64)>,
-    /// Columns and rows of the pictures.
-    size: Option<(u32, u32)>,
-    /// Of the last picture: its number and time in seconds.
-    last: Option<(u64, f64)>,
-}
-
-impl Found {
-    fn take(&mut self, frame: &PictureFrame, objects: &[(u64, TracedOutline)]) {
-        self.size.get_or_insert(frame.picture.dimensions());
-        self.last = Some((frame.frame, frame.time));
-        for (_, traced) in objects {
-            let (low, high) = self.thresholds.unwrap_or((traced.threshold, traced.threshold));
-            self.thresholds = Some((low.min(traced.threshold), high.max(traced.threshold)));
-        }
-    }
 }
 
 impl PictureInput {
@@ -116,7 +76,7 @@ impl PictureInput {
         if !is_read_once {
             // Nobody waits for what is in files.
             let cores = available_parallelism().map_or(1, NonZero::get);
-            input.outlines = input.outlines.tracing_at_once(PICTURES_OF_CORE * cores);
+            input.traced = input.traced.tracing_at_once(PICTURES_OF_CORE * cores);
         }
         input.is_traced_unseen = is_traced_unseen;
         Ok(input)
@@ -140,17 +100,13 @@ impl PictureInput {
         if waiting != Waiting::Allowed {
             interrupt::listen();
         }
-        let failed = |error: &std::io::Error| Failure::unusable(format_args!("{name}: {}", plain(error)));
-        let mut beginning = Vec::new();
-        source.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut beginning).map_err(|error| failed(&error))?;
-        let length = video_length(&beginning, PICTURES_AHEAD).unwrap_or(READ_AHEAD).min(READ_AHEAD);
-        source.by_ref().take(length).read_to_end(&mut beginning).map_err(|error| failed(&error))?;
+        let beginning = read_ahead(&mut source);
+        let beginning = beginning.map_err(|error| Failure::unusable(format_args!("{name}: {}", plain(&error))))?;
         // What has come until then is dealt with as a whole, and no more is waited for.
         let is_over = interrupt::was_asked_for();
         if is_over {
             interrupt::put_off();
         }
-        let beginning: Arc<[u8]> = beginning.into();
         let preview = PicturePreview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
         let (options, chosen) = choose(&preview, &settings, options);
@@ -174,23 +130,18 @@ impl PictureInput {
                 "--background whole: the pictures cannot be read ahead; give --background FILE or median",
             ));
         }
-        let trace = settings.trace;
         let outline_uncertainty =
             preview.and_then(|preview| preview.outline_uncertainty(&settings, options.channel().channel()));
-        let outlines = PictureOutlines::new(sequence, settings).map_err(Failure::unusable)?;
-        let (waiting, found) = (VecDeque::new(), Found::default());
+        let traced = TracedPictures::new(sequence, settings).map_err(Failure::unusable)?;
         Ok(Self {
             inputs,
-            outlines,
+            traced,
             options,
-            trace,
             chosen,
             is_traced_unseen: false,
             outline_uncertainty,
-            aspect: PixelAspectCheck::default(),
-            waiting,
+            waiting: VecDeque::new(),
             frames: 0,
-            found,
         })
     }
 
@@ -214,7 +165,7 @@ impl PictureInput {
 
     /// What the outlines say of the pixels, after all have been read.
     pub(crate) fn closing_remark(&self) -> Option<String> {
-        let aspect = self.aspect.stretch()? * self.trace.pixel_aspect;
+        let aspect = self.traced.better_pixel_aspect()?;
         let symptom = "the object keeps its shape as it turns only with pixels of another aspect";
         Some(format!(
             "{symptom}: give --pixel-aspect {aspect:.2} (width over height), or the angles are wrong; or the camera looks at it from aside: --rectify"
@@ -241,7 +192,7 @@ impl PictureInput {
 
     /// Whether the pictures are of a video that says that it is interlaced.
     pub(crate) fn is_interlaced(&self) -> bool {
-        self.outlines.source().is_interlaced()
+        self.traced.source().is_interlaced()
     }
 
     /// Whether all objects of the last picture have been handed on.
@@ -251,24 +202,22 @@ impl PictureInput {
 
     /// Marks an object as present in a picture in which it was not traced, so that it keeps its name.
     pub(crate) fn keep(&mut self, object: &str, frame: u64) {
-        if let Ok(name) = object.parse() {
-            self.outlines.keep(name, frame);
-        }
+        self.traced.keep(object, frame);
     }
 
     /// Number of pictures, where it is known.
     pub(crate) fn frame_count(&self) -> Option<u64> {
-        self.outlines.source().frame_count()
+        self.traced.source().frame_count()
     }
 
     /// Which velocity b is in these pictures.
     pub(crate) fn meaning_of_b(&self, scale: Option<CameraScale>) -> MeaningOfB {
-        MeaningOfB::in_pictures(self.options.y_down, self.options.pixel_size, self.trace.pixel_aspect, scale)
+        MeaningOfB::in_pictures(self.options.y_down, self.options.pixel_size, self.traced.trace().pixel_aspect, scale)
     }
 
     /// How outlines were found, as a report lists it: the options, and what those that were left open came to.
     pub(crate) fn listed(&self) -> Vec<(&'static str, String)> {
-        let Self { options, trace, found, .. } = self;
+        let (options, trace, found) = (&self.options, self.traced.trace(), self.traced.summary());
         let mut listed = options.listed();
         listed.extend(self.chosen.as_ref().map(|chosen| ("Tracing chosen", chosen.options.clone())));
         let rate = found.last.filter(|(_, time)| *time > 0.0).map(|(frame, time)| short(frame as f64 / time));
@@ -306,7 +255,7 @@ impl PictureInput {
     }
 
     fn read_picture(&mut self) -> Option<()> {
-        let traced = self.outlines.next()?;
+        let traced = self.traced.next()?;
         let frame = self.frames;
         self.frames += 1;
         match traced {
@@ -314,27 +263,14 @@ impl PictureInput {
                 let (reason, kind) = (described(&error, &self.inputs), MissingKind::from(&error.kind));
                 self.waiting.push_back(Item::Gap(Missing { frame, reason, hint: None, kind, seen_in: None }));
             }
-            Ok(traced) => {
-                if let Some((0, first)) = traced.objects.as_ref().ok().and_then(|objects| objects.first()) {
-                    self.aspect.take(&first.outline);
-                }
-                self.found.take(&traced.frame, traced.objects.as_deref().unwrap_or_default());
-                let PictureFrame { frame, time, file, picture } = traced.frame;
-                let seen_in =
-                    Rc::new(SourcePicture { frame, time, grid: self.trace.pixel_grid(picture.height()), picture });
-                match traced.objects {
-                    Err(error) => {
-                        let reason = format!("{file}: frame {frame}: {error}");
-                        let (hint, kind) = (hint(&error, &self.options), MissingKind::from(&error));
-                        let seen_in = Some(seen_in);
-                        self.waiting.push_back(Item::Gap(Missing { frame, reason, hint, kind, seen_in }));
-                    }
-                    Ok(objects) => self.waiting.extend(objects.into_iter().map(|(name, traced)| {
-                        let outline = traced.outline;
-                        let outline = OutlineFrame { frame, time, object: name.to_string(), outline };
-                        Item::Outline(outline, Some(Rc::clone(&seen_in)))
-                    })),
-                }
+            Ok(TracedPicture { source, file, outlines: Err(error) }) => {
+                let reason = format!("{file}: frame {}: {error}", source.frame);
+                let (hint, kind) = (hint(&error, &self.options), MissingKind::from(&error));
+                let missing = Missing { frame: source.frame, reason, hint, kind, seen_in: Some(source) };
+                self.waiting.push_back(Item::Gap(missing));
+            }
+            Ok(TracedPicture { source, outlines: Ok(outlines), .. }) => {
+                self.waiting.extend(outlines.into_iter().map(|outline| Item::Outline(outline, Some(source.clone()))));
             }
         }
         Some(())
@@ -366,26 +302,6 @@ fn draw_candidates(
     let written = sheet.write_to(&mut bytes, ImageFormat::Png);
     written.map_err(|error| Failure::unusable(format_args!("{}: {error}", path.display())))?;
     WholeFile::write_bytes(path, bytes.get_ref())
-}
-
-/// Bytes that so many pictures of an uncompressed video have at most, by its header; `None` where it is no such video.
-fn video_length(header: &[u8], pictures: u64) -> Option<u64> {
-    let header = std::str::from_utf8(header).ok()?.strip_prefix("YUV4MPEG2 ")?;
-    let number =
-        |name: char| header.split_ascii_whitespace().find_map(|word| word.strip_prefix(name)?.parse::<u64>().ok());
-    let is_grey = header.contains(" Cmono");
-    let pixels = number('W')?.checked_mul(number('H')?)?;
-    // Colours of a quarter of the pixels, unless they say that they have more.
-    let has_all = header.contains(" C444") || header.contains(" C422");
-    let halves = if is_grey {
-        2
-    } else if has_all {
-        6
-    } else {
-        3
-    };
-    let of_picture = pixels.checked_mul(halves)? / 2;
-    of_picture.checked_add(FRAME_HEADER)?.checked_mul(pictures)
 }
 
 /// An error, and what to do about it where that is known.

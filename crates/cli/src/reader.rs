@@ -1,11 +1,8 @@
 //! An input as it is gone through.
-use std::rc::Rc;
-
 use freeform_motion::Tracker;
-use freeform_motion::outline_io::SourcePicture;
-use freeform_motion::tracker::{Attendance, Followed, ObjectResult, ReadAhead, Recorded, Sighting};
+use freeform_motion::outline_io::{SourcePicture, readable};
+use freeform_motion::tracker::{Attendance, EdgeSeeker, Followed, ObjectResult, ReadAhead, Recorded, Sighting};
 
-use crate::edge_seeker::EdgeSeeker;
 use crate::failure::{Failure, note, warn};
 use crate::input::Input;
 use crate::interrupt;
@@ -15,7 +12,7 @@ use crate::seen::{Item, Missing};
 
 /// What comes of reading on: a frame of an object, as far as it could be read, with the picture that it was seen in, if it was; or a
 /// picture without an outline.
-pub(crate) type Event = Followed<Option<Rc<SourcePicture>>, Missing>;
+pub(crate) type Event = Followed<Option<SourcePicture>, Missing>;
 
 /// An object of a stream that has left.
 pub(crate) struct Left {
@@ -174,9 +171,21 @@ impl<'a> Reader<'a> {
         let Self { input, quiet, progress, warnings, failure, seeker } = self;
         if !quiet {
             progress.pause(|| input.tell_in_the_end());
-            seeker.notes().iter().for_each(|told| progress.pause(|| note(told)));
+            edge_notes(&seeker).iter().for_each(|told| progress.pause(|| note(told)));
         }
         warnings.finish().for_each(|warning| progress.pause(|| warn(&warning)));
         failure
     }
+}
+
+/// In which frames objects were found by their edges, in place of outlines.
+fn edge_notes(seeker: &EdgeSeeker) -> Vec<String> {
+    let reason =
+        "it was not found as a whole, and parts of it were found by their edges where it was expected, in frames";
+    let mut notes: Vec<String> =
+        seeker.found().map(|(name, frames)| format!("object {}: {reason} {frames}", readable(name))).collect();
+    if seeker.frames_of_others() > 0 {
+        notes.push(format!("the same for other objects, in {} of their frames together", seeker.frames_of_others()));
+    }
+    notes
 }

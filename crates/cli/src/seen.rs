@@ -1,7 +1,6 @@
 //! What is seen in an input: outlines in pictures, and pictures without one.
 use std::io::ErrorKind;
 use std::mem::{Discriminant, discriminant};
-use std::rc::Rc;
 
 use freeform_motion::curve_fit::OutlineError;
 use freeform_motion::outline_io::{PictureErrorKind, SourcePicture, TraceError};
@@ -11,7 +10,7 @@ use crate::failure::Failure;
 
 /// The next thing in an input: an outline, with the picture that it was seen in, if it was; or a picture without an object, or one that
 /// cannot be read.
-pub(crate) type Item = Recorded<Option<Rc<SourcePicture>>, Missing>;
+pub(crate) type Item = Recorded<Option<SourcePicture>, Missing>;
 
 /// A picture without an outline.
 #[derive(Debug)]
@@ -23,7 +22,7 @@ pub(crate) struct Missing {
     pub(crate) hint: Option<&'static str>,
     pub(crate) kind: MissingKind,
     /// The picture, if it could be read.
-    pub(crate) seen_in: Option<Rc<SourcePicture>>,
+    pub(crate) seen_in: Option<SourcePicture>,
 }
 
 /// The kind of reason, without its numbers.

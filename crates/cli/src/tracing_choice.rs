@@ -3,14 +3,11 @@ use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
     Channel, Difference, PicturePreview, PictureSettings, Smoothing, Tracing, TracingChoice, TracingEvidence,
-    TracingWay, choose_tracing,
+    TracingWay,
 };
 use freeform_motion::short;
 
 use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
-
-/// Fewest pictures that tell how objects are best found.
-const FEWEST_PICTURES: usize = 3;
 
 /// How tracing was chosen.
 #[derive(Debug)]
@@ -57,15 +54,8 @@ pub(crate) fn choose(
         return unchanged;
     }
     let all = [Channel::Luminance, Channel::Red, Channel::Green, Channel::Blue, Channel::Saturation];
-    let channels = match given.channel {
-        Some(channel) => vec![channel.channel()],
-        None => all.to_vec(),
-    };
-    let sample = preview.sample(&channels);
-    if sample.len() < FEWEST_PICTURES {
-        return unchanged;
-    }
-    let choice = choose_tracing(&sample, base, &[]);
+    let channels = given.channel.map_or(all.to_vec(), |channel| vec![channel.channel()]);
+    let Some(choice) = preview.choose_tracing(&channels, base) else { return unchanged };
     let Some(best) = choice.best() else { return unchanged };
     let mut options = given.clone();
     take(&mut options, &best.tracing);

@@ -20,6 +20,7 @@
 //! - [`OutlineFile`] reads Parquet, and polygons of COCO, labelme and TrackMate.
 //! - [`read_picture`] reads a picture; [`trace_mask`] finds the outline of its largest object to a fraction of a pixel.
 //! - [`PictureSequence`] reads pictures, animations and video; [`PictureOutlines`] finds the objects in them and follows them.
+//! - [`TracedPictures`] gives outlines with their pictures, as a tracker takes them.
 //! - [`PicturePreview`] looks at pictures before they are read, and [`choose_tracing`] chooses how they are traced.
 //! - [`LabelMask::trace`] finds the outlines of the objects of a labelled mask.
 //! - [`OutlineColumns`] are outlines as columns of a table in memory with one row per point, [`OutlineLists`] with one row per outline.
@@ -37,6 +38,7 @@ mod column;
 mod compressed_video;
 mod contrast;
 mod csv_columns;
+mod csv_comments;
 mod csv_field;
 mod csv_lines;
 mod csv_reader;
@@ -54,6 +56,7 @@ mod ground_surface;
 mod identity;
 mod jpeg_end;
 mod labelme;
+mod labelme_files;
 mod labels;
 mod latest_frames;
 mod morphology;
@@ -93,6 +96,7 @@ mod picture_sequence;
 mod pixel_aspect;
 mod polygon_error;
 mod polygons;
+mod read_ahead;
 mod ring;
 mod rounding;
 mod segment;
@@ -103,6 +107,7 @@ mod threshold;
 mod tiff_pages;
 mod trace;
 mod trace_settings;
+mod traced_pictures;
 mod trackmate;
 mod write_error;
 mod y4m;
@@ -113,6 +118,7 @@ pub use channel::Channel;
 pub use choice::{PictureSample, SamplePlan, Tracing, TracingChoice, TracingEvidence, TracingWay, choose_tracing};
 pub use column::Column;
 pub use contrast::Contrast;
+pub use csv_comments::read_comments;
 pub use csv_reader::OutlineReader;
 pub use csv_writer::{OutlineWriter, WriterOptions};
 pub use edges::{EdgeFit, EdgeProfile, SoughtEdges};
@@ -121,6 +127,7 @@ pub use file_name::readable;
 pub use frame::{DEFAULT_OBJECT, OutlineFrame};
 pub use identity::{Identities, Selection};
 pub use image::GrayImage;
+pub use labelme_files::labelme_files;
 pub use labels::{LabelMask, TracedLabel};
 pub use outline_columns::{ColumnOutlines, OutlineColumns};
 pub use outline_file::{OutlineFile, TableFormat, TableWriter};
@@ -138,6 +145,7 @@ pub use picture_sequence::{PictureFrame, PictureSequence, SequenceSettings};
 pub use pixel_aspect::PixelAspectCheck;
 pub use polygon_error::PolygonError;
 pub use polygons::{PolygonSettings, VerticalAxis};
+pub use read_ahead::read_ahead;
 pub use ring::Ring;
 pub use shape::read_shape;
 pub use source_picture::SourcePicture;
@@ -145,6 +153,7 @@ pub use table_keys::ColumnsError;
 pub use threshold::Threshold;
 pub use trace::{TracedOutline, is_two_valued, trace_mask, trace_objects};
 pub use trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
+pub use traced_pictures::{TracedPicture, TracedPictures, TracingSummary};
 pub use write_error::WriteError;
 
 #[cfg(doctest)]

@@ -7,7 +7,7 @@ use image::GrayImage;
 use crate::{
     background::{Background, median_picture},
     channel::Channel,
-    choice::{PictureSample, SamplePlan},
+    choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing},
     identity::Selection,
     picture_error::PictureError,
     picture_files::picture_files,
@@ -15,6 +15,9 @@ use crate::{
     picture_sequence::{PictureFrame, PictureSequence, SequenceSettings},
     trace::is_two_valued,
 };
+
+/// Fewest pictures that tell how objects are best found.
+const FEWEST_PICTURES: usize = 3;
 
 /// Pictures whose edges tell how well outlines are known.
 const EDGES_LOOKED_AT: usize = 6;
@@ -122,6 +125,17 @@ impl PicturePreview {
     #[must_use]
     pub fn sample(&self, channels: &[Channel]) -> PictureSample {
         PictureSample::read(channels, |channel| self.pictures(channel))
+    }
+
+    /// Chooses how objects are told from the ground, in one of these channels, by [`choose_tracing`](crate::choose_tracing); `None` where too few
+    /// pictures can be looked at, or no way finds anything. What is not chosen is as in `base`.
+    #[must_use]
+    pub fn choose_tracing(&self, channels: &[Channel], base: &PictureSettings) -> Option<TracingChoice> {
+        let sample = self.sample(channels);
+        if sample.len() < FEWEST_PICTURES {
+            return None;
+        }
+        Some(choose_tracing(&sample, base, &[])).filter(|choice| choice.best().is_some())
     }
 
     /// How far outlines that are traced with these settings may lie off, by some of the pictures; `None` where nothing tells.

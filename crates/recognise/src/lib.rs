@@ -34,6 +34,7 @@ mod alignment;
 mod comparison;
 mod error;
 mod evidence;
+mod object_evidence;
 mod recogniser;
 mod settings;
 mod signature;
@@ -41,6 +42,7 @@ mod signature;
 pub use comparison::{Comparison, OutlineFit};
 pub use error::RecogniseError;
 pub use evidence::{Candidate, Evidence, Recognition};
+pub use object_evidence::{EvidenceByObject, ObjectEvidence};
 pub use recogniser::Recogniser;
 pub use settings::RecogniseSettings;
 

@@ -96,25 +96,19 @@ pub(crate) fn share(text: &str) -> Result<f64, String> {
 
 /// `B1,B2`.
 pub(crate) fn pair(text: &str) -> Result<[f64; 2], String> {
-    let list = list(text)?;
-    let count = list.len();
-    list.try_into().map_err(|_| format!("expected B1,B2, found {count} number(s)"))
+    numbers("B1,B2")(text)
 }
 
 /// `A1,A2,A3,A4,B1,B2`.
 pub(crate) fn affine(text: &str) -> Result<AffineMotion, String> {
-    match list(text)?[..] {
-        [a1, a2, a3, a4, b1, b2] => Ok(AffineMotion { a1, a2, a3, a4, b1, b2 }),
-        ref other => Err(format!("expected A1,A2,A3,A4,B1,B2, found {} number(s)", other.len())),
-    }
+    let [a1, a2, a3, a4, b1, b2] = numbers("A1,A2,A3,A4,B1,B2")(text)?;
+    Ok(AffineMotion { a1, a2, a3, a4, b1, b2 })
 }
 
 /// `A1,A2,A3,A4,B1,B2,C1,C2`.
 pub(crate) fn projective(text: &str) -> Result<ProjectiveMotion, String> {
-    match list(text)?[..] {
-        [a1, a2, a3, a4, b1, b2, c1, c2] => Ok(ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 }),
-        ref other => Err(format!("expected A1,A2,A3,A4,B1,B2,C1,C2, found {} number(s)", other.len())),
-    }
+    let [a1, a2, a3, a4, b1, b2, c1, c2] = numbers("A1,A2,A3,A4,B1,B2,C1,C2")(text)?;
+    Ok(ProjectiveMotion { a1, a2, a3, a4, b1, b2, c1, c2 })
 }
 
 /// The parameters of a rigid, similarity, affine or projective motion.

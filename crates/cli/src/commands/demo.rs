@@ -3,14 +3,13 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use freeform_drawing::{
-    Findings, Histories, MeaningOfB, OBJECTS_PLAYED, PicturesLeftOut, Purpose, Report, fit_figure, parameter_figure,
-    write_report,
+    Findings, Histories, MeaningOfB, OBJECTS_PLAYED, Purpose, Report, fit_figure, parameter_figure, write_report,
 };
 use freeform_motion::curve_fit::Outline;
 use freeform_motion::outline_io::{OutlineFrame, TableFormat};
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
-use freeform_motion::tracker::{Method, ObjectResult, Observation};
+use freeform_motion::tracker::{Method, ObjectResult, Observation, TraceWriter};
 use freeform_motion::{FittedOutline, PipelineSettings, SimulatedMotion, Tracker, Truth};
 
 use super::listed_settings::{fit_settings, settings, version};
@@ -18,7 +17,7 @@ use super::simulate::write_sequence;
 use crate::args::{DemoArgs, DynamicsChoice, IdentifyMethod, MotionChoice, PerspectiveArgs, TrackOptions};
 use crate::command_line::command_line;
 use crate::failure::{Failure, file_failure, plain, warn};
-use crate::output::{Sink, TraceWriter, WholeFile, write_identify_table};
+use crate::output::{Sink, WholeFile, write_identify_table};
 use crate::overlay::curves;
 
 /// Length of the sequence in seconds: the time that the paper's figures show.
@@ -123,12 +122,9 @@ fn report(
         command: command_line(),
         settings: listed,
         meaning_of_b: b.clone(),
-        findings: found.map(Found::findings).into(),
+        findings: found.map(|found| Findings { results: &found.results, histories: &found.histories }).into(),
         truth: Some(truth),
-        no_motion: None,
-        read_error: None,
-        left_out: PicturesLeftOut::default(),
-        all_poses: None,
+        ..Report::default()
     };
     WholeFile::create(path)?.finish_by(|file| write_report(file, &report))
 }
@@ -193,11 +189,5 @@ impl Identification {
             warn(&format!("{} method: {warning}", tracker.settings().method()));
         }
         Ok(Found { options, results, histories })
-    }
-}
-
-impl Found {
-    fn findings(&self) -> Findings<'_> {
-        Findings { results: &self.results, histories: &self.histories }
     }
 }

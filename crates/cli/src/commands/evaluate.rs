@@ -2,16 +2,18 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use freeform_experiments::monte_carlo::{AcquisitionSetting, Method, PlaneScene, Setting, Study, suite};
+use freeform_experiments::monte_carlo::{
+    AcquisitionSetting, Method, PlaneScene, Setting, Study, suite, write_report_csv,
+};
+use freeform_motion::named_shape;
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::sim_camera::{BuiltInShape, SequenceLength, Settings, Shape};
 
-use super::simulate::{shape, shape_files};
+use super::simulate::shape_files;
 use crate::args::{DisturbanceArgs, EvaluateArgs, EvaluateFormat, MotionChoice, PlaneBefore};
 use crate::failure::Failure;
 use crate::output::{
-    Evaluated, Sink, refuse_overwriting, write_evaluation_csv, write_evaluation_json, write_evaluation_markdown,
-    write_evaluation_table,
+    Evaluated, Sink, refuse_overwriting, write_evaluation_json, write_evaluation_markdown, write_evaluation_table,
 };
 use crate::progress::Progress;
 
@@ -58,7 +60,7 @@ fn study(args: &EvaluateArgs) -> Result<Study, Failure> {
         (None, false) => Vec::new(),
     };
     for name in &args.shape {
-        let shape = named_by_file(shape(name)?, name, &shapes);
+        let shape = named_by_file(named_shape(name).map_err(Failure::unusable)?, name, &shapes);
         if shapes.iter().any(|other| other.name() == shape.name()) {
             return Err(Failure::unusable(format_args!("--shape: {} is given twice", shape.name())));
         }
@@ -160,7 +162,7 @@ fn write(args: &EvaluateArgs, evaluated: &Evaluated, mut sink: Sink) -> Result<(
         EvaluateFormat::Table => write_evaluation_table(&mut sink, evaluated),
         EvaluateFormat::Markdown => write_evaluation_markdown(&mut sink, evaluated),
         EvaluateFormat::Json => write_evaluation_json(&mut sink, evaluated),
-        EvaluateFormat::Csv => write_evaluation_csv(&mut sink, evaluated),
+        EvaluateFormat::Csv => write_report_csv(&mut sink, &evaluated.report, evaluated.timing),
     };
     match written.and_then(|()| sink.flush()) {
         Ok(()) => sink.finish(),

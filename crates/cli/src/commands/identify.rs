@@ -3,7 +3,7 @@ use std::io::Write as _;
 use freeform_drawing::{Findings, MeaningOfB, OBJECTS_PLAYED, Report, write_report};
 use freeform_motion::outline_io::OutlineUncertainty;
 use freeform_motion::riccati::MotionModel;
-use freeform_motion::tracker::ObjectResult;
+use freeform_motion::tracker::{ObjectResult, write_results};
 use freeform_motion::{Tracker, Truth, Warning};
 
 use super::identify_files::Files;
@@ -17,7 +17,6 @@ use crate::interrupt;
 use crate::left_out::LeftOut;
 use crate::output::{
     Sink, WholeFile, refuse_overwriting, refuse_standard_output, write_identify_json, write_identify_table,
-    write_parameters,
 };
 use crate::overlay::InputOverlay;
 use crate::picture_input::PictureInput;
@@ -204,7 +203,7 @@ impl<'a> Outcome<'a> {
                 table.and_then(|()| if self.says_b() { writeln!(sink, "b: {b}") } else { Ok(()) })
             }
             IdentifyFormat::Json => write_identify_json(&mut sink, results, b, &self.left_out),
-            IdentifyFormat::Csv => write_parameters(&mut sink, results),
+            IdentifyFormat::Csv => write_results(&mut sink, results),
         };
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
     }

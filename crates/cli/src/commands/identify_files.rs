@@ -2,14 +2,15 @@
 use std::path::Path;
 
 use freeform_drawing::{Histories, Purpose, parameter_figure};
-use freeform_motion::estimate::MotionEstimate;
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::tracker::{ObjectResult, Observation, SmoothingError, Trajectory};
+use freeform_motion::tracker::{
+    AdaptiveColumns, ObjectResult, Observation, SmoothingError, TraceWriter, Trajectory, write_trajectory,
+};
 use freeform_motion::{Tracker, Truth};
 
 use crate::args::{IdentifyArgs, IdentifyMethod};
 use crate::failure::{Failure, file_failure, warn};
-use crate::output::{Study, TraceWriter, WholeFile, write_trajectory};
+use crate::output::WholeFile;
 use crate::overlay::curves;
 
 /// What is written frame by frame, or kept for figures. Files are begun before the work, which is not to be lost where there
@@ -26,7 +27,9 @@ pub(super) struct Files<'a> {
 impl<'a> Files<'a> {
     /// Begins the files that are asked for.
     pub(super) fn create(args: &'a IdentifyArgs, truth: Option<&Truth>) -> Result<Self, Failure> {
-        let study = (args.options.method == IdentifyMethod::Adaptive).then(|| study(args, truth));
+        let (model, scale) = (args.options.motion.model(), args.options.scale);
+        let study = (args.options.method == IdentifyMethod::Adaptive)
+            .then(|| AdaptiveColumns { truth: truth.and_then(|truth| truth.constant_in_image(model, scale)) });
         let trace = args.trace.as_deref().map(|path| {
             let writer = TraceWriter::new(WholeFile::create(path)?, args.options.motion.family(), study);
             writer.map(|writer| (path, writer)).map_err(|error| file_failure(path, &error))
@@ -102,15 +105,4 @@ impl<'a> Files<'a> {
         }
         Ok(())
     }
-}
-
-/// What the Lyapunov function of the adaptive law needs to know of the truth.
-fn study(args: &IdentifyArgs, truth: Option<&Truth>) -> Study {
-    let model = args.options.motion.model();
-    let constant = truth.filter(|truth| truth.constant_parameters_in(model.into()).is_some());
-    let truth = constant.map(|truth| {
-        let in_image = args.options.scale.unwrap_or_default().generator_in_image(&truth.motion.generator());
-        MotionEstimate::new(model, &model.parameters_of(&in_image)[..model.parameter_count()], None)
-    });
-    Study { truth }
 }

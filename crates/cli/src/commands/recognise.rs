@@ -1,7 +1,5 @@
-use std::collections::HashMap;
-
 use freeform_motion::outline_io::{OutlineFrame, read_shape};
-use freeform_motion::recognise::{Comparison, Evidence, RecogniseError, RecogniseSettings, Recogniser};
+use freeform_motion::recognise::{EvidenceByObject, ObjectEvidence, RecogniseSettings, Recogniser};
 use rayon::prelude::*;
 
 use super::fit::{OUTLINES_AT_ONCE, POINTS_AT_ONCE};
@@ -27,8 +25,8 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     input.tell_tracing();
     let mut sink = Sink::stdout();
     let Compared { objects, mut reasons, warnings, failure } = compare_all(input, &recogniser, &sink);
-    reasons.extend(objects.list.iter().filter_map(|object| object.refusal(&name)));
-    let recognised: Vec<_> = objects.list.into_iter().filter_map(|object| object.recognised(&recogniser)).collect();
+    reasons.extend(objects.iter().filter_map(|object| refusal(&name, object)));
+    let recognised: Vec<_> = objects.iter().filter_map(|object| recognised(&recogniser, object)).collect();
     if recognised.is_empty() {
         let nothing = reasons.into_iter().next().unwrap_or_else(|| format!("{name}: no outline in the file"));
         return Err(failure.unwrap_or_else(|| Failure::no_result(nothing)));
@@ -48,7 +46,7 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
 /// What has come of an input.
 #[derive(Default)]
 struct Compared {
-    objects: SeenObjects,
+    objects: EvidenceByObject,
     /// Why there is no outline in some frames.
     reasons: Vec<String>,
     warnings: MissingWarnings,
@@ -70,14 +68,14 @@ fn compare_all(input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
                 points += frame.outline.point_count();
                 waiting.push(frame);
                 if waiting.len() >= at_once || points >= POINTS_AT_ONCE {
-                    compared.objects.take(recogniser, &std::mem::take(&mut waiting));
+                    compare(recogniser, &std::mem::take(&mut waiting), &mut compared.objects);
                     points = 0;
                 }
             }
             Ok(Item::NoOutline { object, reason, .. }) => {
                 // Objects come in the order in which they are seen.
-                compared.objects.take(recogniser, &std::mem::take(&mut waiting));
-                compared.objects.of(&object).frames_rejected += 1;
+                compare(recogniser, &std::mem::take(&mut waiting), &mut compared.objects);
+                compared.objects.of(&object).reject();
                 compared.reasons.push(reason);
             }
             Ok(Item::Gap(missing)) => compared.reasons.extend(compared.warnings.take(&missing)),
@@ -87,7 +85,7 @@ fn compare_all(input: Input, recogniser: &Recogniser, sink: &Sink) -> Compared {
             }
         }
     }
-    compared.objects.take(recogniser, &waiting);
+    compare(recogniser, &waiting, &mut compared.objects);
     compared
 }
 
@@ -105,63 +103,24 @@ fn learnt(args: &RecogniseArgs) -> Result<Recogniser, Failure> {
     Ok(recogniser)
 }
 
-/// An object while its frames are read.
-struct SeenObject {
-    object: String,
-    evidence: Evidence,
-    frames_rejected: usize,
-    first_refusal: Option<RecogniseError>,
+/// Compares outlines on all cores.
+fn compare(recogniser: &Recogniser, frames: &[OutlineFrame], objects: &mut EvidenceByObject) {
+    let compare = |recogniser: &mut Recogniser, frame: &OutlineFrame| recogniser.compare(&frame.outline);
+    let compared: Vec<_> = frames.par_iter().map_init(|| recogniser.clone(), compare).collect();
+    frames.iter().zip(compared).for_each(|(frame, compared)| objects.of(&frame.object).take(compared));
 }
 
-/// Objects in the order in which they first appeared.
-#[derive(Default)]
-struct SeenObjects {
-    list: Vec<SeenObject>,
-    /// By their names.
-    positions: HashMap<String, usize>,
+/// Why frames of an object were left out, if some were.
+fn refusal(
+    input: &str,
+    ObjectEvidence { object, frames_rejected, first_refusal, .. }: &ObjectEvidence,
+) -> Option<String> {
+    let error = first_refusal.as_ref()?;
+    Some(format!("{input}: {frames_rejected} frame(s) of object {object:?} left out: {error}"))
 }
 
-impl SeenObjects {
-    /// The object of a name, which may be new.
-    fn of(&mut self, name: &str) -> &mut SeenObject {
-        let position = self.positions.get(name).copied().unwrap_or_else(|| {
-            let (object, evidence) = (name.to_owned(), Evidence::new());
-            self.positions.insert(object.clone(), self.list.len());
-            self.list.push(SeenObject { object, evidence, frames_rejected: 0, first_refusal: None });
-            self.list.len() - 1
-        });
-        &mut self.list[position]
-    }
-
-    /// Compares outlines on all cores.
-    fn take(&mut self, recogniser: &Recogniser, frames: &[OutlineFrame]) {
-        let compare = |recogniser: &mut Recogniser, frame: &OutlineFrame| recogniser.compare(&frame.outline);
-        let compared: Vec<_> = frames.par_iter().map_init(|| recogniser.clone(), compare).collect();
-        frames.iter().zip(compared).for_each(|(frame, compared)| self.of(&frame.object).take(compared));
-    }
-}
-
-impl SeenObject {
-    fn take(&mut self, compared: Result<Vec<Comparison>, RecogniseError>) {
-        match compared {
-            Ok(comparisons) => self.evidence.add(&comparisons),
-            Err(error) => {
-                self.frames_rejected += 1;
-                self.first_refusal.get_or_insert(error);
-            }
-        }
-    }
-
-    /// Why frames were left out, if some were.
-    fn refusal(&self, input: &str) -> Option<String> {
-        let error = self.first_refusal.as_ref()?;
-        Some(format!("{input}: {} frame(s) of object {:?} left out: {error}", self.frames_rejected, self.object))
-    }
-
-    /// `None` where no frame could be compared.
-    fn recognised(self, recogniser: &Recogniser) -> Option<RecognisedObject> {
-        let recognition = self.evidence.recognition(recogniser.settings())?;
-        let Self { object, evidence, frames_rejected, .. } = self;
-        Some(RecognisedObject { object, frames: evidence.frames(), frames_rejected, recognition })
-    }
+/// `None` where no frame of an object could be compared.
+fn recognised<'a>(recogniser: &Recogniser, object: &'a ObjectEvidence) -> Option<RecognisedObject<'a>> {
+    let recognition = object.evidence.recognition(recogniser.settings())?;
+    Some(RecognisedObject { object, recognition })
 }

@@ -1,11 +1,9 @@
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use freeform_motion::SimulatedMotion;
-use freeform_motion::outline_io::{
-    DEFAULT_OBJECT, OutlineFrame, TableFormat, TableWriter, WriteError, WriterOptions, read_shape,
-};
-use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator};
+use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame, TableFormat, TableWriter, WriteError, WriterOptions};
+use freeform_motion::sim_camera::{BuiltInShape, Frame, Occlusion, Scene, SequenceLength, Settings, Simulator};
+use freeform_motion::{SimulatedMotion, named_shape};
 
 use crate::args::{DisturbanceArgs, MotionChoice, PlaneBefore, SimulateArgs};
 use crate::command_line::command_line;
@@ -100,8 +98,10 @@ fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
     }
     let motion = args.dynamics.motion(&args.motion_in_space)?;
     let scene = match plane {
-        Some(PlaneBefore { motion, camera, size }) => Scene::in_space(shape(&args.shape)?, motion, camera, size),
-        None => Scene::new(shape(&args.shape)?, motion, camera),
+        Some(PlaneBefore { motion, camera, size }) => {
+            Scene::in_space(named_shape(&args.shape).map_err(Failure::unusable)?, motion, camera, size)
+        }
+        None => Scene::new(named_shape(&args.shape).map_err(Failure::unusable)?, motion, camera),
     };
     let DisturbanceArgs { occlusion, outliers, .. } = args.disturbance;
     let noise = args.disturbance.noise(is_plane);
@@ -122,22 +122,4 @@ fn simulator(args: &SimulateArgs) -> Result<Simulator, Failure> {
 pub(super) fn shape_files(names_or_files: &[String]) -> Vec<PathBuf> {
     let is_file = |name: &&String| name.parse::<BuiltInShape>().is_err();
     names_or_files.iter().filter(is_file).map(PathBuf::from).collect()
-}
-
-/// A built-in shape, or that of a file at unit size.
-pub(super) fn shape(name_or_file: &str) -> Result<Shape, Failure> {
-    let unknown = match name_or_file.parse::<BuiltInShape>() {
-        Ok(shape) => return Ok(shape.shape()),
-        Err(error) => error,
-    };
-    let path = Path::new(name_or_file);
-    let looks_like_file = path.extension().is_some() || path.components().count() > 1 || path.exists();
-    if !looks_like_file {
-        return Err(Failure::unusable(unknown));
-    }
-    let outline = read_shape(path).map_err(Failure::unusable)?;
-    let points: Vec<_> = outline.points().copied().collect();
-    let shape =
-        Shape::from_polygon(&points).map_err(|error| Failure::unusable(format_args!("{name_or_file}: {error}")))?;
-    Ok(shape.normalised().with_name(name_or_file))
 }

@@ -22,9 +22,9 @@ const COLUMNS: [&str; 12] = [
 ];
 
 /// Under which name the shapes appear together.
-pub(super) const POOLED: &str = "pooled";
+const POOLED: &str = "pooled";
 /// Under which name the parameters appear together.
-pub(super) const ALL: &str = "all";
+const ALL: &str = "all";
 
 /// The result of `evaluate`, and how it is printed.
 #[derive(Debug)]

@@ -1,10 +1,8 @@
 //! What is written: one file per format.
 mod aligned;
-mod csv;
 mod destination;
 mod drawing_folder;
 mod drawn_pictures;
-mod evaluate_csv;
 mod evaluate_json;
 mod evaluate_markdown;
 mod evaluate_table;
@@ -19,13 +17,10 @@ mod refusal;
 mod section_files;
 mod stress_json;
 mod stress_table;
-mod trajectory_csv;
 mod velocity_json;
 
 pub(crate) use aligned::table_text;
-pub(crate) use csv::{Study, TraceWriter, write_parameters};
 pub(crate) use drawn_pictures::DrawnPictures;
-pub(crate) use evaluate_csv::write_evaluation_csv;
 pub(crate) use evaluate_json::write_evaluation_json;
 pub(crate) use evaluate_markdown::write_evaluation_markdown;
 pub(crate) use evaluate_table::{Evaluated, write_evaluation_table};
@@ -39,4 +34,3 @@ pub(crate) use refusal::{refuse_overwriting, refuse_standard_output};
 pub(crate) use section_files::write_section_files;
 pub(crate) use stress_json::{write_kinds_json, write_stress_json};
 pub(crate) use stress_table::{write_kinds, write_kinds_markdown, write_stress_markdown, write_stress_table};
-pub(crate) use trajectory_csv::write_trajectory;

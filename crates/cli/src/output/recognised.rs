@@ -1,6 +1,6 @@
 use std::io::{self, Write};
 
-use freeform_motion::recognise::{Candidate, Recognition};
+use freeform_motion::recognise::{Candidate, ObjectEvidence, Recognition};
 use freeform_motion::significant;
 use serde_json::{Value, json};
 
@@ -9,30 +9,26 @@ use super::aligned::write_aligned;
 /// Known outlines that are listed, most probable first.
 const CANDIDATES: usize = 5;
 
-/// What is known of one object.
-pub(crate) struct RecognisedObject {
-    pub(crate) object: String,
-    /// Frames that were compared, and frames that could not be.
-    pub(crate) frames: usize,
-    pub(crate) frames_rejected: usize,
+/// An object whose frames were compared with the known outlines.
+pub(crate) struct RecognisedObject<'a> {
+    pub(crate) object: &'a ObjectEvidence,
     pub(crate) recognition: Recognition,
 }
 
 /// One row per object for reading.
 pub(crate) fn write_recognised_table(
     sink: &mut impl Write,
-    objects: &[RecognisedObject],
+    objects: &[RecognisedObject<'_>],
     names: &[&str],
 ) -> io::Result<()> {
-    let row = |object: &RecognisedObject| {
-        let recognition = &object.recognition;
+    let row = |RecognisedObject { object, recognition }: &RecognisedObject<'_>| {
         let nearest = recognition.candidates.first();
         let distance = nearest.and_then(|candidate| candidate.distance).map_or("-".to_owned(), |d| significant(d, 2));
         let name = recognition.known.map_or("none of them", |known| names[known]);
         let next = nearest.filter(|_| recognition.known.is_none()).map_or("", |candidate| names[candidate.known]);
         vec![
             object.object.clone(),
-            object.frames.to_string(),
+            object.evidence.frames().to_string(),
             name.to_owned(),
             format!("{:.3}", recognition.probability),
             distance,
@@ -46,7 +42,7 @@ pub(crate) fn write_recognised_table(
 /// All objects as one JSON object.
 pub(crate) fn write_recognised_json(
     sink: &mut impl Write,
-    objects: &[RecognisedObject],
+    objects: &[RecognisedObject<'_>],
     names: &[&str],
 ) -> io::Result<()> {
     let objects: Vec<Value> = objects.iter().map(|object| object_json(object, names)).collect();
@@ -54,13 +50,12 @@ pub(crate) fn write_recognised_json(
     writeln!(sink)
 }
 
-fn object_json(object: &RecognisedObject, names: &[&str]) -> Value {
-    let recognition = &object.recognition;
+fn object_json(RecognisedObject { object, recognition }: &RecognisedObject<'_>, names: &[&str]) -> Value {
     let map = recognition.known.and_then(|_| recognition.candidates.first()?.map);
     let rows = map.map(|map| [0, 1, 2].map(|row| [0, 1, 2].map(|column| map.matrix()[(row, column)])));
     json!({
         "object": object.object,
-        "frames": object.frames,
+        "frames": object.evidence.frames(),
         "frames_rejected": object.frames_rejected,
         "name": recognition.known.map(|known| names[known]),
         "probability": recognition.probability,

@@ -6,6 +6,7 @@
 mod acquisition;
 mod estimator;
 mod evaluation;
+mod report_csv;
 mod setting;
 mod statistics;
 mod study;
@@ -14,6 +15,7 @@ pub mod suite;
 pub use acquisition::{Acquisition, AcquisitionSetting, Found};
 pub use estimator::Method;
 pub use evaluation::{Evaluation, MethodResult};
+pub use report_csv::write_report_csv;
 pub use setting::{PlaneScene, Setting};
 pub use statistics::{ParameterStatistics, Statistics};
 pub use study::{Report, Study};

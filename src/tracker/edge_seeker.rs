@@ -1,15 +1,15 @@
-//! Objects in pictures that are not found as a whole: their edges are looked for where they are expected.
 use std::collections::{BTreeMap, HashMap};
-use std::rc::Rc;
 
-use freeform_motion::Tracker;
-use freeform_motion::curve_fit::{Outline, Piece};
-use freeform_motion::outline_io::{EdgeProfile, SourcePicture, readable};
-use freeform_motion::tracker::{ExpectedOutline, Followed, FrameRanges, Recorded};
+use freeform_curve_fit::{Outline, Piece};
+use freeform_outline_filter::ExpectedOutline;
+use freeform_outline_io::{EdgeProfile, SourcePicture};
 use nalgebra::Point2;
 
-use crate::reader::Event;
-use crate::seen::Item;
+use super::{
+    Tracker,
+    recording::{Followed, Recorded},
+};
+use crate::frame_ranges::FrameRanges;
 
 /// Pictures in a row that an object is looked for in by its edges alone: half a second at 30 frames/s. What is looked for where it is expected, and
 /// found there, confirms what was expected.
@@ -24,12 +24,38 @@ const PIXELS: f64 = 3.0;
 const ON_ANOTHER: f64 = 0.3;
 const NEAR_ANOTHER: f64 = 2.5;
 
-/// Objects that are named at the end.
+/// Objects whose frames are told apart.
 const OBJECTS_NAMED: usize = 4;
 
-/// What the edges of the objects look like, and where they were looked for.
+/// Follows objects in pictures, and looks for the edges of those that are not found as a whole where they are expected. An object that is partly
+/// hidden, or touches another, is so still seen by the arcs that show. What the edges of an object look like is learnt from the frames that fit.
+///
+/// ```
+/// use freeform_motion::outline_io::{OutlineFrame, SourcePicture};
+/// use freeform_motion::tracker::{EdgeSeeker, Followed, Recorded};
+/// use freeform_motion::{Tracker, TrackerSettings};
+///
+/// /// What comes of a picture and the outlines that were traced in it.
+/// fn observations(
+///     tracker: &mut Tracker,
+///     seeker: &mut EdgeSeeker,
+///     source: &SourcePicture,
+///     outlines: Vec<OutlineFrame>,
+/// ) -> Vec<Followed<Option<SourcePicture>, ()>> {
+///     let items = outlines.into_iter().map(|outline| Recorded::Outline(outline, Some(source.clone())));
+///     let mut found: Vec<_> = items.map(|item| seeker.push(tracker, item)).collect();
+///     found.extend(seeker.seek_others(tracker, source));
+///     found
+/// }
+/// # let mut tracker = Tracker::new(TrackerSettings::default())?;
+/// # let grid = freeform_motion::outline_io::TraceSettings::default().pixel_grid(30);
+/// # let picture = std::sync::Arc::new(freeform_motion::outline_io::GrayImage::new(30, 30));
+/// # let source = SourcePicture { frame: 0, time: 0.0, picture, grid };
+/// # assert!(observations(&mut tracker, &mut EdgeSeeker::default(), &source, Vec::new()).is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Default)]
-pub(crate) struct EdgeSeeker {
+pub struct EdgeSeeker {
     objects: HashMap<String, Known>,
     found: BTreeMap<String, FrameRanges>,
     /// Number of the present picture, and what was taken of which object in it.
@@ -53,11 +79,11 @@ impl Known {
     fn seek(
         &self,
         name: &str,
-        seen_in: &SourcePicture,
+        source: &SourcePicture,
         expected: &ExpectedOutline,
         taken: &[(String, Outline)],
     ) -> Option<Outline> {
-        let SourcePicture { frame, picture, grid, .. } = seen_in;
+        let SourcePicture { frame, picture, grid, .. } = source;
         if frame.saturating_sub(self.traced) > MOST_IN_A_ROW {
             return None;
         }
@@ -76,35 +102,39 @@ fn pieces(expected: &ExpectedOutline) -> impl Iterator<Item = Piece<'_>> {
 }
 
 impl EdgeSeeker {
-    /// Has a tracker take what comes next, and hands on what it gave.
-    pub(crate) fn push(&mut self, tracker: &mut Tracker, item: Item) -> Event {
-        let (frame, seen_in) = match item {
+    /// Has a tracker take what comes next, and returns what it gave. If an outline does not fit, arcs found by their edges are taken in its place.
+    pub fn push<G>(
+        &mut self,
+        tracker: &mut Tracker,
+        item: Recorded<Option<SourcePicture>, G>,
+    ) -> Followed<Option<SourcePicture>, G> {
+        let (frame, source) = match item {
             Recorded::Gap(missing) => return Followed::Gap(missing),
             Recorded::NoOutline { object, frame, reason } => {
                 return Followed::Object(tracker.reject(&object, frame, reason), None);
             }
             Recorded::Outline(frame, None) => return Followed::Object(tracker.push(&frame), Some((frame, None))),
-            Recorded::Outline(frame, Some(seen_in)) => (frame, seen_in),
+            Recorded::Outline(frame, Some(source)) => (frame, source),
         };
-        self.begin(seen_in.frame);
+        self.begin(source.frame);
         let taken = &self.taken;
         let known = self.objects.entry(frame.object.clone()).or_default();
-        known.looked_for = Some(seen_in.frame);
+        known.looked_for = Some(source.frame);
         let (observation, arcs) = if known.profile.is_known() {
-            tracker.push_or_seek(&frame, |expected| known.seek(&frame.object, &seen_in, expected, taken))
+            tracker.push_or_seek(&frame, |expected| known.seek(&frame.object, &source, expected, taken))
         } else {
             (tracker.push(&frame), None)
         };
         let taken = match arcs {
             Some(arcs) => {
-                self.count(&arcs.object, seen_in.frame);
+                self.count(&arcs.object, source.frame);
                 arcs
             }
             None => {
                 if observation.is_accepted() {
-                    known.traced = seen_in.frame;
+                    known.traced = source.frame;
                     if let Some(seen) = tracker.expected_outline(&frame.object, frame.time) {
-                        known.profile.take(&seen_in.picture, &seen_in.grid, pieces(&seen));
+                        known.profile.take(&source.picture, &source.grid, pieces(&seen));
                     }
                 }
                 frame
@@ -113,7 +143,7 @@ impl EdgeSeeker {
         if observation.is_accepted() {
             self.taken.push((taken.object.clone(), taken.outline.clone()));
         }
-        Followed::Object(observation, Some((taken, Some(seen_in))))
+        Followed::Object(observation, Some((taken, Some(source))))
     }
 
     /// Forgets what was taken in the picture before, and objects that will not be looked for any more.
@@ -125,24 +155,28 @@ impl EdgeSeeker {
         }
     }
 
-    /// Looks for the objects that nothing was found of in a picture. What is found comes in the order of their names.
-    pub(crate) fn seek_others(&mut self, tracker: &mut Tracker, seen_in: &Rc<SourcePicture>) -> Vec<Event> {
-        self.begin(seen_in.frame);
-        let is_missing = |known: &Known| known.looked_for != Some(seen_in.frame) && known.profile.is_known();
+    /// After the last outline of a picture: looks for the objects that nothing was found of in it. What is found comes in the order of their names.
+    pub fn seek_others<G>(
+        &mut self,
+        tracker: &mut Tracker,
+        source: &SourcePicture,
+    ) -> Vec<Followed<Option<SourcePicture>, G>> {
+        self.begin(source.frame);
+        let is_missing = |known: &Known| known.looked_for != Some(source.frame) && known.profile.is_known();
         let mut missing: Vec<(&String, &mut Known)> =
             self.objects.iter_mut().filter(|(_, known)| is_missing(known)).collect();
         missing.sort_by_key(|(name, _)| *name);
         let mut events = Vec::new();
         for (name, known) in missing {
-            known.looked_for = Some(seen_in.frame);
+            known.looked_for = Some(source.frame);
             let taken = &self.taken;
             let sought =
-                tracker.seek(name, seen_in.frame, seen_in.time, |expected| known.seek(name, seen_in, expected, taken));
+                tracker.seek(name, source.frame, source.time, |expected| known.seek(name, source, expected, taken));
             self.taken.extend(sought.iter().map(|(_, arcs)| (arcs.object.clone(), arcs.outline.clone())));
             events.extend(sought);
         }
-        events.iter().for_each(|(_, arcs)| self.count(&arcs.object, seen_in.frame));
-        let with_picture = |(observation, arcs)| Followed::Object(observation, Some((arcs, Some(Rc::clone(seen_in)))));
+        events.iter().for_each(|(_, arcs)| self.count(&arcs.object, source.frame));
+        let with_picture = |(observation, arcs)| Followed::Object(observation, Some((arcs, Some(source.clone()))));
         events.into_iter().map(with_picture).collect()
     }
 
@@ -155,19 +189,18 @@ impl EdgeSeeker {
     }
 
     /// Forgets an object that has left.
-    pub(crate) fn forget(&mut self, object: &str) {
+    pub fn forget(&mut self, object: &str) {
         self.objects.remove(object);
     }
 
-    /// In which frames arcs were found by their edges, in place of outlines.
-    pub(crate) fn notes(&self) -> Vec<String> {
-        let reason =
-            "it was not found as a whole, and parts of it were found by their edges where it was expected, in frames";
-        let note = |(name, frames): (&String, &FrameRanges)| format!("object {}: {reason} {frames}", readable(name));
-        let mut notes: Vec<String> = self.found.iter().map(note).collect();
-        if self.frames_of_others > 0 {
-            notes.push(format!("the same for other objects, in {} of their frames together", self.frames_of_others));
-        }
-        notes
+    /// The first objects of which arcs were found by their edges in place of outlines, in the order of their names, with these frames.
+    pub fn found(&self) -> impl Iterator<Item = (&str, &FrameRanges)> {
+        self.found.iter().map(|(name, frames)| (name.as_str(), frames))
+    }
+
+    /// Number of such frames of the other objects together.
+    #[must_use]
+    pub const fn frames_of_others(&self) -> u64 {
+        self.frames_of_others
     }
 }

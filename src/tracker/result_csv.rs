@@ -1,25 +1,52 @@
 use std::io::{self, Write};
 
-use freeform_motion::AdaptiveProgress;
-use freeform_motion::estimate::MotionEstimate;
-use freeform_motion::identify::AdaptiveDiagnostics;
-use freeform_motion::tracker::{MotionFamily, ObjectPhase, ObjectResult, Observation};
+use freeform_estimate::MotionEstimate;
+use freeform_identify::AdaptiveDiagnostics;
 
-/// Writes the trace: one row per frame with the parameters as identified so far.
-pub(crate) struct TraceWriter<W: Write> {
+use super::{
+    family::MotionFamily,
+    observation::{ObjectPhase, Observation},
+    result::ObjectResult,
+};
+use crate::adaptive_progress::AdaptiveProgress;
+
+/// Writes a trace as CSV: one row per object and frame with the parameters as identified so far. The columns are `object`, `frame`, `time`, `phase`,
+/// `accepted`, then each parameter and its standard deviation (`_std`). What is not known is empty.
+///
+/// ```
+/// use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
+/// use freeform_motion::riccati::MotionModel;
+/// use freeform_motion::sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
+/// use freeform_motion::tracker::TraceWriter;
+/// use freeform_motion::{Tracker, TrackerSettings};
+///
+/// let settings = Settings { length: SequenceLength::Frames(3), ..Settings::default() };
+/// let simulator = Simulator::new(PaperExperiment::FLIGHT_BIRD.scene(0.1)?, settings)?;
+/// let mut tracker = Tracker::new(TrackerSettings::default())?;
+/// let mut trace = TraceWriter::new(Vec::new(), MotionModel::Rigid.into(), None)?;
+/// for (frame, seen) in (0..).zip(simulator.frames()) {
+///     let outline = OutlineFrame { frame, time: seen.time, object: DEFAULT_OBJECT.to_owned(), outline: seen.outline };
+///     trace.write(&tracker.push(&outline))?;
+/// }
+/// let text = String::from_utf8(trace.into_inner()?)?;
+/// assert!(text.starts_with("object,frame,time,phase,accepted,omega,omega_std,b1,b1_std,b2,b2_std\n0,0,0,"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct TraceWriter<W: Write> {
     writer: csv::Writer<W>,
     parameters: usize,
-    study: Option<Study>,
+    adaptive: Option<AdaptiveColumns>,
 }
 
-/// What is written of the adaptive law besides its parameters.
+/// What a trace has of the adaptive law besides its parameters: columns `error`, `energy`, `lyapunov` and `excitation`.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Study {
-    /// The true motion in the image, where it is known and constant.
-    pub(crate) truth: Option<MotionEstimate>,
+pub struct AdaptiveColumns {
+    /// The true motion in the image, where it is known and constant; the Lyapunov function is empty without it.
+    pub truth: Option<MotionEstimate>,
 }
 
-impl Study {
+impl AdaptiveColumns {
     const NAMES: [&str; 4] = ["error", "energy", "lyapunov", "excitation"];
 
     fn cells(&self, progress: Option<&AdaptiveProgress>) -> [String; 4] {
@@ -31,18 +58,26 @@ impl Study {
 }
 
 impl<W: Write> TraceWriter<W> {
-    /// Writes the header, with columns for what the adaptive law is doing, if that is asked for.
-    pub(crate) fn new(sink: W, family: MotionFamily, study: Option<Study>) -> io::Result<Self> {
+    /// Begins a trace with its header, with columns for what the adaptive law is doing, if that is asked for.
+    ///
+    /// # Errors
+    ///
+    /// Those of the sink.
+    pub fn new(sink: W, family: MotionFamily, adaptive: Option<AdaptiveColumns>) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(sink);
         let mut header: Vec<String> = ["object", "frame", "time", "phase", "accepted"].map(str::to_owned).into();
         header.extend(family.parameter_names().iter().flat_map(|name| [(*name).to_owned(), format!("{name}_std")]));
-        header.extend(study.iter().flat_map(|_| Study::NAMES.map(str::to_owned)));
+        header.extend(adaptive.iter().flat_map(|_| AdaptiveColumns::NAMES.map(str::to_owned)));
         writer.write_record(&header).map_err(io::Error::from)?;
-        Ok(Self { writer, parameters: family.parameter_names().len(), study })
+        Ok(Self { writer, parameters: family.parameter_names().len(), adaptive })
     }
 
-    /// Writes one frame. What is missing stays empty.
-    pub(crate) fn write(&mut self, observation: &Observation) -> io::Result<()> {
+    /// Writes what a frame of an object gave.
+    ///
+    /// # Errors
+    ///
+    /// Those of the sink.
+    pub fn write(&mut self, observation: &Observation) -> io::Result<()> {
         let mut row = vec![
             text_cell(&observation.object),
             observation.frame.to_string(),
@@ -54,12 +89,16 @@ impl<W: Write> TraceWriter<W> {
             Some(found) => row.extend(found.iter().flat_map(|p| [optional(p.value), optional(p.standard_deviation)])),
             None => row.extend(std::iter::repeat_n(String::new(), 2 * self.parameters)),
         }
-        row.extend(self.study.iter().flat_map(|study| study.cells(observation.progress.as_ref())));
+        row.extend(self.adaptive.iter().flat_map(|adaptive| adaptive.cells(observation.progress.as_ref())));
         self.writer.write_record(&row).map_err(io::Error::from)
     }
 
     /// Writes out what is buffered and hands the sink back.
-    pub(crate) fn into_inner(self) -> io::Result<W> {
+    ///
+    /// # Errors
+    ///
+    /// Those of the sink.
+    pub fn into_inner(self) -> io::Result<W> {
         self.writer.into_inner().map_err(csv::IntoInnerError::into_error)
     }
 }
@@ -79,8 +118,12 @@ fn optional(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// The results with one row per object and parameter.
-pub(crate) fn write_parameters(sink: &mut impl Write, results: &[ObjectResult]) -> io::Result<()> {
+/// Writes results as CSV with one row per object and parameter.
+///
+/// # Errors
+///
+/// Those of the sink.
+pub fn write_results(sink: &mut impl Write, results: &[ObjectResult]) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
     let header =
         ["object", "method", "motion", "frames", "frames_rejected", "parameter", "value", "std", "unit", "observable"];

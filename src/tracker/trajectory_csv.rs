@@ -1,13 +1,19 @@
 use std::io::{self, Write};
 
-use freeform_motion::riccati::{CameraScale, MotionModel};
-use freeform_motion::tracker::{PoseAndMotion, Trajectory};
+use freeform_riccati::{CameraScale, MotionModel};
 
-use super::csv::text_cell;
+use super::{
+    result_csv::text_cell,
+    trajectory::{PoseAndMotion, Trajectory},
+};
 
-/// Writes a trajectory: one row per object and frame with pose and motion and their standard deviations. What is not known stays
-/// empty.
-pub(crate) fn write_trajectory(
+/// Writes a trajectory as CSV: one row per object and frame with pose and motion and their standard deviations. What is not known is empty.
+/// Positions and velocities are divided by a camera scale.
+///
+/// # Errors
+///
+/// Those of the sink.
+pub fn write_trajectory(
     sink: &mut impl Write,
     trajectory: &Trajectory,
     model: MotionModel,

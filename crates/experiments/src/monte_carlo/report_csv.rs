@@ -1,8 +1,13 @@
 use std::io::{self, Write};
 
-use freeform_experiments::monte_carlo::Statistics;
+use super::statistics::Statistics;
+use super::study::Report;
 
-use super::evaluate_table::{ALL, Evaluated, POOLED};
+/// Under which name the shapes appear together.
+const POOLED: &str = "pooled";
+
+/// Under which name the parameters appear together.
+const ALL: &str = "all";
 
 const HEADER: [&str; 18] = [
     "setting",
@@ -25,9 +30,14 @@ const HEADER: [&str; 18] = [
     "frames_rejected",
 ];
 
-/// One row per setting, method, shape and parameter; `pooled` shapes and `all` parameters as well. Of an acquisition the ratio is
-/// empty and `lost` holds the runs in which the pose was not found.
-pub(crate) fn write_evaluation_csv(sink: &mut impl Write, Evaluated { report, timing }: &Evaluated) -> io::Result<()> {
+/// Writes a report as CSV: one row per setting, method, shape and parameter; `pooled` shapes and `all` parameters as well. Of an acquisition the
+/// ratio is empty and `lost` holds the runs in which the pose was not found. `timing`: whether there is a column with the time per frame, which no
+/// run repeats.
+///
+/// # Errors
+///
+/// Those of the sink.
+pub fn write_report_csv(sink: &mut impl Write, report: &Report, timing: bool) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
     let time_column = timing.then_some("microseconds_per_frame");
     writer.write_record(HEADER.into_iter().chain(time_column)).map_err(io::Error::from)?;

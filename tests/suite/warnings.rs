@@ -1,0 +1,100 @@
+//! docs/warnings.md has every warning: its code, an example of its message, and nothing else.
+use std::collections::BTreeSet;
+
+use freeform_motion::Warning;
+use freeform_motion::estimate::PlaneEstimate;
+use freeform_motion::outline_filter::{Ambiguity, PlaneAmbiguity, PlaneSolution, Rejection, WrongFamily};
+use freeform_motion::riccati::{MotionModel, PlaneMotion};
+use freeform_motion::tracker::{FrameRejection, RejectionCause};
+use nalgebra::SMatrix;
+
+const PAGE: &str = include_str!("../../docs/warnings.md");
+const SOURCE: &str = include_str!("../../src/warning.rs");
+
+/// One example of each warning.
+fn examples() -> Vec<Warning> {
+    let family = |family| Warning::WrongFamily { family, motion: MotionModel::Rigid };
+    let plane = PlaneEstimate::new(PlaneMotion::of_parameters([0.0; 8]), SMatrix::zeros(), [true; 8]);
+    let solution = |probability| PlaneSolution { estimate: plane, probability };
+    vec![
+        Warning::PointsOutOfOrder { frame: 3, perimeters: 12.0 },
+        Warning::Diverged,
+        Warning::StateLost { reason: "the file is truncated".to_owned() },
+        Warning::TooManyRejected { rejected: 37, frames: 75 },
+        Warning::Lost,
+        Warning::Reacquiring { last_known: 1.733 },
+        Warning::Restarted { times: 2 },
+        Warning::Ambiguous(Ambiguity {
+            turn: -50_f64.to_radians(),
+            rival_turns: vec![40_f64.to_radians()],
+            parameters: vec!["omega"],
+        }),
+        Warning::Aliases { omega: vec![-4.712, 7.854] },
+        Warning::TwoPlanes(Box::new(PlaneAmbiguity {
+            solutions: [solution(0.6), solution(0.4)],
+            parameters: vec!["wx", "wy", "normal"],
+        })),
+        Warning::AmbiguousCorrespondence { ambiguous: 9, matched: 60 },
+        family(WrongFamily::Growth),
+        family(WrongFamily::Shear),
+        family(WrongFamily::Perspective),
+        family(WrongFamily::RollingShutter),
+        family(WrongFamily::Lens),
+        family(WrongFamily::Shape),
+        Warning::PlaneMisfit { excess: 3.2 },
+        Warning::AffineBias,
+        Warning::MotionChanged { dynamics: None },
+        Warning::NotObservable { parameters: vec!["omega"] },
+        Warning::NotKnown { parameters: vec!["b1", "b2"] },
+        Warning::RotationNotObservable { parameters: vec!["omega", "b1", "b2"] },
+        Warning::RotationFromPath,
+        Warning::PlaneHardlyMoves { parameters: vec!["vx", "vy", "vz", "normal"] },
+        Warning::MayNotHaveSettled { seconds: 4.0 },
+        Warning::LinesNotFollowed { skipped: 12, intervals: 59 },
+        Warning::FramesRejected { rejected: 7, frames: 120 },
+        Warning::FrameRejected(FrameRejection {
+            object: "0".to_owned(),
+            frame: 17,
+            cause: RejectionCause::NotAccepted(Rejection::AgreementTooSmall { agreement: 0.34, smallest: 0.5 }),
+        }),
+        Warning::MoreFramesRejected { count: 3, frames: [18, 19, 20].into_iter().collect() },
+    ]
+}
+
+/// Code and example of every section of the page: the lines that begin with `>`, as one.
+fn sections() -> Vec<(String, String)> {
+    let sections = PAGE.split("\n### `").skip(1);
+    sections
+        .map(|section| {
+            let (code, text) = section.split_once('`').expect("a code ends with a backquote");
+            let quoted: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("> ")).collect();
+            (code.to_owned(), quoted.join(" "))
+        })
+        .collect()
+}
+
+#[test]
+fn every_warning_stands_on_the_page_with_its_message() {
+    let written: BTreeSet<_> = sections().into_iter().collect();
+    let expected: BTreeSet<_> =
+        examples().iter().map(|warning| (warning.code().to_owned(), warning.to_string())).collect();
+    assert_eq!(written, expected);
+}
+
+#[test]
+fn there_is_an_example_of_every_code_of_the_enum() {
+    let body =
+        SOURCE.split("pub const fn code").nth(1).and_then(|rest| rest.split("\n    }\n").next()).expect("a body");
+    let codes: BTreeSet<&str> =
+        body.lines().filter_map(|line| line.split_once("=> \"")?.1.strip_suffix("\",")).collect();
+    let shown: Vec<Warning> = examples();
+    assert_eq!(codes, shown.iter().map(Warning::code).collect());
+}
+
+#[test]
+fn every_section_says_what_to_make_of_it() {
+    for (section, (code, _)) in PAGE.split("\n### `").skip(1).zip(sections()) {
+        let told = section.lines().skip(1).filter(|line| !line.starts_with('>') && !line.starts_with('#'));
+        assert!(told.map(str::len).sum::<usize>() > 40, "{code}");
+    }
+}
