@@ -35,6 +35,7 @@ pub(crate) fn write_identify_table(
 
 #[cfg(test)]
 mod tests {
+    use freeform_motion::Warning;
     use freeform_motion::estimate::{MotionEstimate, PointVelocity};
     use freeform_motion::outline_filter::Ambiguity;
     use freeform_motion::riccati::{MotionModel, RigidMotion};

@@ -119,7 +119,6 @@ pub fn meaning_of_v(velocity: &PointVelocity) -> String {
 #[cfg(test)]
 mod tests {
     use freeform_motion::estimate::{MotionEstimate, PointVelocity};
-    use freeform_motion::outline_filter::Ambiguity;
     use freeform_motion::riccati::{MotionModel, RigidMotion};
     use freeform_motion::tracker::Method;
     use nalgebra::{Matrix2, Point2, Vector2};

@@ -1,0 +1,91 @@
+//! How pictures are traced where no option says it, and what holes and edges tell.
+use image::{GrayImage, Luma};
+
+use crate::pears::pears;
+use crate::support::{json, run, stderr, stdout, succeed};
+
+#[test]
+fn without_options_the_way_of_tracing_is_found_printed_and_gives_the_same_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let base = folder.path().to_str().expect("UTF-8");
+    for (scene, seed, expected) in
+        [("accelerating-l", 0, "--dark"), ("gear", 1, "--light"), ("belt", 1, "--objects all")]
+    {
+        let frames = format!("{base}/{scene}");
+        succeed(&format!("simulate --pictures {frames} --scene {scene} --seed {seed} --seconds 0.5"), "");
+        let chosen = run(&format!("outline {frames} --fps 30"), "");
+        let errors = stderr(&chosen);
+        let note = errors.lines().find_map(|line| line.strip_prefix("freeform: note: traced with ")).expect("a note");
+        let options = note.split(" (").next().expect("options");
+        assert!(options.contains(expected), "{scene}: {note}");
+        let again = run(&format!("outline {frames} --fps 30 {options}"), "");
+        assert_eq!((stdout(&again), stderr(&again)), (stdout(&chosen), String::new()), "{scene}: {note}");
+    }
+}
+
+#[test]
+fn an_assumed_rate_and_a_choice_without_conviction_are_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, _) = pears(folder.path(), "frames", 4);
+    let told = stderr(&run(&format!("outline {frames} --light"), ""));
+    assert!(told.contains("30 frames/s assumed") && told.contains("--fps"), "{told}");
+    let noise = folder.path().join("noise");
+    std::fs::create_dir(&noise).expect("a folder");
+    for frame in 0..6_u32 {
+        let value = |x: u32, y: u32| ((x * 7919 + y * 104_729 + (x * y + frame * 77) * (frame + 3)) % 61) as u8;
+        GrayImage::from_fn(160, 120, |x, y| Luma([60 + value(x, y)]))
+            .save(noise.join(format!("{frame}.png")))
+            .expect("a picture");
+    }
+    let output = run(&format!("identify {} --fps 30", noise.display()), "");
+    let told = stderr(&output);
+    assert!(output.status.code() == Some(1) || told.contains("beyond doubt"), "{told}");
+}
+
+#[test]
+fn discs_that_roll_tell_their_turn_by_their_holes_and_not_without_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let base = folder.path().to_str().expect("UTF-8");
+    for (scene, has_holes) in [("marked-discs", true), ("discs", false)] {
+        let frames = format!("{base}/{scene}");
+        succeed(&format!("simulate --pictures {frames} --scene {scene} --seed 1 --seconds 1"), "");
+        let document = json(&succeed(&format!("identify {frames} --fps 30 --quiet --json"), ""));
+        let truth = std::fs::read_to_string(format!("{frames}/truth.csv")).expect("the truth");
+        let last: Vec<Vec<String>> =
+            truth.lines().rev().take(2).map(|line| line.split(',').map(str::to_owned).collect()).collect();
+        for (object, row) in document["objects"].as_array().expect("objects").iter().zip(last.iter().rev()) {
+            let omega = &object["parameters"]["omega"]["value"];
+            let truth: f64 = row[6].parse().expect("a number");
+            match omega.as_f64() {
+                Some(omega) => assert!(has_holes && (omega / truth - 1.0).abs() < 0.01, "{scene}: {omega} {truth}"),
+                None => assert!(!has_holes, "{scene}: {object}"),
+            }
+        }
+        assert_eq!(document["objects"].as_array().map(Vec::len), Some(2), "{scene}");
+    }
+}
+
+#[test]
+fn deviations_of_points_are_written_where_they_are_asked_for_and_weigh_the_points_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, _) = pears(folder.path(), "frames", 6);
+    let plain = succeed(&format!("outline {frames} --quiet"), "");
+    let with_deviations = succeed(&format!("outline {frames} --quiet --deviations"), "");
+    let rows =
+        |text: &str| -> Vec<String> { text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect() };
+    let (plain_rows, rows) = (rows(&plain), rows(&with_deviations));
+    assert!(rows[0].ends_with(",deviation") && !plain_rows[0].contains("deviation"), "{}", rows[0]);
+    assert_eq!(rows.len(), plain_rows.len());
+    for (row, plain) in rows[1..].iter().zip(&plain_rows[1..]) {
+        let (point, deviation) = row.rsplit_once(',').expect("columns");
+        assert_eq!(point, plain);
+        assert!(deviation.parse::<f64>().is_ok_and(|deviation| deviation > 0.0), "{row}");
+    }
+    let identified = |outlines: &str| json(&succeed("identify - --json --quiet", outlines))["objects"].clone();
+    assert_ne!(identified(&with_deviations)[0]["parameters"]["omega"], identified(&plain)[0]["parameters"]["omega"]);
+    // Parquet has the same, to the last bit.
+    let parquet = folder.path().join("a.parquet").display().to_string();
+    succeed(&format!("outline {frames} --quiet --deviations --output {parquet}"), "");
+    let from_parquet = json(&succeed(&format!("identify {parquet} --json --quiet"), ""));
+    assert_eq!(from_parquet["objects"], identified(&with_deviations));
+}

@@ -1,0 +1,54 @@
+//! What encoders of drawn pictures do where there is no picture, no room, or a sink that fails.
+use std::io::{self, Cursor, Write};
+
+use freeform_drawing::{DrawingError, GifAnimation, Y4mVideo, is_marked_png, marked_png};
+use image::{Rgb, RgbImage};
+
+/// A sink that is full from the beginning.
+struct Full;
+
+impl Write for Full {
+    fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+        Err(io::Error::from(io::ErrorKind::StorageFull))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn where_there_was_no_picture_no_sink_is_handed_back() {
+    assert!(GifAnimation::new(Vec::new()).finish().expect("nothing to fail").is_none());
+    assert!(Y4mVideo::new(Vec::new()).finish().is_none());
+}
+
+#[test]
+fn a_sink_that_fails_is_told_as_such() {
+    let picture = RgbImage::new(8, 8);
+    let is_full =
+        |error: &DrawingError| matches!(error, DrawingError::Io(error) if error.kind() == io::ErrorKind::StorageFull);
+    assert!(is_full(&GifAnimation::new(Full).write(&picture, None).expect_err("a full sink")));
+    assert!(is_full(&Y4mVideo::new(Full).write(&picture, None).expect_err("a full sink")));
+}
+
+#[test]
+fn a_picture_longer_than_the_format_of_animations_allows_is_refused_and_ends_the_animation() {
+    let mut animation = GifAnimation::new(Vec::new());
+    let error = animation.write(&RgbImage::new(70_000, 1), None).expect_err("too wide");
+    assert!(matches!(error, DrawingError::Gif(_)), "{error}");
+    assert!(animation.finish().expect("nothing is written any more").is_none());
+}
+
+#[test]
+fn a_drawn_picture_is_known_again_as_a_file_and_others_are_not() {
+    let mut picture = RgbImage::new(5, 4);
+    picture.put_pixel(2, 1, Rgb([255, 230, 60]));
+    let png = marked_png(&picture).expect("a picture");
+    assert!(is_marked_png(Cursor::new(&png)));
+    assert_eq!(image::load_from_memory(&png).expect("a picture").to_rgb8(), picture);
+    let mut other = Cursor::new(Vec::new());
+    picture.write_to(&mut other, image::ImageFormat::Png).expect("a picture");
+    assert!(!is_marked_png(Cursor::new(other.into_inner())));
+    assert!(matches!(marked_png(&RgbImage::new(0, 4)), Err(DrawingError::Png(_))));
+}
