@@ -7,7 +7,15 @@ pub enum DrawingError {
     /// The sink refused it.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The format of an animation cannot hold it, such as a picture with a side of more than 65535 pixels.
+    /// A picture of another size than the first one of an animation, or with a side of 0 or of more than 65535 pixels.
+    #[error("a picture of {width} x {height} pixels does not go into the animation")]
+    PictureSize {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// The encoder of animations refused it.
     #[error(transparent)]
     Gif(gif::EncodingError),
     /// The picture could not be encoded as PNG.

@@ -6,7 +6,7 @@
 //! - [`figure`], [`Svg`]: figures as panels of curves, and what draws them
 //! - [`ObservedOverlay`], [`Overlay`]: outlines, curves and motion on pictures; [`GifAnimation`], [`Y4mVideo`] and [`marked_png`] encode these
 //! - [`candidate_sheet`]: what each way of tracing finds in pictures
-//! - [`write_page`]: a page of figures and tables
+//! - [`page`]: a page of figures and tables
 //!
 //! ```
 //! use freeform_drawing::{CurveFitter, Findings, Histories, MeaningOfB, Purpose, Report, write_report};
@@ -18,7 +18,7 @@
 //! let settings = Settings { length: SequenceLength::Frames(20), ..Settings::default() };
 //! let simulator = Simulator::new(PaperExperiment::FLIGHT_BIRD.scene(0.1)?, settings)?;
 //! let mut tracker = Tracker::new(TrackerSettings::default())?;
-//! let mut histories = Histories::new(Purpose::Report(None), CurveFitter::new(Degree::FOUR, false)?);
+//! let mut histories = Histories::new(Purpose::Report(None), CurveFitter::new(Degree::Quartic, false)?);
 //! for seen in simulator.frames() {
 //!     let (object, outline) = (DEFAULT_OBJECT.to_owned(), seen.outline);
 //!     let frame = OutlineFrame { frame: seen.index as u64, time: seen.time, object, outline };
@@ -42,7 +42,7 @@ mod error;
 pub mod figure;
 mod history;
 mod overlay;
-mod page;
+pub mod page;
 mod plot;
 mod report;
 
@@ -50,7 +50,6 @@ pub use candidate_sheet::candidate_sheet;
 pub use error::DrawingError;
 pub use history::{CurveFitter, Histories, OBJECTS_PLAYED, Purpose};
 pub use overlay::{Drawn, DrawnPicture, GifAnimation, ObservedOverlay, Overlay, Y4mVideo, is_marked_png, marked_png};
-pub use page::{Drawing, Section, Table, write_page};
 pub use plot::Svg;
 pub use report::{
     Findings, MeaningOfB, PARAMETER_COLUMNS, PicturesLeftOut, Report, fit_figure, meaning_of_v, parameter_figure,

@@ -1,3 +1,4 @@
+//! Pages of figures and tables that need nothing but themselves.
 use std::fmt::Write as _;
 
 use serde::Serialize;

@@ -33,11 +33,18 @@ fn a_sink_that_fails_is_told_as_such() {
 }
 
 #[test]
-fn a_picture_longer_than_the_format_of_animations_allows_is_refused_and_ends_the_animation() {
+fn an_animation_refuses_pictures_that_its_format_cannot_hold_or_of_another_size_than_the_first() {
     let mut animation = GifAnimation::new(Vec::new());
-    let error = animation.write(&RgbImage::new(70_000, 1), None).expect_err("too wide");
-    assert!(matches!(error, DrawingError::Gif(_)), "{error}");
-    assert!(animation.finish().expect("nothing is written any more").is_none());
+    let refused = |animation: &mut GifAnimation<_>, width, height| {
+        let error = animation.write(&RgbImage::new(width, height), None).expect_err("refused");
+        let is_told = matches!(error, DrawingError::PictureSize { width: w, height: h } if (w, h) == (width, height));
+        assert!(is_told, "{error}");
+    };
+    refused(&mut animation, 70_000, 1);
+    refused(&mut animation, 0, 4);
+    animation.write(&RgbImage::new(6, 4), None).expect("a picture");
+    refused(&mut animation, 4, 6);
+    assert!(animation.finish().expect("memory").is_some());
 }
 
 #[test]

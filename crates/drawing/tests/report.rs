@@ -20,7 +20,7 @@ fn of_many_pictures_left_out_ten_are_told_with_their_reasons_and_the_others_by_t
     let page = page(&Report { left_out: PicturesLeftOut { count: 12, first: &first }, ..Report::default() });
     assert!(page.contains("Pictures without an outline: 12"));
     assert_eq!(page.matches("is dark").count(), 10);
-    assert!(page.contains("<li>2 more: 10, 11</li>"), "{page}");
+    assert!(page.contains("<li>2 more: 10-11</li>"), "{page}");
 }
 
 #[test]

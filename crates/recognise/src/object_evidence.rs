@@ -26,8 +26,8 @@ pub struct ObjectEvidence {
 /// objects.of("left").reject();
 /// objects.of("right").take(Ok(Vec::new()));
 /// objects.of("left").take(Ok(Vec::new()));
-/// let names: Vec<&str> = objects.iter().map(|object| object.object.as_str()).collect();
-/// assert_eq!((names, objects.of("left").frames_rejected), (vec!["left", "right"], 1));
+/// let counts: Vec<_> = objects.iter().map(|object| (object.object.as_str(), object.frames_rejected)).collect();
+/// assert_eq!(counts, [("left", 1), ("right", 0)]);
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct EvidenceByObject {

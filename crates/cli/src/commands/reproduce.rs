@@ -3,7 +3,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-use freeform_drawing::write_page;
+use freeform_drawing::page::{self, write_page};
 use freeform_experiments::paper::{Part, Reproduction, Section};
 
 use super::listed_settings::version;
@@ -41,8 +41,8 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<(), Failure> {
     print(&sections, folder)
 }
 
-fn part_of_page(Section { heading, text, drawings, tables, .. }: &Section) -> freeform_drawing::Section<'_> {
-    freeform_drawing::Section { heading, text, drawings, tables }
+fn part_of_page(Section { heading, text, drawings, tables, .. }: &Section) -> page::Section<'_> {
+    page::Section { heading, text, drawings, tables }
 }
 
 fn print(sections: &[Section], folder: &Path) -> Result<(), Failure> {

@@ -1,6 +1,7 @@
 use std::path::Path;
 
-use freeform_drawing::{Drawing, Svg, Table};
+use freeform_drawing::Svg;
+use freeform_drawing::page::{Drawing, Table};
 use freeform_experiments::paper::Section;
 
 use super::file::WholeFile;

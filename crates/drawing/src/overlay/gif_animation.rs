@@ -45,7 +45,8 @@ enum State<W: Write> {
 
 /// The picture as it is seen so far.
 struct Shown {
-    width: usize,
+    /// Columns and rows.
+    size: [u16; 2],
     pixels: Vec<u8>,
 }
 
@@ -63,19 +64,20 @@ impl<W: Write> GifAnimation<W> {
         Self { palette: Palette::new(), state: State::Empty(sink) }
     }
 
-    /// Adds a picture that stands for so many seconds; 0.07 where that is not known. All pictures have the size of the first. After an error
-    /// no more pictures are taken.
+    /// Adds a picture that stands for so many seconds; 0.07 where that is not known. All pictures have the size of the first. After an error of the
+    /// sink no more pictures are taken.
     ///
     /// # Errors
     ///
-    /// [`DrawingError::Io`] of the sink, [`DrawingError::Gif`] if a side of the picture is 0 or longer than 65535 pixels.
+    /// [`DrawingError::Io`] of the sink, [`DrawingError::PictureSize`] if the picture has not the size of the first one, or a side of 0 or of
+    /// more than 65535 pixels.
     pub fn write(&mut self, picture: &RgbImage, seconds: Option<f64>) -> Result<(), DrawingError> {
+        let size = self.checked_size(picture)?;
         let pixels: Vec<u8> = picture.pixels().map(|pixel| self.palette.nearest(*pixel)).collect();
-        let width = picture.width() as usize;
         let (mut encoder, mut shown) = match std::mem::replace(&mut self.state, State::Ended) {
             State::Empty(sink) => {
-                let encoder = self.begin(sink, picture)?;
-                (Box::new(encoder), Shown { width, pixels: vec![TRANSPARENT; pixels.len()] })
+                let encoder = self.begin(sink, size)?;
+                (Box::new(encoder), Shown { size, pixels: vec![TRANSPARENT; pixels.len()] })
             }
             State::Begun { encoder, shown } => (encoder, shown),
             State::Ended => return Ok(()),
@@ -98,9 +100,15 @@ impl<W: Write> GifAnimation<W> {
         Ok(())
     }
 
-    fn begin(&self, sink: W, picture: &RgbImage) -> Result<Encoder<W>, EncodingError> {
-        // A side too long for the format is an error of the encoder, as 0 is.
-        let [width, height] = [picture.width(), picture.height()].map(|side| u16::try_from(side).unwrap_or(0));
+    /// Columns and rows, if the format holds them and they are those of the first picture.
+    fn checked_size(&self, picture: &RgbImage) -> Result<[u16; 2], DrawingError> {
+        let (width, height) = picture.dimensions();
+        let sides = [width, height].map(|side| u16::try_from(side).unwrap_or(0));
+        let is_other = matches!(&self.state, State::Begun { shown, .. } if shown.size != sides);
+        if sides.contains(&0) || is_other { Err(DrawingError::PictureSize { width, height }) } else { Ok(sides) }
+    }
+
+    fn begin(&self, sink: W, [width, height]: [u16; 2]) -> Result<Encoder<W>, EncodingError> {
         let mut encoder = Encoder::new(sink, width, height, &self.palette.bytes())?;
         encoder.set_repeat(Repeat::Infinite)?;
         Ok(encoder)
@@ -124,9 +132,10 @@ impl Shown {
     fn change_to(&mut self, pixels: &[u8]) -> Changed {
         let is_changed =
             |old: u8, new: u8| old != new && Palette::levels_between(old, new).is_none_or(|levels| levels > TOLERANCE);
-        let (mut left, mut right, mut top, mut bottom) = (self.width, 0, usize::MAX, 0);
-        for (row, (old, new)) in self.pixels.chunks(self.width).zip(pixels.chunks(self.width)).enumerate() {
-            let mut changed = (0..self.width).filter(|x| is_changed(old[*x], new[*x]));
+        let width = usize::from(self.size[0]);
+        let (mut left, mut right, mut top, mut bottom) = (width, 0, usize::MAX, 0);
+        for (row, (old, new)) in self.pixels.chunks(width).zip(pixels.chunks(width)).enumerate() {
+            let mut changed = (0..width).filter(|x| is_changed(old[*x], new[*x]));
             if let Some(first) = changed.next() {
                 let last = changed.next_back().unwrap_or(first);
                 (left, right) = (left.min(first), right.max(last));
@@ -139,7 +148,7 @@ impl Shown {
         }
         let mut drawn = Vec::with_capacity((right - left + 1) * (bottom - top + 1));
         for row in top..=bottom {
-            let places = row * self.width + left..row * self.width + right + 1;
+            let places = row * width + left..row * width + right + 1;
             for (old, new) in self.pixels[places.clone()].iter_mut().zip(&pixels[places]) {
                 let is_drawn = is_changed(*old, *new);
                 drawn.push(if is_drawn { *new } else { TRANSPARENT });
@@ -158,7 +167,7 @@ mod tests {
 
     #[test]
     fn only_what_has_changed_is_drawn_and_small_changes_add_up_until_they_are() {
-        let mut shown = Shown { width: 4, pixels: vec![10; 12] };
+        let mut shown = Shown { size: [4, 3], pixels: vec![10; 12] };
         let mut picture = vec![10; 12];
         (picture[5], picture[6]) = (40, 12);
         let Changed { left, top, width, pixels } = shown.change_to(&picture);

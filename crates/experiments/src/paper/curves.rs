@@ -4,7 +4,7 @@ use nalgebra::Point2;
 
 use crate::ExperimentError;
 use crate::figure::{Curve, Look, Panel};
-use freeform_drawing::Table;
+use freeform_drawing::page::Table;
 
 /// What is looked through for a curve around its points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.3;

@@ -1,4 +1,4 @@
-use freeform_drawing::{Drawing, Table};
+use freeform_drawing::page::{Drawing, Table};
 
 /// What belongs together: figures and tables under a heading.
 #[derive(Debug, Default)]

@@ -20,7 +20,7 @@ use super::traces::{
 use super::track::Track;
 use crate::ExperimentError;
 use crate::figure::{Figure, Look, Panel};
-use freeform_drawing::{Drawing, Table};
+use freeform_drawing::page::{Drawing, Table};
 
 /// Runs of the experiment with affine motion.
 pub(super) const AFFINE_RUNS: u64 = 5;

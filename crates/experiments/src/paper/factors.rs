@@ -12,7 +12,7 @@ use super::method::fit_in_words;
 use super::sequence::{Sequence, paper_settings};
 use crate::ExperimentError;
 use crate::figure::{Figure, Look};
-use freeform_drawing::{Drawing, Table};
+use freeform_drawing::page::{Drawing, Table};
 use freeform_motion::significant;
 
 /// The outer level sets of the fit are so far from the points, in RMS radii. With those of the other figures, twice as far away, the

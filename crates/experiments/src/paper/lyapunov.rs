@@ -15,7 +15,7 @@ use super::sequence::FPS;
 use super::traces::look_of;
 use crate::ExperimentError;
 use crate::figure::{Curve, Figure, Look, Panel};
-use freeform_drawing::{Drawing, Table};
+use freeform_drawing::page::{Drawing, Table};
 
 const EXPERIMENTS: [PaperExperiment; 3] =
     [PaperExperiment::FLIGHT_BIRD, PaperExperiment::GLIDER_OF_TEXT, PaperExperiment::CELLULAR_PHONE];

@@ -30,7 +30,7 @@ use nalgebra::Matrix4;
 use rayon::prelude::*;
 
 pub use document::Section;
-pub use freeform_drawing::{Drawing, Table};
+pub use freeform_drawing::page::{Drawing, Table};
 pub use part::Part;
 
 use crate::ExperimentError;

@@ -11,7 +11,7 @@ use super::method::fit_in_words;
 use super::sequence::{POINTS, Sequence, paper_settings};
 use crate::ExperimentError;
 use crate::figure::{Figure, Look, Panel};
-use freeform_drawing::{Drawing, Table};
+use freeform_drawing::page::{Drawing, Table};
 use freeform_motion::significant;
 
 /// Half the side of each picture in image lengths; the objects are of size 1.

@@ -12,7 +12,7 @@ use super::questions::{Condition, Question, questions};
 use super::sequence::Sequence;
 use super::track::Track;
 use crate::ExperimentError;
-use freeform_drawing::Table;
+use freeform_drawing::page::Table;
 
 const EXPERIMENTS: [PaperExperiment; 3] =
     [PaperExperiment::FLIGHT_BIRD, PaperExperiment::GLIDER_OF_TEXT, PaperExperiment::CELLULAR_PHONE];

@@ -13,7 +13,7 @@ use super::traces::{ERROR_LIMITS, error_figure, errors_data, estimates_data, par
 use super::track::Track;
 use crate::ExperimentError;
 use crate::figure::{Figure, Panel};
-use freeform_drawing::{Drawing, Table};
+use freeform_drawing::page::{Drawing, Table};
 
 /// Heads of the table of final errors.
 pub(super) const FINDINGS: [&str; 8] =

@@ -14,7 +14,7 @@ use super::paper_figure::PaperFigure;
 use super::sequence::{POINTS, paper_settings};
 use crate::ExperimentError;
 use crate::figure::{Figure, Look};
-use freeform_drawing::Drawing;
+use freeform_drawing::page::Drawing;
 
 /// Moments shown of one turn.
 const MOMENTS: usize = 6;

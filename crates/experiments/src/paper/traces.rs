@@ -8,7 +8,7 @@ use super::relative_error::RelativeError;
 use super::sequence::Sequence;
 use super::track::Track;
 use crate::figure::{Curve, Figure, Look, Panel};
-use freeform_drawing::Table;
+use freeform_drawing::page::Table;
 
 /// Ends of the axis of relative errors, in percent, where the motion is constant.
 pub(super) const ERROR_LIMITS: [f64; 2] = [1e-4, 1e3];
