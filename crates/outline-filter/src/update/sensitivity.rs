@@ -243,9 +243,9 @@ impl Sensitivity {
                 for ((offset, left), (with, coupling)) in of_cells.zip(with.iter().zip(coupling)) {
                     if *with > 0.0 {
                         let mut along = [0.0; UNMODELLED];
-                        for i in 0..S {
+                        for (i, row) in by_entry.iter().enumerate() {
                             for l in 0..UNMODELLED {
-                                along[l] += coupling[i] * by_entry[i][l];
+                                along[l] += coupling[i] * row[l];
                             }
                         }
                         let inverse = 1.0 / with;
@@ -326,10 +326,10 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             left[l] = whole[l] - taken_in[l];
         }
         let inverse = 1.0 / own;
-        for i in 0..K {
+        for (i, row) in of_pose.iter().enumerate() {
             let factor = added[i] * inverse;
             for l in 0..UNMODELLED {
-                left[l] -= factor * of_pose[i][l];
+                left[l] -= factor * row[l];
             }
         }
         let by_known = own / with;
@@ -344,15 +344,15 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             // Only what was known before can be compared with.
             let share = before / with;
             let shared = left.map(|left| share * left);
-            for m in 0..UNMODELLED {
+            for (m, row) in self.information.iter_mut().enumerate() {
                 let of_own = shared[m] * own;
                 for l in 0..UNMODELLED {
-                    self.information[m][l] += of_own * left[l];
+                    row[l] += of_own * left[l];
                 }
             }
-            for i in 0..K {
+            for (i, row) in self.with_pose.iter_mut().enumerate() {
                 for l in 0..UNMODELLED {
-                    self.with_pose[i][l] += shared[l] * added[i];
+                    row[l] += shared[l] * added[i];
                 }
             }
             for l in 0..UNMODELLED {
