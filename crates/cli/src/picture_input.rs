@@ -320,7 +320,9 @@ fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
     match error {
         TraceError::NoRing => Some("try another --ring, --ring-width or --channel"),
         TraceError::TooSmall { .. } => Some("try a smaller --min-area, another --threshold, or --dark"),
-        TraceError::FillsPicture | TraceError::NoObject { .. } => Some("try --dark or --light, or another --threshold"),
+        TraceError::FillsPicture | TraceError::VisiblePartStraight { .. } | TraceError::NoObject { .. } => {
+            Some("try --dark or --light, or another --threshold")
+        }
         TraceError::NoContrast { .. } if options.background.is_some() => {
             Some("try another --background, --threshold or --channel")
         }

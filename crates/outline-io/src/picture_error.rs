@@ -257,6 +257,12 @@ pub enum TraceError {
     /// No part of the outline is within the picture.
     #[error("the object fills the picture: nothing of its outline is visible")]
     FillsPicture,
+    /// The part of the outline that is within the picture is straight, and says nothing of the object.
+    #[error("only {points} points of the outline are within the picture, and they lie on one line")]
+    VisiblePartStraight {
+        /// Points within the picture.
+        points: usize,
+    },
     /// The points are no outline.
     #[error("the traced points are no outline: {0}")]
     Degenerate(#[from] OutlineError),

@@ -1,7 +1,7 @@
 use std::borrow::Cow;
 
 use freeform_curve_fit::isoline::{Crossing, LargestLines, LineTooLong, WantedHoles};
-use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline};
+use freeform_curve_fit::{ClosedOutline, OpenArc, OpenOutline, Outline, OutlineError};
 use image::GrayImage;
 use nalgebra::Point2;
 
@@ -357,5 +357,9 @@ fn visible_arcs(mut points: Vec<(Point2<f64>, bool)>, inner: Vec<Vec<Point2<f64>
         contour.extend(contour.first().copied());
         arcs.push(OpenArc::new(contour)?);
     }
-    Ok(OpenOutline::in_sequence(arcs)?.into())
+    match OpenOutline::in_sequence(arcs) {
+        Ok(outline) => Ok(outline.into()),
+        Err(OutlineError::Collinear { count }) => Err(TraceError::VisiblePartStraight { points: count }),
+        Err(other) => Err(other.into()),
+    }
 }

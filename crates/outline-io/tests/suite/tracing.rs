@@ -228,6 +228,9 @@ fn pictures_without_an_object_say_why() {
     assert_eq!(with(&flat(100), dark), Err(TraceError::NoObject { threshold: 50.0 }));
     let open = TraceSettings { clipping: Clipping::Open, ..level(50.0) };
     assert_eq!(with(&flat(100), open), Err(TraceError::FillsPicture));
+    let corner = GrayImage::from_raw(2, 2, vec![0, 0, 0, 255]).expect("four pixels");
+    let smallest = TraceSettings { minimum_area: 1, smoothing: Smoothing::Gaussian(0.0), ..open };
+    assert_eq!(with(&corner, smallest), Err(TraceError::VisiblePartStraight { points: 2 }));
 
     let speck = mask(30, 30, |x, y| x < 2.0 && y < 2.0);
     assert_eq!(with(&speck, default), Err(TraceError::TooSmall { pixels: 4, needed: 9 }));
