@@ -40,8 +40,9 @@ pub(crate) fn names(folder: &str) -> Vec<String> {
 pub(crate) fn masks_of_pears(folder: &Path) -> (String, String) {
     let (frames, base) = pears(folder, "frames", 12);
     for frame in 0..12 {
+        let picture = pear(frame);
         let mask =
-            GrayImage::from_fn(160, 120, |x, y| Luma([if pear(frame).get_pixel(x, y).0[0] > 120 { 255 } else { 0 }]));
+            GrayImage::from_fn(160, 120, |x, y| Luma([if picture.get_pixel(x, y).0[0] > 120 { 255 } else { 0 }]));
         mask.save(format!("{frames}/{frame}.png")).expect("a picture");
     }
     (frames, base)

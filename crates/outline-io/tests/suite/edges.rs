@@ -29,15 +29,22 @@ impl Step {
     fn picture(&self, seed: u64) -> GrayImage {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         GrayImage::from_fn(SIZE, SIZE, |column, row| {
-            let samples = (0..25).map(|k| {
-                let at = |index: u32, k: u32| f64::from(index) + (f64::from(k) + 0.5) / 5.0;
-                tail(self.distance(at(column, k % 5), at(row, k / 5)) / self.blur)
-            });
-            let share = samples.sum::<f64>() / 25.0;
+            let share = self.share(column, row);
             let shade = self.shading * self.contrast * f64::from(column) / 640.0;
             let error: f64 = StandardNormal.sample(&mut rng);
             Luma([(40.0 + self.contrast * share - shade + self.noise * error).round().clamp(0.0, 255.0) as u8])
         })
+    }
+
+    /// Light that a pixel gets, of that on the light side.
+    fn share(&self, column: u32, row: u32) -> f64 {
+        let middle = self.distance(f64::from(column) + 0.5, f64::from(row) + 0.5);
+        if middle.abs() > 8.0 * self.blur + 1.0 {
+            return if middle > 0.0 { 0.0 } else { 1.0 };
+        }
+        let at = |index: u32, k: u32| f64::from(index) + (f64::from(k) + 0.5) / 5.0;
+        let samples = (0..25).map(|k| tail(self.distance(at(column, k % 5), at(row, k / 5)) / self.blur));
+        samples.sum::<f64>() / 25.0
     }
 
     fn traced(&self, seed: u64, settings: &TraceSettings) -> TracedOutline {
