@@ -34,6 +34,10 @@ pub(super) enum Path {
     Pivot {
         spin: f64,
     },
+    /// Both constant, of a point that is so many sizes from the middle.
+    Aside {
+        distance: f64,
+    },
     /// The spin is constant, and the middle falls by `gravity` sizes/s^2.
     Thrown {
         gravity: f64,
@@ -97,6 +101,10 @@ impl Course {
                 let dynamics = Dynamics::Accelerating { spin: sign * spin, middle: Vector2::zeros() };
                 let trajectory = new(omega, Vector2::zeros(), dynamics)?;
                 return Ok(Motion { trajectory, place: start + 0.5 * other });
+            }
+            Path::Aside { distance } => {
+                let trajectory = new(omega, velocity, Dynamics::Velocity)?;
+                return Ok(Motion { trajectory, place: start + distance * other });
             }
             Path::Thrown { gravity } => {
                 new(omega, velocity, Dynamics::Accelerating { spin: 0.0, middle: Vector2::new(0.0, -gravity) })

@@ -31,6 +31,21 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
             ("straight, slow spin", "the same at 0.1 to 0.3 rad/s", spin(straight(), 0.1, 0.3)),
             ("straight, fast spin", "the same at 3 to 5 rad/s", spin(straight(), 3.0, 5.0)),
             ("straight, fast travel", "the same at 1 to 2 sizes per second", speed(straight(), 1.0, 2.0)),
+            (
+                "straight, very slow",
+                "the same at 0.02 rad/s and 0.01 sizes per second",
+                spin(speed(straight(), 0.01, 0.01), 0.02, 0.02),
+            ),
+            (
+                "spin about a point aside",
+                "spins at 3 to 10 rad/s, and a point a tenth of a size from the middle runs straight",
+                spin(on(Path::Aside { distance: 0.1 }), 3.0, 10.0),
+            ),
+            (
+                "fast spin about a point aside",
+                "the same at 20 to 40 rad/s about a point a twentieth of a size from the middle",
+                spin(on(Path::Aside { distance: 0.05 }), 20.0, 40.0),
+            ),
             ("straight, 15 frames", "the same in half a second", Recipe { frames: 15, ..straight() }),
             ("spin grows by 0.02 rad/s^2", "the spin grows, and the middle runs straight", gaining(0.02)),
             ("spin grows by 0.1 rad/s^2", "the same by 0.1 rad/s^2", gaining(0.1)),
