@@ -189,25 +189,28 @@ impl MotionModel {
         exponential(&(generator * seconds)).fixed_view::<2, 2>(0, 0).into_owned()
     }
 
-    /// Integral of [`linear_flow`](Self::linear_flow) over a time: how far a velocity that turns with the object carries a point, for each
-    /// component of the velocity; for all but projective motion.
+    /// [`linear_flow`](Self::linear_flow), and its integral over the time: how far a velocity that turns with the object carries a point, for
+    /// each component of the velocity; for all but projective motion.
     ///
     /// # Panics
     /// If `parameters` does not have `parameter_count` entries.
     #[must_use]
-    pub fn integrated_linear_flow(self, parameters: &[f64], seconds: f64) -> Matrix2<f64> {
+    pub fn linear_flow_with_integral(self, parameters: &[f64], seconds: f64) -> (Matrix2<f64>, Matrix2<f64>) {
         let mut generator = self.generator(parameters);
         if self <= Self::Similarity {
+            // Turns and growth commute, so that the way of one velocity tells that of all.
             let (sigma, omega) = (generator[(0, 0)], generator[(0, 1)]);
-            let carried = SimilarityMotion { sigma, omega, b1: 1.0, b2: 0.0 }.flow(seconds).to_homogeneous();
-            let (along, across) = (carried[(0, 2)], carried[(1, 2)]);
-            return Matrix2::new(along, -across, across, along);
+            let flow = SimilarityMotion { sigma, omega, b1: 1.0, b2: 0.0 }.flow(seconds).to_homogeneous();
+            let (along, across) = (flow[(0, 2)], flow[(1, 2)]);
+            return (flow.fixed_view::<2, 2>(0, 0).into_owned(), Matrix2::new(along, -across, across, along));
         }
-        let mut carried = |velocity: [f64; 2]| {
+        let mut flow = |velocity: [f64; 2]| {
             (generator[(0, 2)], generator[(1, 2)]) = (velocity[0], velocity[1]);
-            exponential(&(generator * seconds)).fixed_view::<2, 1>(0, 2).into_owned()
+            exponential(&(generator * seconds))
         };
-        Matrix2::from_columns(&[carried([1.0, 0.0]), carried([0.0, 1.0])])
+        let flows = [flow([1.0, 0.0]), flow([0.0, 1.0])];
+        let ways = flows.map(|flow| flow.fixed_view::<2, 1>(0, 2).into_owned());
+        (flows[0].fixed_view::<2, 2>(0, 0).into_owned(), Matrix2::from_columns(&ways))
     }
 }
 

@@ -31,14 +31,12 @@ impl<const N: usize> Hypothesis<N> {
         } else {
             let motion = &self.mean.as_slice()[k..2 * k];
             let v = parts(&model.generator(motion)).1;
-            let along = model.integrated_linear_flow(motion, dt);
+            let (turn, along) = model.linear_flow_with_integral(motion, dt);
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
-            let (turn, shift, later) = if self.course == Course::ConstantVelocity {
-                let turn = model.linear_flow(motion, dt);
-                (turn, v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning)
+            let (shift, later) = if self.course == Course::ConstantVelocity {
+                (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning)
             } else {
-                let turn = model.linear_flow(motion, dt);
-                (turn, along * v, turn * v)
+                (along * v, turn * v)
             };
             let transition = self.transition(step, (&turn, &along, &v, &later));
             self.covariance = carried(&transition, &self.covariance, self.size());

@@ -168,19 +168,21 @@ impl<const N: usize> Hypothesis<N> {
         let v = parts(&model.generator(&motion.as_slice()[..k])).1;
         let w = parts(&model.generator(&acceleration.as_slice()[..k])).1;
         let of_rates = |of: &CentredVector, seconds: f64| model.linear_flow(&of.as_slice()[..k], seconds);
-        let along = model.integrated_linear_flow(&motion.as_slice()[..k], dt);
-        let (turn, shift, later) = match self.course {
+        let of_motion = || model.linear_flow_with_integral(&motion.as_slice()[..k], dt);
+        let (turn, along, shift, later) = match self.course {
             Course::ConstantGenerator | Course::Shaken { .. } => {
-                let (turn, shift) = parts(&model.flow(&motion.as_slice()[..k], dt).into_inner());
-                (turn, shift, turn * v)
+                let (turn, along) = of_motion();
+                (turn, along, along * v, turn * v)
             }
             Course::ConstantVelocity => {
-                let turn = of_rates(&motion, dt);
+                let (turn, along) = of_motion();
                 let beyond = turned_along(&along, dt) * turning;
-                (turn, v * dt + beyond, v + turn * turning - turning)
+                (turn, along, v * dt + beyond, v + turn * turning - turning)
             }
             Course::Accelerating { .. } => {
-                (of_rates(&(motion + 0.5 * dt * acceleration), dt), v * dt + 0.5 * dt * dt * w, v + dt * w)
+                // No part of the velocity turns with the object.
+                let along = Matrix2::identity() * dt;
+                (of_rates(&(motion + 0.5 * dt * acceleration), dt), along, v * dt + 0.5 * dt * dt * w, v + dt * w)
             }
         };
         let relative = turn * of_rates(&error, 1.0) * step.turned;

@@ -37,12 +37,14 @@ fn the_integral_of_the_linear_flow_grows_by_the_linear_flow() {
     for model in [MotionModel::Rigid, MotionModel::Similarity, MotionModel::Affine] {
         for parameters in parameters {
             let parameters = &parameters[..model.parameter_count()];
-            let along = |seconds: f64| model.integrated_linear_flow(parameters, seconds);
+            let along = |seconds: f64| model.linear_flow_with_integral(parameters, seconds).1;
             assert_eq!(along(0.0), Matrix2::zeros());
             for seconds in [-0.7, 0.01, 0.9, 2.0] {
                 let step = 1e-3;
                 let grown = (along(seconds + step) - along(seconds - step)) / (2.0 * step);
-                assert_relative_eq!(grown, model.linear_flow(parameters, seconds), epsilon = 1e-4);
+                let linear = model.linear_flow(parameters, seconds);
+                assert_relative_eq!(grown, linear, epsilon = 1e-4);
+                assert_relative_eq!(model.linear_flow_with_integral(parameters, seconds).0, linear, epsilon = 1e-14);
             }
         }
     }
