@@ -4,5 +4,5 @@ mod registration;
 mod symmetry;
 
 pub(crate) use landmarks::Landmarks;
-pub(crate) use registration::{RegisteredPose, register};
+pub(crate) use registration::{RegisteredPose, Registration};
 pub(crate) use symmetry::symmetry_order;

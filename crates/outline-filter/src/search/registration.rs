@@ -23,19 +23,67 @@ pub(crate) struct RegisteredPose {
     pub(crate) turn: f64,
 }
 
-/// Poses that bring the outline of a track onto the normalised points of a frame, at most four (eight with a model of more parameters).
-/// `landmarks` are the related points of the track in its present pose, and those of the frame; `symmetry` is the order of that of the
-/// outline, of which the smallest turns either way are among the poses.
-pub(crate) fn register(
-    track: &Track,
-    points: &[Point2<f64>],
-    landmarks: Option<[Landmarks; 2]>,
-    symmetry: usize,
-) -> Vec<RegisteredPose> {
-    let view = track.view();
-    let (map, model, pose) = (view.map, track.model(), track.body_pose());
-    let stride = (points.len() / tuning::FEW_POINTS).max(1);
-    let few: Vec<_> = points.iter().step_by(stride).copied().collect();
+/// Rigid poses that bring the outline of a track onto the points of a frame, apart from those that a symmetry adds.
+#[derive(Debug, Clone)]
+pub(crate) struct Registration {
+    rigid: Vec<RegisteredPose>,
+}
+
+impl Registration {
+    /// Searches with normalised points of a frame, from turns all around; `landmarks` are the related points of the track in its present pose,
+    /// and those of the frame.
+    pub(crate) fn search(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Self {
+        let stride = (points.len() / tuning::FEW_POINTS).max(1);
+        let few: Vec<_> = points.iter().step_by(stride).copied().collect();
+        let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
+        let starts = starts(track, points, landmarks);
+        let mut begun: Vec<RegisteredPose> = Vec::with_capacity(starts.len());
+        for start in &starts {
+            let found = search(&(start * track.body_pose()), Steps::FIRST);
+            // Searches that have come together go on together.
+            if !begun.iter().any(|other| (other.pose - found.pose).norm() < tuning::TOGETHER) {
+                begun.push(found);
+            }
+        }
+        let found = begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect();
+        let mut rigid = distinct(found);
+        keep(&mut rigid, tuning::REFINED);
+        // Some come together only with all points: one taken twice would keep another out.
+        let refine = |h: &RegisteredPose| refined(track, points, MotionModel::Rigid, &h.pose, Steps::REFINEMENT);
+        rigid = distinct(rigid.iter().map(refine).collect());
+        keep(&mut rigid, tuning::KEPT);
+        Self { rigid }
+    }
+
+    /// The poses of the track's model, at most four (eight with more parameters than rigid motion has), with the smallest turns either way of an
+    /// outline with a symmetry of this order; the points are those of the search.
+    pub(crate) fn poses(&self, track: &Track, points: &[Point2<f64>], symmetry: usize) -> Vec<RegisteredPose> {
+        let (model, pose) = (track.model(), track.body_pose());
+        let mut best = self.rigid.clone();
+        if symmetry > 1 {
+            add_turns_of_symmetry(&mut best, track, points, symmetry);
+        }
+        if model != MotionModel::Rigid {
+            // More parameters start from fewer. They may also lead astray where arcs are missing, so that the rigid poses stay.
+            let more = best.clone().into_iter().map(|found| {
+                let models = MotionModel::ALL.into_iter().filter(|m| *m > MotionModel::Rigid && *m <= model);
+                models.fold(found, |h, model| refined(track, points, model, &h.pose, Steps::REFINEMENT))
+            });
+            best.extend(more);
+            best.retain(|h| h.score.is_finite());
+        }
+        for found in &mut best {
+            // A start between middles slides along what the frame shows more of.
+            found.pose = track.view().map.least_moved(model, pose, &found.pose);
+            found.turn = turn_of(&found.pose, pose);
+        }
+        best
+    }
+}
+
+/// Changes of the present pose that searches start from: turns about the centroids all around, and those that related points tell.
+fn starts(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Vec<Matrix3<f64>> {
+    let (map, pose) = (track.view().map, track.body_pose());
     let count = map.cells().len() as f64;
     let body_centre = map.cells().iter().map(|c| map_point(pose, &c.centre).coords / count).sum::<Vector2<f64>>();
     let centre = points.iter().map(|p| p.coords / points.len() as f64).sum::<Vector2<f64>>();
@@ -56,54 +104,25 @@ pub(crate) fn register(
             starts.push(turn_between(turn, &middle(a, b), &middle(c, d)));
         }
     }
-    let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
-    let mut begun: Vec<RegisteredPose> = Vec::with_capacity(starts.len());
-    for start in &starts {
-        let found = search(&(start * pose), Steps::FIRST);
-        // Searches that have come together go on together.
-        if !begun.iter().any(|other| (other.pose - found.pose).norm() < tuning::TOGETHER) {
-            begun.push(found);
+    starts
+}
+
+/// Adds the smallest turns either way that look like the best of some poses.
+fn add_turns_of_symmetry(best: &mut Vec<RegisteredPose>, track: &Track, points: &[Point2<f64>], symmetry: usize) {
+    let Some(first) = best.first().copied() else { return };
+    let symmetry_angle = std::f64::consts::TAU / symmetry as f64;
+    let nearest = (first.turn / symmetry_angle).round();
+    for step in -(of_symmetry::TRIED as i32)..=of_symmetry::TRIED as i32 {
+        // From the turn nearest to none.
+        let angle = symmetry_angle * (f64::from(step) - nearest);
+        let turn = first.turn + angle;
+        let is_there = |h: &RegisteredPose| wrapped(h.turn - turn).abs() < of_symmetry::SAME * symmetry_angle;
+        if !best.iter().any(is_there) {
+            let start = track.turned(&first.pose, angle);
+            best.push(refined(track, points, MotionModel::Rigid, &start, Steps::REFINEMENT));
         }
     }
-    let found = begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect();
-    let mut best = distinct(found);
-    keep(&mut best, tuning::REFINED);
-    // Some come together only with all points: one taken twice would keep another out.
-    let refine = |h: &RegisteredPose| refined(track, points, MotionModel::Rigid, &h.pose, Steps::REFINEMENT);
-    best = distinct(best.iter().map(refine).collect());
-    keep(&mut best, tuning::KEPT);
-    if symmetry > 1
-        && let Some(first) = best.first().copied()
-    {
-        let pitch = std::f64::consts::TAU / symmetry as f64;
-        let nearest = (first.turn / pitch).round();
-        for step in -(of_symmetry::TRIED as i32)..=of_symmetry::TRIED as i32 {
-            // From the turn nearest to none.
-            let angle = pitch * (f64::from(step) - nearest);
-            let turn = first.turn + angle;
-            let is_there = |h: &RegisteredPose| wrapped(h.turn - turn).abs() < of_symmetry::SAME * pitch;
-            if !best.iter().any(is_there) {
-                let start = track.turned(&first.pose, angle);
-                best.push(refined(track, points, MotionModel::Rigid, &start, Steps::REFINEMENT));
-            }
-        }
-        best.retain(|h| h.score.is_finite());
-    }
-    if model != MotionModel::Rigid {
-        // More parameters start from fewer. They may also lead astray where arcs are missing, so that the rigid poses stay.
-        let more = best.clone().into_iter().map(|found| {
-            let models = MotionModel::ALL.into_iter().filter(|m| *m > MotionModel::Rigid && *m <= model);
-            models.fold(found, |h, model| refined(track, points, model, &h.pose, Steps::REFINEMENT))
-        });
-        best.extend(more);
-        best.retain(|h| h.score.is_finite());
-    }
-    for found in &mut best {
-        // A start between middles slides along what the frame shows more of.
-        found.pose = map.least_moved(model, pose, &found.pose);
-        found.turn = turn_of(&found.pose, pose);
-    }
-    best
+    best.retain(|h| h.score.is_finite());
 }
 
 /// How a start is followed.
@@ -221,7 +240,7 @@ where
         let Some(factor) = gram.cholesky() else { break };
         let x = factor.solve(&SVector::from(right));
         let next = model.flow(x.as_slice(), 1.0).into_inner() * pose;
-        if !next.iter().all(|e| e.is_finite()) || next.determinant().abs() < 1e-6 {
+        if !next.iter().all(|e| e.is_finite()) || next.determinant().abs() < tuning::SMALLEST_AREA {
             break;
         }
         pose = next;

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     map::TurnEvent,
     measurement::{NegativeLogLikelihood, Tolerance},
-    search::{Landmarks, RegisteredPose, register, symmetry_order},
+    search::{Landmarks, RegisteredPose, Registration, symmetry_order},
     track::{Comparison, Outcome, Track},
     tuning::{supervisor::LARGEST_INNOVATION, usual_agreement::ELSEWHERE},
     update::Gate,
@@ -71,10 +71,10 @@ impl MotionFilter {
         self.searches.spend();
         // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
         // where nothing fits without.
-        let mut poses = None;
-        let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut poses);
+        let mut registration = None;
+        let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut registration);
         if !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
-            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &mut poses);
+            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &mut registration);
             candidates = if relaxed.is_empty() { candidates } else { relaxed };
         }
         let agreement = |c: &Candidate| c.outcome.measurement.agreement;
@@ -95,21 +95,21 @@ impl MotionFilter {
         Some(outcome)
     }
 
-    /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen. `poses` are those found before
-    /// in the same frame; they stay if none is accepted, since nothing has changed then that they depend on.
+    /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen. `registration` is that found before
+    /// in the same frame; it stays if no pose is accepted, since nothing has changed then that it depends on.
     fn candidates(
         &mut self,
         outline: &Outline,
         seconds: f64,
         tolerance: Tolerance,
-        poses: &mut Option<Vec<RegisteredPose>>,
+        registration: &mut Option<Registration>,
     ) -> Vec<Candidate> {
         self.track.as_mut().into_iter().for_each(Track::show_turn);
-        let found = poses.take().unwrap_or_else(|| self.registered(outline));
-        let candidates = self.candidates_at(outline, seconds, tolerance, &found);
+        let Some(found) = registration.take().or_else(|| self.registered(outline)) else { return Vec::new() };
+        let candidates = self.candidates_of(outline, seconds, tolerance, &found);
         let fitting = candidates.iter().filter(|c| c.outcome.is_accepted());
         let Some(best) = fitting.min_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares)) else {
-            *poses = Some(found);
+            *registration = Some(found);
             return candidates;
         };
         let pose = *best.track.body_pose();
@@ -120,22 +120,36 @@ impl MotionFilter {
                 return candidates;
             }
             self.symmetry = symmetry;
-        } else {
-            track.hide_turn();
+            return self.candidates_of(outline, seconds, tolerance, &found);
         }
-        let poses = self.registered(outline);
-        self.candidates_at(outline, seconds, tolerance, &poses)
+        track.hide_turn();
+        let Some(found) = self.registered(outline) else { return candidates };
+        self.candidates_of(outline, seconds, tolerance, &found)
     }
 
-    /// All poses that bring the outline of the track onto that of the frame.
-    fn registered(&mut self, outline: &Outline) -> Vec<RegisteredPose> {
-        let Some(track) = self.track.as_ref() else { return Vec::new() };
+    /// The outline of the track brought onto that of the frame.
+    fn registered(&mut self, outline: &Outline) -> Option<Registration> {
+        let track = self.track.as_ref()?;
         let landmarks = self.landmarks.and_then(|landmarks| {
             let pose = track.affine_pose()?;
             Some([landmarks.moved(&pose), Landmarks::of(outline)?])
         });
         self.frame.load(outline, track.reference());
-        register(track, &self.frame.points, landmarks, self.symmetry)
+        Some(Registration::search(track, &self.frame.points, landmarks))
+    }
+
+    /// The poses of a registration with the frame, and those that the symmetry of the outline adds, measured.
+    fn candidates_of(
+        &mut self,
+        outline: &Outline,
+        seconds: f64,
+        tolerance: Tolerance,
+        registration: &Registration,
+    ) -> Vec<Candidate> {
+        let Some(track) = self.track.as_ref() else { return Vec::new() };
+        self.frame.load(outline, track.reference());
+        let poses = registration.poses(track, &self.frame.points, self.symmetry);
+        self.candidates_at(outline, seconds, tolerance, &poses)
     }
 
     /// These poses, measured.

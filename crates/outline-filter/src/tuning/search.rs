@@ -64,6 +64,8 @@ pub(crate) mod registration {
     pub(crate) const TIE: f64 = 1.25;
     /// Tukey's constant for 95 % efficiency at Gaussian noise.
     pub(crate) const TUKEY: f64 = 4.685;
+    /// Area of the outline, in times what it was, below which a step has gone astray.
+    pub(crate) const SMALLEST_AREA: f64 = 1e-6;
     /// What makes the equations of a step solvable where the points do not.
     pub(crate) const DAMPING: f64 = 1e-6;
     /// Turns from the best that are compared with it, spread by the golden angle, to see whether a frame shows the turn.
