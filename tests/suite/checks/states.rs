@@ -122,10 +122,10 @@ pub(crate) fn saved_state(bytes: &[u8]) {
     assert!(MotionFilter::from_bytes(bytes).is_err() && AdaptiveIdentifier::from_bytes(bytes).is_err());
     assert!(Pipeline::from_bytes(bytes).is_err() && Tracker::from_bytes(bytes).is_err());
     take_frames(&state_format(*b"filt", "filter").with_header(bytes));
-    take_lines(&ADAPTIVE.with_header(bytes));
+    write_lines(&ADAPTIVE.with_header(bytes));
     take_frames(&state_format(*b"filt", "filter").with_header(&changed(&STATE, bytes)));
     let choice = usize::from(bytes.first().copied().unwrap_or(0));
-    take_lines(&ADAPTIVE.with_header(&changed(&ADAPTIVE_STATES[choice % ADAPTIVE_STATES.len()], bytes)));
+    write_lines(&ADAPTIVE.with_header(&changed(&ADAPTIVE_STATES[choice % ADAPTIVE_STATES.len()], bytes)));
     take_outlines(&PIPELINE.with_header(bytes));
     take_outlines(&PIPELINE.with_header(&changed(&PIPELINE_STATES[choice % PIPELINE_STATES.len()], bytes)));
     let tracker = state_format(*b"trak", "tracker");
@@ -144,7 +144,7 @@ fn changed(state: &[u8], bytes: &[u8]) -> Vec<u8> {
     state
 }
 
-fn take_lines(bytes: &[u8]) {
+fn write_lines(bytes: &[u8]) {
     let Ok(mut identifier) = AdaptiveIdentifier::from_bytes(bytes) else { return };
     for frame in 6..12 {
         // Any answer will do that is a number.

@@ -87,7 +87,7 @@ impl View<'_> {
         }
         // The means where the points count, the points where they do not.
         self.associate(measurements, |i, m| if m.weight > 0.0 { places[i] } else { in_body(&points[i]) });
-        columns.take_cells(measurements);
+        columns.set_cells(measurements);
         self.keep_to_sides(columns.numbers_and_weights(), pieces, places, half_window);
         columns.hand_cells_back(measurements);
         for (measurement, p) in measurements.iter_mut().zip(points.iter()) {

@@ -79,7 +79,7 @@ impl View<'_> {
         vectorised(
             #[inline(always)]
             || {
-                take_lines(self, inverse, shifts, lines);
+                write_lines(self, inverse, shifts, lines);
                 for (place, p) in own_places.iter_mut().zip(points.iter()) {
                     *place = map_point_by::<true>(inverse, p);
                 }
@@ -111,7 +111,7 @@ impl View<'_> {
                         let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
                         let places = &mut places[range];
                         if piece.closed {
-                            take_means(weighted, half_window, own, places);
+                            write_means(weighted, half_window, own, places);
                             continue;
                         }
                         mean_of_neighbours(
@@ -166,7 +166,7 @@ impl View<'_> {
         let sigma = self.noise.sigma;
         let near = vectorised(
             #[inline(always)]
-            || take_residuals_and_weights((points, numbers, lines), (residuals, weights), sigma),
+            || write_residuals_and_weights((points, numbers, lines), (residuals, weights), sigma),
         );
         if (near as f64) < tuning::NEAR_ENOUGH * points.len() as f64 {
             values.clear();
@@ -183,7 +183,7 @@ impl View<'_> {
 
 /// As [`mean_of_neighbours`], which a test compares it with, along a closed piece; the point itself where its neighbours count for nothing.
 #[inline(always)]
-fn take_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], places: &mut [Point2<f64>]) {
+fn write_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], places: &mut [Point2<f64>]) {
     let count = weighted.len();
     let w = half_window.min((count - 1) / 2);
     let mut sum = [0.0; LANES];
@@ -213,7 +213,7 @@ fn take_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], place
 
 /// What every cell is to the points in a pose, given by its inverse, with corrections of the offsets.
 #[inline(always)]
-fn take_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &mut [CellLine]) {
+fn write_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &mut [CellLine]) {
     let (cells, offsets) = (view.map.cells(), &view.belief.offsets);
     let (origin, away) = (Point2::origin(), map_point_by::<true>(inverse, &Point2::origin()));
     for (number, (line, ((cell, offset), shift))) in
@@ -237,7 +237,7 @@ fn take_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &m
 
 /// Distances of points from the lines of their cells, and Tukey's weights for a deviation; how many of the points are near.
 #[inline(always)]
-fn take_residuals_and_weights(
+fn write_residuals_and_weights(
     (points, numbers, lines): (&[Point2<f64>], &[u32], &[CellLine]),
     (residuals, weights): (&mut [f64], &mut [f64]),
     sigma: f64,
@@ -320,8 +320,8 @@ impl Found<'_> {
 }
 
 impl Columns {
-    /// Takes the cells of measurements, and their weights.
-    pub(super) fn take_cells(&mut self, measurements: &[Measurement]) {
+    /// Sets the cells to those of measurements, with their weights.
+    pub(super) fn set_cells(&mut self, measurements: &[Measurement]) {
         self.numbers.clear();
         self.numbers.extend(measurements.iter().map(|m| if m.cell == NO_CELL { u32::MAX } else { m.cell as u32 }));
         self.weights.clear();
@@ -358,7 +358,7 @@ mod tests {
             let weighted: Vec<_> =
                 own.iter().enumerate().map(|(i, q)| [weight(i) * q.x, weight(i) * q.y, weight(i), 0.0]).collect();
             let mut found = vec![Point2::origin(); count];
-            take_means(&weighted, half_window, &own, &mut found);
+            write_means(&weighted, half_window, &own, &mut found);
             let mut expected = found.clone();
             let take = |i: usize, mean: Option<Point2<f64>>| expected[i] = mean.unwrap_or(own[i]);
             mean_of_neighbours(count, |i| weighted[i], true, half_window, take);

@@ -182,13 +182,13 @@ impl MotionFilter {
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
         }
-        self.take_vouched_for(outline, tolerance, &mut candidates);
+        self.accept_vouched_for(outline, tolerance, &mut candidates);
         candidates
     }
 
-    /// Takes the frame with candidates too that scatter too much, if one that is accepted explains it no better: the frame shows the
+    /// Accepts candidates too that scatter too much, if one that is accepted explains it no better: the frame shows the
     /// object then, and the noise of its points, which few of them hardly tell, says nothing against their poses.
-    fn take_vouched_for(&mut self, outline: &Outline, tolerance: Tolerance, candidates: &mut [Candidate]) {
+    fn accept_vouched_for(&mut self, outline: &Outline, tolerance: Tolerance, candidates: &mut [Candidate]) {
         let accepted = candidates.iter().filter(|candidate| candidate.outcome.is_accepted()).map(|c| c.likelihood);
         let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
         for candidate in candidates.iter_mut() {

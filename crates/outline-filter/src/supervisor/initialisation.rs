@@ -35,7 +35,7 @@ impl MotionFilter {
             track.begin_here();
             return;
         }
-        let is_due = self.window.take(time, outline, track);
+        let is_due = self.window.keep(time, outline, track);
         if !is_due && !changes || !self.window.are_several() {
             return;
         }
@@ -62,7 +62,7 @@ impl MotionFilter {
             // What the first few frames seem to say of it counts for nothing.
             self.history.change = Default::default();
         }
-        self.window.take_poses(cut.poses);
+        self.window.set_poses(cut.poses);
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody

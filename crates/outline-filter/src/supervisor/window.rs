@@ -59,7 +59,7 @@ impl InitialisationWindow {
     }
 
     /// Keeps a frame that follows the others, in the pose of the map; whether the map is to be cut from them now.
-    pub(super) fn take(&mut self, time: f64, outline: &Outline, track: &Track) -> bool {
+    pub(super) fn keep(&mut self, time: f64, outline: &Outline, track: &Track) -> bool {
         if self.state == Window::Closed {
             return false;
         }
@@ -86,8 +86,8 @@ impl InitialisationWindow {
         }
     }
 
-    /// Takes the poses that a map cut anew has found.
-    pub(super) fn take_poses(&mut self, poses: Vec<Matrix3<f64>>) {
+    /// Sets the poses that a map cut anew has found.
+    pub(super) fn set_poses(&mut self, poses: Vec<Matrix3<f64>>) {
         self.poses = poses;
     }
 
