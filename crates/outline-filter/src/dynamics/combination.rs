@@ -22,16 +22,6 @@ pub(crate) enum Purpose {
     Statement,
 }
 
-impl Purpose {
-    /// Probability of what is left out.
-    fn outside(self) -> f64 {
-        match self {
-            Self::Prediction => tuning::OUTSIDE_INTERVAL,
-            Self::Statement => tuning::OUTSIDE_THREE_DEVIATIONS,
-        }
-    }
-}
-
 /// A hypothesis that is not left out, as it is taken together with others: the velocity is that of the plane of the object where the centroid
 /// of the reference pose is.
 #[derive(Debug, Clone, Copy)]
@@ -74,19 +64,25 @@ impl<const N: usize> InteractingHypotheses<N> {
         Some((mean, covariance))
     }
 
-    /// Mean and covariance of a hypothesis, whose own velocity is that of the centroid where that is.
-    fn of_measured(&self, hypothesis: &Hypothesis<N>) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
-        let (model, k) = (self.model, self.model.parameter_count());
-        let (mut mean, rates) = (hypothesis.mean, hypothesis.rates(model));
-        let apart = hypothesis.mean.fixed_rows::<2>(k - 2).into_owned();
+    /// Mean of a hypothesis, whose own velocity is that of the centroid where that is.
+    fn mean_of(&self, hypothesis: &Hypothesis<N>) -> SVector<f64, N> {
+        let k = self.model.parameter_count();
+        let (mut mean, rates) = (hypothesis.mean, hypothesis.rates(self.model));
         let mut velocity = mean.fixed_rows_mut::<2>(2 * k - 2);
-        velocity -= rates * apart;
+        velocity -= rates * hypothesis.mean.fixed_rows::<2>(k - 2);
+        mean
+    }
+
+    /// Covariance of that mean.
+    fn covariance_of(&self, hypothesis: &Hypothesis<N>) -> SMatrix<f64, N, N> {
+        let (model, k) = (self.model, self.model.parameter_count());
+        let apart = hypothesis.mean.fixed_rows::<2>(k - 2).into_owned();
         let mut change = SMatrix::<f64, N, N>::identity();
-        change.fixed_view_mut::<2, 2>(2 * k - 2, k - 2).copy_from(&-rates);
+        change.fixed_view_mut::<2, 2>(2 * k - 2, k - 2).copy_from(&-hypothesis.rates(model));
         for (j, basis) in model.basis().iter().enumerate().take(k - 2) {
             change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&-(parts(basis).0 * apart));
         }
-        (mean, carried(&change, &hypothesis.covariance, 2 * k))
+        carried(&change, &hypothesis.covariance, 2 * k)
     }
 
     /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
@@ -97,7 +93,11 @@ impl<const N: usize> InteractingHypotheses<N> {
             Some(given) => Some(self.of_generator(given)?),
             None => None,
         };
-        let [least, likely] = [purpose.outside(), tuning::OUTSIDE_INTERVAL].map(|outside| self.least_weight(outside));
+        let likely = self.least_weight(tuning::OUTSIDE_INTERVAL);
+        let least = match purpose {
+            Purpose::Prediction => likely,
+            Purpose::Statement => self.least_weight(tuning::OUTSIDE_THREE_DEVIATIONS),
+        };
         let part = |number: usize| {
             let (hypothesis, weight) = (self.hypotheses.get(number)?, self.weights[number]);
             let is_generator = hypothesis.course == Course::ConstantGenerator;
@@ -107,8 +107,8 @@ impl<const N: usize> InteractingHypotheses<N> {
                     Part { weight, mean, covariance, is_measured: self.outline_has_moved, accelerates: false }
                 }
                 None => {
-                    let (mean, covariance) = self.of_measured(hypothesis);
-                    let covariance = (weight >= likely).then_some(covariance);
+                    let mean = self.mean_of(hypothesis);
+                    let covariance = (weight >= likely).then(|| self.covariance_of(hypothesis));
                     let accelerates = matches!(hypothesis.course, Course::Accelerating { .. });
                     Part { weight, mean, covariance, is_measured: true, accelerates }
                 }
