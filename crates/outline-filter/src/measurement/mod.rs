@@ -1,6 +1,7 @@
 //! Points of one frame against the map: which cell each belongs to, its distance from it, how that changes with the pose, and how much it counts.
 mod association;
 mod frame;
+mod lattice;
 mod likelihood;
 mod linearisation;
 mod noise;
@@ -11,6 +12,7 @@ mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
 pub(crate) use frame::{Frame, Piece, Reference};
+pub(crate) use lattice::{PixelLattice, Place};
 pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;
 pub(crate) use noise::{Counted, NoiseModel, Rounding, Tolerance, correlation_of, spread};

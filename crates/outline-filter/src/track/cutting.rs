@@ -30,7 +30,7 @@ impl Track {
         (least_noise, rounding): (f64, Rounding),
         frame: &mut Frame,
     ) -> Option<Self> {
-        let least_noise = rounding.deviation.max(least_noise);
+        let least_noise = rounding.of_point().max(least_noise);
         let mut cut = |contours, normal_noise| {
             Self::cut_with(model, reference, pose, contours, (least_noise, normal_noise), frame)
         };
