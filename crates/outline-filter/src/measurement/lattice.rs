@@ -35,31 +35,50 @@ impl PixelLattice {
         let pitches = shared.iter().flat_map(|values| usual_gaps(values));
         let mut pitches: Vec<f64> = pitches.collect();
         pitches.sort_unstable_by(|a, b| b.total_cmp(a));
-        pitches.into_iter().find_map(|pitch| {
-            let origins = shared.each_ref().map(|values| origin(values, pitch));
-            Self::with_pitch(outline, &points, pitch, origins)
-        })
+        let lines = |pitch: f64| Lines { pitch, origins: shared.each_ref().map(|values| origin(values, pitch)) };
+        let on_lines = |lines: &Lines| nearly_all(&points, |p| lines.numbers(p).iter().any(Option::is_some));
+        let found = pitches.into_iter().map(lines).find(on_lines)?;
+        // Points half way between pixels lie on the lines of a lattice as interpolated ones do, and on every second node of one twice as fine.
+        let finer = lines(found.pitch / 2.0);
+        let place = |lines: &Lines| if is_chain(outline, lines.pitch) { Place::Chain } else { Place::Nodes };
+        let of_nodes = [&found, &finer].into_iter().find_map(|lines| {
+            let pixel = lines.pixel_of_nodes(&points)?;
+            Some(Self { pixel, place: place(lines) })
+        });
+        of_nodes.or(Some(Self { pixel: found.pitch, place: Place::Lines }))
     }
+}
 
-    /// That of lines at a pitch, if the points lie on them.
-    fn with_pitch(outline: &Outline, points: &[Point2<f64>], pitch: f64, origins: [Option<f64>; 2]) -> Option<Self> {
+/// Lines at a pitch in both axes.
+struct Lines {
+    pitch: f64,
+    /// Place of one of them in each axis, where there are any.
+    origins: [Option<f64>; 2],
+}
+
+impl Lines {
+    /// Numbers of the lines that a point lies on, in x and in y.
+    fn numbers(&self, point: &Point2<f64>) -> [Option<i64>; 2] {
         let number = |value: f64, origin: Option<f64>| {
-            let number = (value - origin?) / pitch;
+            let number = (value - origin?) / self.pitch;
             ((number - number.round()).abs() < tuning::ON_LINE).then(|| number.round() as i64)
         };
-        let numbers = |point: &Point2<f64>| [number(point.x, origins[0]), number(point.y, origins[1])];
-        let enough = |count: usize| count as f64 >= tuning::NEARLY_ALL * points.len() as f64;
-        let count = |holds: &dyn Fn([Option<i64>; 2]) -> bool| points.iter().filter(|p| holds(numbers(p))).count();
-        if enough(count(&|[x, y]| x.is_some() && y.is_some())) {
-            let sums = |odd: i64| count(&|[x, y]| x.zip(y).is_some_and(|(x, y)| (x + y).rem_euclid(2) == odd));
-            // Points half way between pixels lie on every second node of a lattice of half pixels.
-            let is_half = enough(sums(0)) || enough(sums(1));
-            let place = if is_chain(outline, pitch) { Place::Chain } else { Place::Nodes };
-            return Some(Self { pixel: if is_half { 2.0 * pitch } else { pitch }, place });
-        }
-        let on_lines = enough(count(&|[x, y]| x.is_some() || y.is_some()));
-        on_lines.then_some(Self { pixel: pitch, place: Place::Lines })
+        [number(point.x, self.origins[0]), number(point.y, self.origins[1])]
     }
+
+    /// Size of a pixel if the points lie on nodes: twice the pitch where they keep to every second one.
+    fn pixel_of_nodes(&self, points: &[Point2<f64>]) -> Option<f64> {
+        let sum = |p: &Point2<f64>| match self.numbers(p) {
+            [Some(x), Some(y)] => Some((x + y).rem_euclid(2)),
+            _ => None,
+        };
+        let is_half = || (0..2).any(|odd| nearly_all(points, |p| sum(p) == Some(odd)));
+        nearly_all(points, |p| sum(p).is_some()).then(|| if is_half() { 2.0 * self.pitch } else { self.pitch })
+    }
+}
+
+fn nearly_all(points: &[Point2<f64>], holds: impl Fn(&Point2<f64>) -> bool) -> bool {
+    points.iter().filter(|point| holds(point)).count() as f64 >= tuning::NEARLY_ALL * points.len() as f64
 }
 
 /// The values that occur more than once, in order.

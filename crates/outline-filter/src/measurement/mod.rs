@@ -2,6 +2,8 @@
 mod association;
 mod frame;
 mod lattice;
+#[cfg(test)]
+mod lattice_tests;
 mod likelihood;
 mod linearisation;
 mod noise;

@@ -67,16 +67,16 @@ impl Rounding {
         Self::with_share(pixel, 1.0, (length, points))
     }
 
-    /// Of points on a lattice of pixels that scatter along their contour by `noise`; lengths are normalised.
-    pub(crate) fn on_lattice(pixel: f64, place: Place, noise: f64, (length, points): (f64, usize)) -> Self {
-        let scatter = noise / pixel;
+    /// Of points on a lattice of pixels that scatter by `scatter` about their smoothed contour; lengths are normalised.
+    pub(crate) fn on_lattice(pixel: f64, place: Place, scatter: f64, (length, points): (f64, usize)) -> Self {
+        let scatter = scatter / pixel;
         let share = match place {
             Place::Chain => 1.0,
             // Noise before the rounding makes its errors noise as well: the mean of a rounded Gaussian number (B. Widrow and I. Kollar,
             // Quantization Noise, 2008).
             Place::Nodes => (-2.0 * (PI * scatter).powi(2) + 2.0 * (PI * ROUNDING).powi(2)).min(0.0).exp(),
             // How ragged a contour is that was smoothed or interpolated tells what it keeps of the pixels.
-            Place::Lines => (scatter / tuning::ROUNDED_POINT).clamp(tuning::INTERPOLATED, 1.0),
+            Place::Lines => (scatter / tuning::RAGGED_MASK).clamp(tuning::INTERPOLATED, 1.0),
         };
         Self::with_share(pixel, share, (length, points))
     }

@@ -5,9 +5,9 @@ use nalgebra::Vector2;
 use super::Track;
 use crate::{
     dynamics::CentredDeviations,
-    map::{Contour, Resolution},
+    map::Contour,
     measurement::{PixelLattice, Rounding},
-    tuning::{contour::NORMAL_NOISE, statement::ALONG_PIXELS},
+    tuning::{lattice::RAGGED_OVER, statement::ALONG_PIXELS},
 };
 
 impl Track {
@@ -21,8 +21,9 @@ impl Track {
         }
         let lattice = PixelLattice::of(outline).filter(|_| outline.deviations().is_none());
         lattice.map_or(Rounding::NONE, |PixelLattice { pixel, place }| {
-            let (_, noise) = Resolution::of(contours, 0.0, outline.point_count(), NORMAL_NOISE);
-            Rounding::on_lattice(pixel / radius, place, noise, extent)
+            let pixel = pixel / radius;
+            let scatter = contours.iter().filter_map(|contour| contour.scatter_over(RAGGED_OVER * pixel));
+            Rounding::on_lattice(pixel, place, scatter.fold(0.0, f64::max), extent)
         })
     }
 
