@@ -1,6 +1,4 @@
-use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
-use freeform_motion::tracker::MethodSettings;
 use freeform_motion::{Tracker, TrackerSettings};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
