@@ -37,6 +37,10 @@ const GROUPS: [(WrongFamily, &[usize]); 5] = [
     (WrongFamily::Lens, &[1, 2, 6, 7, 8]),
 ];
 
+/// What pictures of a camera are off by a little more often than not, and the power of a length that it grows with: pixels that are not square and a
+/// plane that is tilted, perspective, and a lens with its middle anywhere.
+const CAMERA: [(&[usize], i32); 3] = [(&[1, 2], 0), (&[3, 4], 1), (&[6], 2)];
+
 /// Tests of what a family of motions leaves out, over frames: generalised likelihood ratios.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -52,6 +56,8 @@ pub(crate) struct FamilyTests {
     squares: UnmodelledVector,
     /// Deviation of the noise of a point.
     sigma: f64,
+    /// Farthest that the object has been from where it was first, its own radius included, normalised.
+    reach: f64,
     /// What is told, once it has been asked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     told: OnceLock<UnmodelledEstimate>,
@@ -78,11 +84,12 @@ struct Fit {
 }
 
 impl FamilyTests {
-    /// Adds what a frame says; `sigma` is the deviation of the noise of a point, and `variance` that which dependence along the contour makes
-    /// of it.
-    pub(crate) fn add(&mut self, frame: &UnmodelledScore, sigma: f64, variance: f64) {
+    /// Adds what a frame says of an object whose centroid is so far from where it was first; `sigma` is the deviation of the noise of a point, and
+    /// `variance` that which dependence along the contour makes of it.
+    pub(crate) fn add(&mut self, frame: &UnmodelledScore, distance: f64, (sigma, variance): (f64, f64)) {
         self.told.take();
         self.sigma = sigma;
+        self.reach = self.reach.max(1.0 + distance);
         self.information += frame.information / variance;
         self.score += frame.score / variance;
         self.weight += frame.weight / variance;
@@ -135,12 +142,52 @@ impl FamilyTests {
                 estimate.moments[(*i, *j)] = known.sizes[a] * known.sizes[b] + known.covariance[(a, b)];
             }
         }
+        for (members, order) in CAMERA {
+            if members.iter().all(|i| !known.numbers.contains(i)) {
+                self.add_possible(&mut estimate.moments, &known, (members, order), &dependence);
+            }
+        }
         if estimate.family.is_none()
             && let Some(displacement) = self.change_of_shape(least, &dependence)
         {
             (estimate.family, estimate.displacement) = (Some(WrongFamily::Shape), displacement);
         }
         estimate
+    }
+
+    /// Adds what motions may be that are neither found nor ruled out: a camera whose picture is off by a share of a length has them as often as not,
+    /// and the frames say how probable they are and how large (R. E. Kass and A. E. Raftery, Bayes factors, 1995). `order` is the power
+    /// of a length that they grow with.
+    fn add_possible(
+        &self,
+        moments: &mut UnmodelledMatrix,
+        known: &Fit,
+        (members, order): (&[usize], i32),
+        dependence: &UnmodelledVector,
+    ) {
+        let usual = tuning::USUAL_ERROR / self.reach.powi(order);
+        let members: Vec<usize> = members.iter().copied().filter(|i| self.information[(*i, *i)] > 0.0).collect();
+        let ratio = members.iter().map(|i| dependence[*i]).fold(1.0, f64::max);
+        let n = known.numbers.len();
+        let numbers: Vec<usize> = known.numbers.iter().chain(&members).copied().collect();
+        // In units of what is usual, in which the prior has a variance of 1.
+        let scale = usual * usual / ratio;
+        let precision = DMatrix::from_fn(numbers.len(), numbers.len(), |a, b| {
+            let prior = if a == b && a >= n { 1.0 } else { 0.0 };
+            self.information[(numbers[a], numbers[b])] * scale + prior
+        });
+        let score = DVector::from_fn(numbers.len(), |a, _| self.score[numbers[a]] * usual / ratio);
+        let Some(covariance) = precision.cholesky().map(|factor| factor.inverse()) else { return };
+        let sizes = &covariance * &score;
+        let covariance = covariance.view((n, n), (members.len(), members.len()));
+        let for_them = covariance.determinant().ln() + score.dot(&sizes) - known.squared / ratio;
+        let probability = 1.0 / (1.0 + tuning::ODDS_AGAINST * (-0.5 * for_them).exp());
+        for (a, i) in members.iter().enumerate() {
+            for (b, j) in members.iter().enumerate() {
+                let moment = covariance[(a, b)] + sizes[n + a] * sizes[n + b];
+                moments[(*i, *j)] += probability * usual * usual * moment;
+            }
+        }
     }
 
     /// Changes to and fro: of a mean square that noise does not have, or slow; or all of the motions together.
@@ -208,11 +255,15 @@ fn deviations(squared: f64, count: f64) -> f64 {
 impl FamilyTests {
     /// Whether more can be taken, and all numbers can be worked with.
     pub(crate) fn is_valid(&self) -> bool {
-        let vectors =
-            self.information.iter().chain(&self.score).chain(&self.squares).chain([&self.weight, &self.sigma]);
+        let vectors = self.information.iter().chain(&self.score).chain(&self.squares).chain([
+            &self.weight,
+            &self.sigma,
+            &self.reach,
+        ]);
         self.series.is_valid()
             && vectors.into_iter().all(|number| number.abs() < StateFormat::LARGEST_NUMBER)
             && self.sigma >= 0.0
+            && self.reach >= 0.0
     }
 }
 
@@ -236,7 +287,7 @@ mod tests {
             let information = factor * factor.transpose();
             let noise = factor * UnmodelledVector::from_fn(|_, _| SIGMA * normal());
             let score = UnmodelledScore { information, score: information * sizes + noise, weight: 50.0 };
-            tests.add(&score, SIGMA, SIGMA * SIGMA);
+            tests.add(&score, 0.0, (SIGMA, SIGMA * SIGMA));
         }
         tests
     }
