@@ -33,7 +33,7 @@ impl Track {
         if let Some(score) = score.filter(|_| self.frames > tuning::MAP_KNOWN) {
             let centroid = self.map.centroid();
             let distance = (map_point(&self.belief.pose, &centroid) - centroid).norm();
-            self.family.add(&score, distance, (self.noise.sigma, variance));
+            self.family.add(&score, (distance, self.belief.memory.step), (self.noise.sigma, variance));
         }
     }
 
