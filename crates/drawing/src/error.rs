@@ -7,7 +7,7 @@ pub enum DrawingError {
     /// The sink refused it.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// A picture of another size than the first one of an animation, or with a side of 0 or of more than 65535 pixels.
+    /// A picture of another size than the first one of an animation, or with a side of 0 or, of a GIF, of more than 65535 pixels.
     #[error("a picture of {width} x {height} pixels does not go into the animation")]
     PictureSize {
         /// Columns.

@@ -48,6 +48,21 @@ fn an_animation_refuses_pictures_that_its_format_cannot_hold_or_of_another_size_
 }
 
 #[test]
+fn a_video_refuses_pictures_of_another_size_than_the_first() {
+    let mut video = Y4mVideo::new(Vec::new());
+    let is_refused = |video: &mut Y4mVideo<_>, width, height| {
+        let error = video.write(&RgbImage::new(width, height), None).expect_err("refused");
+        matches!(error, DrawingError::PictureSize { width: w, height: h } if (w, h) == (width, height))
+    };
+    assert!(is_refused(&mut video, 0, 4));
+    video.write(&RgbImage::new(6, 4), None).expect("a picture");
+    assert!(is_refused(&mut video, 4, 6));
+    video.write(&RgbImage::new(6, 4), None).expect("a picture");
+    let bytes = video.finish().expect("pictures");
+    assert_eq!(bytes.windows(5).filter(|word| word == b"FRAME").count(), 2);
+}
+
+#[test]
 fn a_drawn_picture_is_known_again_as_a_file_and_others_are_not() {
     let mut picture = RgbImage::new(5, 4);
     picture.put_pixel(2, 1, Rgb([255, 230, 60]));

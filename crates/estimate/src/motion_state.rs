@@ -20,7 +20,7 @@ pub struct MotionState {
     pub(crate) within: DMatrix<f64>,
     pub(crate) observable: [bool; MAX_PARAMETERS],
     pub(crate) hidden: [bool; MAX_PARAMETERS],
-    pub(crate) middle: Point2<f64>,
+    pub(crate) centroid: Point2<f64>,
 }
 
 /// One parameter of a pose with its standard deviation.
@@ -67,17 +67,17 @@ pub struct NormalisedState {
     pub observable: [bool; MAX_PARAMETERS],
     /// Rates that the outline does not show, such as that of the turn of a circle: nor does it show how far the object has turned.
     pub hidden: [bool; MAX_PARAMETERS],
-    /// Middle of the object in the body frame, normalised: what turns without being seen turns about it.
-    pub middle: Point2<f64>,
+    /// Centroid of the object in the body frame, normalised: what turns without being seen turns about it.
+    pub centroid: Point2<f64>,
 }
 
 impl From<NormalisedState> for MotionState {
     fn from(state: NormalisedState) -> Self {
         let NormalisedState {
-            model, time, origin, radius, pose, motion, covariance, observable, hidden, middle, ..
+            model, time, origin, radius, pose, motion, covariance, observable, hidden, centroid, ..
         } = state;
         let within = state.covariance_given_outline;
-        Self { model, time, origin, radius, pose, motion, covariance, within, observable, hidden, middle }
+        Self { model, time, origin, radius, pose, motion, covariance, within, observable, hidden, centroid }
     }
 }
 
@@ -131,7 +131,7 @@ impl MotionState {
     /// The pose as numbers. First its linear part, rigid: `angle`; similarity: `scale`, `angle`; affine and projective: `m11`, `m12`,
     /// `m21`, `m22`; then `x` and `y`, where the centre of the first outline (the mean of its points) is now, image lengths;
     /// projective also `m31`, `m32` per length, at m33 = 1 and with that centre for origin. The angle is the turn since the first frame in rad
-    /// between -pi and pi, positive where omega is. What the outline does not show is NaN; that centre, where it is not the middle
+    /// between -pi and pi, positive where omega is. What the outline does not show is NaN; that centre, where it is not the centroid
     /// of the object, is less certain then.
     #[must_use]
     pub fn pose_parameters(&self) -> Vec<PoseParameter> {
@@ -183,8 +183,8 @@ impl MotionState {
                 (parameter.value, parameter.standard_deviation) = (f64::NAN, f64::INFINITY);
             }
         }
-        // Turned about the middle by any angle a point moves by sqrt(2) times its distance, root mean square over both coordinates.
-        let lever = self.radius * (g.fixed_view::<2, 2>(0, 0) * self.middle.coords).norm();
+        // Turned about the centroid by any angle a point moves by sqrt(2) times its distance, root mean square over both coordinates.
+        let lever = self.radius * (g.fixed_view::<2, 2>(0, 0) * self.centroid.coords).norm();
         let by_unseen_turn = if is_any_hidden { lever } else { 0.0 };
         for (name, row, start) in [("x", 0, self.origin.x), ("y", 1, self.origin.y)] {
             let mut at = entry(name, row, 2, self.radius);

@@ -53,7 +53,7 @@ pub enum SmootherError {
 ///     covariance_given_outline: variance * DMatrix::identity(6, 6),
 ///     observable: [true; 8],
 ///     hidden: [false; 8],
-///     middle: Point2::origin(),
+///     centroid: Point2::origin(),
 /// };
 /// let states = [state(0.1, 1.4, 1e-2).into(), state(0.2, 1.5, 1e-6).into()];
 /// let smoothed = smooth(&states, &ProcessNoise::default())?;

@@ -1,5 +1,5 @@
 use freeform_motion::curve_fit::{ClosedOutline, Outline, PixelGrid};
-use freeform_motion::outline_io::read_shape;
+use freeform_motion::named_shape;
 use freeform_motion::riccati::{AffineMotion, ProjectiveMotion, RigidMotion};
 use freeform_motion::sim_camera::{
     BuiltInShape, Camera, Frame, Mask, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator,
@@ -119,15 +119,7 @@ fn shape_of(value: Option<&Bound<'_, PyAny>>) -> PyResult<Shape> {
         let polygon = points(value).map_err(|_| type_error("shape: a name or an array of shape (n, 2) is needed"))?;
         return Ok(Shape::from_polygon(&polygon).map_err(value_error)?.normalised());
     };
-    let unknown = match name.parse::<BuiltInShape>() {
-        Ok(shape) => return Ok(shape.shape()),
-        Err(error) => error,
-    };
-    if std::path::Path::new(&name).extension().is_none() {
-        return Err(value_error(unknown));
-    }
-    let corners: Vec<Point2<f64>> = read_shape(&name).map_err(value_error)?.points().copied().collect();
-    Ok(Shape::from_polygon(&corners).map_err(value_error)?.normalised().with_name(name))
+    named_shape(&name).map_err(value_error)
 }
 
 /// A simulated sequence: its frames by number, without the dropped ones.

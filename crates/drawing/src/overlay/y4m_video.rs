@@ -22,24 +22,30 @@ const USUAL_RATE: f64 = 30.0;
 #[derive(Debug)]
 pub struct Y4mVideo<W: Write> {
     sink: W,
-    is_begun: bool,
+    /// Columns and rows, once there is a picture.
+    size: Option<(u32, u32)>,
 }
 
 impl<W: Write> Y4mVideo<W> {
     /// A video without a picture.
     pub fn new(sink: W) -> Self {
-        Self { sink, is_begun: false }
+        Self { sink, size: None }
     }
 
-    /// Adds a picture. The seconds that the first one stands for are the time from picture to picture; a thirtieth where that is not known.
+    /// Adds a picture. The seconds that the first one stands for are the time from picture to picture; a thirtieth where that is not known. All
+    /// pictures have the size of the first.
     ///
     /// # Errors
     ///
-    /// [`DrawingError::Io`] of the sink.
+    /// [`DrawingError::Io`] of the sink, [`DrawingError::PictureSize`] if the picture has not the size of the first one, or a side of 0.
     pub fn write(&mut self, picture: &RgbImage, seconds: Option<f64>) -> Result<(), DrawingError> {
-        if !self.is_begun {
+        let (width, height) = picture.dimensions();
+        if width == 0 || height == 0 || self.size.is_some_and(|size| size != (width, height)) {
+            return Err(DrawingError::PictureSize { width, height });
+        }
+        if self.size.is_none() {
             self.begin(picture, seconds)?;
-            self.is_begun = true;
+            self.size = Some((width, height));
         }
         self.sink.write_all(b"FRAME\n")?;
         for plane in 0..3 {
@@ -58,7 +64,7 @@ impl<W: Write> Y4mVideo<W> {
 
     /// Hands back the sink; `None` where no picture was written.
     pub fn finish(self) -> Option<W> {
-        self.is_begun.then_some(self.sink)
+        self.size.map(|_| self.sink)
     }
 }
 

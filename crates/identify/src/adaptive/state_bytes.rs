@@ -81,7 +81,7 @@ impl AdaptiveIdentifier {
         if !identifier.laws.is_finite() {
             return Err(inconsistent("numbers of the laws"));
         }
-        if !last.as_ref().is_none_or(|last| is_sound(last, pairs)) || !origin_since.is_finite() {
+        if !last.as_ref().is_none_or(|last| is_valid(last, pairs)) || !origin_since.is_finite() {
             return Err(inconsistent("lines"));
         }
         let counts = [usize::from(last.is_some()), frames, StateFormat::MOST_COUNTED].is_sorted();
@@ -99,7 +99,7 @@ impl AdaptiveIdentifier {
 }
 
 /// A frame of which the identifier can go on.
-fn is_sound(last: &Last, pairs: PairChoice) -> bool {
+fn is_valid(last: &Last, pairs: PairChoice) -> bool {
     let fewest = if let PairChoice::Given(index) = pairs { index.saturating_add(1) } else { 1 };
     let coordinates = last.lines.iter().flat_map(|line| [line.l.re, line.l.im, line.k.re, line.k.im]);
     (fewest..=MAX_PAIRS).contains(&last.count) && last.time.is_finite() && { coordinates }.all(f64::is_finite)

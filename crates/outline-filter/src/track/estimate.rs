@@ -180,7 +180,7 @@ impl Track {
             ),
             observable,
             hidden: self.hidden_rates(),
-            middle: self.map.centroid(),
+            centroid: self.map.centroid(),
         };
         Some(state.into())
     }
