@@ -9,6 +9,7 @@ use super::{
 };
 use crate::Rectification;
 use crate::frame_ranges::FrameRanges;
+use crate::polygon::outline_of_pixel_polygon;
 use crate::rejection::{FrameRejection, RejectionCause};
 use crate::warning::Warning;
 
@@ -72,14 +73,16 @@ impl TrackedObject {
             let unusable = self.unusable(frame.frame, lost);
             return Observation { time: Some(frame.time), ..unusable };
         }
-        let in_plane = match self.rectification.map(|plane| plane.outline(&frame.outline)).transpose() {
+        let filled = outline_of_pixel_polygon(&frame.outline);
+        let seen = filled.as_ref().unwrap_or(&frame.outline);
+        let in_plane = match self.rectification.map(|plane| plane.outline(seen)).transpose() {
             Ok(in_plane) => in_plane,
             Err(error) => {
                 let unusable = self.unusable(frame.frame, RejectionCause::NotRectified(error));
                 return Observation { time: Some(frame.time), ..unusable };
             }
         };
-        let step = self.identifier.push(frame.time, in_plane.as_ref().unwrap_or(&frame.outline));
+        let step = self.identifier.push(frame.time, in_plane.as_ref().unwrap_or(seen));
         let rejection = self.count(frame.frame, step.rejected_because);
         Observation {
             object: self.name.clone(),

@@ -372,3 +372,29 @@ fn what_is_known_of_outlines_is_told_of_as_many_objects_as_are_asked_for() {
     let mut adaptive = tracker(Method::Adaptive).with_known_outlines(9);
     assert!(of_two.iter().all(|frame| adaptive.push(frame).known_outline.is_none()));
 }
+
+/// Corners of a star in whole pixels, 120 pixels across, that turns and travels.
+fn corners_in_pixels(motion: RigidMotion, frame: u64) -> OutlineFrame {
+    let time = frame as f64 / 30.0;
+    let pose = Rotation2::new(-motion.omega * time);
+    let corner = |i: usize| {
+        let (angle, radius) = (std::f64::consts::TAU * i as f64 / 9.0, [60.0, 35.0, 48.0][i % 3]);
+        (pose * Point2::new(radius * angle.cos(), radius * angle.sin())).map(f64::round)
+    };
+    let outline = Outline::closed((0..9).map(corner).collect()).expect("an outline");
+    OutlineFrame { frame, time, object: "star".to_owned(), outline }
+}
+
+#[test]
+fn polygons_in_pixels_whose_corners_alone_are_given_tell_their_motion() {
+    let motion = RigidMotion { omega: 0.8, b1: 0.0, b2: 0.0 };
+    let mut tracker = tracker(Method::Filter);
+    for frame in 0..60 {
+        let _observation = tracker.push(&corners_in_pixels(motion, frame));
+    }
+    let results = tracker.results();
+    let estimate = results[0].estimate.as_ref().expect("a motion");
+    let omega = estimate.parameters().next().expect("omega");
+    let (value, deviation) = (omega.value.expect("a value"), omega.standard_deviation.expect("a value"));
+    assert!((value - 0.8).abs() < 3.0 * deviation && deviation < 0.05, "{value} +- {deviation}");
+}

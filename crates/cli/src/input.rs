@@ -3,11 +3,11 @@ use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
-use freeform_motion::SimulatedMotion;
 use freeform_motion::outline_io::{
-    OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind, TableFormat,
-    VerticalAxis, labelme_files, read_comments,
+    FilePoints, OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind,
+    TableFormat, VerticalAxis, labelme_files, read_comments,
 };
+use freeform_motion::{SimulatedMotion, outline_of_polygon};
 
 use crate::args::PictureOptions;
 use crate::awaited::Awaited;
@@ -38,6 +38,16 @@ pub(crate) struct Input {
     source: Source,
     /// Standard input or a pipe.
     is_stream: bool,
+    polygons: Polygons,
+}
+
+/// What is made of polygons whose corners are given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Polygons {
+    /// Outlines, with points along their sides.
+    Outlines,
+    /// They are left as they are.
+    Corners,
 }
 
 enum Source {
@@ -89,13 +99,19 @@ impl Input {
     }
 
     fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
-        Ok(Self { name, comments: Vec::new(), source: Source::Pictures(Box::new(pictures)), is_stream: false })
+        Ok(Self {
+            name,
+            comments: Vec::new(),
+            source: Source::Pictures(Box::new(pictures)),
+            is_stream: false,
+            polygons: Polygons::Outlines,
+        })
     }
 
     fn of_file(file: Result<OutlineFile, ReadError>, name: String) -> Result<Self, Failure> {
         let file = file.map_err(Failure::unusable)?;
         let comments = file.comments().lines().map(str::to_owned).collect();
-        Ok(Self { name, comments, source: Source::File(file), is_stream: false })
+        Ok(Self { name, comments, source: Source::File(file), is_stream: false, polygons: Polygons::Outlines })
     }
 
     fn of_polygons(
@@ -140,7 +156,18 @@ impl Input {
         // The head is read again with the rest, so that line numbers are right.
         let whole: Box<dyn Read> = Box::new(Cursor::new(head).chain(source));
         let outlines = OutlineReader::new(whole, name.clone()).map_err(Failure::unusable)?;
-        Ok(Self { name, comments, source: Source::Csv(Box::new(outlines)), is_stream: false })
+        Ok(Self {
+            name,
+            comments,
+            source: Source::Csv(Box::new(outlines)),
+            is_stream: false,
+            polygons: Polygons::Outlines,
+        })
+    }
+
+    /// Polygons of annotation programs are handed on with their corners alone.
+    pub(crate) fn as_given(self) -> Self {
+        Self { polygons: Polygons::Corners, ..self }
     }
 
     /// The motion that the head of the file says it was simulated with.
@@ -233,9 +260,17 @@ impl Iterator for Input {
         match &mut self.source {
             Source::Pictures(pictures) => pictures.next().map(Ok),
             Source::Csv(outlines) => outlines.next().map(item),
-            Source::File(outlines) => outlines.next().map(item),
+            Source::File(outlines) => {
+                let outline = outlines.next()?;
+                let fills = (outlines.points(), self.polygons) == (FilePoints::Corners, Polygons::Outlines);
+                Some(item(outline.map(|frame| if fills { filled(frame) } else { frame })))
+            }
         }
     }
+}
+
+fn filled(frame: OutlineFrame) -> OutlineFrame {
+    OutlineFrame { outline: outline_of_polygon(&frame.outline), ..frame }
 }
 
 /// Refuses options that are only for pictures.

@@ -8,6 +8,9 @@ use crate::open_outline::OpenOutline;
 use crate::points::{Spread, check_not_collinear, check_points, signed_area};
 use crate::rectangle::Rectangle;
 
+/// Most points that sides are filled with, about: a contour of a few pixels' noise needs no more, and a damaged coordinate must not ask for all memory.
+const MOST_SIDES: f64 = 1e4;
+
 /// Points of the boundary of a body in the order in which they follow each other, either way round; the last is joined to the
 /// first, which is not repeated. At least three finite points that do not lie on one line. There may be further closed contours of
 /// the same body within it, such as of holes and marks. Points may have standard deviations, all of them or none.
@@ -80,6 +83,38 @@ impl ClosedOutline {
             rest = others;
         }
         moved.with_deviations(deviations)
+    }
+
+    /// This outline with points along the sides between its own, so that from one to the next neither coordinate changes by more than `longest`,
+    /// or by a ten-thousandth of the length of the contours where that is more: a polygon whose corners alone are given shows its sides too. An
+    /// outline whose points have standard deviations stays as it is, as they are measurements. So it does if `longest` is not positive.
+    #[must_use]
+    pub fn with_sides(&self, longest: f64) -> Self {
+        if self.deviations.is_some() || longest.is_nan() || longest <= 0.0 {
+            return self.clone();
+        }
+        let longest = longest.max(self.length() / MOST_SIDES);
+        let along = |points: &[Point2<f64>]| {
+            let mut all = Vec::new();
+            for (i, from) in points.iter().enumerate() {
+                let side = points[(i + 1) % points.len()] - from;
+                let count = (side.amax() / longest).ceil().max(1.0);
+                all.extend((0..count as usize).map(|k| from + side * (k as f64 / count)));
+            }
+            all
+        };
+        let inner = self.inner.iter().map(|contour| along(contour)).collect();
+        Self { points: along(&self.points), inner, deviations: None }
+    }
+
+    /// Length of all contours, the sides that close them included.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        let of_contour = |points: &[Point2<f64>]| {
+            let next = points.iter().cycle().skip(1);
+            points.iter().zip(next).map(|(from, to)| (to - from).norm()).sum::<f64>()
+        };
+        self.contours().map(of_contour).sum()
     }
 
     /// The points of the boundary in order.

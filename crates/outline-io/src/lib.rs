@@ -130,7 +130,7 @@ pub use image::GrayImage;
 pub use labelme_files::labelme_files;
 pub use labels::{LabelMask, TracedLabel};
 pub use outline_columns::{ColumnOutlines, OutlineColumns};
-pub use outline_file::{OutlineFile, TableFormat, TableWriter};
+pub use outline_file::{FilePoints, OutlineFile, TableFormat, TableWriter};
 pub use outline_lists::{ListChunk, ListOutlines, Lists, Marks, OutlineLists};
 #[cfg(feature = "parquet")]
 pub use parquet_reader::ParquetReader;

@@ -96,12 +96,22 @@ impl<W: Write> TableWriter<W> {
     }
 }
 
+/// What the points of the outlines in a file are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FilePoints {
+    /// Places of the contour that have been measured.
+    Measured,
+    /// Corners of polygons, whose sides are the contour.
+    Corners,
+}
+
 /// The outlines of a file that is read whole or at random, and so is no stream.
 pub struct OutlineFile {
     outlines: Box<dyn Iterator<Item = Result<OutlineFrame, ReadError>>>,
     comments: String,
     is_rate_assumed: bool,
     has_deviation_column: bool,
+    points: FilePoints,
 }
 
 impl std::fmt::Debug for OutlineFile {
@@ -120,7 +130,8 @@ impl OutlineFile {
         {
             let reader = crate::parquet_reader::ParquetReader::open(path)?;
             let (comments, has_deviation_column) = (reader.comments().to_owned(), reader.has_deviation_column());
-            Ok(Self { outlines: Box::new(reader), comments, is_rate_assumed: false, has_deviation_column })
+            let points = FilePoints::Measured;
+            Ok(Self { outlines: Box::new(reader), comments, is_rate_assumed: false, has_deviation_column, points })
         }
         #[cfg(not(feature = "parquet"))]
         {
@@ -172,7 +183,14 @@ impl OutlineFile {
     fn of_polygons(files: &[(String, Vec<u8>)], settings: &PolygonSettings) -> Result<Self, ReadError> {
         let PolygonOutlines { outlines, is_rate_assumed } = read_polygons(files, settings)?;
         let outlines = Box::new(outlines.into_iter());
-        Ok(Self { outlines, comments: String::new(), is_rate_assumed, has_deviation_column: false })
+        let points = FilePoints::Corners;
+        Ok(Self { outlines, comments: String::new(), is_rate_assumed, has_deviation_column: false, points })
+    }
+
+    /// What the points of its outlines are.
+    #[must_use]
+    pub fn points(&self) -> FilePoints {
+        self.points
     }
 
     /// Whether the file has a column of standard deviations.

@@ -1,0 +1,52 @@
+//! Outlines that are polygons, given by their corners.
+use freeform_curve_fit::{ClosedOutline, Outline};
+
+/// Points that the sides of a polygon are filled with, together: a contour with as many hardly tells more with further ones.
+const POINTS_OF_POLYGON: f64 = 300.0;
+/// A contour of fewer points than this is taken for a polygon if its coordinates are whole numbers...
+const FEW_CORNERS: usize = 40;
+/// ...and so is one whose longest side is so many times as long as the mean: points that sample a contour are never as uneven.
+const UNEVEN: f64 = 4.0;
+
+/// The outline of a polygon whose corners alone are given, as annotation programs do, with about 300 points along its sides. Methods that take the
+/// points for samples of the contour would see the corners alone, which are other places of the body in every frame. Open outlines, and those whose
+/// points have standard deviations, stay as they are.
+///
+/// ```
+/// use freeform_motion::{curve_fit::Outline, outline_of_polygon};
+/// use nalgebra::Point2;
+///
+/// let corners = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (0.0, 1.0)];
+/// let polygon = Outline::closed(corners.iter().map(|(x, y)| Point2::new(*x, *y)).collect())?;
+/// assert_eq!(outline_of_polygon(&polygon).point_count(), 304);
+/// # Ok::<(), freeform_motion::curve_fit::OutlineError>(())
+/// ```
+#[must_use]
+pub fn outline_of_polygon(outline: &Outline) -> Outline {
+    match outline {
+        Outline::Closed(polygon) => polygon.with_sides(polygon.length() / POINTS_OF_POLYGON).into(),
+        Outline::Open(_) => outline.clone(),
+    }
+}
+
+/// The outline of a polygon in pixels, with a point for each pixel of its sides; `None` where the points are no such polygon, or all there already.
+/// Masks are traced to such polygons, with the corners of straight stretches alone.
+pub(crate) fn outline_of_pixel_polygon(outline: &Outline) -> Option<Outline> {
+    let Outline::Closed(polygon) = outline else { return None };
+    let is_whole = |value: f64| value.fract() == 0.0;
+    if outline.deviations().is_some() || !outline.points().all(|point| is_whole(point.x) && is_whole(point.y)) {
+        return None;
+    }
+    let is_polygon = polygon.points().len() < FEW_CORNERS || longest_side(polygon) > UNEVEN * mean_side(polygon);
+    let filled = is_polygon.then(|| Outline::from(polygon.with_sides(1.0)))?;
+    (filled.point_count() > outline.point_count()).then_some(filled)
+}
+
+fn longest_side(polygon: &ClosedOutline) -> f64 {
+    let next = polygon.points().iter().cycle().skip(1);
+    polygon.points().iter().zip(next).map(|(from, to)| (to - from).norm()).fold(0.0, f64::max)
+}
+
+fn mean_side(polygon: &ClosedOutline) -> f64 {
+    polygon.length() / polygon.points().len() as f64
+}
