@@ -42,7 +42,7 @@ impl Bisectors {
 
 impl OutlineMap {
     /// Prepares what the cells nearest to places are found by; to be called whenever cells have changed.
-    pub(super) fn prepare_association(&mut self) {
+    pub(crate) fn prepare_association(&mut self) {
         let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
         self.field.build(&centres, self.spacing);
         self.bisectors.clear();

@@ -263,11 +263,13 @@ impl Contour {
             let inliers = (0..self.points.len()).filter(|i| !self.outlier[*i]);
             inliers.map(|i| self.local_fit(i, half_window)).collect()
         };
-        let wide = fits_over(widest);
+        // Outliers have just been marked by the narrower one.
+        let narrow = fits_over(narrowest);
         if narrowest == widest {
-            return wide;
+            return narrow;
         }
-        wide.into_iter().zip(fits_over(narrowest)).map(|(wide, narrow)| wider_if_alike(wide?, narrow, sigma)).collect()
+        let wide = fits_over(widest);
+        wide.into_iter().zip(narrow).map(|(wide, narrow)| wider_if_alike(wide?, narrow, sigma)).collect()
     }
 
     /// Prepares the regressions with a window, which [`local_fit`](Self::local_fit) is to be asked for next.

@@ -52,13 +52,12 @@ impl NearestField {
                     Line { x: p.x, at_none: p.x * p.x + across * across, from: 0.0, number: *number },
                 );
             }
-            let mut lines = lowest.iter().copied().peekable();
-            let mut number = 0;
-            for (column, pixel) in pixels.iter_mut().enumerate() {
-                while let Some(line) = lines.next_if(|line| line.from <= column as f64) {
-                    number = line.number;
-                }
-                *pixel = number;
+            // Lines from the last to the first, each over the columns that are left.
+            let mut pixels = pixels;
+            for line in lowest.iter().rev() {
+                let from = (line.from.ceil() as usize).min(pixels.len());
+                pixels[from..].fill(line.number);
+                pixels = &mut pixels[..from];
             }
         }
     }
