@@ -5,7 +5,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::{
     local_fit::{LocalFit, Sums, direction_variance, wider_if_alike},
-    medians::{median, median_of_nine},
+    medians::{median, running_medians_of_nine},
     plain_regression::PlainRegression,
 };
 use crate::tuning::{contour as tuning, measurement::MEDIAN_TO_DEVIATION};
@@ -175,29 +175,34 @@ impl Contour {
         if n < 4 * tuning::MEDIAN_HALF_WINDOW {
             return;
         }
-        let m = tuning::MEDIAN_HALF_WINDOW as isize;
+        let m = tuning::MEDIAN_HALF_WINDOW;
+        // Around a closed contour; along an open one those whose windows end within.
+        let ends = if self.closed { (n - m..n, 0..m) } else { (0..0, 0..0) };
+        let around = || ends.0.clone().chain(0..n).chain(ends.1.clone());
+        let coordinates: [Vec<f64>; 2] =
+            [around().map(|i| self.points[i].x).collect(), around().map(|i| self.points[i].y).collect()];
+        let [xs, ys] = coordinates.map(|numbers| running_medians_of_nine(&numbers));
+        let first = if self.closed { 0 } else { m };
         let mut distances = Vec::with_capacity(n);
-        for i in 0..n {
-            let is_within = (m as usize..n - m as usize).contains(&i);
-            let middle = if is_within || self.closed {
-                // Of so few a network finds the middle without a branch.
-                let at: [usize; 2 * tuning::MEDIAN_HALF_WINDOW + 1] = std::array::from_fn(|j| {
-                    let k = i + n + j - m as usize;
-                    if is_within { i + j - m as usize } else { k % n }
-                });
-                Point2::new(median_of_nine(at.map(|j| self.points[j].x)), median_of_nine(at.map(|j| self.points[j].y)))
-            } else {
-                // At an open end the window slides inwards; its median stands off along the contour, which the scale allows for.
-                let near = || (-m..=m).filter_map(|offset| self.neighbour(i, offset)).map(|j| &self.points[j]);
-                let [mut xs, mut ys]: [Vec<f64>; 2] = [near().map(|p| p.x).collect(), near().map(|p| p.y).collect()];
-                Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0))
+        for (i, p) in self.points.iter().enumerate() {
+            let middle = match i.checked_sub(first).filter(|at| *at < xs.len()) {
+                Some(at) => Point2::new(xs[at], ys[at]),
+                None => self.median_at_end(i),
             };
-            distances.push((self.points[i] - middle).norm());
+            distances.push((p - middle).norm());
         }
         let scale = median(&mut distances.clone()).unwrap_or(0.0);
         for (outlier, distance) in self.outlier.iter_mut().zip(distances) {
             *outlier = distance > tuning::GROSS * scale;
         }
+    }
+
+    /// At an open end the window of the median slides inwards; its median stands off along the contour, which the scale allows for.
+    fn median_at_end(&self, i: usize) -> Point2<f64> {
+        let m = tuning::MEDIAN_HALF_WINDOW as isize;
+        let near = || (-m..=m).filter_map(|offset| self.neighbour(i, offset)).map(|j| &self.points[j]);
+        let [mut xs, mut ys]: [Vec<f64>; 2] = [near().map(|p| p.x).collect(), near().map(|p| p.y).collect()];
+        Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0))
     }
 
     /// Distance of a point from the line of its neighbours, in units that make its variance that of the noise.

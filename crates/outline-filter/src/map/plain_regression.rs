@@ -134,7 +134,8 @@ impl Moments {
                 }
             }
             for (lane, sums) in sums.iter_mut().enumerate() {
-                *sums = of_lanes.map(|of_lane| of_lane[lane]);
+                // A closure would be called.
+                *sums = [of_lanes[0][lane], of_lanes[1][lane], of_lanes[2][lane]];
             }
         }
     }

@@ -19,6 +19,9 @@ use crate::{
 
 /// A track cut anew, how the motion changes in the frames that it was cut from, and their poses.
 struct Remapped {
+    /// At the first of the frames.
+    begun: Track,
+    /// At the last of them.
     track: Track,
     history: MotionHistory,
     poses: Vec<Matrix3<f64>>,
@@ -54,7 +57,7 @@ impl MotionFilter {
         let remapper = Remapper { settings: &self.settings, window: &self.window };
         let Some(cut) = remapper.settled(track, remapper.may_change(&self.history), &mut self.frame) else { return };
         let frame = &mut self.frame;
-        self.turn_hypotheses.remap(|track| remapper.settled(track, false, frame).map(|cut| cut.track));
+        self.turn_hypotheses.remap(|rival| remapper.on_map_of(&cut, rival, frame));
         self.track = Some(cut.track);
         self.motion_changed = cut.history.is_changing();
         self.history = cut.history;
@@ -114,16 +117,30 @@ impl Remapper<'_> {
         history.is_changing() || !self.settings.process_noise.is_none()
     }
 
+    /// A rival of a track that has been cut anew, on the same cells: each of its own would be as many times the work, and a finer one would win
+    /// by that alone. Where they have not begun alike it has cells of its own all the same.
+    fn on_map_of(&self, cut: &Remapped, rival: &Track, buffers: &mut Frame) -> Option<Track> {
+        match cut.begun.with_motion_of(rival) {
+            Some(begun) => self.replayed(begun, &self.window.by_motion(rival), buffers).map(|cut| cut.track),
+            None => self.settled(rival, false, buffers).map(|cut| cut.track),
+        }
+    }
+
     fn cut(&self, track: &Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
+        self.replayed(track.recut(frames, 1, buffers)?, frames, buffers)
+    }
+
+    /// A track that stands at the first frame, after all of them.
+    fn replayed(&self, begun: Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
         let mut history = MotionHistory::default();
-        let mut poses = vec![*track.first_body_pose()];
-        let track = track.remapped(frames, 1, buffers, |track, frame, seconds, outline| {
+        let mut poses = vec![*begun.first_body_pose()];
+        let track = begun.clone().replayed(frames, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());
             let outcome = advance_again(self.settings, (track, frame), &mut history, seconds);
             poses.push(*track.body_pose());
             outcome.is_accepted()
         })?;
-        Some(Remapped { track, history, poses })
+        Some(Remapped { begun, track, history, poses })
     }
 }
 

@@ -44,8 +44,14 @@ impl Track {
         frames: &[PlacedFrame<'_>],
         stride: usize,
         buffers: &mut Frame,
-        mut take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
+        take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
     ) -> Option<Self> {
+        self.recut(frames, stride, buffers)?.replayed(frames, buffers, take)
+    }
+
+    /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken. It stands at
+    /// the first of them. `None` where the new cells do not show the turn.
+    pub(crate) fn recut(&self, frames: &[PlacedFrame<'_>], stride: usize, buffers: &mut Frame) -> Option<Self> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
         if self.belief.earlier_poses == EarlierPoses::Forgotten || self.turn_is_unseen() {
             return None;
@@ -74,14 +80,39 @@ impl Track {
         track.noise.adopt_level_of(&self.noise);
         track.doubt_first_pose();
         track.belief.motion = self.belief.motion;
+        Some(track)
+    }
+
+    /// A track that has been begun in the same frame and in the same pose as another, at that frame, for another motion, which that other track
+    /// has: an outline has cells of one length in both, so that frames that are measured on them tell the two apart by what they show. `None`
+    /// where the other track was not begun in the same pose.
+    pub(crate) fn with_motion_of(&self, other: &Self) -> Option<Self> {
+        if other.first_pose != self.first_pose || other.turn_is_unseen() {
+            return None;
+        }
+        let mut track = self.clone();
+        track.noise.adopt_level_of(&other.noise);
+        track.belief.motion = other.belief.motion;
+        Some(track)
+    }
+
+    /// A track that stands at the first of some frames, after the others have been taken one by one; `take` says whether a frame was. `None`
+    /// where one of them is not.
+    pub(crate) fn replayed(
+        mut self,
+        frames: &[PlacedFrame<'_>],
+        buffers: &mut Frame,
+        mut take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
+    ) -> Option<Self> {
+        let (first, others) = frames.split_first()?;
         let mut before = first.time;
-        for PlacedFrame { time, outline, .. } in &frames[1..] {
-            if !take(&mut track, buffers, time - before, outline) {
+        for PlacedFrame { time, outline, .. } in others {
+            if !take(&mut self, buffers, time - before, outline) {
                 return None;
             }
             before = *time;
         }
-        Some(track)
+        Some(self)
     }
 
     /// The points of every frame out of `stride` in the body frame, with the cells that they were seen of.
