@@ -248,7 +248,7 @@ where
             break;
         }
     }
-    let score = mean_distance(track, points, &pose);
+    let score = mean_distance(track, points, &pose, &mut numbers);
     let turn = turn_of(&pose, track.body_pose());
     RegisteredPose { pose, score, turn }
 }
@@ -262,6 +262,23 @@ struct Seen<'a> {
 }
 
 impl Seen<'_> {
+    #[inline(always)]
+    fn mean_distance<const AFFINE: bool>(&self, numbers: &mut [u32]) -> f64 {
+        let Self { points, inverse, map, offsets } = self;
+        let places = points.iter().map(
+            #[inline(always)]
+            |p| map_point_by::<AFFINE>(inverse, p),
+        );
+        map.associate_all(places.clone(), numbers);
+        let cells = map.cells();
+        let mut sum = 0.0;
+        for (q, number) in places.zip(numbers) {
+            let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
+            sum += (q - (cell.centre + offset * cell.normal)).norm().min(tuning::FARTHEST);
+        }
+        sum / points.len() as f64
+    }
+
     /// Residuals of all points and their derivatives, which `velocities` tell.
     #[inline(always)]
     fn linearise<const AFFINE: bool, const K: usize>(
@@ -316,19 +333,19 @@ fn weighted_sums<const K: usize>(rows: &[(f64, [f64; K])], scale: f64) -> ([[f64
     (gram, right)
 }
 
-/// Mean distance of points from the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away.
-fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>) -> f64 {
+/// Mean distance of points from the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away; `numbers` has room for one of
+/// each point.
+fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, numbers: &mut [u32]) -> f64 {
     let View { map, belief, .. } = track.view();
     let Some(inverse) = pose.try_inverse() else { return f64::INFINITY };
-    let (mut sum, mut count) = (0.0, 0.0);
-    for p in points {
-        let q = map_point(&inverse, p);
-        if let Some(number) = map.nearest(&q) {
-            sum += (q - map.outline_at(number, &belief.offsets)).norm().min(tuning::FARTHEST);
-            count += 1.0;
-        }
+    if points.is_empty() || map.cells().is_empty() {
+        return f64::INFINITY;
     }
-    if count > 0.0 { sum / count } else { f64::INFINITY }
+    let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
+    vectorised(
+        #[inline(always)]
+        || if is_affine(&inverse) { seen.mean_distance::<true>(numbers) } else { seen.mean_distance::<false>(numbers) },
+    )
 }
 
 /// Turn of a pose from the one before.

@@ -73,7 +73,8 @@ impl MotionFilter {
         // where nothing fits without.
         let mut registration = None;
         let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut registration);
-        if !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
+        let is_relaxed = self.track.as_ref().is_some_and(Track::tolerates_more_relaxed);
+        if is_relaxed && !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
             let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &mut registration);
             candidates = if relaxed.is_empty() { candidates } else { relaxed };
         }
@@ -177,8 +178,10 @@ impl MotionFilter {
             }
             candidates.push(Candidate { track, outcome, turn, likelihood: NegativeLogLikelihood::default() });
         }
-        let poses: Vec<_> = candidates.iter().map(|candidate| *candidate.track.body_pose()).collect();
-        if let Some(track) = &self.track {
+        // Only those that are accepted are compared, with each other and the others.
+        let is_any_accepted = candidates.iter().any(|candidate| candidate.outcome.is_accepted());
+        if let Some(track) = self.track.as_ref().filter(|_| is_any_accepted) {
+            let poses: Vec<_> = candidates.iter().map(|candidate| *candidate.track.body_pose()).collect();
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
         }

@@ -231,6 +231,11 @@ impl Track {
         self.noise.tolerance = tolerance;
     }
 
+    /// Whether a frame may have more noise where that is relaxed: once frames have been compared they say how much.
+    pub(crate) fn tolerates_more_relaxed(&self) -> bool {
+        self.noise.tolerated_where(Tolerance::Relaxed) > self.noise.tolerated_where(Tolerance::Known)
+    }
+
     /// Most noise of good points in a frame that shows the outline, image lengths.
     pub(crate) fn largest_noise(&self) -> f64 {
         self.view().largest_noise(self.reference.radius)
