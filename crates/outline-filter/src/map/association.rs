@@ -50,6 +50,11 @@ impl OutlineMap {
         self.has_ends = self.bisectors.iter().any(|bisectors| bisectors.is_end);
     }
 
+    /// Whether the outline is known to end anywhere.
+    pub(crate) fn has_ends(&self) -> bool {
+        self.has_ends
+    }
+
     /// The cell nearest to a body point, from one near it.
     #[inline(always)]
     pub(crate) fn nearest_from(&self, near: usize, q: &Point2<f64>) -> usize {

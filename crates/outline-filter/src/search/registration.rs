@@ -19,6 +19,8 @@ pub(crate) struct RegisteredPose {
     pub(crate) pose: Matrix3<f64>,
     /// Mean distance of the points from the map, normalised; those far off count as if they were [`tuning::FARTHEST`] away.
     score: f64,
+    /// Deviation of the points from the lines through their cells before the last step, normalised; no less than that of the noise.
+    spread: f64,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(crate) turn: f64,
 }
@@ -27,6 +29,15 @@ pub(crate) struct RegisteredPose {
 #[derive(Debug, Clone)]
 pub(crate) struct Registration {
     rigid: Vec<RegisteredPose>,
+    outlook: Outlook,
+}
+
+/// Whether a frame may be found to show the object, as far as a search with few points says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outlook {
+    Open,
+    /// Even in the pose that explains it best it scatters by far more than is tolerated.
+    Hopeless,
 }
 
 impl Registration {
@@ -45,14 +56,24 @@ impl Registration {
                 begun.push(found);
             }
         }
-        let found = begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect();
-        let mut rigid = distinct(found);
+        keep(&mut begun, tuning::SEARCHED_ON);
+        let mut rigid = distinct(begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect());
         keep(&mut rigid, tuning::REFINED);
+        let outlook = outlook(track, &rigid);
+        if outlook == Outlook::Hopeless {
+            rigid.truncate(1);
+            return Self { rigid, outlook };
+        }
+        let refine = |found: &RegisteredPose, steps| refined(track, points, MotionModel::Rigid, &found.pose, steps);
         // Some come together only with all points: one taken twice would keep another out.
-        let refine = |h: &RegisteredPose| refined(track, points, MotionModel::Rigid, &h.pose, Steps::REFINEMENT);
-        rigid = distinct(rigid.iter().map(refine).collect());
+        rigid = distinct(rigid.iter().map(|found| refine(found, Steps::REFINEMENT_BEGUN)).collect());
         keep(&mut rigid, tuning::KEPT);
-        Self { rigid }
+        if let Some(limit) = rigid.first().map(|best| tuning::FAR_WORSE * best.score) {
+            rigid.retain(|found| found.score <= limit);
+        }
+        rigid = distinct(rigid.iter().map(|found| refine(found, Steps::REFINEMENT_ENDED)).collect());
+        rigid.sort_by(|a, b| a.score.total_cmp(&b.score));
+        Self { rigid, outlook }
     }
 
     /// The poses of the track's model, at most four (eight with more parameters than rigid motion has), with the smallest turns either way of an
@@ -60,7 +81,7 @@ impl Registration {
     pub(crate) fn poses(&self, track: &Track, points: &[Point2<f64>], symmetry: usize) -> Vec<RegisteredPose> {
         let (model, pose) = (track.model(), track.body_pose());
         let mut best = self.rigid.clone();
-        if symmetry > 1 {
+        if symmetry > 1 && self.outlook == Outlook::Open {
             add_turns_of_symmetry(&mut best, track, points, symmetry);
         }
         if model != MotionModel::Rigid {
@@ -79,6 +100,15 @@ impl Registration {
         }
         best
     }
+}
+
+/// What the poses found with few points, the best of them first, promise. That there is nothing to be found is said of rigid motion alone,
+/// since others change the outline, and of outlines without ends, beyond which points may lie.
+fn outlook(track: &Track, found: &[RegisteredPose]) -> Outlook {
+    let Some(best) = found.first().filter(|_| track.model() == MotionModel::Rigid && !track.map().has_ends()) else {
+        return Outlook::Open;
+    };
+    if best.spread > tuning::HOPELESS * track.most_noise_tolerated() { Outlook::Hopeless } else { Outlook::Open }
 }
 
 /// Changes of the present pose that searches start from: turns about the centroids all around, and those that related points tell.
@@ -139,6 +169,12 @@ impl Steps {
     const FIRST: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST };
     /// ...and from there on.
     const FURTHER: Self = Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
+    /// Of a refinement of many, until the best of them are known...
+    const REFINEMENT_BEGUN: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST_REFINED };
+    /// ...and from there on.
+    const REFINEMENT_ENDED: Self =
+        Self { most: tuning::REFINEMENT_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_ENDED };
+    /// Of a single one.
     const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
 }
 
@@ -201,7 +237,7 @@ where
     let mut numbers = vec![0; points.len()];
     let mut rows: Vec<(f64, [f64; K])> = vec![(0.0, [0.0; K]); points.len()];
     let mut sizes = Vec::with_capacity(points.len());
-    let mut widest = steps.widest;
+    let (mut widest, mut spread) = (steps.widest, f64::INFINITY);
     for _ in 0..steps.most {
         let Some(inverse) = pose.try_inverse() else { break };
         let null = if model == belief.model { map.null_directions(model, &pose) } else { Vec::new() };
@@ -227,9 +263,9 @@ where
         }
         sizes.clear();
         sizes.extend(rows.iter().map(|(r, _)| r.abs()));
-        let of_points = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
-        let scale = tuning::TUKEY * of_points.max(widest);
-        let is_narrow = widest <= of_points;
+        spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
+        let scale = tuning::TUKEY * spread.max(widest);
+        let is_narrow = widest <= spread;
         widest *= tuning::NARROWER;
         let rows = rows.as_slice();
         let (gram, right) = vectorised(
@@ -250,7 +286,7 @@ where
     }
     let score = mean_distance(track, points, &pose, &mut numbers);
     let turn = turn_of(&pose, track.body_pose());
-    RegisteredPose { pose, score, turn }
+    RegisteredPose { pose, score, spread, turn }
 }
 
 /// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.

@@ -236,6 +236,16 @@ impl Track {
         self.noise.tolerated_where(Tolerance::Relaxed) > self.noise.tolerated_where(Tolerance::Known)
     }
 
+    /// Most noise of good points that a search may tolerate, normalised; infinite where points state deviations of their own, since good points
+    /// are then judged by others.
+    pub(crate) fn most_noise_tolerated(&self) -> f64 {
+        if self.reference.stated.is_finite() {
+            return f64::INFINITY;
+        }
+        let of_search = [Tolerance::Known, Tolerance::Relaxed].map(|tolerance| self.noise.tolerated_where(tolerance));
+        of_search.into_iter().fold(self.largest_noise() / self.reference.radius, f64::max)
+    }
+
     /// Most noise of good points in a frame that shows the outline, image lengths.
     pub(crate) fn largest_noise(&self) -> f64 {
         self.view().largest_noise(self.reference.radius)
