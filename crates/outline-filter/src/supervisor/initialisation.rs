@@ -7,7 +7,7 @@ use super::{
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
     tracking::advance_again,
-    window::InitialisationWindow,
+    window::{Draft, InitialisationWindow, Remapping},
 };
 use crate::{
     map::TurnEvent,
@@ -17,11 +17,8 @@ use crate::{
     tuning::remapping as tuning,
 };
 
-/// A track cut anew, how the motion changes in the frames that it was cut from, and their poses.
+/// A track that has taken the frames kept on a map cut anew, how the motion changes in them, and their poses.
 struct Remapped {
-    /// At the first of the frames.
-    begun: Track,
-    /// At the last of them.
     track: Track,
     history: MotionHistory,
     poses: Vec<Matrix3<f64>>,
@@ -29,7 +26,7 @@ struct Remapped {
 
 impl MotionFilter {
     /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
-    /// may be what coarse cells make of it.
+    /// may be what coarse cells make of it. No frame has more of that to do than one cut, or than measuring the frames kept.
     pub(super) fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
         let Some(track) = &mut self.track else { return };
         if self.phase != Phase::Tracking {
@@ -39,25 +36,47 @@ impl MotionFilter {
             return;
         }
         let is_due = self.window.keep(time, outline, track);
-        if !is_due && !changes || !self.window.are_several() {
+        let remapping = self.window.take_remapping();
+        let is_idle = matches!(remapping, Remapping::Idle);
+        if is_idle && !(is_due || changes) || !self.window.are_several() {
             return;
         }
         if track.turn_is_unseen() {
             self.begin_with_turn(outline);
         } else {
-            self.remap();
+            let next = match remapping {
+                Remapping::Drafted(draft) if draft.turn == self.turn_hypotheses.present_turn() => self.remap(*draft),
+                Remapping::Again { cuts } => self.draft(cuts),
+                Remapping::Drafted(_) | Remapping::Idle => self.draft(0),
+            };
+            self.window.set_remapping(next);
         }
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
-    /// Cuts the map anew from the first frames, until it settles, and looks for changes of the motion once more: what was taken for one may
-    /// have been what coarse cells left.
-    fn remap(&mut self) {
-        let Some(track) = &self.track else { return };
+    /// Cuts the map anew from the first frames, after so many cuts from them. That is most of the work, so that the frames are measured on it
+    /// when the next one has been taken.
+    fn draft(&mut self, cuts: usize) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
         let remapper = Remapper { settings: &self.settings, window: &self.window };
-        let Some(cut) = remapper.settled(track, remapper.may_change(&self.history), &mut self.frame) else { return };
+        let frames = remapper.placed(track, remapper.may_change(&self.history));
+        let begun = track.recut(&frames, 1, &mut self.frame);
+        begun.map_or(Remapping::Idle, |begun| {
+            Remapping::Drafted(Box::new(Draft { begun, turn: self.turn_hypotheses.present_turn(), cuts: cuts + 1 }))
+        })
+    }
+
+    /// Exchanges the track, and its rivals with it, for one that has taken all frames on cells cut anew, and looks for changes of the motion once
+    /// more: what was taken for one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that
+    /// it is cut again unless the pose has settled.
+    fn remap(&mut self, Draft { begun, cuts, .. }: Draft) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
+        let remapper = Remapper { settings: &self.settings, window: &self.window };
+        let frames = remapper.placed(track, false);
+        let Some(cut) = remapper.replayed(begun.clone(), &frames, &mut self.frame) else { return Remapping::Idle };
         let frame = &mut self.frame;
-        self.turn_hypotheses.remap(|rival| remapper.on_map_of(&cut, rival, frame));
+        self.turn_hypotheses.remap(|rival| remapper.on_map_of(&begun, rival, frame));
+        let has_settled = (cut.track.body_pose() - track.body_pose()).norm() < cut.track.sigma();
         self.track = Some(cut.track);
         self.motion_changed = cut.history.is_changing();
         self.history = cut.history;
@@ -66,6 +85,7 @@ impl MotionFilter {
             self.history.change = Default::default();
         }
         self.window.set_poses(cut.poses);
+        if has_settled || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
@@ -92,24 +112,9 @@ struct Remapper<'a> {
 }
 
 impl Remapper<'_> {
-    /// A track cut anew from the first frames until its pose settles; `changes` tells whether its motion has been another in them.
-    fn settled(&self, track: &Track, changes: bool, buffers: &mut Frame) -> Option<Remapped> {
-        let frames = if changes { self.window.as_found() } else { self.window.by_motion(track) };
-        let mut cut = self.cut(track, &frames, buffers)?;
-        let mut before = *track.body_pose();
-        // Better aligned frames make a better map, which aligns them better.
-        for _ in 1..tuning::MOST_CUTS {
-            if (cut.track.body_pose() - before).norm() < cut.track.sigma() {
-                break;
-            }
-            before = *cut.track.body_pose();
-            let mut frames = self.window.by_motion(&cut.track);
-            if self.may_change(&cut.history) {
-                frames.iter_mut().zip(&cut.poses).for_each(|(frame, pose)| frame.pose = *pose);
-            }
-            cut = self.cut(&cut.track, &frames, buffers)?;
-        }
-        Some(cut)
+    /// The frames kept, where they are cut from; `changes` tells whether the motion of the track has been another in them.
+    fn placed(&self, track: &Track, changes: bool) -> Vec<PlacedFrame<'_>> {
+        if changes { self.window.as_found() } else { self.window.by_motion(track) }
     }
 
     /// Whether the motion changes, as is seen or as the settings say.
@@ -117,30 +122,25 @@ impl Remapper<'_> {
         history.is_changing() || !self.settings.process_noise.is_none()
     }
 
-    /// A rival of a track that has been cut anew, on the same cells: each of its own would be as many times the work, and a finer one would win
-    /// by that alone. Where they have not begun alike it has cells of its own all the same.
-    fn on_map_of(&self, cut: &Remapped, rival: &Track, buffers: &mut Frame) -> Option<Track> {
-        match cut.begun.with_motion_of(rival) {
-            Some(begun) => self.replayed(begun, &self.window.by_motion(rival), buffers).map(|cut| cut.track),
-            None => self.settled(rival, false, buffers).map(|cut| cut.track),
-        }
-    }
-
-    fn cut(&self, track: &Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
-        self.replayed(track.recut(frames, 1, buffers)?, frames, buffers)
+    /// A rival of a track that was begun anew, on the same cells: each of its own would be as many times the work, and a finer one would win by
+    /// that alone. Where they have not begun alike it has cells of its own all the same.
+    fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Track> {
+        let frames = self.placed(rival, false);
+        let begun = begun.with_motion_of(rival).or_else(|| rival.recut(&frames, 1, buffers))?;
+        self.replayed(begun, &frames, buffers).map(|cut| cut.track)
     }
 
     /// A track that stands at the first frame, after all of them.
     fn replayed(&self, begun: Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
         let mut history = MotionHistory::default();
         let mut poses = vec![*begun.first_body_pose()];
-        let track = begun.clone().replayed(frames, buffers, |track, frame, seconds, outline| {
+        let track = begun.replayed(frames, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());
             let outcome = advance_again(self.settings, (track, frame), &mut history, seconds);
             poses.push(*track.body_pose());
             outcome.is_accepted()
         })?;
-        Some(Remapped { begun, track, history, poses })
+        Some(Remapped { track, history, poses })
     }
 }
 

@@ -15,6 +15,30 @@ enum Window {
     Closed,
 }
 
+/// How far the map is cut anew.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Remapping {
+    #[default]
+    Idle,
+    /// Cut, and not measured yet but by the first frame.
+    Drafted(Box<Draft>),
+    /// To be cut again, after so many cuts from the same frames.
+    Again { cuts: usize },
+}
+
+/// A track of cells cut anew.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Draft {
+    /// At the first of the frames.
+    pub(super) begun: Track,
+    /// Of the hypothesis that it was cut for.
+    pub(super) turn: f64,
+    /// Cuts from the same frames, this one included.
+    pub(super) cuts: usize,
+}
+
 /// The frames that a map was begun from, kept until it has been cut from enough of them.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,6 +48,7 @@ pub(super) struct InitialisationWindow {
     poses: Vec<Matrix3<f64>>,
     points: usize,
     state: Window,
+    remapping: Remapping,
 }
 
 impl InitialisationWindow {
@@ -34,6 +59,7 @@ impl InitialisationWindow {
             poses: vec![*track.body_pose()],
             points: outline.point_count(),
             state: Window::Open,
+            remapping: Remapping::Idle,
         };
         frames.end_unless_few(track.cell_count());
         frames
@@ -74,14 +100,23 @@ impl InitialisationWindow {
         self.frames.len() > 1
     }
 
-    /// Forgets what is kept unless more frames would make a map of so many cells better.
+    /// What is being done to cut the map anew, which is then nothing.
+    pub(super) fn take_remapping(&mut self) -> Remapping {
+        std::mem::take(&mut self.remapping)
+    }
+
+    pub(super) fn set_remapping(&mut self, remapping: Remapping) {
+        self.remapping = remapping;
+    }
+
+    /// Forgets what is kept unless it is in use, or more frames would make a map of so many cells better.
     pub(super) fn end_unless_few(&mut self, cells: usize) {
         let count = self.frames.len().max(1);
         let next = tuning::OCCASIONS.into_iter().find(|occasion| *occasion > count);
         let each = self.points / count;
         let would_be_plenty = count > 1 && next.is_none_or(|next| next * each > tuning::PLENTY);
         let one_is_plenty = each as f64 > tuning::PLENTY_PER_CELL * cells as f64;
-        if would_be_plenty || one_is_plenty {
+        if matches!(self.remapping, Remapping::Idle) && (would_be_plenty || one_is_plenty) {
             self.end();
         }
     }
@@ -105,8 +140,19 @@ impl InitialisationWindow {
 
 #[cfg(feature = "serde")]
 impl InitialisationWindow {
-    /// Whether frames and poses belong together and times increase.
-    pub(super) fn is_valid(&self) -> bool {
+    /// Whether frames and poses belong together and times increase; `restore` makes a track usable, or tells that it cannot.
+    pub(super) fn restore(&mut self, restore: impl Fn(&mut Track) -> bool) -> bool {
+        let is_usable = match &mut self.remapping {
+            Remapping::Idle => true,
+            Remapping::Drafted(draft) => {
+                draft.turn.is_finite() && draft.cuts <= tuning::MOST_CUTS && restore(&mut draft.begun)
+            }
+            Remapping::Again { cuts } => *cuts <= tuning::MOST_CUTS,
+        };
+        is_usable && self.is_valid()
+    }
+
+    fn is_valid(&self) -> bool {
         let points: usize = self.frames.iter().map(|(_, outline)| outline.point_count()).sum();
         let increases = self.frames.is_sorted_by(|(a, _), (b, _)| a < b);
         self.frames.len() == self.poses.len()
