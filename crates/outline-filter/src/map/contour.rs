@@ -30,13 +30,16 @@ pub(crate) struct Contour {
     points: Vec<Point2<f64>>,
     closed: bool,
     outlier: Vec<bool>,
+    /// Mean distance of points that follow each other, in the median; positive.
+    median_step: f64,
     plain: PlainRegression,
 }
 
 impl Contour {
     pub(crate) fn new(points: Vec<Point2<f64>>, closed: bool) -> Self {
         let plain = PlainRegression::default();
-        let mut contour = Self { outlier: vec![false; points.len()], points, closed, plain };
+        let mut contour = Self { outlier: vec![false; points.len()], points, closed, median_step: 0.0, plain };
+        contour.median_step = contour.found_median_step();
         contour.mark_gross_outliers();
         contour
     }
@@ -75,7 +78,7 @@ impl Contour {
     }
 
     fn narrowest(&self, sigma: f64, normal_noise: f64, largest: usize) -> usize {
-        let noise = sigma / self.median_step();
+        let noise = sigma / self.median_step;
         let smallest = *tuning::HALF_WINDOWS.start();
         let is_enough = |w: &usize| direction_variance(noise, *w) <= normal_noise * normal_noise;
         (smallest..=largest).find(is_enough).unwrap_or(largest.max(smallest))
@@ -161,7 +164,7 @@ impl Contour {
         self.closed.then(|| if (0..n).contains(&k) { k as usize } else { k.rem_euclid(n) as usize })
     }
 
-    fn median_step(&self) -> f64 {
+    fn found_median_step(&self) -> f64 {
         let chord = tuning::STEPS_OF_CHORD.min(self.points.len() / 3).max(1);
         let steps = (0..self.points.len()).filter_map(|i| {
             let j = self.neighbour(i, chord as isize)?;
@@ -240,7 +243,7 @@ impl Contour {
     fn without_long_runs(&self, mut marks: Vec<bool>) -> Vec<bool> {
         let n = marks.len();
         let Some(first) = (0..n).find(|i| !marks[*i]) else { return marks };
-        let farthest = tuning::OF_RUN * self.median_step();
+        let farthest = tuning::OF_RUN * self.median_step;
         let mut run = Vec::new();
         for i in (first..=first + n).map(|i| i % n) {
             if marks[i] {
