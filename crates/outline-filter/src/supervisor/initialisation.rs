@@ -1,13 +1,13 @@
 //! The initialisation window: the frames that a track was begun from, and its map cut anew from them.
 use freeform_curve_fit::Outline;
-use nalgebra::{Affine2, Matrix3};
+use nalgebra::Affine2;
 
 use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
     tracking::advance_again,
-    window::{Draft, InitialisationWindow, Remapping},
+    window::{Draft, InitialisationWindow, Measured, Remapped, Remapping},
 };
 use crate::{
     map::TurnEvent,
@@ -17,16 +17,10 @@ use crate::{
     tuning::remapping as tuning,
 };
 
-/// A track that has taken the frames kept on a map cut anew, how the motion changes in them, and their poses.
-struct Remapped {
-    track: Track,
-    history: MotionHistory,
-    poses: Vec<Matrix3<f64>>,
-}
-
 impl MotionFilter {
     /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
-    /// may be what coarse cells make of it. No frame has more of that to do than one cut, or than measuring the frames kept.
+    /// may be what coarse cells make of it. No frame has more of that to do than one cut, or than measuring the
+    /// frames kept for one hypothesis.
     pub(super) fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
         let Some(track) = &mut self.track else { return };
         if self.phase != Phase::Tracking {
@@ -44,47 +38,87 @@ impl MotionFilter {
         if track.turn_is_unseen() {
             self.begin_with_turn(outline);
         } else {
+            let turn = self.turn_hypotheses.present_turn();
             let next = match remapping {
-                Remapping::Drafted(draft) if draft.turn == self.turn_hypotheses.present_turn() => self.remap(*draft),
+                Remapping::Drafted(draft) if draft.turn == turn => self.measure(*draft),
+                Remapping::Measured(measured) if measured.begun.turn == turn => self.go_on(*measured),
                 Remapping::Again { cuts } => self.draft(cuts),
-                Remapping::Drafted(_) | Remapping::Idle => self.draft(0),
+                // The map is cut for another hypothesis where they have been exchanged meanwhile.
+                Remapping::Drafted(_) | Remapping::Measured(_) | Remapping::Idle => self.draft(0),
             };
             self.window.set_remapping(next);
         }
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
-    /// Cuts the map anew from the first frames, after so many cuts from them. That is most of the work, so that the frames are measured on it
-    /// when the next one has been taken.
+    /// Cuts the map anew from the first frames, after so many cuts.
     fn draft(&mut self, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         let remapper = Remapper { settings: &self.settings, window: &self.window };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
-        let begun = track.recut(&frames, 1, &mut self.frame);
-        begun.map_or(Remapping::Idle, |begun| {
-            Remapping::Drafted(Box::new(Draft { begun, turn: self.turn_hypotheses.present_turn(), cuts: cuts + 1 }))
-        })
+        let turn = self.turn_hypotheses.present_turn();
+        match track.recut(&frames, 1, &mut self.frame) {
+            Some(track) => Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })),
+            None => Remapping::Idle,
+        }
     }
 
-    /// Exchanges the track, and its rivals with it, for one that has taken all frames on cells cut anew, and looks for changes of the motion once
-    /// more: what was taken for one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that
-    /// it is cut again unless the pose has settled.
-    fn remap(&mut self, Draft { begun, cuts, .. }: Draft) -> Remapping {
+    /// Measures the frames kept on cells cut anew.
+    fn measure(&mut self, mut draft: Draft) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         let remapper = Remapper { settings: &self.settings, window: &self.window };
         let frames = remapper.placed(track, false);
-        let Some(cut) = remapper.replayed(begun.clone(), &frames, &mut self.frame) else { return Remapping::Idle };
+        let Some(first) = frames.first() else { return Remapping::Idle };
+        draft.track.begin_as(track, first.outline, &mut self.frame);
+        let Some(present) = remapper.replayed(draft.track.clone(), &frames, &mut self.frame) else {
+            return Remapping::Idle;
+        };
+        let measured = Measured { begun: draft, present, rivals: Vec::new() };
+        if self.turn_hypotheses.followed().next().is_none() {
+            return self.exchange(measured);
+        }
+        Remapping::Measured(Box::new(measured))
+    }
+
+    /// Takes the frame kept last with all that have taken those before it on the new cells, and all of them with one more rival. All are
+    /// exchanged at once: one alone would win by its finer cells.
+    fn go_on(&mut self, Measured { begun, present, rivals }: Measured) -> Remapping {
+        let remapper = Remapper { settings: &self.settings, window: &self.window };
         let frame = &mut self.frame;
-        self.turn_hypotheses.remap(|rival| remapper.on_map_of(&begun, rival, frame));
-        let has_settled = (cut.track.body_pose() - track.body_pose()).norm() < cut.track.sigma();
-        self.track = Some(cut.track);
-        self.motion_changed = cut.history.is_changing();
-        self.history = cut.history;
+        let Some(present) = remapper.taken_last(present, frame) else { return Remapping::Idle };
+        let mut rivals: Vec<_> = rivals
+            .into_iter()
+            .map(|(turn, rival)| (turn, rival.and_then(|rival| remapper.taken_last(rival, frame))))
+            .collect();
+        let mut waiting = self.turn_hypotheses.followed().filter(|(turn, _)| rivals.iter().all(|(of, _)| of != turn));
+        let (next, is_last) = (waiting.next(), waiting.next().is_none());
+        drop(waiting);
+        if let Some((turn, rival)) = next {
+            rivals.push((turn, remapper.on_map_of(&begun.track, rival, frame)));
+        }
+        let measured = Measured { begun, present, rivals };
+        if is_last { self.exchange(measured) } else { Remapping::Measured(Box::new(measured)) }
+    }
+
+    /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
+    /// one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that it is cut again unless
+    /// the pose has settled.
+    fn exchange(&mut self, Measured { begun, present, mut rivals }: Measured) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
+        self.turn_hypotheses.remap(|turn| {
+            let of_turn = rivals.iter_mut().find(|(of, _)| *of == turn);
+            of_turn.and_then(|(_, rival)| rival.take()).map(|rival| rival.track)
+        });
+        let has_settled = (present.track.body_pose() - track.body_pose()).norm() < present.track.sigma();
+        self.track = Some(present.track);
+        self.motion_changed = present.history.is_changing();
+        self.history = present.history;
         if !self.history.change.is_seen() {
             // What the first few frames seem to say of it counts for nothing.
             self.history.change = Default::default();
         }
-        self.window.set_poses(cut.poses);
+        self.window.set_poses(present.poses);
+        let cuts = begun.cuts;
         if has_settled || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
     }
 
@@ -124,17 +158,32 @@ impl Remapper<'_> {
 
     /// A rival of a track that was begun anew, on the same cells: each of its own would be as many times the work, and a finer one would win by
     /// that alone. Where they have not begun alike it has cells of its own all the same.
-    fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Track> {
+    fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Remapped> {
         let frames = self.placed(rival, false);
-        let begun = begun.with_motion_of(rival).or_else(|| rival.recut(&frames, 1, buffers))?;
-        self.replayed(begun, &frames, buffers).map(|cut| cut.track)
+        let begun = begun.with_motion_of(rival).or_else(|| {
+            let mut begun = rival.recut(&frames, 1, buffers)?;
+            begun.begin_as(rival, frames.first()?.outline, buffers);
+            Some(begun)
+        })?;
+        self.replayed(begun, &frames, buffers)
     }
 
     /// A track that stands at the first frame, after all of them.
     fn replayed(&self, begun: Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
-        let mut history = MotionHistory::default();
-        let mut poses = vec![*begun.first_body_pose()];
-        let track = begun.replayed(frames, buffers, |track, frame, seconds, outline| {
+        let poses = vec![*begun.first_body_pose()];
+        self.taken(Remapped { track: begun, history: MotionHistory::default(), poses }, frames, buffers)
+    }
+
+    /// One that stands at the last frame kept but one, after that which is kept last.
+    fn taken_last(&self, remapped: Remapped, buffers: &mut Frame) -> Option<Remapped> {
+        let frames = self.placed(&remapped.track, false);
+        self.taken(remapped, &frames[frames.len().checked_sub(2)?..], buffers)
+    }
+
+    /// One that stands at the first of some frames, after all of them.
+    fn taken(&self, remapped: Remapped, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
+        let Remapped { track, mut history, mut poses } = remapped;
+        let track = track.replayed(frames, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());
             let outcome = advance_again(self.settings, (track, frame), &mut history, seconds);
             poses.push(*track.body_pose());

@@ -81,7 +81,7 @@ impl MotionFilter {
         if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
             return inconsistent("landmarks");
         }
-        if !self.window.restore(restored) {
+        if !self.window.restore(&self.settings, restored) {
             return inconsistent("first frames");
         }
         if !self.unfound_are_valid() {

@@ -301,11 +301,18 @@ impl TurnHypotheses {
         }
     }
 
-    /// Cuts the maps of all hypotheses anew; those that cannot be are none any more.
-    pub(super) fn remap(&mut self, mut cut: impl FnMut(&Track) -> Option<Track>) {
+    /// Turns and tracks of those that are followed.
+    pub(super) fn followed(&self) -> impl Iterator<Item = (f64, &Track)> + '_ {
+        let tracks = self.rivals.iter().map(|hypothesis| hypothesis.track.as_ref());
+        self.rival_turns.iter().zip(tracks).filter_map(|(turn, track)| Some((*turn, track?)))
+    }
+
+    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew; those that have none are
+    /// none any more.
+    pub(super) fn remap(&mut self, mut track_of: impl FnMut(f64) -> Option<Track>) {
         for index in (0..self.rivals.len()).rev() {
             if let Some(track) = &mut self.rivals[index].track {
-                match cut(track) {
+                match track_of(self.rival_turns[index]) {
                     Some(new) => *track = new,
                     None => self.remove(index),
                 }

@@ -1,6 +1,9 @@
 use freeform_curve_fit::Outline;
 use nalgebra::Matrix3;
 
+use super::motion_change::MotionHistory;
+#[cfg(feature = "serde")]
+use super::settings::FilterSettings;
 use crate::{
     track::{PlacedFrame, Track},
     tuning::remapping as tuning,
@@ -15,15 +18,17 @@ enum Window {
     Closed,
 }
 
-/// How far the map is cut anew.
+/// How far the map is cut anew: a stage in each frame that is taken.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Remapping {
     #[default]
     Idle,
-    /// Cut, and not measured yet but by the first frame.
+    /// Cut, and not measured yet.
     Drafted(Box<Draft>),
-    /// To be cut again, after so many cuts from the same frames.
+    /// The present track has taken the frames kept on the new cells; its rivals do one after the other.
+    Measured(Box<Measured>),
+    /// To be cut again, after so many cuts.
     Again { cuts: usize },
 }
 
@@ -31,12 +36,47 @@ pub(super) enum Remapping {
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Draft {
-    /// At the first of the frames.
-    pub(super) begun: Track,
+    pub(super) track: Track,
     /// Of the hypothesis that it was cut for.
     pub(super) turn: f64,
-    /// Cuts from the same frames, this one included.
+    /// Cuts one after the other, this one included.
     pub(super) cuts: usize,
+}
+
+/// Hypotheses on cells cut anew.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Measured {
+    /// The track that all are begun with, at the first of the frames kept.
+    pub(super) begun: Draft,
+    pub(super) present: Remapped,
+    /// By their turns; none where a frame was not taken.
+    pub(super) rivals: Vec<(f64, Option<Remapped>)>,
+}
+
+/// A track that has taken the frames kept on a map cut anew, how the motion changes in them, and their poses.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Remapped {
+    pub(super) track: Track,
+    pub(super) history: MotionHistory,
+    pub(super) poses: Vec<Matrix3<f64>>,
+}
+
+#[cfg(feature = "serde")]
+impl Draft {
+    fn restore(&mut self, restore: &impl Fn(&mut Track) -> bool) -> bool {
+        self.turn.is_finite() && self.cuts <= tuning::MOST_CUTS && restore(&mut self.track)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Remapped {
+    fn restore(&mut self, settings: &FilterSettings, restore: &impl Fn(&mut Track) -> bool) -> bool {
+        self.history.is_valid(settings)
+            && self.poses.iter().flatten().all(|entry| entry.is_finite())
+            && restore(&mut self.track)
+    }
 }
 
 /// The frames that a map was begun from, kept until it has been cut from enough of them.
@@ -141,11 +181,15 @@ impl InitialisationWindow {
 #[cfg(feature = "serde")]
 impl InitialisationWindow {
     /// Whether frames and poses belong together and times increase; `restore` makes a track usable, or tells that it cannot.
-    pub(super) fn restore(&mut self, restore: impl Fn(&mut Track) -> bool) -> bool {
+    pub(super) fn restore(&mut self, settings: &FilterSettings, restore: impl Fn(&mut Track) -> bool) -> bool {
         let is_usable = match &mut self.remapping {
             Remapping::Idle => true,
-            Remapping::Drafted(draft) => {
-                draft.turn.is_finite() && draft.cuts <= tuning::MOST_CUTS && restore(&mut draft.begun)
+            Remapping::Drafted(draft) => draft.restore(&restore),
+            Remapping::Measured(measured) => {
+                let Measured { begun, present, rivals } = &mut **measured;
+                let rivals = rivals.iter_mut().filter_map(|(_, rival)| rival.as_mut());
+                begun.restore(&restore)
+                    && std::iter::once(present).chain(rivals).all(|remapped| remapped.restore(settings, &restore))
             }
             Remapping::Again { cuts } => *cuts <= tuning::MOST_CUTS,
         };

@@ -21,31 +21,47 @@ use crate::{
 
 impl Track {
     /// Takes cells along contours in the body frame, and the loaded points, which were seen in a pose, as their first measurement. `None`
-    /// where the contours do not make an outline. Their noise is no less than what is known of it, and than the rounding of their points.
+    /// where the contours do not make an outline. Their noise is no less than the rounding of their points.
     pub(super) fn cut(
         model: MotionModel,
         reference: Reference,
         pose: Matrix3<f64>,
         contours: Vec<Contour>,
-        (least_noise, rounding): (f64, Rounding),
+        rounding: Rounding,
         frame: &mut Frame,
     ) -> Option<Self> {
-        let least_noise = rounding.deviation.max(least_noise);
+        let mut track = Self::draft((model, reference), pose, contours, rounding.deviation, frame)?;
+        track.measure_draft(rounding, frame);
+        Some(track)
+    }
+
+    /// As [`cut`](Self::cut), of noise no less than that given; the loaded points are to be [measured](Self::measure_draft) yet.
+    pub(super) fn draft(
+        of: (MotionModel, Reference),
+        pose: Matrix3<f64>,
+        contours: Vec<Contour>,
+        least_noise: f64,
+        frame: &Frame,
+    ) -> Option<Self> {
         let mut noise = ContourNoise::of(&contours);
         let mut draft = |contours, normal_noise| {
             let (resolution, sigma) = Resolution::of(&mut noise, least_noise, frame.points.len(), normal_noise);
-            Self::drafted((model, reference), pose, contours, (resolution, sigma), frame)
+            Self::drafted(of, pose, contours, (resolution, sigma), frame)
         };
         let mut track = draft(contours.clone(), NORMAL_NOISE)?;
         let needed = track.map.normal_noise();
         if needed < NORMAL_NOISE {
             track = draft(contours, needed).unwrap_or(track);
         }
-        track.measure_new_cells(frame, 0);
-        track.belief.marginal = track.belief.information.marginal();
-        track.noise.allow_for_cells(track.map.sagitta(), track.map.spacing());
-        track.noise.allow_for_rounding(rounding);
         Some(track)
+    }
+
+    /// Takes the loaded points, whose contours its cells were cut to be measured by, as the first measurement of a draft.
+    pub(super) fn measure_draft(&mut self, rounding: Rounding, frame: &mut Frame) {
+        self.measure_new_cells(frame, 0);
+        self.belief.marginal = self.belief.information.marginal();
+        self.noise.allow_for_cells(self.map.sagitta(), self.map.spacing());
+        self.noise.allow_for_rounding(rounding);
     }
 
     /// One whose cells have been cut with a resolution, from contours with noise of deviation `sigma`, and not been measured yet.

@@ -17,14 +17,8 @@ impl Track {
     pub(crate) fn begun_anew(&self, outline: &Outline, frame: &mut Frame) -> Option<Self> {
         frame.load(outline, self.reference);
         let contours = frame.contours(&self.belief.pose);
-        let mut track = Self::cut(
-            self.belief.model,
-            self.reference,
-            self.belief.pose,
-            contours,
-            (0.0, self.noise.rounding()),
-            frame,
-        )?;
+        let mut track =
+            Self::cut(self.belief.model, self.reference, self.belief.pose, contours, self.noise.rounding(), frame)?;
         if track.turn_is_unseen() {
             return None;
         }

@@ -46,11 +46,13 @@ impl Track {
         buffers: &mut Frame,
         take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
     ) -> Option<Self> {
-        self.recut(frames, stride, buffers)?.replayed(frames, buffers, take)
+        let mut track = self.recut(frames, stride, buffers)?;
+        track.begin_as(self, frames.first()?.outline, buffers);
+        track.replayed(frames, buffers, take)
     }
 
-    /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken. It stands at
-    /// the first of them. `None` where the new cells do not show the turn.
+    /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken; it is to be
+    /// [begun](Self::begin_as) with the first of them yet. `None` where the new cells do not show the turn.
     pub(crate) fn recut(&self, frames: &[PlacedFrame<'_>], stride: usize, buffers: &mut Frame) -> Option<Self> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
         if self.belief.earlier_poses == EarlierPoses::Forgotten || self.turn_is_unseen() {
@@ -68,19 +70,25 @@ impl Track {
         let contours =
             runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
         buffers.load(first.outline, self.reference);
-        let (model, least_noise) = (self.belief.model, tuning::LEAST_NOISE * self.noise.sigma);
-        let (first_pose, least) = (self.first_pose, (least_noise, self.noise.rounding()));
-        let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least, buffers)?;
+        let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().deviation);
+        let of = (self.belief.model, self.reference);
+        let track = Self::draft(of, self.first_pose.pose, contours.collect(), least_noise, buffers)?;
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
         let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
         if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {
             return None;
         }
-        track.first_pose = first_pose;
-        track.noise.adopt_level_of(&self.noise);
-        track.doubt_first_pose();
-        track.belief.motion = self.belief.motion;
         Some(track)
+    }
+
+    /// Measures the first of the frames that a track was cut anew from, as what another that has taken them knows of it.
+    pub(crate) fn begin_as(&mut self, other: &Self, first: &Outline, buffers: &mut Frame) {
+        buffers.load(first, self.reference);
+        self.measure_draft(other.noise.rounding(), buffers);
+        self.first_pose = other.first_pose;
+        self.noise.adopt_level_of(&other.noise);
+        self.doubt_first_pose();
+        self.belief.motion = other.belief.motion;
     }
 
     /// A track that has been begun in the same frame and in the same pose as another, at that frame, for another motion, which that other track

@@ -109,7 +109,7 @@ impl Track {
         reference.update_stated(frame.deviations.good());
         let contours = frame.contours(&Matrix3::identity());
         let rounding = Rounding::of(outline, mask_pixel, reference.radius);
-        Self::cut(model, reference, Matrix3::identity(), contours, (0.0, rounding), frame)
+        Self::cut(model, reference, Matrix3::identity(), contours, rounding, frame)
     }
 
     /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise.
