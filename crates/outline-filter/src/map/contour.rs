@@ -51,11 +51,16 @@ impl Contour {
     /// Standard deviation of the noise along the normal, from the residuals of a pilot regression; marks outliers on the way.
     pub(crate) fn noise(&mut self) -> Option<f64> {
         let mut sigma = self.residual_scale(tuning::PILOT_HALF_WINDOW)?;
+        let mut before: Option<(usize, Vec<bool>)> = None;
         for _ in 0..2 {
             // Along a line whose direction is noise, residuals are too small.
             let window = self.half_window_for(sigma, tuning::PILOT_NORMAL_NOISE).max(tuning::PILOT_HALF_WINDOW);
             self.mark_outliers(window, sigma);
-            sigma = self.residual_scale(window)?;
+            // With the same window and the same outliers it would be found again.
+            if before.is_none_or(|(last, outlier)| last != window || outlier != self.outlier) {
+                sigma = self.residual_scale(window)?;
+            }
+            before = Some((window, self.outlier.clone()));
         }
         Some(sigma)
     }

@@ -50,22 +50,23 @@ fn medians_of_nine(mut values: [Lanes; 9]) -> Lanes {
 /// Medians of the nine numbers from each place on, one for each place that has so many.
 pub(super) fn running_medians_of_nine(numbers: &[f64]) -> Vec<f64> {
     let count = (numbers.len() + 1).saturating_sub(9);
+    if count < LANES {
+        let all = numbers.windows(9).filter_map(|nine| median(&mut nine.to_vec()));
+        return all.collect();
+    }
     let mut medians = vec![0.0; count];
     vectorised(
         #[inline(always)]
         || {
             for start in (0..count).step_by(LANES) {
                 // The last ones are found again where their number is no multiple of the lanes.
-                let start = if count < LANES { 0 } else { start.min(count - LANES) };
+                let start = start.min(count - LANES);
+                let near = &numbers[start..][..LANES + 8];
                 let mut values = [[0.0; LANES]; 9];
                 for (offset, values) in values.iter_mut().enumerate() {
-                    for (lane, value) in values.iter_mut().enumerate() {
-                        *value = numbers[(start + offset + lane).min(numbers.len() - 1)];
-                    }
+                    values.copy_from_slice(&near[offset..][..LANES]);
                 }
-                let found = medians_of_nine(values);
-                let found = &found[..count.min(LANES)];
-                medians[start..start + found.len()].copy_from_slice(found);
+                medians[start..][..LANES].copy_from_slice(&medians_of_nine(values));
             }
         },
     );

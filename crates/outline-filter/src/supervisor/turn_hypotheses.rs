@@ -3,6 +3,7 @@ use std::f64::consts::TAU;
 
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::Matrix3;
 
 use super::{
     settings::FilterSettings,
@@ -25,9 +26,20 @@ use freeform_estimate::StateFormat;
 pub(super) struct Candidate {
     pub(super) track: Track,
     pub(super) outcome: Outcome,
+    /// The pose that it was measured from.
+    pub(super) found_in: Matrix3<f64>,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(super) turn: f64,
     pub(super) likelihood: NegativeLogLikelihood,
+    pub(super) verdict_of: VerdictOf,
+}
+
+/// What says whether a pose that was tried is accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum VerdictOf {
+    Itself,
+    /// Others, which show that the noise of the frame says nothing against it.
+    Others,
 }
 
 /// One other way in which the object may have turned.
