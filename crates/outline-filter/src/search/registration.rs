@@ -64,15 +64,14 @@ impl Registration {
             rigid.truncate(1);
             return Self { rigid, outlook };
         }
-        let refine = |found: &RegisteredPose, steps| refined(track, points, MotionModel::Rigid, &found.pose, steps);
         // Some come together only with all points: one taken twice would keep another out.
-        rigid = distinct(rigid.iter().map(|found| refine(found, Steps::REFINEMENT_BEGUN)).collect());
+        let refine =
+            |found: &RegisteredPose| refined(track, points, MotionModel::Rigid, &found.pose, Steps::REFINEMENT);
+        rigid = distinct(rigid.iter().map(refine).collect());
         keep(&mut rigid, tuning::KEPT);
         if let Some(limit) = rigid.first().map(|best| tuning::FAR_WORSE * best.score) {
             rigid.retain(|found| found.score <= limit);
         }
-        rigid = distinct(rigid.iter().map(|found| refine(found, Steps::REFINEMENT_ENDED)).collect());
-        rigid.sort_by(|a, b| a.score.total_cmp(&b.score));
         Self { rigid, outlook }
     }
 
@@ -169,12 +168,6 @@ impl Steps {
     const FIRST: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST };
     /// ...and from there on.
     const FURTHER: Self = Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
-    /// Of a refinement of many, until the best of them are known...
-    const REFINEMENT_BEGUN: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST_REFINED };
-    /// ...and from there on.
-    const REFINEMENT_ENDED: Self =
-        Self { most: tuning::REFINEMENT_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_ENDED };
-    /// Of a single one.
     const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
 }
 

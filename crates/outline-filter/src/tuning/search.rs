@@ -45,10 +45,8 @@ pub(crate) mod registration {
     pub(crate) const FIRST_STEPS: usize = 4;
     /// As [`WIDEST`], after these.
     pub(crate) const WIDEST_FURTHER: f64 = WIDEST * NARROWER * NARROWER * NARROWER * NARROWER;
-    /// As [`WIDEST_REFINED`], after as many.
-    pub(crate) const WIDEST_ENDED: f64 = WIDEST_REFINED * NARROWER * NARROWER * NARROWER * NARROWER;
-    /// Searches that go on from there, and as many of smaller turns: one more than are refined, since some come together yet.
-    pub(crate) const SEARCHED_ON: usize = 6;
+    /// Searches that go on from there, and as many of smaller turns: of a disc with a notch, which few points show, that is hardly known yet.
+    pub(crate) const SEARCHED_ON: usize = 12;
     /// Score in that of the best from which on a pose cannot explain the frame nearly as well: mean distances of twice the size are squares of
     /// four times.
     pub(crate) const FAR_WORSE: f64 = 2.0;
