@@ -51,6 +51,20 @@ impl MotionFilter {
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
+    /// Measures the frames kept on cells that were cut after the last of them, before the next frame is looked at: by the coarse map it might be
+    /// taken for another thing. Where there are rivals, they take their turns instead.
+    pub(super) fn measure_before_next(&mut self) {
+        let is_followed = self.phase == Phase::Tracking && self.turn_hypotheses.followed().next().is_none();
+        if !is_followed || !self.window.is_drafted_for(self.turn_hypotheses.present_turn()) {
+            return;
+        }
+        if let Remapping::Drafted(draft) = self.window.take_remapping() {
+            let next = self.measure(*draft);
+            self.window.set_remapping(next);
+            self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
+        }
+    }
+
     /// Cuts the map anew from the first frames, after so many cuts.
     fn draft(&mut self, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
@@ -196,7 +210,7 @@ impl Remapper<'_> {
 #[cfg(test)]
 mod tests {
     use freeform_riccati::MotionModel;
-    use nalgebra::Point2;
+    use nalgebra::{Point2, Rotation2};
 
     use super::*;
 
@@ -214,5 +228,52 @@ mod tests {
             assert!(filter.window.len() <= tuning::OCCASIONS[2], "frame {frame}");
         }
         assert!(filter.track.as_ref().is_some_and(Track::turn_is_unseen));
+    }
+
+    /// Points on an outline, elsewhere on it from frame to frame, turned by 40 degrees in each.
+    fn turning(frame: u32, count: u32, radius: impl Fn(f64) -> f64) -> Outline {
+        let turn = Rotation2::new(40.0_f64.to_radians() * f64::from(frame));
+        let point = |i: u32| {
+            let part = (0.618_034 * f64::from(frame)).fract();
+            let t = std::f64::consts::TAU * (f64::from(i) + part) / f64::from(count);
+            let noise = 0.004 * (12_345.678 * (f64::from(i) + 1.0) * (f64::from(frame) + 1.0).sqrt()).sin();
+            turn * Point2::new(t.cos(), t.sin()) * (radius(t) + noise)
+        };
+        Outline::closed((0..count).map(point).collect()).expect("an outline")
+    }
+
+    #[test]
+    fn a_map_is_cut_after_a_frame_and_measured_before_the_next() {
+        let egg = |t: f64| 1.0 + 0.2 * t.cos() + 0.1 * (3.0 * t).sin();
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        for frame in 0..6 {
+            let before = filter.track.as_ref().map_or(0, Track::cell_count);
+            let step = filter.step(f64::from(frame) / 30.0, &turning(frame, 400, egg)).expect("increasing times");
+            assert!(step.is_accepted(), "frame {frame}");
+            assert_eq!(
+                filter.window.is_drafted_for(filter.turn_hypotheses.present_turn()),
+                frame == 3,
+                "frame {frame}"
+            );
+            let is_finer = before > 0 && filter.track.as_ref().is_some_and(|track| track.cell_count() > before);
+            assert_eq!(is_finer, frame == 4, "frame {frame}: {before} cells before");
+        }
+        assert_eq!(filter.window.len(), 0);
+    }
+
+    #[test]
+    fn rivals_are_measured_on_the_cells_of_the_present_track() {
+        let clover = |t: f64| 1.0 + 0.1 * (4.0 * t).cos();
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        let mut counts = Vec::new();
+        for frame in 0..8 {
+            filter.step(f64::from(frame) / 30.0, &turning(frame, 400, clover)).expect("increasing times");
+            let Some(track) = &filter.track else { continue };
+            let rivals: Vec<_> = filter.turn_hypotheses.followed().map(|(_, rival)| rival.cell_count()).collect();
+            // All are exchanged at once.
+            assert!(rivals.iter().all(|cells| *cells == track.cell_count()), "frame {frame}: {rivals:?}");
+            counts.extend(rivals);
+        }
+        assert!(counts.first() < counts.last(), "never cut anew: {counts:?}");
     }
 }

@@ -140,6 +140,11 @@ impl InitialisationWindow {
         self.frames.len() > 1
     }
 
+    /// Whether the map has been cut anew for a hypothesis of the turn, and not been measured yet.
+    pub(super) fn is_drafted_for(&self, turn: f64) -> bool {
+        matches!(&self.remapping, Remapping::Drafted(draft) if draft.turn == turn)
+    }
+
     /// What is being done to cut the map anew, which is then nothing.
     pub(super) fn take_remapping(&mut self) -> Remapping {
         std::mem::take(&mut self.remapping)
