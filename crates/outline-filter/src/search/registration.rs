@@ -59,7 +59,7 @@ impl Registration {
         keep(&mut begun, tuning::SEARCHED_ON);
         let mut rigid = distinct(begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect());
         keep(&mut rigid, tuning::REFINED);
-        let outlook = outlook(track, &rigid);
+        let outlook = outlook(track, points.len(), &rigid);
         if outlook == Outlook::Hopeless {
             rigid.truncate(1);
             return Self { rigid, outlook };
@@ -102,9 +102,10 @@ impl Registration {
 }
 
 /// What the poses found with few points, the best of them first, promise. That there is nothing to be found is said of rigid motion alone,
-/// since others change the outline, and of outlines without ends, beyond which points may lie.
-fn outlook(track: &Track, found: &[RegisteredPose]) -> Outlook {
-    let Some(best) = found.first().filter(|_| track.model() == MotionModel::Rigid && !track.map().has_ends()) else {
+/// since others change the outline, of frames of enough points, and of outlines without ends, beyond which points may lie.
+fn outlook(track: &Track, points: usize, found: &[RegisteredPose]) -> Outlook {
+    let is_told = points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends();
+    let Some(best) = found.first().filter(|_| is_told) else {
         return Outlook::Open;
     };
     if best.spread > tuning::HOPELESS * track.most_noise_tolerated() { Outlook::Hopeless } else { Outlook::Open }

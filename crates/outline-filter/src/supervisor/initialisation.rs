@@ -7,7 +7,7 @@ use super::{
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
     tracking::advance_again,
-    window::{Draft, InitialisationWindow, Measured, Remapped, Remapping},
+    window::{Draft, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
     map::TurnEvent,
@@ -42,9 +42,12 @@ impl MotionFilter {
             let next = match remapping {
                 Remapping::Drafted(draft) if draft.turn == turn => self.measure(*draft),
                 Remapping::Measured(measured) if measured.begun.turn == turn => self.go_on(*measured),
+                Remapping::Placed(placed) if placed.turn == turn => self.draft_along(*placed),
                 Remapping::Again { cuts } => self.draft(cuts),
                 // The map is cut for another hypothesis where they have been exchanged meanwhile.
-                Remapping::Drafted(_) | Remapping::Measured(_) | Remapping::Idle => self.draft(0),
+                Remapping::Placed(_) | Remapping::Drafted(_) | Remapping::Measured(_) | Remapping::Idle => {
+                    self.draft(0)
+                }
             };
             self.window.set_remapping(next);
         }
@@ -65,16 +68,26 @@ impl MotionFilter {
         }
     }
 
-    /// Cuts the map anew from the first frames, after so many cuts.
+    /// Cuts the map anew from the first frames, after so many cuts; where there are rivals, in the frame after this.
     fn draft(&mut self, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
         let remapper = Remapper { settings: &self.settings, window: &self.window };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
         let turn = self.turn_hypotheses.present_turn();
-        match track.recut(&frames, 1, &mut self.frame) {
-            Some(track) => Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })),
-            None => Remapping::Idle,
+        let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
+        let placed = Placed { runs, turn, cuts };
+        if self.turn_hypotheses.followed().next().is_none() {
+            return self.draft_along(placed);
         }
+        Remapping::Placed(Box::new(placed))
+    }
+
+    /// As [`draft`](Self::draft), with the points of the frames in order.
+    fn draft_along(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
+        let first = self.window.first();
+        let cut =
+            self.track.as_ref().zip(first).and_then(|(track, first)| track.recut_along(runs, first, &mut self.frame));
+        cut.map_or(Remapping::Idle, |track| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })))
     }
 
     /// Measures the frames kept on cells cut anew.
@@ -263,11 +276,11 @@ mod tests {
 
     #[test]
     fn rivals_are_measured_on_the_cells_of_the_present_track() {
-        let clover = |t: f64| 1.0 + 0.1 * (4.0 * t).cos();
+        let peanut = |t: f64| 1.0 + 0.2 * (2.0 * t).cos();
         let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
         let mut counts = Vec::new();
         for frame in 0..8 {
-            filter.step(f64::from(frame) / 30.0, &turning(frame, 400, clover)).expect("increasing times");
+            filter.step(f64::from(frame) / 30.0, &turning(frame, 400, peanut)).expect("increasing times");
             let Some(track) = &filter.track else { continue };
             let rivals: Vec<_> = filter.turn_hypotheses.followed().map(|(_, rival)| rival.cell_count()).collect();
             // All are exchanged at once.

@@ -1,5 +1,5 @@
 use freeform_curve_fit::Outline;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Point2};
 
 use super::motion_change::MotionHistory;
 #[cfg(feature = "serde")]
@@ -24,12 +24,25 @@ enum Window {
 pub(super) enum Remapping {
     #[default]
     Idle,
+    /// The points of the frames kept, in order, to be cut: where rivals take most of the time that a frame has.
+    Placed(Box<Placed>),
     /// Cut, and not measured yet.
     Drafted(Box<Draft>),
     /// The present track has taken the frames kept on the new cells; its rivals do one after the other.
     Measured(Box<Measured>),
     /// To be cut again, after so many cuts.
     Again { cuts: usize },
+}
+
+/// Points of the frames kept in the body frame, in their order along each piece of the outline, and whether that is closed.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Placed {
+    pub(super) runs: Vec<(Vec<Point2<f64>>, bool)>,
+    /// Of the hypothesis by which they have been placed.
+    pub(super) turn: f64,
+    /// Cuts before.
+    pub(super) cuts: usize,
 }
 
 /// A track of cells cut anew.
@@ -135,6 +148,11 @@ impl InitialisationWindow {
         tuning::OCCASIONS.contains(&self.frames.len())
     }
 
+    /// The first frame kept.
+    pub(super) fn first(&self) -> Option<&Outline> {
+        self.frames.first().map(|(_, outline)| outline)
+    }
+
     /// Whether there are frames to cut a map from.
     pub(super) fn are_several(&self) -> bool {
         self.frames.len() > 1
@@ -189,6 +207,12 @@ impl InitialisationWindow {
     pub(super) fn restore(&mut self, settings: &FilterSettings, restore: impl Fn(&mut Track) -> bool) -> bool {
         let is_usable = match &mut self.remapping {
             Remapping::Idle => true,
+            Remapping::Placed(placed) => {
+                let mut points = placed.runs.iter().flat_map(|(run, _)| run);
+                placed.turn.is_finite()
+                    && placed.cuts < tuning::MOST_CUTS
+                    && points.all(|p| p.coords.iter().all(|coordinate| coordinate.is_finite()))
+            }
             Remapping::Drafted(draft) => draft.restore(&restore),
             Remapping::Measured(measured) => {
                 let Measured { begun, present, rivals } = &mut **measured;

@@ -1,7 +1,7 @@
 //! Remapping: the map cut anew from several frames together, once they are aligned.
 use freeform_curve_fit::Outline;
 use freeform_riccati::map_point;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Point2};
 
 use super::Track;
 use crate::{
@@ -54,11 +54,22 @@ impl Track {
     /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken; it is to be
     /// [begun](Self::begin_as) with the first of them yet. `None` where the new cells do not show the turn.
     pub(crate) fn recut(&self, frames: &[PlacedFrame<'_>], stride: usize, buffers: &mut Frame) -> Option<Self> {
+        let runs = self.points_along(frames, stride, buffers)?;
+        self.recut_along(runs, frames.first()?.outline, buffers)
+    }
+
+    /// The points of every frame out of `stride` in their order along the outline, in the body frame, and whether it is closed, of each of its
+    /// pieces. `None` where they make no finer map.
+    pub(crate) fn points_along(
+        &self,
+        frames: &[PlacedFrame<'_>],
+        stride: usize,
+        buffers: &mut Frame,
+    ) -> Option<Vec<(Vec<Point2<f64>>, bool)>> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
         if self.belief.earlier_poses == EarlierPoses::Forgotten || self.turn_is_unseen() {
             return None;
         }
-        let first = frames.first()?;
         let points = self.points_in_body(frames, stride, buffers)?;
         if self.map.has_common_points(&points) {
             return None;
@@ -67,9 +78,18 @@ impl Track {
         if has_common_places(&runs) {
             return None;
         }
-        let contours =
-            runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
-        buffers.load(first.outline, self.reference);
+        Some(runs.into_iter().map(|(run, closed)| (run.into_iter().map(|(_, q)| q).collect(), closed)).collect())
+    }
+
+    /// As [`recut`](Self::recut), with the points of the frames in their order along the outline.
+    pub(crate) fn recut_along(
+        &self,
+        runs: Vec<(Vec<Point2<f64>>, bool)>,
+        first: &Outline,
+        buffers: &mut Frame,
+    ) -> Option<Self> {
+        let contours = runs.into_iter().map(|(run, closed)| Contour::new(run, closed));
+        buffers.load(first, self.reference);
         let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().deviation);
         let of = (self.belief.model, self.reference);
         let track = Self::draft(of, self.first_pose.pose, contours.collect(), least_noise, buffers)?;

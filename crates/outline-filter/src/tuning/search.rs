@@ -53,6 +53,8 @@ pub(crate) mod registration {
     /// Deviation of the points in the best pose found with few of them, in the most noise that is tolerated, from which on no pose explains the frame:
     /// the median of eighty is known to a seventh.
     pub(crate) const HOPELESS: f64 = 1.7;
+    /// Fewest points of a frame that this is said of: a map of fewer may err by more than its noise says, and a search with all of them is soon made.
+    pub(crate) const ENOUGH_POINTS: usize = 200;
     /// Distance of the matrices of poses that have come together: a fiftieth of the turn that starts are apart.
     pub(crate) const TOGETHER: f64 = 0.005;
     /// Largest step after which a pose has settled, normalised, in deviations of the noise: less than what a pose is known to, and than what
