@@ -34,9 +34,10 @@ use crate::outline::outline_of;
 ///     How far all of a side of the outlines may lie off in every frame, image lengths, such as by a shadow or by a threshold. It widens
 ///     the standard deviations.
 /// mask_pixel : float
-///     Size of a pixel of the masks that the outlines come from, image lengths; 0 for outlines from elsewhere. An outline of a mask is off by the
-///     rounding to pixels, which stays while the object moves by less than one: it widens the standard deviations, the less the farther
-///     the object moves. `identify` and `track` of masks set it by themselves.
+///     Size of a pixel of the masks that the outlines come from, image lengths; 0 leaves it to the points of the first outline, which lie on
+///     pixels or on the lines between them if they come from a picture. An outline of a mask is off by the rounding to pixels, which stays while
+///     the object moves by less than one: it widens the standard deviations, the less the farther the object moves. `identify` and `track`
+///     of masks set it by themselves.
 /// smallest_agreement : float
 ///     Smallest share of the points of a frame that must lie on the known outline, in (0, 1).
 /// patience : int

@@ -214,7 +214,7 @@ pub(crate) struct TrackOptions {
     pub(crate) edge_uncertainty: Option<f64>,
 
     /// Size of a pixel of the two-valued masks that the outlines come from, in the unit of the outlines
-    /// [default: 0 for CSV; of pictures that are masks the size of their pixels, unless --edge-uncertainty is given]
+    /// [default: of pictures that are masks the size of their pixels, unless --edge-uncertainty is given; else found from the points]
     ///
     /// The rounding of an outline to pixels stays the same while the object moves by less than a pixel. It widens the standard
     /// deviations, the less the farther the object has moved.

@@ -91,14 +91,6 @@ impl Recipe {
         }
     }
 
-    /// Size of a pixel of two-valued masks, in the unit of the outlines; 0 where the outlines are from elsewhere.
-    pub(super) fn mask_pixel(&self) -> f64 {
-        match self.sensing {
-            Sensing::Traced { pixels, depth: Depth::Binary } => self.length_unit / pixels,
-            _ => 0.0,
-        }
-    }
-
     /// Time of a frame in seconds.
     pub(super) fn time(&self, frame: usize) -> f64 {
         frame as f64 / self.fps

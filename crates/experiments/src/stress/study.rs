@@ -1,6 +1,4 @@
-use freeform_motion::outline_filter::FilterSettings;
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
-use freeform_motion::tracker::MethodSettings;
 use freeform_motion::{Tracker, TrackerSettings};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -89,16 +87,14 @@ impl StressStudy {
     }
 }
 
-/// One sequence, followed by a tracker with default settings, which is told of masks.
+/// One sequence, followed by a tracker with default settings.
 fn run(kind: &Kind, seed: u64, number: usize) -> Result<Outcome, ExperimentError> {
     let recipe = &kind.recipe;
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ hash(&kind.path()));
     rng.set_stream(number as u64);
     let sequence = Sequence::new(recipe, &mut rng)?;
     let truth = sequence.truth(recipe.frames - 1);
-    let filter = FilterSettings { mask_pixel: recipe.mask_pixel(), ..FilterSettings::default() };
-    let settings = TrackerSettings { method: MethodSettings::Filter(filter), ..TrackerSettings::default() };
-    let mut tracker = Tracker::new(settings)?;
+    let mut tracker = Tracker::new(TrackerSettings::default())?;
     for seen in sequence.frames(&mut rng) {
         let frame = seen.index as u64;
         let object = DEFAULT_OBJECT.to_owned();

@@ -37,6 +37,10 @@ const GROUPS: [(WrongFamily, &[usize]); 5] = [
     (WrongFamily::Lens, &[1, 2, 6, 7, 8]),
 ];
 
+/// Motions that pictures of a camera have now and then, a little: of pixels that are not square or a plane that is tilted, of perspective, of rows
+/// that are read one after the other, and of a lens.
+const OF_CAMERA: [&[usize]; 4] = [&[1, 2], &[3, 4], &[5], &[6]];
+
 /// Tests of what a family of motions leaves out, over frames: generalised likelihood ratios.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -52,6 +56,10 @@ pub(crate) struct FamilyTests {
     squares: UnmodelledVector,
     /// Deviation of the noise of a point.
     sigma: f64,
+    /// Farthest that the object has been from where it was first, its own radius included, normalised.
+    reach: f64,
+    /// Time from frame to frame.
+    step: f64,
     /// What is told, once it has been asked for.
     #[cfg_attr(feature = "serde", serde(skip))]
     told: OnceLock<UnmodelledEstimate>,
@@ -78,11 +86,14 @@ struct Fit {
 }
 
 impl FamilyTests {
-    /// Adds what a frame says; `sigma` is the deviation of the noise of a point, and `variance` that which dependence along the contour makes
-    /// of it.
-    pub(crate) fn add(&mut self, frame: &UnmodelledScore, sigma: f64, variance: f64) {
+    /// Adds what a frame says of an object whose centroid is so far from where it was first, one of every so much
+    /// time; `sigma` is the deviation of the noise of a point, and
+    /// `variance` that which dependence along the contour makes of it.
+    pub(crate) fn add(&mut self, frame: &UnmodelledScore, (distance, step): (f64, f64), (sigma, variance): (f64, f64)) {
         self.told.take();
         self.sigma = sigma;
+        self.reach = self.reach.max(1.0 + distance);
+        self.step = step;
         self.information += frame.information / variance;
         self.score += frame.score / variance;
         self.weight += frame.weight / variance;
@@ -135,12 +146,61 @@ impl FamilyTests {
                 estimate.moments[(*i, *j)] = known.sizes[a] * known.sizes[b] + known.covariance[(a, b)];
             }
         }
+        for members in OF_CAMERA {
+            if members.iter().all(|i| !known.numbers.contains(i)) {
+                self.add_possible(&mut estimate.moments, &known, members, &dependence);
+            }
+        }
         if estimate.family.is_none()
             && let Some(displacement) = self.change_of_shape(least, &dependence)
         {
             (estimate.family, estimate.displacement) = (Some(WrongFamily::Shape), displacement);
         }
         estimate
+    }
+
+    /// Usual size of a motion that a camera brings in, where it does. The object is within the picture, which is no smaller than where it has been.
+    fn usual_size(&self, number: usize) -> f64 {
+        match number {
+            3 | 4 => tuning::USUAL_ERROR / self.reach,
+            5 => tuning::USUAL_READ_OUT * self.step / self.reach,
+            6 => tuning::USUAL_ERROR / self.reach.powi(2),
+            _ => tuning::USUAL_ERROR,
+        }
+    }
+
+    /// Adds what motions may be that are neither found nor ruled out: the frames say how probable they are and how large (R. E. Kass and A. E.
+    /// Raftery, Bayes factors, 1995).
+    fn add_possible(
+        &self,
+        moments: &mut UnmodelledMatrix,
+        known: &Fit,
+        members: &[usize],
+        dependence: &UnmodelledVector,
+    ) {
+        let usual = self.usual_size(members[0]);
+        let members: Vec<usize> = members.iter().copied().filter(|i| self.information[(*i, *i)] > 0.0).collect();
+        let ratio = members.iter().map(|i| dependence[*i]).fold(1.0, f64::max);
+        let n = known.numbers.len();
+        let numbers: Vec<usize> = known.numbers.iter().chain(&members).copied().collect();
+        // In units of what is usual, in which the prior has a variance of 1.
+        let scale = usual * usual / ratio;
+        let precision = DMatrix::from_fn(numbers.len(), numbers.len(), |a, b| {
+            let prior = if a == b && a >= n { 1.0 } else { 0.0 };
+            self.information[(numbers[a], numbers[b])] * scale + prior
+        });
+        let score = DVector::from_fn(numbers.len(), |a, _| self.score[numbers[a]] * usual / ratio);
+        let Some(covariance) = precision.cholesky().map(|factor| factor.inverse()) else { return };
+        let sizes = &covariance * &score;
+        let covariance = covariance.view((n, n), (members.len(), members.len()));
+        let for_them = covariance.determinant().ln() + score.dot(&sizes) - known.squared / ratio;
+        let probability = 1.0 / (1.0 + tuning::ODDS_AGAINST * (-0.5 * for_them).exp());
+        for (a, i) in members.iter().enumerate() {
+            for (b, j) in members.iter().enumerate() {
+                let moment = covariance[(a, b)] + sizes[n + a] * sizes[n + b];
+                moments[(*i, *j)] += probability * usual * usual * moment;
+            }
+        }
     }
 
     /// Changes to and fro: of a mean square that noise does not have, or slow; or all of the motions together.
@@ -208,11 +268,16 @@ fn deviations(squared: f64, count: f64) -> f64 {
 impl FamilyTests {
     /// Whether more can be taken, and all numbers can be worked with.
     pub(crate) fn is_valid(&self) -> bool {
-        let vectors =
-            self.information.iter().chain(&self.score).chain(&self.squares).chain([&self.weight, &self.sigma]);
+        let vectors = self.information.iter().chain(&self.score).chain(&self.squares).chain([
+            &self.weight,
+            &self.sigma,
+            &self.reach,
+        ]);
         self.series.is_valid()
             && vectors.into_iter().all(|number| number.abs() < StateFormat::LARGEST_NUMBER)
             && self.sigma >= 0.0
+            && self.reach >= 0.0
+            && self.step >= 0.0
     }
 }
 
@@ -236,7 +301,7 @@ mod tests {
             let information = factor * factor.transpose();
             let noise = factor * UnmodelledVector::from_fn(|_, _| SIGMA * normal());
             let score = UnmodelledScore { information, score: information * sizes + noise, weight: 50.0 };
-            tests.add(&score, SIGMA, SIGMA * SIGMA);
+            tests.add(&score, (0.0, 1.0), (SIGMA, SIGMA * SIGMA));
         }
         tests
     }
@@ -275,6 +340,30 @@ mod tests {
             estimate.family.is_none() && estimate.moments[(0, 0)] > 0.0
         });
         assert!(doubts.count() > 20);
+    }
+
+    #[test]
+    fn faults_that_cameras_have_now_and_then_are_reckoned_with_until_frames_rule_them_out() {
+        let second_moment = |frames: usize, noise: f64| {
+            let mut tests = FamilyTests::default();
+            for seed in 0..frames as u64 {
+                let frame = after(1, &UnmodelledVector::zeros(), seed);
+                // What frames say of noise alone, by how much of it there is.
+                let score = UnmodelledScore {
+                    information: frame.information * SIGMA * SIGMA,
+                    score: frame.score * SIGMA * noise,
+                    weight: 50.0,
+                };
+                tests.add(&score, (1.0, 0.1), (noise, noise * noise));
+            }
+            tests.estimate().moments[(6, 6)]
+        };
+        // At a reach of two radii a lens has a quarter of the usual error, one time in ten.
+        let beforehand = 0.1 * (tuning::USUAL_ERROR / 4.0).powi(2);
+        let unknown = second_moment(10, 10.0);
+        assert!((0.9..1.1).contains(&(unknown / beforehand)), "{unknown} {beforehand}");
+        let [many, few] = [1000, 10].map(|frames| second_moment(frames, 1e-3));
+        assert!(few < 0.5 * beforehand && many < 0.1 * few, "{many} {few} {beforehand}");
     }
 
     #[test]

@@ -65,6 +65,15 @@ impl Contour {
         Some(sigma)
     }
 
+    /// Scatter of the points along the normal about local quadratics that reach as far as `reach` along the contour, either way: noise, and
+    /// what else is shorter than that. `None` for a contour of few points.
+    pub(crate) fn scatter_over(&self, reach: f64) -> Option<f64> {
+        let points = reach / self.median_step;
+        let largest = (self.points.len() / tuning::PARTS).min(*tuning::HALF_WINDOWS.end());
+        let mut contour = self.clone();
+        contour.residual_scale((points.round() as usize).min(largest).max(*tuning::HALF_WINDOWS.start()))
+    }
+
     /// Smallest window that gives normals a direction with a deviation of no more than `normal_noise`, in rad, for noise `sigma`: as far as
     /// a tenth of the contour allows where that is less than normals usually need.
     pub(super) fn half_window(&self, sigma: f64, normal_noise: f64) -> usize {

@@ -1,6 +1,9 @@
 //! Points of one frame against the map: which cell each belongs to, its distance from it, how that changes with the pose, and how much it counts.
 mod association;
 mod frame;
+mod lattice;
+#[cfg(test)]
+mod lattice_tests;
 mod likelihood;
 mod linearisation;
 mod noise;
@@ -11,6 +14,7 @@ mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
 pub(crate) use frame::{Frame, Piece, Reference};
+pub(crate) use lattice::{PixelLattice, Place};
 pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;
 pub(crate) use noise::{Counted, NoiseModel, Rounding, Tolerance, correlation_of, spread};

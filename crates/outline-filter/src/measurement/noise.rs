@@ -1,9 +1,10 @@
 //! Noise of the points: how much there is, whether it is correlated along the contour, and how much more of it corners have.
-use freeform_curve_fit::{Outline, Piece};
+use std::f64::consts::PI;
+
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 
-use super::{Frame, NO_CELL, variance_inflation::VarianceInflation};
+use super::{Frame, NO_CELL, Place, variance_inflation::VarianceInflation};
 use crate::{
     map::{median, median_about},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise as tuning, statement::ROUNDING},
@@ -45,33 +46,59 @@ pub(crate) struct NoiseModel {
     inflation: Vec<VarianceInflation>,
 }
 
-/// What points are off that come from two-valued masks. Where the object does not move it is the same in all frames, and does not show.
+/// What points are off that were rounded to pixels, or interpolated between them. Where the object does not move it is the same in all frames,
+/// and does not show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Rounding {
-    /// Of a point, normalised.
-    pub(crate) deviation: f64,
+    /// Size of a pixel, normalised.
+    pixel: f64,
+    /// How large the errors are in units of those of a mask.
+    share: f64,
     /// Points beside each other that are off together, at least 1.
     shared_by: f64,
 }
 
 impl Rounding {
-    /// Deviation of a side along the rows or columns of a mask, whose points are off together, normalised.
-    pub(crate) fn of_side(&self) -> f64 {
-        self.deviation * (ROUNDING / tuning::ROUNDED_POINT)
+    pub(crate) const NONE: Self = Self { pixel: 0.0, share: 0.0, shared_by: 1.0 };
+
+    /// Of an outline of masks whose pixels have a size, normalised as the length of the outline is.
+    pub(crate) fn of_mask(pixel: f64, (length, points): (f64, usize)) -> Self {
+        Self::with_share(pixel, 1.0, (length, points))
     }
 
-    pub(crate) const NONE: Self = Self { deviation: 0.0, shared_by: 1.0 };
+    /// Of points on a lattice of pixels that scatter by `scatter` about their smoothed contour; lengths are normalised.
+    pub(crate) fn on_lattice(pixel: f64, place: Place, scatter: f64, (length, points): (f64, usize)) -> Self {
+        let scatter = scatter / pixel;
+        let share = match place {
+            Place::Chain => 1.0,
+            // Noise before the rounding makes its errors noise as well: the mean of a rounded Gaussian number (B. Widrow and I. Kollar,
+            // Quantization Noise, 2008).
+            Place::Nodes => (-2.0 * (PI * scatter).powi(2) + 2.0 * (PI * ROUNDING).powi(2)).min(0.0).exp(),
+            // How ragged a contour is that was smoothed or interpolated tells what it keeps of the pixels.
+            Place::Lines => (scatter / tuning::RAGGED_MASK).clamp(tuning::INTERPOLATED, 1.0),
+        };
+        Self::with_share(pixel, share, (length, points))
+    }
 
-    /// Of an outline of masks whose pixels have a size, both in image lengths; a radius of that outline is to be 1.
-    pub(crate) fn of(outline: &Outline, mask_pixel: f64, radius: f64) -> Self {
-        if mask_pixel == 0.0 {
-            return Self::NONE;
-        }
-        let length = |piece: Piece<'_>| piece.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>();
-        let pixels = outline.pieces().map(length).sum::<f64>() / mask_pixel;
-        let shared_by = tuning::ROUNDED_TOGETHER * outline.point_count() as f64 / pixels.max(1.0);
-        Self { deviation: tuning::ROUNDED_POINT * mask_pixel / radius, shared_by: shared_by.max(1.0) }
+    fn with_share(pixel: f64, share: f64, (length, points): (f64, usize)) -> Self {
+        let together = tuning::ROUNDED_TOGETHER * points as f64 / (length / pixel).max(1.0);
+        Self { pixel, share, shared_by: 1.0 + (together - 1.0).max(0.0) * share * share }
+    }
+
+    /// Size of a pixel, normalised; 0 where points are not rounded.
+    pub(crate) fn pixel(&self) -> f64 {
+        self.pixel
+    }
+
+    /// Deviation of a point, normalised.
+    pub(crate) fn of_point(&self) -> f64 {
+        tuning::ROUNDED_POINT * self.share * self.pixel
+    }
+
+    /// Deviation of a side along the rows or columns, whose points are off together, normalised.
+    pub(crate) fn of_side(&self) -> f64 {
+        ROUNDING * self.share * self.pixel
     }
 }
 
@@ -116,7 +143,7 @@ impl NoiseModel {
     /// Sets a floor of the noise for the rounding of points to pixels.
     pub(crate) fn allow_for_rounding(&mut self, rounding: Rounding) {
         self.rounding = rounding;
-        self.floor = self.floor.max(rounding.deviation);
+        self.floor = self.floor.max(rounding.of_point());
         self.sigma = self.sigma.max(self.floor);
     }
 
@@ -256,9 +283,17 @@ impl NoiseModel {
         let Correlation { ratio, frames } = self.correlation;
         let positive = |number: f64| number.is_finite() && number > 0.0;
         positive(self.sigma)
-            && [self.weight, self.floor, self.rounding.deviation, self.rounding.shared_by, ratio, frames]
-                .iter()
-                .all(|number| number.is_finite() && *number >= 0.0)
+            && [
+                self.weight,
+                self.floor,
+                self.rounding.pixel,
+                self.rounding.share,
+                self.rounding.shared_by,
+                ratio,
+                frames,
+            ]
+            .iter()
+            .all(|number| number.is_finite() && *number >= 0.0)
             && self.level.count < StateFormat::MOST_COUNTED
             && !self.level.frames.iter().any(|spread| spread.is_nan())
             && self.inflation.len() == cells

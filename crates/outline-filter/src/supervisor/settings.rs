@@ -21,10 +21,11 @@ pub struct FilterSettings {
     /// Systematic uncertainty of the outlines, image lengths: how far all of a side may lie off in every frame, such as by a shadow or by
     /// a threshold, not negative; 0 by default. It widens what is stated, and enters nothing else.
     pub edge_uncertainty: f64,
-    /// Size of a pixel of the two-valued masks that the outlines were traced from, image lengths, not negative; 0, for other outlines, by
-    /// default. What such an outline is off by the rounding to whole pixels stays as it is while the object moves by less than a pixel, and
-    /// points beside each other are off together: their noise is reckoned with as at least 0.15 of a pixel, and what is stated is
-    /// widened, the less the more pixels the object has moved on.
+    /// Size of a pixel of the two-valued masks that the outlines were traced from, image lengths, not negative; 0, the default, leaves it to
+    /// the first outline: where its points lie on the pixels of a lattice, or on its lines as interpolated ones do, they are off by what that
+    /// leaves, by how ragged they are. What such an outline is off stays as it is while the object moves by less than a pixel, and points beside
+    /// each other are off together: their noise is reckoned with as at least 0.15 of a pixel of a mask, and what is stated is widened, the less
+    /// the more pixels the object has moved on. Points that state deviations of their own are off by these.
     pub mask_pixel: f64,
     /// Smallest agreement ([`FrameMeasurement::agreement`](crate::FrameMeasurement::agreement)) of a frame that is taken, in (0, 1); 0.7 by
     /// default.

@@ -3,10 +3,7 @@ use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::DMatrix;
 
-use super::{
-    motion_filter::{Counts, MotionFilter, Phase},
-    settings::FilterSettings,
-};
+use super::motion_filter::{Counts, MotionFilter, Phase};
 use crate::{
     dynamics::{CentredDeviations, Purpose, Summary, WrongFamily},
     track::TurnTold,
@@ -61,12 +58,13 @@ impl MotionFilter {
         let mut all = random;
         all.covariance += moments;
         let displacement = unmodelled.displacement * track.reference().radius;
-        let FilterSettings { edge_uncertainty, mask_pixel, .. } = self.settings;
-        if [displacement, edge_uncertainty, mask_pixel].iter().any(|length| *length > 0.0) {
-            // The rounding of masks is a saw tooth as the object moves, whose mean falls with the pixels that it moves on.
+        let edge_uncertainty = self.settings.edge_uncertainty;
+        let [pixel, of_side] = track.rounding_of_side();
+        if [displacement, edge_uncertainty, pixel].iter().any(|length| *length > 0.0) {
+            // Rounding to pixels is a saw tooth as the object moves, whose mean falls with the pixels that it moves on.
             let span = track.span_of_motion(self.history.is_constant());
-            let pixels = (track.travelled(span) / mask_pixel).max(1.0);
-            let rounding = tuning::ROUNDING * mask_pixel / pixels;
+            let pixels = (track.travelled(span) / pixel).max(1.0);
+            let rounding = of_side / pixels;
             let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
             // What the motion model does not have need not be constant.
             let [of_pose, of_motion] = track.systematic(displacement, track.span_of_motion(false));

@@ -30,7 +30,7 @@ impl Track {
         rounding: Rounding,
         frame: &mut Frame,
     ) -> Option<Self> {
-        let mut track = Self::draft((model, reference), pose, contours, rounding.deviation, frame)?;
+        let mut track = Self::draft((model, reference), pose, contours, rounding.of_point(), frame)?;
         track.measure_draft(rounding, frame);
         Some(track)
     }

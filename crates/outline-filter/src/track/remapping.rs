@@ -90,7 +90,7 @@ impl Track {
     ) -> Option<Self> {
         let contours = runs.into_iter().map(|(run, closed)| Contour::new(run, closed));
         buffers.load(first, self.reference);
-        let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().deviation);
+        let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().of_point());
         let of = (self.belief.model, self.reference);
         let track = Self::draft(of, self.first_pose.pose, contours.collect(), least_noise, buffers)?;
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.

@@ -10,9 +10,7 @@ use crate::{
     belief::Belief,
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
     map::{NullDirection, OutlineMap, TurnEvent, TurnEvidence},
-    measurement::{
-        Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Rounding, Tolerance, View, correlation_of,
-    },
+    measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, update as tuning},
     update::{
@@ -98,8 +96,8 @@ impl Outcome {
 
 impl Track {
     /// One of what an outline shows, its motion unknown. Outliers and missing arcs are allowed for. Points of masks are
-    /// off by as much as the rounding to their pixels, of a size in image lengths, whatever they show. `None` for fewer than 8 points, or
-    /// points that make no contour.
+    /// off by as much as the rounding to their pixels, of a size in image lengths, whatever they show; with a size of 0 it is found from the
+    /// points. `None` for fewer than 8 points, or points that make no contour.
     pub(crate) fn begin(model: MotionModel, outline: &Outline, mask_pixel: f64, frame: &mut Frame) -> Option<Self> {
         if outline.point_count() < FEWEST_POINTS {
             return None;
@@ -108,7 +106,7 @@ impl Track {
         frame.load(outline, reference);
         reference.update_stated(frame.deviations.good());
         let contours = frame.contours(&Matrix3::identity());
-        let rounding = Rounding::of(outline, mask_pixel, reference.radius);
+        let rounding = Self::rounding_of(outline, mask_pixel, &contours, reference.radius);
         Self::cut(model, reference, Matrix3::identity(), contours, rounding, frame)
     }
 
@@ -177,7 +175,7 @@ impl Track {
         }
         let measurement = view.judge(frame, &proposal, innovation.squared, radius);
         // Points that do not move show none of what they are rounded by.
-        let rounding = self.noise.rounding().deviation;
+        let rounding = self.noise.rounding().of_point();
         let noise = measurement.noise.map(|noise| measurement.of_good_points(noise));
         let correlation = correlation_of(frame, noise.map(|noise| (noise / radius).max(rounding)));
         let verdict = gate.verdict(&measurement);

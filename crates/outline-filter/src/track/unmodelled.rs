@@ -1,4 +1,6 @@
 //! What the motion model of a track leaves out.
+use freeform_riccati::map_point;
+
 use super::Track;
 use crate::{
     belief::StateMatrix,
@@ -29,7 +31,9 @@ impl Track {
         let at = (&self.belief, &*self.map);
         let score = self.sensitivity.update(at, frame, (&proposal.pose, &marginal), measured, repeats);
         if let Some(score) = score.filter(|_| self.frames > tuning::MAP_KNOWN) {
-            self.family.add(&score, self.noise.sigma, variance);
+            let centroid = self.map.centroid();
+            let distance = (map_point(&self.belief.pose, &centroid) - centroid).norm();
+            self.family.add(&score, (distance, self.belief.memory.step), (self.noise.sigma, variance));
         }
     }
 

@@ -7,7 +7,7 @@ mod outline;
 pub(crate) mod plane;
 mod search;
 
-pub(crate) use frame::{deviations, likelihood, measurement, noise, update};
+pub(crate) use frame::{deviations, lattice, likelihood, measurement, noise, update};
 #[cfg(feature = "serde")]
 pub(crate) use motion::saved_state;
 pub(crate) use motion::{batch, dynamics, family, innovations, motion_change, statement, supervisor};

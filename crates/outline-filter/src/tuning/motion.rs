@@ -134,6 +134,14 @@ pub(crate) mod family {
     pub(crate) const SIGNIFICANT: f64 = 5.0;
     /// Deviations beyond which it may be there: what it makes of the estimates is reckoned with.
     pub(crate) const DOUBTFUL: f64 = 2.5;
+    /// Share of a length that pictures are usually off by, where they are: pixels a hundredth too wide are two of them, and so are planes tilted by 8
+    /// degrees; lenses leave 0.5 to 2 % at the border.
+    pub(crate) const USUAL_ERROR: f64 = 0.005;
+    /// Time in which a camera usually reads the rows that an object and its way take up, in times from frame to frame, where it reads them one after
+    /// another: half of all rows in half of the time.
+    pub(crate) const USUAL_READ_OUT: f64 = 0.25;
+    /// Odds against a picture that is off in one of these ways.
+    pub(crate) const ODDS_AGAINST: f64 = 9.0;
     /// Squared deviations that a motion more must explain to be preferred: those that chance explains once in a thousand times.
     pub(crate) const PER_MOTION: f64 = 10.8;
     /// Share of the noise of a point that a displacement must have to matter.

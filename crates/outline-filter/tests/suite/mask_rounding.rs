@@ -1,9 +1,11 @@
 //! What outlines of masks are off by the rounding to pixels.
 use crate::filter_support::{frames_of, settings};
+use freeform_curve_fit::{Outline, PixelGrid};
 use freeform_outline_filter::{FilterError, FilterSettings, MotionFilter};
-use freeform_riccati::{ProjectiveMotion, RigidMotion};
-use freeform_sim_camera::{BuiltInShape, Dynamics, Frame, Motion, Shape, Trajectory};
-use nalgebra::{Point2, Vector2};
+use freeform_outline_io::{GrayImage, TraceSettings, trace_mask};
+use freeform_riccati::{MotionModel, ProjectiveMotion, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Dynamics, Frame, Mask, Motion, Shape, Trajectory};
+use nalgebra::{Point2, Rotation2, Vector2};
 use proptest::prelude::*;
 
 const FRAMES: usize = 31;
@@ -33,7 +35,9 @@ proptest! {
         for pace in [0.0, 0.01, 0.3, 1.0] {
             let motion = RigidMotion { omega: pace * omega, b1: pace * b1, b2: 0.1 * pace };
             let frames = frames_of(BuiltInShape::Bird, motion, settings(FRAMES, seed));
-            let of_masks = FilterSettings { mask_pixel: pixel, ..FilterSettings::default() };
+            // A family that leaves nothing out: what cameras do besides is a systematic part of the others.
+            let model = MotionModel::Projective;
+            let of_masks = FilterSettings { model, mask_pixel: pixel, ..FilterSettings::default() };
             let with_edges = FilterSettings { edge_uncertainty: rounding, ..of_masks };
             let [mask, both] = [of_masks, with_edges].map(|settings| stated(settings, &frames));
             prop_assert_eq!(&mask[0], &both[0]);
@@ -76,4 +80,51 @@ fn a_pixel_without_a_size_is_refused() {
         let error = MotionFilter::new(FilterSettings { mask_pixel, ..FilterSettings::default() }).expect_err("no size");
         assert!(matches!(error, FilterError::Setting { setting: "mask pixel", .. }), "{error}");
     }
+}
+
+/// Outlines of a body that turns slowly about its middle, traced in two-valued masks, 40 pixels to a size.
+fn traced_in_masks(omega: f64, frames: usize) -> Vec<(f64, Outline)> {
+    const PIXELS: f64 = 40.0;
+    let shape = Shape::from(BuiltInShape::Van);
+    let grid = PixelGrid::new([0.0, 80.0], Point2::new(-1.0, -1.0), Vector2::new(1.0, -1.0) / PIXELS);
+    let outline_at = |time: f64| {
+        let turn = Rotation2::new(-omega * time);
+        let points = (0..800).map(|i| turn * shape.point_at(f64::from(i) / 800.0)).collect();
+        let mask =
+            Mask::of_outline(&Outline::closed(points).expect("points"), [80, 80], &grid).expect("a mask").binary();
+        let picture = GrayImage::from_raw(80, 80, mask.grey).expect("a picture");
+        trace_mask(&picture, &TraceSettings { pixel_size: 1.0 / PIXELS, ..TraceSettings::default() })
+            .expect("an object")
+    };
+    let times = (0..frames).map(|frame| frame as f64 / 30.0);
+    times.map(|time| (time, outline_at(time).outline)).collect()
+}
+
+#[test]
+fn masks_whose_pixels_nobody_tells_are_found_to_be_masks() {
+    let frames = traced_in_masks(0.03, 60);
+    let omega = |mask_pixel: f64| {
+        let mut filter =
+            MotionFilter::new(FilterSettings { mask_pixel, ..FilterSettings::default() }).expect("good settings");
+        for (time, outline) in &frames {
+            filter.step(*time, outline).expect("a good frame");
+        }
+        filter.estimate().expect("a motion").parameters().next().expect("omega")
+    };
+    let [told, found] = [1.0 / 40.0, 0.0].map(omega);
+    let (told, found_deviation) =
+        (told.systematic_deviation.expect("a value"), found.systematic_deviation.expect("a value"));
+    assert!((0.6..1.1).contains(&(found_deviation / told)), "{found_deviation} {told}");
+    let (value, deviation) = (found.value.expect("a value"), found.standard_deviation.expect("a value"));
+    assert!((value - 0.03).abs() < 3.0 * deviation, "{value} +- {deviation}");
+}
+
+#[test]
+fn points_that_lie_on_no_lattice_are_no_masks() {
+    let motion = RigidMotion { omega: 0.03, b1: 0.0, b2: 0.0 };
+    let frames = frames_of(BuiltInShape::Van, motion, settings(40, 2));
+    let as_of_masks = FilterSettings { mask_pixel: 0.02, ..FilterSettings::default() };
+    let [none, masks] = [FilterSettings::default(), as_of_masks].map(|settings| stated(settings, &frames));
+    let ratios = none[2].iter().zip(&masks[2]).map(|(none, masks)| none / masks);
+    assert!(ratios.clone().all(|ratio| ratio < 0.1), "{:?}", ratios.collect::<Vec<_>>());
 }
