@@ -94,13 +94,18 @@ fn main() {
     }
     let steps: usize = times.iter().map(Vec::len).sum();
     println!("{POINTS} points, {steps} steps; times in microseconds");
-    println!("{:20} {:>8} {:>10} {:>10} {:>10}  longest: recording, frame", "", "steps", "median", "99.9 %", "longest");
+    println!(
+        "{:20} {:>8} {:>8} {:>8} {:>10} {:>10} {:>10}  longest: recording, frame",
+        "", "steps", "> 0.2 ms", "> 1 ms", "median", "99.9 %", "longest"
+    );
     let all = times.concat();
     for (name, mut times) in KINDS.into_iter().zip(times).chain([("all", all)]) {
         times.sort_unstable();
         let at = |share: f64| 1e6 * times[(share * (times.len() - 1) as f64).round() as usize].0.as_secs_f64();
         let longest: Vec<_> = times.iter().rev().take(3).map(|(_, at)| *at).collect();
+        let over = |limit| times.iter().filter(|(time, _)| *time > limit).count();
+        let [long, too_long] = [200, 1000].map(|limit| over(Duration::from_micros(limit)));
         let (count, median, most, end) = (times.len(), at(0.5), at(0.999), at(1.0));
-        println!("{name:20} {count:8} {median:10.1} {most:10.1} {end:10.1}  {longest:?}");
+        println!("{name:20} {count:8} {long:8} {too_long:8} {median:10.1} {most:10.1} {end:10.1}  {longest:?}");
     }
 }

@@ -42,12 +42,17 @@ impl Bisectors {
 
 impl OutlineMap {
     /// Prepares what the cells nearest to places are found by; to be called whenever cells have changed.
-    pub(super) fn prepare_association(&mut self) {
+    pub(crate) fn prepare_association(&mut self) {
         let centres: Vec<_> = self.cells.iter().map(|cell| cell.centre).collect();
         self.field.build(&centres, self.spacing);
         self.bisectors.clear();
         self.bisectors.extend((0..self.cells.len()).map(|number| Bisectors::of(number, &self.cells)));
         self.has_ends = self.bisectors.iter().any(|bisectors| bisectors.is_end);
+    }
+
+    /// Whether the outline is known to end anywhere.
+    pub(crate) fn has_ends(&self) -> bool {
+        self.has_ends
     }
 
     /// The cell nearest to a body point, from one near it.

@@ -20,10 +20,24 @@ pub(crate) type Run = Vec<(f64, Point2<f64>)>;
 impl OutlineMap {
     /// Whether most of the points of the frames are the same places of the outline, which cut no finer cells together.
     pub(crate) fn has_common_points(&self, points: &[CellPoint]) -> bool {
-        let mut order: Vec<_> = points.iter().map(|point| (point.cell.unwrap_or(usize::MAX), &point.at)).collect();
-        order.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.x.total_cmp(&b.1.x)));
+        // In the order of their cells, those without one last.
+        let cell_of = |point: &CellPoint| point.cell.unwrap_or(self.cells.len());
+        let mut ends = vec![0; self.cells.len() + 2];
+        points.iter().for_each(|point| ends[cell_of(point) + 1] += 1);
+        (1..ends.len()).for_each(|cell| ends[cell] += ends[cell - 1]);
+        let mut order = vec![Point2::origin(); points.len()];
+        for point in points {
+            let end = &mut ends[cell_of(point)];
+            order[*end] = point.at;
+            *end += 1;
+        }
+        let mut start = 0;
+        for end in ends {
+            order[start..end].sort_by(|a, b| a.x.total_cmp(&b.x));
+            start = end;
+        }
         let limit = tuning::COINCIDENT * self.spacing;
-        let common = order.windows(2).filter(|pair| (pair[0].1 - pair[1].1).norm() < limit).count();
+        let common = order.windows(2).filter(|pair| (pair[0] - pair[1]).norm() < limit).count();
         2 * common > points.len()
     }
 

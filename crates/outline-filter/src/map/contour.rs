@@ -5,7 +5,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::{
     local_fit::{LocalFit, Sums, direction_variance, wider_if_alike},
-    medians::{median, median_of_nine},
+    medians::{median, running_medians_of_nine},
     plain_regression::PlainRegression,
 };
 use crate::tuning::{contour as tuning, measurement::MEDIAN_TO_DEVIATION};
@@ -30,13 +30,16 @@ pub(crate) struct Contour {
     points: Vec<Point2<f64>>,
     closed: bool,
     outlier: Vec<bool>,
+    /// Mean distance of points that follow each other, in the median; positive.
+    median_step: f64,
     plain: PlainRegression,
 }
 
 impl Contour {
     pub(crate) fn new(points: Vec<Point2<f64>>, closed: bool) -> Self {
         let plain = PlainRegression::default();
-        let mut contour = Self { outlier: vec![false; points.len()], points, closed, plain };
+        let mut contour = Self { outlier: vec![false; points.len()], points, closed, median_step: 0.0, plain };
+        contour.median_step = contour.found_median_step();
         contour.mark_gross_outliers();
         contour
     }
@@ -48,11 +51,16 @@ impl Contour {
     /// Standard deviation of the noise along the normal, from the residuals of a pilot regression; marks outliers on the way.
     pub(crate) fn noise(&mut self) -> Option<f64> {
         let mut sigma = self.residual_scale(tuning::PILOT_HALF_WINDOW)?;
+        let mut before: Option<(usize, Vec<bool>)> = None;
         for _ in 0..2 {
             // Along a line whose direction is noise, residuals are too small.
             let window = self.half_window_for(sigma, tuning::PILOT_NORMAL_NOISE).max(tuning::PILOT_HALF_WINDOW);
             self.mark_outliers(window, sigma);
-            sigma = self.residual_scale(window)?;
+            // With the same window and the same outliers it would be found again.
+            if before.is_none_or(|(last, outlier)| last != window || outlier != self.outlier) {
+                sigma = self.residual_scale(window)?;
+            }
+            before = Some((window, self.outlier.clone()));
         }
         Some(sigma)
     }
@@ -60,7 +68,7 @@ impl Contour {
     /// Scatter of the points along the normal about local quadratics that reach as far as `reach` along the contour, either way: noise, and
     /// what else is shorter than that. `None` for a contour of few points.
     pub(crate) fn scatter_over(&self, reach: f64) -> Option<f64> {
-        let points = reach / self.median_step();
+        let points = reach / self.median_step;
         let largest = (self.points.len() / tuning::PARTS).min(*tuning::HALF_WINDOWS.end());
         let mut contour = self.clone();
         contour.residual_scale((points.round() as usize).min(largest).max(*tuning::HALF_WINDOWS.start()))
@@ -84,7 +92,7 @@ impl Contour {
     }
 
     fn narrowest(&self, sigma: f64, normal_noise: f64, largest: usize) -> usize {
-        let noise = sigma / self.median_step();
+        let noise = sigma / self.median_step;
         let smallest = *tuning::HALF_WINDOWS.start();
         let is_enough = |w: &usize| direction_variance(noise, *w) <= normal_noise * normal_noise;
         (smallest..=largest).find(is_enough).unwrap_or(largest.max(smallest))
@@ -170,7 +178,7 @@ impl Contour {
         self.closed.then(|| if (0..n).contains(&k) { k as usize } else { k.rem_euclid(n) as usize })
     }
 
-    fn median_step(&self) -> f64 {
+    fn found_median_step(&self) -> f64 {
         let chord = tuning::STEPS_OF_CHORD.min(self.points.len() / 3).max(1);
         let steps = (0..self.points.len()).filter_map(|i| {
             let j = self.neighbour(i, chord as isize)?;
@@ -184,29 +192,34 @@ impl Contour {
         if n < 4 * tuning::MEDIAN_HALF_WINDOW {
             return;
         }
-        let m = tuning::MEDIAN_HALF_WINDOW as isize;
+        let m = tuning::MEDIAN_HALF_WINDOW;
+        // Around a closed contour; along an open one those whose windows end within.
+        let ends = if self.closed { (n - m..n, 0..m) } else { (0..0, 0..0) };
+        let around = || ends.0.clone().chain(0..n).chain(ends.1.clone());
+        let coordinates: [Vec<f64>; 2] =
+            [around().map(|i| self.points[i].x).collect(), around().map(|i| self.points[i].y).collect()];
+        let [xs, ys] = coordinates.map(|numbers| running_medians_of_nine(&numbers));
+        let first = if self.closed { 0 } else { m };
         let mut distances = Vec::with_capacity(n);
-        for i in 0..n {
-            let is_within = (m as usize..n - m as usize).contains(&i);
-            let middle = if is_within || self.closed {
-                // Of so few a network finds the middle without a branch.
-                let at: [usize; 2 * tuning::MEDIAN_HALF_WINDOW + 1] = std::array::from_fn(|j| {
-                    let k = i + n + j - m as usize;
-                    if is_within { i + j - m as usize } else { k % n }
-                });
-                Point2::new(median_of_nine(at.map(|j| self.points[j].x)), median_of_nine(at.map(|j| self.points[j].y)))
-            } else {
-                // At an open end the window slides inwards; its median stands off along the contour, which the scale allows for.
-                let near = || (-m..=m).filter_map(|offset| self.neighbour(i, offset)).map(|j| &self.points[j]);
-                let [mut xs, mut ys]: [Vec<f64>; 2] = [near().map(|p| p.x).collect(), near().map(|p| p.y).collect()];
-                Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0))
+        for (i, p) in self.points.iter().enumerate() {
+            let middle = match i.checked_sub(first).filter(|at| *at < xs.len()) {
+                Some(at) => Point2::new(xs[at], ys[at]),
+                None => self.median_at_end(i),
             };
-            distances.push((self.points[i] - middle).norm());
+            distances.push((p - middle).norm());
         }
         let scale = median(&mut distances.clone()).unwrap_or(0.0);
         for (outlier, distance) in self.outlier.iter_mut().zip(distances) {
             *outlier = distance > tuning::GROSS * scale;
         }
+    }
+
+    /// At an open end the window of the median slides inwards; its median stands off along the contour, which the scale allows for.
+    fn median_at_end(&self, i: usize) -> Point2<f64> {
+        let m = tuning::MEDIAN_HALF_WINDOW as isize;
+        let near = || (-m..=m).filter_map(|offset| self.neighbour(i, offset)).map(|j| &self.points[j]);
+        let [mut xs, mut ys]: [Vec<f64>; 2] = [near().map(|p| p.x).collect(), near().map(|p| p.y).collect()];
+        Point2::new(median(&mut xs).unwrap_or(0.0), median(&mut ys).unwrap_or(0.0))
     }
 
     /// Distance of a point from the line of its neighbours, in units that make its variance that of the noise.
@@ -244,7 +257,7 @@ impl Contour {
     fn without_long_runs(&self, mut marks: Vec<bool>) -> Vec<bool> {
         let n = marks.len();
         let Some(first) = (0..n).find(|i| !marks[*i]) else { return marks };
-        let farthest = tuning::OF_RUN * self.median_step();
+        let farthest = tuning::OF_RUN * self.median_step;
         let mut run = Vec::new();
         for i in (first..=first + n).map(|i| i % n) {
             if marks[i] {
@@ -272,11 +285,13 @@ impl Contour {
             let inliers = (0..self.points.len()).filter(|i| !self.outlier[*i]);
             inliers.map(|i| self.local_fit(i, half_window)).collect()
         };
-        let wide = fits_over(widest);
+        // Outliers have just been marked by the narrower one.
+        let narrow = fits_over(narrowest);
         if narrowest == widest {
-            return wide;
+            return narrow;
         }
-        wide.into_iter().zip(fits_over(narrowest)).map(|(wide, narrow)| wider_if_alike(wide?, narrow, sigma)).collect()
+        let wide = fits_over(widest);
+        wide.into_iter().zip(narrow).map(|(wide, narrow)| wider_if_alike(wide?, narrow, sigma)).collect()
     }
 
     /// Prepares the regressions with a window, which [`local_fit`](Self::local_fit) is to be asked for next.

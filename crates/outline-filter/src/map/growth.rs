@@ -16,7 +16,8 @@ impl Cell {
 
 impl OutlineMap {
     /// Adds cells for the parts of contours in the body frame, with noise of deviation `sigma` there, that no cell covers with its
-    /// outline at the given offset. Number of the first new cell; `None` where there is none.
+    /// outline at the given offset. Number of the first new cell; `None` where there is none. Points can be associated with new cells once
+    /// that [has been prepared](Self::prepare_association).
     pub(crate) fn grow(&mut self, contours: Vec<Contour>, sigma: f64, offsets: &[f64]) -> Option<usize> {
         let first_new = self.cells.len();
         let resampled = |mut contour: Contour| contour.resampled(sigma, self.half_window, self.spacing);
@@ -27,11 +28,7 @@ impl OutlineMap {
             return None;
         }
         pieces.iter().for_each(|piece| self.add_places(piece, first_new, offsets));
-        if self.cells.len() == first_new {
-            return None;
-        }
-        self.prepare_association();
-        Some(first_new)
+        (self.cells.len() > first_new).then_some(first_new)
     }
 
     /// Appends the runs of places that no cell covers, linked along the contour.

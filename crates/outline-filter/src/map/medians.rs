@@ -1,7 +1,7 @@
 //! Medians.
 use crate::{
     tuning::contour::ABOUT,
-    vectors::{LANES, vectorised},
+    vectors::{LANES, Lanes, vectorised},
 };
 
 /// Median, the upper one of two; reorders the list.
@@ -13,8 +13,10 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Middle one of nine, by the exchanges of J. L. Smith's network (Implementing median filters in XC4000E FPGAs, 1996).
-pub(super) fn median_of_nine(mut values: [f64; 9]) -> f64 {
+/// Middle ones of all that nine lists side by side hold in a place, by the exchanges of J. L. Smith's network (Implementing median filters in
+/// XC4000E FPGAs, 1996).
+#[inline(always)]
+fn medians_of_nine(mut values: [Lanes; 9]) -> Lanes {
     for (a, b) in [
         (1, 2),
         (4, 5),
@@ -36,10 +38,39 @@ pub(super) fn median_of_nine(mut values: [f64; 9]) -> f64 {
         (6, 4),
         (4, 2),
     ] {
-        let (x, y) = (values[a], values[b]);
-        (values[a], values[b]) = if x < y { (x, y) } else { (y, x) };
+        for lane in 0..LANES {
+            let (x, y) = (values[a][lane], values[b][lane]);
+            values[a][lane] = if x < y { x } else { y };
+            values[b][lane] = if x < y { y } else { x };
+        }
     }
     values[4]
+}
+
+/// Medians of the nine numbers from each place on, one for each place that has so many.
+pub(super) fn running_medians_of_nine(numbers: &[f64]) -> Vec<f64> {
+    let count = (numbers.len() + 1).saturating_sub(9);
+    if count < LANES {
+        let all = numbers.windows(9).filter_map(|nine| median(&mut nine.to_vec()));
+        return all.collect();
+    }
+    let mut medians = vec![0.0; count];
+    vectorised(
+        #[inline(always)]
+        || {
+            for start in (0..count).step_by(LANES) {
+                // The last ones are found again where their number is no multiple of the lanes.
+                let start = start.min(count - LANES);
+                let near = &numbers[start..][..LANES + 8];
+                let mut values = [[0.0; LANES]; 9];
+                for (offset, values) in values.iter_mut().enumerate() {
+                    values.copy_from_slice(&near[offset..][..LANES]);
+                }
+                medians[start..][..LANES].copy_from_slice(&medians_of_nine(values));
+            }
+        },
+    );
+    medians
 }
 
 /// As [`median`], of sizes of which most are expected to be about a guess or below it: only those about it are put in order, the others are
@@ -97,12 +128,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_network_finds_the_median_of_nine() {
+    fn the_network_finds_the_medians_of_nine() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
-        for _ in 0..1000 {
-            let mut values: [f64; 9] = std::array::from_fn(|_| StandardNormal.sample(&mut rng));
-            values[3] = values[7];
-            assert_eq!(Some(median_of_nine(values)), median(&mut values));
+        for count in (0..30).chain([1000]) {
+            let mut numbers: Vec<f64> = (0..count).map(|_| StandardNormal.sample(&mut rng)).collect();
+            (4..count).step_by(7).for_each(|i| numbers[i] = numbers[i - 4]);
+            let expected: Vec<f64> = numbers.windows(9).filter_map(|nine| median(&mut nine.to_vec())).collect();
+            assert_eq!(running_medians_of_nine(&numbers), expected, "{count}");
         }
     }
 

@@ -17,5 +17,5 @@ pub(crate) use chains::{CellPoint, has_common_places};
 pub(crate) use contour::Contour;
 pub(crate) use medians::{median, median_about};
 pub(crate) use null_space::NullDirection;
-pub(crate) use outline_map::{Cell, OutlineMap, Resolution};
+pub(crate) use outline_map::{Cell, ContourNoise, OutlineMap, Resolution};
 pub(crate) use turn_evidence::{TurnEvent, TurnEvidence};

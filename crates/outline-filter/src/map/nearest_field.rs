@@ -3,6 +3,8 @@ use nalgebra::{Point2, Vector2};
 
 use crate::tuning::map::{FIELD_MARGIN, FIELD_PIXELS, FINEST_PIXEL};
 
+/// Rows from one that all places are looked through for to the next.
+const STRIP: usize = 8;
 /// From this number on doubles are whole numbers.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
@@ -42,24 +44,16 @@ impl NearestField {
         let in_pixels = |p: &Point2<f64>| (p - self.origin) * self.per_length - Vector2::repeat(0.5);
         let mut places: Vec<(Vector2<f64>, u32)> = places.iter().map(in_pixels).zip(0..).collect();
         places.sort_unstable_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
-        let mut lowest: Vec<Line> = Vec::with_capacity(places.len());
-        for (row, pixels) in self.nearest.chunks_exact_mut(self.width).enumerate() {
-            lowest.clear();
-            for (p, number) in &places {
-                let across = p.y - row as f64;
-                push_line(
-                    &mut lowest,
-                    Line { x: p.x, at_none: p.x * p.x + across * across, from: 0.0, number: *number },
-                );
-            }
-            let mut lines = lowest.iter().copied().peekable();
-            let mut number = 0;
-            for (column, pixel) in pixels.iter_mut().enumerate() {
-                while let Some(line) = lines.next_if(|line| line.from <= column as f64) {
-                    number = line.number;
-                }
-                *pixel = number;
-            }
+        let mut rows = Rows { places: &places, width: self.width, nearest: &mut self.nearest, lowest: Vec::new() };
+        let all: Vec<u32> = (0..places.len() as u32).collect();
+        let (mut filled, last) = (0, self.height - 1);
+        let mut above = rows.fill(0, &all);
+        while filled < last {
+            let next = (filled + STRIP).min(last);
+            let below = rows.fill(next, &all);
+            let candidates = rows.between((filled, &above), (next, &below));
+            (filled + 1..next).for_each(|row| drop(rows.fill(row, &candidates)));
+            (filled, above) = (next, below);
         }
     }
 
@@ -103,6 +97,45 @@ impl NearestField {
     }
 }
 
+/// The rows of a picture, and the places in order from left to right, in pixels, with their numbers.
+struct Rows<'a> {
+    places: &'a [(Vector2<f64>, u32)],
+    width: usize,
+    nearest: &'a mut [u32],
+    lowest: Vec<Line>,
+}
+
+impl Rows<'_> {
+    /// Fills a row with the nearest of some places, given by where they are in order; those of them that are nearest somewhere.
+    fn fill(&mut self, row: usize, candidates: &[u32]) -> Vec<u32> {
+        let Self { places, width, nearest, lowest } = self;
+        lowest.clear();
+        for index in candidates {
+            let (p, _) = &places[*index as usize];
+            let across = p.y - row as f64;
+            let at_none = p.x * p.x + across * across;
+            push_line(lowest, Line { x: p.x, at_none, from: 0.0, index: *index });
+        }
+        // Lines from the last to the first, each over the columns that are left.
+        let mut pixels = &mut nearest[row * *width..][..*width];
+        for line in lowest.iter().rev() {
+            let from = (line.from.ceil() as usize).min(pixels.len());
+            pixels[from..].fill(places[line.index as usize].1);
+            pixels = &mut pixels[..from];
+        }
+        lowest.iter().map(|line| line.index).collect()
+    }
+
+    /// Places that may be nearest in the rows between two, given with those that are nearest there. What lies nearer to a place than to any
+    /// other is convex and holds the place: it meets a row between only if it meets one of the two, or the place lies between them.
+    fn between(&self, (above, of_above): (usize, &[u32]), (below, of_below): (usize, &[u32])) -> Vec<u32> {
+        let (top, bottom) = (above as f64, below as f64);
+        let mut is_candidate: Vec<bool> = self.places.iter().map(|(p, _)| p.y >= top && p.y <= bottom).collect();
+        of_above.iter().chain(of_below).for_each(|index| is_candidate[*index as usize] = true);
+        (0..).zip(is_candidate).filter_map(|(index, is_candidate)| is_candidate.then_some(index)).collect()
+    }
+}
+
 /// The square of the distance from a place along a row of pixels, less the square of the column.
 #[derive(Debug, Clone, Copy)]
 struct Line {
@@ -112,7 +145,8 @@ struct Line {
     at_none: f64,
     /// Column from which on no line before it is lower.
     from: f64,
-    number: u32,
+    /// Where the place is in order.
+    index: u32,
 }
 
 /// Adds a line that falls no slower than those before it, and drops those that are then lowest nowhere.

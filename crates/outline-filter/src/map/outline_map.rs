@@ -121,15 +121,27 @@ pub(crate) struct Resolution {
     step: f64,
 }
 
+/// Contours with the deviation of the noise of each; those that tell none are left out.
+#[derive(Debug)]
+pub(crate) struct ContourNoise(Vec<(Contour, f64)>);
+
+impl ContourNoise {
+    pub(crate) fn of(contours: &[Contour]) -> Self {
+        let with_noise = |contour: &Contour| {
+            let mut contour = contour.clone();
+            contour.noise().map(|noise| (contour, noise))
+        };
+        Self(contours.iter().filter_map(with_noise).collect())
+    }
+}
+
 impl Resolution {
     /// For contours, and the deviation of their noise, which is no less than `least_noise`; `points` of one frame will be measured on the
     /// cells, whose normals have directions with deviations of no more than `normal_noise`, in rad.
-    pub(crate) fn of(contours: &[Contour], least_noise: f64, points: usize, normal_noise: f64) -> (Self, f64) {
+    pub(crate) fn of(contours: &mut ContourNoise, least_noise: f64, points: usize, normal_noise: f64) -> (Self, f64) {
         let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
-        for contour in contours {
-            let mut contour = contour.clone();
-            let weight = contour.len() as f64;
-            let Some(sigma) = contour.noise().map(|noise| noise.max(least_noise)) else { continue };
+        for (contour, noise) in &mut contours.0 {
+            let (weight, sigma) = (contour.len() as f64, noise.max(least_noise));
             window = contour.half_window(sigma, normal_noise).max(window);
             variance += weight * sigma * sigma;
             count += weight;

@@ -28,12 +28,12 @@ impl PlainRegression {
         }
         self.fits.resize(count, LocalFit::default());
         // The points around the contour, or along it where every window ends within.
-        let around = |coordinate: fn(&Point2<f64>) -> f64| -> Vec<f64> {
-            let (before, after) = if closed { (count - half_window..count, 0..half_window) } else { (0..0, 0..0) };
-            let all = before.chain(0..count).chain(after);
-            all.map(|i| coordinate(&points[i])).collect()
-        };
-        let coordinates = [around(|p| p.x), around(|p| p.y)];
+        let reach = if closed { half_window } else { 0 };
+        let mut coordinates = [0, 1].map(|_| Vec::with_capacity(count + 2 * reach));
+        for points in [&points[count - reach..], points, &points[..reach]] {
+            coordinates[0].extend(points.iter().map(|p| p.x));
+            coordinates[1].extend(points.iter().map(|p| p.y));
+        }
         let first = if closed { 0 } else { half_window };
         let windows = coordinates[0].len() - 2 * half_window;
         let mut sums = vec![[0.0; 3]; windows];
@@ -59,16 +59,18 @@ impl PlainRegression {
         if self.fits.is_empty() {
             return;
         }
-        // Beyond the ends nothing is a plain window.
-        let at = |i: isize| {
-            let within = (0..count as isize).contains(&i);
-            if closed { outlier[i.rem_euclid(count as isize) as usize] } else { !within || outlier[i as usize] }
-        };
         let mut sum = 0;
-        self.outliers.push(0);
-        for i in -(half_window as isize)..(count + half_window) as isize {
-            sum += u32::from(at(i));
-            self.outliers.push(sum);
+        self.outliers.reserve(count + 2 * half_window + 1);
+        self.outliers.push(sum);
+        // Beyond the ends nothing is a plain window.
+        let beyond = vec![true; half_window];
+        let (before, after) =
+            if closed { (&outlier[count - half_window..], &outlier[..half_window]) } else { (&*beyond, &*beyond) };
+        for outlier in [before, outlier, after] {
+            self.outliers.extend(outlier.iter().map(|is_outlier| {
+                sum += u32::from(*is_outlier);
+                sum
+            }));
         }
     }
 
@@ -134,7 +136,8 @@ impl Moments {
                 }
             }
             for (lane, sums) in sums.iter_mut().enumerate() {
-                *sums = of_lanes.map(|of_lane| of_lane[lane]);
+                // A closure would be called.
+                *sums = [of_lanes[0][lane], of_lanes[1][lane], of_lanes[2][lane]];
             }
         }
     }

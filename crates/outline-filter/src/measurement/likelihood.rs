@@ -1,11 +1,12 @@
 //! How badly a pose explains a frame, for comparison with other poses.
-use freeform_riccati::map_point;
+use freeform_riccati::{is_affine, map_point_by};
 use nalgebra::{Matrix3, Point2};
 
 use super::{Frame, Measurement, Pass, View};
 use crate::{
     map::median,
     tuning::{likelihood as tuning, measurement::MEDIAN_TO_DEVIATION},
+    vectors::vectorised,
 };
 
 /// Twice the negative logarithm of a likelihood, but for a constant, and how much chance there is in it.
@@ -86,8 +87,11 @@ impl View<'_> {
         poses: &[Matrix3<f64>],
     ) -> Vec<NegativeLogLikelihood> {
         let Some((first, others)) = poses.split_first() else { return Vec::new() };
-        let limit = tuning::FAR_WORSE * self.rough_mean_square(frame, first).max(1.0);
-        let rough: Vec<_> = others.iter().map(|pose| self.rough_mean_square(frame, pose)).collect();
+        let look = FirstLook::at(frame);
+        let mut numbers = vec![0; look.points.len()];
+        let mut rough = |pose: &Matrix3<f64>| self.rough_mean_square(&look, pose, &mut numbers);
+        let limit = tuning::FAR_WORSE * rough(first).max(1.0);
+        let rough: Vec<_> = others.iter().map(rough).collect();
         let near = others.iter().zip(&rough).filter(|(_, square)| **square <= limit).map(|(pose, _)| *pose);
         let near: Vec<_> = std::iter::once(*first).chain(near).collect();
         let mut measured = self.negative_log_likelihoods(frame, &near).into_iter();
@@ -99,31 +103,57 @@ impl View<'_> {
         std::iter::once(of_first).chain(others).collect()
     }
 
-    /// Mean square of the distances of points from the cells nearest to them in a pose, in units of the noise.
-    fn rough_mean_square(&self, frame: &Frame, pose: &Matrix3<f64>) -> f64 {
-        let (points, ratios) = (&frame.points, frame.deviations.ratios());
-        let stride = points.len().div_ceil(tuning::ROUGHLY).max(1);
-        let (map, offsets) = (self.map, &self.belief.offsets);
+    /// Mean square of the distances of points from the cells nearest to them in a pose, in units of the noise; `numbers` has room for one of
+    /// each.
+    fn rough_mean_square(&self, look: &FirstLook, pose: &Matrix3<f64>, numbers: &mut [u32]) -> f64 {
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
         let length = pose.fixed_view::<2, 2>(0, 0).determinant().abs().sqrt();
         let scale = length / self.comparable_noise();
-        let square = |(i, p): (usize, &Point2<f64>)| {
-            let q = map_point(&inverse, p);
-            let Some(number) = map.nearest(&q) else { return tuning::UNKNOWN };
-            if map.is_beyond_end(number, &q) {
-                return tuning::UNKNOWN;
-            }
-            let cell = &map.cells()[number];
+        vectorised(
+            #[inline(always)]
+            || {
+                if is_affine(&inverse) {
+                    self.rough_mean_square_by::<true>(look, &inverse, scale, numbers)
+                } else {
+                    self.rough_mean_square_by::<false>(look, &inverse, scale, numbers)
+                }
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn rough_mean_square_by<const AFFINE: bool>(
+        &self,
+        look: &FirstLook,
+        inverse: &Matrix3<f64>,
+        scale: f64,
+        numbers: &mut [u32],
+    ) -> f64 {
+        let (map, offsets) = (self.map, self.belief.offsets.as_slice());
+        let FirstLook { points, ratios } = look;
+        map.associate(
+            points.iter().map(
+                #[inline(always)]
+                |p| map_point_by::<AFFINE>(inverse, p),
+            ),
+            numbers,
+        );
+        let (cells, spacing) = (map.cells(), map.spacing());
+        let mut sum = 0.0;
+        for ((p, ratio), number) in points.iter().zip(ratios).zip(numbers) {
+            let Some(cell) = cells.get(*number as usize) else {
+                sum += tuning::UNKNOWN;
+                continue;
+            };
+            let q = map_point_by::<AFFINE>(inverse, p);
             let from = q - cell.centre;
             // The nearest cell is one that lies beside the point, or the point is far from all of them.
-            let is_beside = cell.normal.perp(&from).abs() < map.spacing();
-            let distance = if is_beside { cell.normal.dot(&from) - offsets[number] } else { from.norm() };
-            let ratio = ratios.map_or(1.0, |ratios| ratios[i]);
-            (scale * distance / ratio).powi(2).min(tuning::LARGEST * tuning::LARGEST)
-        };
-        let looked_at = points.iter().enumerate().step_by(stride);
-        let count = looked_at.len() as f64;
-        looked_at.map(square).sum::<f64>() / count
+            let is_beside = cell.normal.perp(&from).abs() < spacing;
+            let distance = if is_beside { cell.normal.dot(&from) - offsets[*number as usize] } else { from.norm() };
+            let size = scale * distance / ratio;
+            sum += (size * size).min(tuning::LARGEST * tuning::LARGEST);
+        }
+        sum / points.len() as f64
     }
 
     fn innovations(&self, frame: &Frame) -> impl ExactSizeIterator<Item = Option<f64>> {
@@ -139,6 +169,24 @@ impl View<'_> {
         let own = self.belief.information.cells.own().get(m.cell).copied().filter(|own| *own > 0.0)?;
         let variance = ratio * ratio + m.by_offset * m.by_offset / own;
         Some((m.residual + m.by_offset * shifts[m.cell]) / variance.sqrt())
+    }
+}
+
+/// Some of the points of a frame, and what each states of its deviation, in that of a good point.
+struct FirstLook {
+    points: Vec<Point2<f64>>,
+    ratios: Vec<f64>,
+}
+
+impl FirstLook {
+    fn at(frame: &Frame) -> Self {
+        let stride = frame.points.len().div_ceil(tuning::ROUGHLY).max(1);
+        let points: Vec<_> = frame.points.iter().step_by(stride).copied().collect();
+        let ratios = match frame.deviations.ratios() {
+            Some(ratios) => ratios.iter().step_by(stride).copied().collect(),
+            None => vec![1.0; points.len()],
+        };
+        Self { points, ratios }
     }
 }
 

@@ -198,11 +198,16 @@ impl NoiseModel {
 
     /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any.
     pub(crate) fn tolerated(&self) -> f64 {
+        self.tolerated_where(self.tolerance)
+    }
+
+    /// As [`tolerated`](Self::tolerated), with a tolerance given.
+    pub(crate) fn tolerated_where(&self, tolerance: Tolerance) -> f64 {
         let known = self.sigma;
         let mut frames = self.level.frames;
         let seen = &mut frames[..self.level.count.min(tuning::FRAMES)];
         let typical = median(seen);
-        let at_first = match self.tolerance {
+        let at_first = match tolerance {
             Tolerance::Relaxed => tuning::LARGEST_AT_FIRST,
             Tolerance::Known => 0.0,
         };

@@ -19,6 +19,8 @@ pub(crate) struct RegisteredPose {
     pub(crate) pose: Matrix3<f64>,
     /// Mean distance of the points from the map, normalised; those far off count as if they were [`tuning::FARTHEST`] away.
     score: f64,
+    /// Deviation of the points from the lines through their cells before the last step, normalised; no less than that of the noise.
+    spread: f64,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(crate) turn: f64,
 }
@@ -27,6 +29,15 @@ pub(crate) struct RegisteredPose {
 #[derive(Debug, Clone)]
 pub(crate) struct Registration {
     rigid: Vec<RegisteredPose>,
+    outlook: Outlook,
+}
+
+/// Whether a frame may be found to show the object, as far as a search with few points says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outlook {
+    Open,
+    /// Even in the pose that explains it best it scatters by far more than is tolerated.
+    Hopeless,
 }
 
 impl Registration {
@@ -45,14 +56,23 @@ impl Registration {
                 begun.push(found);
             }
         }
-        let found = begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect();
-        let mut rigid = distinct(found);
+        keep(&mut begun, tuning::SEARCHED_ON);
+        let mut rigid = distinct(begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect());
         keep(&mut rigid, tuning::REFINED);
+        let outlook = outlook(track, points.len(), &rigid);
+        if outlook == Outlook::Hopeless {
+            rigid.truncate(1);
+            return Self { rigid, outlook };
+        }
         // Some come together only with all points: one taken twice would keep another out.
-        let refine = |h: &RegisteredPose| refined(track, points, MotionModel::Rigid, &h.pose, Steps::REFINEMENT);
+        let refine =
+            |found: &RegisteredPose| refined(track, points, MotionModel::Rigid, &found.pose, Steps::REFINEMENT);
         rigid = distinct(rigid.iter().map(refine).collect());
         keep(&mut rigid, tuning::KEPT);
-        Self { rigid }
+        if let Some(limit) = rigid.first().map(|best| tuning::FAR_WORSE * best.score) {
+            rigid.retain(|found| found.score <= limit);
+        }
+        Self { rigid, outlook }
     }
 
     /// The poses of the track's model, at most four (eight with more parameters than rigid motion has), with the smallest turns either way of an
@@ -60,7 +80,7 @@ impl Registration {
     pub(crate) fn poses(&self, track: &Track, points: &[Point2<f64>], symmetry: usize) -> Vec<RegisteredPose> {
         let (model, pose) = (track.model(), track.body_pose());
         let mut best = self.rigid.clone();
-        if symmetry > 1 {
+        if symmetry > 1 && self.outlook == Outlook::Open {
             add_turns_of_symmetry(&mut best, track, points, symmetry);
         }
         if model != MotionModel::Rigid {
@@ -79,6 +99,16 @@ impl Registration {
         }
         best
     }
+}
+
+/// What the poses found with few points, the best of them first, promise. That there is nothing to be found is said of rigid motion alone,
+/// since others change the outline, of frames of enough points, and of outlines without ends, beyond which points may lie.
+fn outlook(track: &Track, points: usize, found: &[RegisteredPose]) -> Outlook {
+    let is_told = points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends();
+    let Some(best) = found.first().filter(|_| is_told) else {
+        return Outlook::Open;
+    };
+    if best.spread > tuning::HOPELESS * track.most_noise_tolerated() { Outlook::Hopeless } else { Outlook::Open }
 }
 
 /// Changes of the present pose that searches start from: turns about the centroids all around, and those that related points tell.
@@ -201,7 +231,7 @@ where
     let mut numbers = vec![0; points.len()];
     let mut rows: Vec<(f64, [f64; K])> = vec![(0.0, [0.0; K]); points.len()];
     let mut sizes = Vec::with_capacity(points.len());
-    let mut widest = steps.widest;
+    let (mut widest, mut spread) = (steps.widest, f64::INFINITY);
     for _ in 0..steps.most {
         let Some(inverse) = pose.try_inverse() else { break };
         let null = if model == belief.model { map.null_directions(model, &pose) } else { Vec::new() };
@@ -227,9 +257,9 @@ where
         }
         sizes.clear();
         sizes.extend(rows.iter().map(|(r, _)| r.abs()));
-        let of_points = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
-        let scale = tuning::TUKEY * of_points.max(widest);
-        let is_narrow = widest <= of_points;
+        spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
+        let scale = tuning::TUKEY * spread.max(widest);
+        let is_narrow = widest <= spread;
         widest *= tuning::NARROWER;
         let rows = rows.as_slice();
         let (gram, right) = vectorised(
@@ -248,9 +278,9 @@ where
             break;
         }
     }
-    let score = mean_distance(track, points, &pose);
+    let score = mean_distance(track, points, &pose, &mut numbers);
     let turn = turn_of(&pose, track.body_pose());
-    RegisteredPose { pose, score, turn }
+    RegisteredPose { pose, score, spread, turn }
 }
 
 /// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.
@@ -262,6 +292,23 @@ struct Seen<'a> {
 }
 
 impl Seen<'_> {
+    #[inline(always)]
+    fn mean_distance<const AFFINE: bool>(&self, numbers: &mut [u32]) -> f64 {
+        let Self { points, inverse, map, offsets } = self;
+        let places = points.iter().map(
+            #[inline(always)]
+            |p| map_point_by::<AFFINE>(inverse, p),
+        );
+        map.associate_all(places.clone(), numbers);
+        let cells = map.cells();
+        let mut sum = 0.0;
+        for (q, number) in places.zip(numbers) {
+            let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
+            sum += (q - (cell.centre + offset * cell.normal)).norm().min(tuning::FARTHEST);
+        }
+        sum / points.len() as f64
+    }
+
     /// Residuals of all points and their derivatives, which `velocities` tell.
     #[inline(always)]
     fn linearise<const AFFINE: bool, const K: usize>(
@@ -316,19 +363,19 @@ fn weighted_sums<const K: usize>(rows: &[(f64, [f64; K])], scale: f64) -> ([[f64
     (gram, right)
 }
 
-/// Mean distance of points from the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away.
-fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>) -> f64 {
+/// Mean distance of points from the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away; `numbers` has room for one of
+/// each point.
+fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, numbers: &mut [u32]) -> f64 {
     let View { map, belief, .. } = track.view();
     let Some(inverse) = pose.try_inverse() else { return f64::INFINITY };
-    let (mut sum, mut count) = (0.0, 0.0);
-    for p in points {
-        let q = map_point(&inverse, p);
-        if let Some(number) = map.nearest(&q) {
-            sum += (q - map.outline_at(number, &belief.offsets)).norm().min(tuning::FARTHEST);
-            count += 1.0;
-        }
+    if points.is_empty() || map.cells().is_empty() {
+        return f64::INFINITY;
     }
-    if count > 0.0 { sum / count } else { f64::INFINITY }
+    let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
+    vectorised(
+        #[inline(always)]
+        || if is_affine(&inverse) { seen.mean_distance::<true>(numbers) } else { seen.mean_distance::<false>(numbers) },
+    )
 }
 
 /// Turn of a pose from the one before.

@@ -10,12 +10,29 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
     if track.turn_is_unseen() {
         return 1;
     }
-    let poses: Vec<_> = std::iter::once(*pose)
-        .chain((2..=tuning::LARGEST_ORDER).map(|n| track.turned(pose, std::f64::consts::TAU / n as f64)))
-        .collect();
-    let likelihoods = track.compared_with_first(outline, &poses, frame);
-    let as_good = |n: &usize| likelihoods[n - 1].is_within(tuning::AS_GOOD, &likelihoods[0]);
-    let found: Vec<usize> = (2..=tuning::LARGEST_ORDER).rev().filter(as_good).collect();
+    let mut as_good = |orders: Vec<usize>| -> Vec<usize> {
+        if orders.is_empty() {
+            return orders;
+        }
+        let turns = orders.iter().map(|n| track.turned(pose, std::f64::consts::TAU / *n as f64));
+        let poses: Vec<_> = std::iter::once(*pose).chain(turns).collect();
+        let likelihoods = track.compared_with_first(outline, &poses, frame);
+        let is_as_good = likelihoods[1..].iter().map(|other| other.is_within(tuning::AS_GOOD, &likelihoods[0]));
+        orders.into_iter().zip(is_as_good).filter_map(|(n, is_as_good)| is_as_good.then_some(n)).collect()
+    };
+    // What is turned onto itself by the n-th part of a circle is by that of every factor of n, too: the primes say what else may be.
+    let all = 2..=tuning::LARGEST_ORDER;
+    let mut found = as_good(all.clone().filter(|n| prime_factors(*n) == [*n]).collect());
+    let may_be = |n: &usize| {
+        let factors = prime_factors(*n);
+        factors != [*n] && factors.iter().all(|factor| found.contains(factor))
+    };
+    let composite = as_good(all.filter(may_be).collect());
+    found.extend(composite);
+    if found.is_empty() {
+        return 1;
+    }
+    found.sort_unstable_by(|a, b| b.cmp(a));
     // Turns that are too small for the frame to show are no symmetry: half of one of a symmetry is seen.
     let halves: Vec<_> = std::iter::once(*pose)
         .chain(found.iter().map(|n| track.turned(pose, std::f64::consts::PI / *n as f64)))
@@ -23,4 +40,30 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
     let likelihoods = track.compared_with_first(outline, &halves, frame);
     let seen = |at: &usize| !likelihoods[at + 1].is_within(tuning::HALF_IS_WORSE, &likelihoods[0]);
     (0..found.len()).find(seen).map_or(1, |at| found[at])
+}
+
+/// Prime factors of a number, each as often as it divides.
+fn prime_factors(number: usize) -> Vec<usize> {
+    let (mut rest, mut factors) = (number, Vec::new());
+    for factor in 2..=number {
+        while rest % factor == 0 {
+            factors.push(factor);
+            rest /= factor;
+        }
+    }
+    factors
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prime_factors_multiply_to_the_number() {
+        assert_eq!(prime_factors(72), [2, 2, 2, 3, 3]);
+        assert_eq!(prime_factors(71), [71]);
+        for number in 2..=72 {
+            assert_eq!(prime_factors(number).iter().product::<usize>(), number);
+        }
+    }
 }

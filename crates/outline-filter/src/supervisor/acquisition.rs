@@ -4,7 +4,7 @@ use freeform_curve_fit::Outline;
 use super::{
     motion_filter::{MotionFilter, Phase},
     tracking::gate,
-    turn_hypotheses::{Candidate, TurnHypotheses},
+    turn_hypotheses::{Candidate, TurnHypotheses, VerdictOf},
 };
 use crate::{
     map::TurnEvent,
@@ -73,7 +73,8 @@ impl MotionFilter {
         // where nothing fits without.
         let mut registration = None;
         let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut registration);
-        if !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
+        let is_relaxed = self.track.as_ref().is_some_and(Track::tolerates_more_relaxed);
+        if is_relaxed && !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
             let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &mut registration);
             candidates = if relaxed.is_empty() { candidates } else { relaxed };
         }
@@ -106,7 +107,7 @@ impl MotionFilter {
     ) -> Vec<Candidate> {
         self.track.as_mut().into_iter().for_each(Track::show_turn);
         let Some(found) = registration.take().or_else(|| self.registered(outline)) else { return Vec::new() };
-        let candidates = self.candidates_of(outline, seconds, tolerance, &found);
+        let candidates = self.candidates_of(outline, seconds, tolerance, &found, Vec::new());
         let fitting = candidates.iter().filter(|c| c.outcome.is_accepted());
         let Some(best) = fitting.min_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares)) else {
             *registration = Some(found);
@@ -120,11 +121,14 @@ impl MotionFilter {
                 return candidates;
             }
             self.symmetry = symmetry;
-            return self.candidates_of(outline, seconds, tolerance, &found);
+            // What has been measured is so in the same way, unless others have vouched for it.
+            let is_measured = candidates.iter().all(|candidate| candidate.verdict_of == VerdictOf::Itself);
+            let measured = if is_measured { candidates } else { Vec::new() };
+            return self.candidates_of(outline, seconds, tolerance, &found, measured);
         }
         track.hide_turn();
         let Some(found) = self.registered(outline) else { return candidates };
-        self.candidates_of(outline, seconds, tolerance, &found)
+        self.candidates_of(outline, seconds, tolerance, &found, Vec::new())
     }
 
     /// The outline of the track brought onto that of the frame.
@@ -138,32 +142,38 @@ impl MotionFilter {
         Some(Registration::search(track, &self.frame.points, landmarks))
     }
 
-    /// The poses of a registration with the frame, and those that the symmetry of the outline adds, measured.
+    /// The poses of a registration with the frame, and those that the symmetry of the outline adds, measured, as far as they are not among
+    /// those measured before.
     fn candidates_of(
         &mut self,
         outline: &Outline,
         seconds: f64,
         tolerance: Tolerance,
         registration: &Registration,
+        measured: Vec<Candidate>,
     ) -> Vec<Candidate> {
         let Some(track) = self.track.as_ref() else { return Vec::new() };
         self.frame.load(outline, track.reference());
         let poses = registration.poses(track, &self.frame.points, self.symmetry);
-        self.candidates_at(outline, seconds, tolerance, &poses)
+        self.candidates_at(outline, seconds, tolerance, (&poses, measured))
     }
 
-    /// These poses, measured.
+    /// These poses, measured as far as they are not yet.
     fn candidates_at(
         &mut self,
         outline: &Outline,
         seconds: f64,
         tolerance: Tolerance,
-        poses: &[RegisteredPose],
+        (poses, mut measured): (&[RegisteredPose], Vec<Candidate>),
     ) -> Vec<Candidate> {
         let Some(track) = self.track.as_ref() else { return Vec::new() };
         self.frame.load(outline, track.reference());
         let mut candidates = Vec::new();
         for found in poses {
+            if let Some(at) = measured.iter().position(|candidate| candidate.found_in == found.pose) {
+                candidates.push(measured.swap_remove(at));
+                continue;
+            }
             let Some((mut track, turn)) = self.moved(found, seconds).map(|track| (track, found.turn)) else {
                 continue;
             };
@@ -175,10 +185,14 @@ impl MotionFilter {
             if !track.outline_points().all(|point| point.coords.iter().all(|c| c.is_finite())) {
                 continue;
             }
-            candidates.push(Candidate { track, outcome, turn, likelihood: NegativeLogLikelihood::default() });
+            let likelihood = NegativeLogLikelihood::default();
+            let (found_in, verdict_of) = (found.pose, VerdictOf::Itself);
+            candidates.push(Candidate { track, outcome, found_in, turn, likelihood, verdict_of });
         }
-        let poses: Vec<_> = candidates.iter().map(|candidate| *candidate.track.body_pose()).collect();
-        if let Some(track) = &self.track {
+        // Only those that are accepted are compared, with each other and the others.
+        let is_any_accepted = candidates.iter().any(|candidate| candidate.outcome.is_accepted());
+        if let Some(track) = self.track.as_ref().filter(|_| is_any_accepted) {
+            let poses: Vec<_> = candidates.iter().map(|candidate| *candidate.track.body_pose()).collect();
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             candidates.iter_mut().zip(likelihoods).for_each(|(candidate, of_it)| candidate.likelihood = of_it);
         }
@@ -192,12 +206,13 @@ impl MotionFilter {
         let accepted = candidates.iter().filter(|candidate| candidate.outcome.is_accepted()).map(|c| c.likelihood);
         let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
         for candidate in candidates.iter_mut() {
-            let Candidate { track, outcome, likelihood, .. } = candidate;
+            let Candidate { track, outcome, likelihood, verdict_of, .. } = candidate;
             if !outcome.is_noisy() || likelihood.is_worse_than(&best) {
                 continue;
             }
             self.frame.load(outline, track.reference());
             track.set_tolerance(tolerance);
+            *verdict_of = VerdictOf::Others;
             let gate = gate(&self.settings, track).without_noise();
             *outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
             track.set_tolerance(Tolerance::Known);

@@ -1,13 +1,13 @@
 //! The initialisation window: the frames that a track was begun from, and its map cut anew from them.
 use freeform_curve_fit::Outline;
-use nalgebra::{Affine2, Matrix3};
+use nalgebra::Affine2;
 
 use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
     tracking::advance_again,
-    window::InitialisationWindow,
+    window::{Draft, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
     map::TurnEvent,
@@ -17,16 +17,10 @@ use crate::{
     tuning::remapping as tuning,
 };
 
-/// A track cut anew, how the motion changes in the frames that it was cut from, and their poses.
-struct Remapped {
-    track: Track,
-    history: MotionHistory,
-    poses: Vec<Matrix3<f64>>,
-}
-
 impl MotionFilter {
     /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
-    /// may be what coarse cells make of it.
+    /// may be what coarse cells make of it. No frame has more of that to do than one cut, or than measuring the
+    /// frames kept for one hypothesis.
     pub(super) fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
         let Some(track) = &mut self.track else { return };
         if self.phase != Phase::Tracking {
@@ -36,33 +30,123 @@ impl MotionFilter {
             return;
         }
         let is_due = self.window.keep(time, outline, track);
-        if !is_due && !changes || !self.window.are_several() {
+        let remapping = self.window.take_remapping();
+        let is_idle = matches!(remapping, Remapping::Idle);
+        if is_idle && !(is_due || changes) || !self.window.are_several() {
             return;
         }
         if track.turn_is_unseen() {
             self.begin_with_turn(outline);
         } else {
-            self.remap();
+            let turn = self.turn_hypotheses.present_turn();
+            let next = match remapping {
+                Remapping::Drafted(draft) if draft.turn == turn => self.measure(*draft),
+                Remapping::Measured(measured) if measured.begun.turn == turn => self.go_on(*measured),
+                Remapping::Placed(placed) if placed.turn == turn => self.draft_along(*placed),
+                Remapping::Again { cuts } => self.draft(cuts),
+                // The map is cut for another hypothesis where they have been exchanged meanwhile.
+                Remapping::Placed(_) | Remapping::Drafted(_) | Remapping::Measured(_) | Remapping::Idle => {
+                    self.draft(0)
+                }
+            };
+            self.window.set_remapping(next);
         }
         self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
     }
 
-    /// Cuts the map anew from the first frames, until it settles, and looks for changes of the motion once more: what was taken for one may
-    /// have been what coarse cells left.
-    fn remap(&mut self) {
-        let Some(track) = &self.track else { return };
+    /// Measures the frames kept on cells that were cut after the last of them, before the next frame is looked at: by the coarse map it might be
+    /// taken for another thing. Where there are rivals, they take their turns instead.
+    pub(super) fn measure_before_next(&mut self) {
+        let is_followed = self.phase == Phase::Tracking && self.turn_hypotheses.followed().next().is_none();
+        if !is_followed || !self.window.is_drafted_for(self.turn_hypotheses.present_turn()) {
+            return;
+        }
+        if let Remapping::Drafted(draft) = self.window.take_remapping() {
+            let next = self.measure(*draft);
+            self.window.set_remapping(next);
+            self.window.end_unless_few(self.track.as_ref().map_or(0, Track::cell_count));
+        }
+    }
+
+    /// Cuts the map anew from the first frames, after so many cuts; where there are rivals, in the frame after this.
+    fn draft(&mut self, cuts: usize) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
         let remapper = Remapper { settings: &self.settings, window: &self.window };
-        let Some(cut) = remapper.settled(track, remapper.may_change(&self.history), &mut self.frame) else { return };
+        let frames = remapper.placed(track, remapper.may_change(&self.history));
+        let turn = self.turn_hypotheses.present_turn();
+        let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
+        let placed = Placed { runs, turn, cuts };
+        if self.turn_hypotheses.followed().next().is_none() {
+            return self.draft_along(placed);
+        }
+        Remapping::Placed(Box::new(placed))
+    }
+
+    /// As [`draft`](Self::draft), with the points of the frames in order.
+    fn draft_along(&mut self, Placed { runs, turn, cuts }: Placed) -> Remapping {
+        let first = self.window.first();
+        let cut =
+            self.track.as_ref().zip(first).and_then(|(track, first)| track.recut_along(runs, first, &mut self.frame));
+        cut.map_or(Remapping::Idle, |track| Remapping::Drafted(Box::new(Draft { track, turn, cuts: cuts + 1 })))
+    }
+
+    /// Measures the frames kept on cells cut anew.
+    fn measure(&mut self, mut draft: Draft) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
+        let remapper = Remapper { settings: &self.settings, window: &self.window };
+        let frames = remapper.placed(track, false);
+        let Some(first) = frames.first() else { return Remapping::Idle };
+        draft.track.begin_as(track, first.outline, &mut self.frame);
+        let Some(present) = remapper.replayed(draft.track.clone(), &frames, &mut self.frame) else {
+            return Remapping::Idle;
+        };
+        let measured = Measured { begun: draft, present, rivals: Vec::new() };
+        if self.turn_hypotheses.followed().next().is_none() {
+            return self.exchange(measured);
+        }
+        Remapping::Measured(Box::new(measured))
+    }
+
+    /// Takes the frame kept last with all that have taken those before it on the new cells, and all of them with one more rival. All are
+    /// exchanged at once: one alone would win by its finer cells.
+    fn go_on(&mut self, Measured { begun, present, rivals }: Measured) -> Remapping {
+        let remapper = Remapper { settings: &self.settings, window: &self.window };
         let frame = &mut self.frame;
-        self.turn_hypotheses.remap(|track| remapper.settled(track, false, frame).map(|cut| cut.track));
-        self.track = Some(cut.track);
-        self.motion_changed = cut.history.is_changing();
-        self.history = cut.history;
+        let Some(present) = remapper.taken_last(present, frame) else { return Remapping::Idle };
+        let mut rivals: Vec<_> = rivals
+            .into_iter()
+            .map(|(turn, rival)| (turn, rival.and_then(|rival| remapper.taken_last(rival, frame))))
+            .collect();
+        let mut waiting = self.turn_hypotheses.followed().filter(|(turn, _)| rivals.iter().all(|(of, _)| of != turn));
+        let (next, is_last) = (waiting.next(), waiting.next().is_none());
+        drop(waiting);
+        if let Some((turn, rival)) = next {
+            rivals.push((turn, remapper.on_map_of(&begun.track, rival, frame)));
+        }
+        let measured = Measured { begun, present, rivals };
+        if is_last { self.exchange(measured) } else { Remapping::Measured(Box::new(measured)) }
+    }
+
+    /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
+    /// one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that it is cut again unless
+    /// the pose has settled.
+    fn exchange(&mut self, Measured { begun, present, mut rivals }: Measured) -> Remapping {
+        let Some(track) = &self.track else { return Remapping::Idle };
+        self.turn_hypotheses.remap(|turn| {
+            let of_turn = rivals.iter_mut().find(|(of, _)| *of == turn);
+            of_turn.and_then(|(_, rival)| rival.take()).map(|rival| rival.track)
+        });
+        let has_settled = (present.track.body_pose() - track.body_pose()).norm() < present.track.sigma();
+        self.track = Some(present.track);
+        self.motion_changed = present.history.is_changing();
+        self.history = present.history;
         if !self.history.change.is_seen() {
             // What the first few frames seem to say of it counts for nothing.
             self.history.change = Default::default();
         }
-        self.window.set_poses(cut.poses);
+        self.window.set_poses(present.poses);
+        let cuts = begun.cuts;
+        if has_settled || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
@@ -89,24 +173,9 @@ struct Remapper<'a> {
 }
 
 impl Remapper<'_> {
-    /// A track cut anew from the first frames until its pose settles; `changes` tells whether its motion has been another in them.
-    fn settled(&self, track: &Track, changes: bool, buffers: &mut Frame) -> Option<Remapped> {
-        let frames = if changes { self.window.as_found() } else { self.window.by_motion(track) };
-        let mut cut = self.cut(track, &frames, buffers)?;
-        let mut before = *track.body_pose();
-        // Better aligned frames make a better map, which aligns them better.
-        for _ in 1..tuning::MOST_CUTS {
-            if (cut.track.body_pose() - before).norm() < cut.track.sigma() {
-                break;
-            }
-            before = *cut.track.body_pose();
-            let mut frames = self.window.by_motion(&cut.track);
-            if self.may_change(&cut.history) {
-                frames.iter_mut().zip(&cut.poses).for_each(|(frame, pose)| frame.pose = *pose);
-            }
-            cut = self.cut(&cut.track, &frames, buffers)?;
-        }
-        Some(cut)
+    /// The frames kept, where they are cut from; `changes` tells whether the motion of the track has been another in them.
+    fn placed(&self, track: &Track, changes: bool) -> Vec<PlacedFrame<'_>> {
+        if changes { self.window.as_found() } else { self.window.by_motion(track) }
     }
 
     /// Whether the motion changes, as is seen or as the settings say.
@@ -114,10 +183,34 @@ impl Remapper<'_> {
         history.is_changing() || !self.settings.process_noise.is_none()
     }
 
-    fn cut(&self, track: &Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
-        let mut history = MotionHistory::default();
-        let mut poses = vec![*track.first_body_pose()];
-        let track = track.remapped(frames, 1, buffers, |track, frame, seconds, outline| {
+    /// A rival of a track that was begun anew, on the same cells: each of its own would be as many times the work, and a finer one would win by
+    /// that alone. Where they have not begun alike it has cells of its own all the same.
+    fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Remapped> {
+        let frames = self.placed(rival, false);
+        let begun = begun.with_motion_of(rival).or_else(|| {
+            let mut begun = rival.recut(&frames, 1, buffers)?;
+            begun.begin_as(rival, frames.first()?.outline, buffers);
+            Some(begun)
+        })?;
+        self.replayed(begun, &frames, buffers)
+    }
+
+    /// A track that stands at the first frame, after all of them.
+    fn replayed(&self, begun: Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
+        let poses = vec![*begun.first_body_pose()];
+        self.taken(Remapped { track: begun, history: MotionHistory::default(), poses }, frames, buffers)
+    }
+
+    /// One that stands at the last frame kept but one, after that which is kept last.
+    fn taken_last(&self, remapped: Remapped, buffers: &mut Frame) -> Option<Remapped> {
+        let frames = self.placed(&remapped.track, false);
+        self.taken(remapped, &frames[frames.len().checked_sub(2)?..], buffers)
+    }
+
+    /// One that stands at the first of some frames, after all of them.
+    fn taken(&self, remapped: Remapped, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
+        let Remapped { track, mut history, mut poses } = remapped;
+        let track = track.replayed(frames, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());
             let outcome = advance_again(self.settings, (track, frame), &mut history, seconds);
             poses.push(*track.body_pose());
@@ -130,7 +223,7 @@ impl Remapper<'_> {
 #[cfg(test)]
 mod tests {
     use freeform_riccati::MotionModel;
-    use nalgebra::Point2;
+    use nalgebra::{Point2, Rotation2};
 
     use super::*;
 
@@ -148,5 +241,52 @@ mod tests {
             assert!(filter.window.len() <= tuning::OCCASIONS[2], "frame {frame}");
         }
         assert!(filter.track.as_ref().is_some_and(Track::turn_is_unseen));
+    }
+
+    /// Points on an outline, elsewhere on it from frame to frame, turned by 40 degrees in each.
+    fn turning(frame: u32, count: u32, radius: impl Fn(f64) -> f64) -> Outline {
+        let turn = Rotation2::new(40.0_f64.to_radians() * f64::from(frame));
+        let point = |i: u32| {
+            let part = (0.618_034 * f64::from(frame)).fract();
+            let t = std::f64::consts::TAU * (f64::from(i) + part) / f64::from(count);
+            let noise = 0.004 * (12_345.678 * (f64::from(i) + 1.0) * (f64::from(frame) + 1.0).sqrt()).sin();
+            turn * Point2::new(t.cos(), t.sin()) * (radius(t) + noise)
+        };
+        Outline::closed((0..count).map(point).collect()).expect("an outline")
+    }
+
+    #[test]
+    fn a_map_is_cut_after_a_frame_and_measured_before_the_next() {
+        let egg = |t: f64| 1.0 + 0.2 * t.cos() + 0.1 * (3.0 * t).sin();
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        for frame in 0..6 {
+            let before = filter.track.as_ref().map_or(0, Track::cell_count);
+            let step = filter.step(f64::from(frame) / 30.0, &turning(frame, 400, egg)).expect("increasing times");
+            assert!(step.is_accepted(), "frame {frame}");
+            assert_eq!(
+                filter.window.is_drafted_for(filter.turn_hypotheses.present_turn()),
+                frame == 3,
+                "frame {frame}"
+            );
+            let is_finer = before > 0 && filter.track.as_ref().is_some_and(|track| track.cell_count() > before);
+            assert_eq!(is_finer, frame == 4, "frame {frame}: {before} cells before");
+        }
+        assert_eq!(filter.window.len(), 0);
+    }
+
+    #[test]
+    fn rivals_are_measured_on_the_cells_of_the_present_track() {
+        let peanut = |t: f64| 1.0 + 0.2 * (2.0 * t).cos();
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        let mut counts = Vec::new();
+        for frame in 0..8 {
+            filter.step(f64::from(frame) / 30.0, &turning(frame, 400, peanut)).expect("increasing times");
+            let Some(track) = &filter.track else { continue };
+            let rivals: Vec<_> = filter.turn_hypotheses.followed().map(|(_, rival)| rival.cell_count()).collect();
+            // All are exchanged at once.
+            assert!(rivals.iter().all(|cells| *cells == track.cell_count()), "frame {frame}: {rivals:?}");
+            counts.extend(rivals);
+        }
+        assert!(counts.first() < counts.last(), "never cut anew: {counts:?}");
     }
 }

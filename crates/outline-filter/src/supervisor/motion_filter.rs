@@ -202,6 +202,7 @@ impl MotionFilter {
 
     /// Processes a frame after the first, at a time in units of time.
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
+        self.measure_before_next();
         self.last_time = time;
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {

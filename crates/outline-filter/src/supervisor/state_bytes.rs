@@ -12,7 +12,8 @@ const VERSION: u32 = 12;
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
 
 impl MotionFilter {
-    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points, before the object was found again also up to two outlines. A filter [made from them](Self::from_bytes)
+    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points, before the object was found again also up to two outlines, and
+    /// while its map is cut anew the frames that it is cut from and up to twice as much. A filter [made from them](Self::from_bytes)
     /// goes on as this one would, to the last bit. The first four bytes are the version of the format, little-endian.
     ///
     /// # Errors
@@ -80,7 +81,7 @@ impl MotionFilter {
         if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
             return inconsistent("landmarks");
         }
-        if !self.window.is_valid() {
+        if !self.window.restore(&self.settings, restored) {
             return inconsistent("first frames");
         }
         if !self.unfound_are_valid() {

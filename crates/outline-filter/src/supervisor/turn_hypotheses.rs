@@ -3,6 +3,7 @@ use std::f64::consts::TAU;
 
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::Matrix3;
 
 use super::{
     settings::FilterSettings,
@@ -25,9 +26,20 @@ use freeform_estimate::StateFormat;
 pub(super) struct Candidate {
     pub(super) track: Track,
     pub(super) outcome: Outcome,
+    /// The pose that it was measured from.
+    pub(super) found_in: Matrix3<f64>,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(super) turn: f64,
     pub(super) likelihood: NegativeLogLikelihood,
+    pub(super) verdict_of: VerdictOf,
+}
+
+/// What says whether a pose that was tried is accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum VerdictOf {
+    Itself,
+    /// Others, which show that the noise of the frame says nothing against it.
+    Others,
 }
 
 /// One other way in which the object may have turned.
@@ -301,11 +313,18 @@ impl TurnHypotheses {
         }
     }
 
-    /// Cuts the maps of all hypotheses anew; those that cannot be are none any more.
-    pub(super) fn remap(&mut self, mut cut: impl FnMut(&Track) -> Option<Track>) {
+    /// Turns and tracks of those that are followed.
+    pub(super) fn followed(&self) -> impl Iterator<Item = (f64, &Track)> + '_ {
+        let tracks = self.rivals.iter().map(|hypothesis| hypothesis.track.as_ref());
+        self.rival_turns.iter().zip(tracks).filter_map(|(turn, track)| Some((*turn, track?)))
+    }
+
+    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew; those that have none are
+    /// none any more.
+    pub(super) fn remap(&mut self, mut track_of: impl FnMut(f64) -> Option<Track>) {
         for index in (0..self.rivals.len()).rev() {
             if let Some(track) = &mut self.rivals[index].track {
-                match cut(track) {
+                match track_of(self.rival_turns[index]) {
                     Some(new) => *track = new,
                     None => self.remove(index),
                 }

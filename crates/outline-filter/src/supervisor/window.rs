@@ -1,6 +1,9 @@
 use freeform_curve_fit::Outline;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Point2};
 
+use super::motion_change::MotionHistory;
+#[cfg(feature = "serde")]
+use super::settings::FilterSettings;
 use crate::{
     track::{PlacedFrame, Track},
     tuning::remapping as tuning,
@@ -15,6 +18,80 @@ enum Window {
     Closed,
 }
 
+/// How far the map is cut anew: a stage in each frame that is taken.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Remapping {
+    #[default]
+    Idle,
+    /// The points of the frames kept, in order, to be cut: where rivals take most of the time that a frame has.
+    Placed(Box<Placed>),
+    /// Cut, and not measured yet.
+    Drafted(Box<Draft>),
+    /// The present track has taken the frames kept on the new cells; its rivals do one after the other.
+    Measured(Box<Measured>),
+    /// To be cut again, after so many cuts.
+    Again { cuts: usize },
+}
+
+/// Points of the frames kept in the body frame, in their order along each piece of the outline, and whether that is closed.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Placed {
+    pub(super) runs: Vec<(Vec<Point2<f64>>, bool)>,
+    /// Of the hypothesis by which they have been placed.
+    pub(super) turn: f64,
+    /// Cuts before.
+    pub(super) cuts: usize,
+}
+
+/// A track of cells cut anew.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Draft {
+    pub(super) track: Track,
+    /// Of the hypothesis that it was cut for.
+    pub(super) turn: f64,
+    /// Cuts one after the other, this one included.
+    pub(super) cuts: usize,
+}
+
+/// Hypotheses on cells cut anew.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Measured {
+    /// The track that all are begun with, at the first of the frames kept.
+    pub(super) begun: Draft,
+    pub(super) present: Remapped,
+    /// By their turns; none where a frame was not taken.
+    pub(super) rivals: Vec<(f64, Option<Remapped>)>,
+}
+
+/// A track that has taken the frames kept on a map cut anew, how the motion changes in them, and their poses.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Remapped {
+    pub(super) track: Track,
+    pub(super) history: MotionHistory,
+    pub(super) poses: Vec<Matrix3<f64>>,
+}
+
+#[cfg(feature = "serde")]
+impl Draft {
+    fn restore(&mut self, restore: &impl Fn(&mut Track) -> bool) -> bool {
+        self.turn.is_finite() && self.cuts <= tuning::MOST_CUTS && restore(&mut self.track)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Remapped {
+    fn restore(&mut self, settings: &FilterSettings, restore: &impl Fn(&mut Track) -> bool) -> bool {
+        self.history.is_valid(settings)
+            && self.poses.iter().flatten().all(|entry| entry.is_finite())
+            && restore(&mut self.track)
+    }
+}
+
 /// The frames that a map was begun from, kept until it has been cut from enough of them.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,6 +101,7 @@ pub(super) struct InitialisationWindow {
     poses: Vec<Matrix3<f64>>,
     points: usize,
     state: Window,
+    remapping: Remapping,
 }
 
 impl InitialisationWindow {
@@ -34,6 +112,7 @@ impl InitialisationWindow {
             poses: vec![*track.body_pose()],
             points: outline.point_count(),
             state: Window::Open,
+            remapping: Remapping::Idle,
         };
         frames.end_unless_few(track.cell_count());
         frames
@@ -69,19 +148,38 @@ impl InitialisationWindow {
         tuning::OCCASIONS.contains(&self.frames.len())
     }
 
+    /// The first frame kept.
+    pub(super) fn first(&self) -> Option<&Outline> {
+        self.frames.first().map(|(_, outline)| outline)
+    }
+
     /// Whether there are frames to cut a map from.
     pub(super) fn are_several(&self) -> bool {
         self.frames.len() > 1
     }
 
-    /// Forgets what is kept unless more frames would make a map of so many cells better.
+    /// Whether the map has been cut anew for a hypothesis of the turn, and not been measured yet.
+    pub(super) fn is_drafted_for(&self, turn: f64) -> bool {
+        matches!(&self.remapping, Remapping::Drafted(draft) if draft.turn == turn)
+    }
+
+    /// What is being done to cut the map anew, which is then nothing.
+    pub(super) fn take_remapping(&mut self) -> Remapping {
+        std::mem::take(&mut self.remapping)
+    }
+
+    pub(super) fn set_remapping(&mut self, remapping: Remapping) {
+        self.remapping = remapping;
+    }
+
+    /// Forgets what is kept unless it is in use, or more frames would make a map of so many cells better.
     pub(super) fn end_unless_few(&mut self, cells: usize) {
         let count = self.frames.len().max(1);
         let next = tuning::OCCASIONS.into_iter().find(|occasion| *occasion > count);
         let each = self.points / count;
         let would_be_plenty = count > 1 && next.is_none_or(|next| next * each > tuning::PLENTY);
         let one_is_plenty = each as f64 > tuning::PLENTY_PER_CELL * cells as f64;
-        if would_be_plenty || one_is_plenty {
+        if matches!(self.remapping, Remapping::Idle) && (would_be_plenty || one_is_plenty) {
             self.end();
         }
     }
@@ -105,8 +203,29 @@ impl InitialisationWindow {
 
 #[cfg(feature = "serde")]
 impl InitialisationWindow {
-    /// Whether frames and poses belong together and times increase.
-    pub(super) fn is_valid(&self) -> bool {
+    /// Whether frames and poses belong together and times increase; `restore` makes a track usable, or tells that it cannot.
+    pub(super) fn restore(&mut self, settings: &FilterSettings, restore: impl Fn(&mut Track) -> bool) -> bool {
+        let is_usable = match &mut self.remapping {
+            Remapping::Idle => true,
+            Remapping::Placed(placed) => {
+                let mut points = placed.runs.iter().flat_map(|(run, _)| run);
+                placed.turn.is_finite()
+                    && placed.cuts < tuning::MOST_CUTS
+                    && points.all(|p| p.coords.iter().all(|coordinate| coordinate.is_finite()))
+            }
+            Remapping::Drafted(draft) => draft.restore(&restore),
+            Remapping::Measured(measured) => {
+                let Measured { begun, present, rivals } = &mut **measured;
+                let rivals = rivals.iter_mut().filter_map(|(_, rival)| rival.as_mut());
+                begun.restore(&restore)
+                    && std::iter::once(present).chain(rivals).all(|remapped| remapped.restore(settings, &restore))
+            }
+            Remapping::Again { cuts } => *cuts <= tuning::MOST_CUTS,
+        };
+        is_usable && self.is_valid()
+    }
+
+    fn is_valid(&self) -> bool {
         let points: usize = self.frames.iter().map(|(_, outline)| outline.point_count()).sum();
         let increases = self.frames.is_sorted_by(|(a, _), (b, _)| a < b);
         self.frames.len() == self.poses.len()

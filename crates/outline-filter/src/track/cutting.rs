@@ -8,7 +8,7 @@ use super::{Track, first_pose::FirstPose, shape_change::EarlyShape, usual_agreem
 use crate::{
     belief::Belief,
     dynamics::FamilyTests,
-    map::{Contour, OutlineMap, Resolution},
+    map::{Contour, ContourNoise, OutlineMap, Resolution},
     measurement::{Counted, Frame, NoiseModel, Reference, Rounding},
     prediction::ShapeNoise,
     tuning::{
@@ -21,39 +21,58 @@ use crate::{
 
 impl Track {
     /// Takes cells along contours in the body frame, and the loaded points, which were seen in a pose, as their first measurement. `None`
-    /// where the contours do not make an outline. Their noise is no less than what is known of it, and than the rounding of their points.
+    /// where the contours do not make an outline. Their noise is no less than the rounding of their points.
     pub(super) fn cut(
         model: MotionModel,
         reference: Reference,
         pose: Matrix3<f64>,
         contours: Vec<Contour>,
-        (least_noise, rounding): (f64, Rounding),
+        rounding: Rounding,
         frame: &mut Frame,
     ) -> Option<Self> {
-        let least_noise = rounding.of_point().max(least_noise);
-        let mut cut = |contours, normal_noise| {
-            Self::cut_with(model, reference, pose, contours, (least_noise, normal_noise), frame)
-        };
-        let mut track = cut(contours.clone(), NORMAL_NOISE)?;
-        let needed = track.map.normal_noise();
-        if needed < NORMAL_NOISE {
-            track = cut(contours, needed).unwrap_or(track);
-        }
-        track.noise.allow_for_rounding(rounding);
+        let mut track = Self::draft((model, reference), pose, contours, rounding.of_point(), frame)?;
+        track.measure_draft(rounding, frame);
         Some(track)
     }
 
-    /// As [`cut`](Self::cut), with normals whose directions have deviations of no more than that given last.
-    fn cut_with(
-        model: MotionModel,
-        reference: Reference,
+    /// As [`cut`](Self::cut), of noise no less than that given; the loaded points are to be [measured](Self::measure_draft) yet.
+    pub(super) fn draft(
+        of: (MotionModel, Reference),
         pose: Matrix3<f64>,
         contours: Vec<Contour>,
-        (least_noise, normal_noise): (f64, f64),
-        frame: &mut Frame,
+        least_noise: f64,
+        frame: &Frame,
+    ) -> Option<Self> {
+        let mut noise = ContourNoise::of(&contours);
+        let mut draft = |contours, normal_noise| {
+            let (resolution, sigma) = Resolution::of(&mut noise, least_noise, frame.points.len(), normal_noise);
+            Self::drafted(of, pose, contours, (resolution, sigma), frame)
+        };
+        let mut track = draft(contours.clone(), NORMAL_NOISE)?;
+        let needed = track.map.normal_noise();
+        if needed < NORMAL_NOISE {
+            track = draft(contours, needed).unwrap_or(track);
+        }
+        Some(track)
+    }
+
+    /// Takes the loaded points, whose contours its cells were cut to be measured by, as the first measurement of a draft.
+    pub(super) fn measure_draft(&mut self, rounding: Rounding, frame: &mut Frame) {
+        self.measure_new_cells(frame, 0);
+        self.belief.marginal = self.belief.information.marginal();
+        self.noise.allow_for_cells(self.map.sagitta(), self.map.spacing());
+        self.noise.allow_for_rounding(rounding);
+    }
+
+    /// One whose cells have been cut with a resolution, from contours with noise of deviation `sigma`, and not been measured yet.
+    fn drafted(
+        (model, reference): (MotionModel, Reference),
+        pose: Matrix3<f64>,
+        contours: Vec<Contour>,
+        (resolution, sigma): (Resolution, f64),
+        frame: &Frame,
     ) -> Option<Self> {
         let loaded = frame.points.len();
-        let (resolution, sigma) = Resolution::of(&contours, least_noise, loaded, normal_noise);
         if loaded < FEWEST_POINTS || !sigma.is_finite() {
             return None;
         }
@@ -80,12 +99,7 @@ impl Track {
         if frame.deviations.ratios().is_some() {
             track.noise.counted = Counted::ByDeviation;
         }
-        track.grow_along(contours, frame);
-        if track.map.cells().len() < FEWEST_CELLS {
-            return None;
-        }
-        track.belief.marginal = track.belief.information.marginal();
-        track.noise.allow_for_cells(track.map.sagitta(), track.map.spacing());
-        Some(track)
+        track.add_cells(contours, frame)?;
+        (track.map.cells().len() >= FEWEST_CELLS).then_some(track)
     }
 }

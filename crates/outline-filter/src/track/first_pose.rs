@@ -8,7 +8,7 @@ use crate::belief::StateMatrix;
 type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 
 /// Body to image, and its covariance, which is none where that frame is the body frame.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct FirstPose {
     pub(super) pose: Matrix3<f64>,

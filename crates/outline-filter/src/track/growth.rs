@@ -17,14 +17,8 @@ impl Track {
     pub(crate) fn begun_anew(&self, outline: &Outline, frame: &mut Frame) -> Option<Self> {
         frame.load(outline, self.reference);
         let contours = frame.contours(&self.belief.pose);
-        let mut track = Self::cut(
-            self.belief.model,
-            self.reference,
-            self.belief.pose,
-            contours,
-            (0.0, self.noise.rounding()),
-            frame,
-        )?;
+        let mut track =
+            Self::cut(self.belief.model, self.reference, self.belief.pose, contours, self.noise.rounding(), frame)?;
         if track.turn_is_unseen() {
             return None;
         }
@@ -37,14 +31,19 @@ impl Track {
     /// Adds cells for the parts of contours in the body frame that the map does not have yet, and measures them by the loaded points, which
     /// the contours are of.
     pub(super) fn grow_along(&mut self, contours: Vec<Contour>, frame: &mut Frame) {
+        if let Some(first_new) = self.add_cells(contours, frame) {
+            self.measure_new_cells(frame, first_new);
+        }
+    }
+
+    /// Adds cells that have not been measured, as [`grow_along`](Self::grow_along) does; number of the first of them, if there are any.
+    pub(super) fn add_cells(&mut self, contours: Vec<Contour>, frame: &Frame) -> Option<usize> {
         let model = self.belief.model;
         let map = Arc::make_mut(&mut self.map);
         // Of the body frame. New cells come from points of this frame alone, and the others do not.
         let sigma = self.noise.sigma / self.belief.scale();
         let of_frame = sigma * frame.deviations.typical();
-        let Some(first_new) = map.grow(contours, of_frame, &self.belief.offsets) else {
-            return;
-        };
+        let first_new = map.grow(contours, of_frame, &self.belief.offsets)?;
         let cells = map.cells().len();
         self.belief.information.cells.resize(cells);
         self.belief.offsets.resize(cells, 0.0);
@@ -60,11 +59,12 @@ impl Track {
             let is_shown = turn_was_unseen && !map.turn_is_unseen(model);
             map.record_turn(if is_shown { TurnEvent::ShownByGrowth } else { TurnEvent::NotShownByGrowth });
         }
-        self.measure_new_cells(frame, first_new);
+        Some(first_new)
     }
 
-    /// Takes the loaded points on cells from `first_new` on as their first measurement.
-    fn measure_new_cells(&mut self, frame: &mut Frame, first_new: usize) {
+    /// Takes the loaded points on cells from `first_new` on, which have just been added, as their first measurement.
+    pub(super) fn measure_new_cells(&mut self, frame: &mut Frame, first_new: usize) {
+        Arc::make_mut(&mut self.map).prepare_association();
         let null = self.map.null_directions(self.belief.model, &self.belief.pose);
         frame.clear_shifts(self.map.cells().len());
         self.view().measure(frame, &self.belief.pose, &null, Pass::First);

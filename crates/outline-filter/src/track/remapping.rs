@@ -1,7 +1,7 @@
 //! Remapping: the map cut anew from several frames together, once they are aligned.
 use freeform_curve_fit::Outline;
 use freeform_riccati::map_point;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Point2};
 
 use super::Track;
 use crate::{
@@ -44,13 +44,32 @@ impl Track {
         frames: &[PlacedFrame<'_>],
         stride: usize,
         buffers: &mut Frame,
-        mut take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
+        take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
     ) -> Option<Self> {
+        let mut track = self.recut(frames, stride, buffers)?;
+        track.begin_as(self, frames.first()?.outline, buffers);
+        track.replayed(frames, buffers, take)
+    }
+
+    /// A track of the same body frame with cells cut from every frame out of `stride`, which are those that this one has taken; it is to be
+    /// [begun](Self::begin_as) with the first of them yet. `None` where the new cells do not show the turn.
+    pub(crate) fn recut(&self, frames: &[PlacedFrame<'_>], stride: usize, buffers: &mut Frame) -> Option<Self> {
+        let runs = self.points_along(frames, stride, buffers)?;
+        self.recut_along(runs, frames.first()?.outline, buffers)
+    }
+
+    /// The points of every frame out of `stride` in their order along the outline, in the body frame, and whether it is closed, of each of its
+    /// pieces. `None` where they make no finer map.
+    pub(crate) fn points_along(
+        &self,
+        frames: &[PlacedFrame<'_>],
+        stride: usize,
+        buffers: &mut Frame,
+    ) -> Option<Vec<(Vec<Point2<f64>>, bool)>> {
         // Frames that have turned by what nobody knows would smear what one of them shows of the turn.
         if self.belief.earlier_poses == EarlierPoses::Forgotten || self.turn_is_unseen() {
             return None;
         }
-        let first = frames.first()?;
         let points = self.points_in_body(frames, stride, buffers)?;
         if self.map.has_common_points(&points) {
             return None;
@@ -59,29 +78,69 @@ impl Track {
         if has_common_places(&runs) {
             return None;
         }
-        let contours =
-            runs.into_iter().map(|(run, closed)| Contour::new(run.into_iter().map(|(_, q)| q).collect(), closed));
-        buffers.load(first.outline, self.reference);
-        let (model, least_noise) = (self.belief.model, tuning::LEAST_NOISE * self.noise.sigma);
-        let (first_pose, least) = (self.first_pose, (least_noise, self.noise.rounding()));
-        let mut track = Self::cut(model, self.reference, first_pose.pose, contours.collect(), least, buffers)?;
+        Some(runs.into_iter().map(|(run, closed)| (run.into_iter().map(|(_, q)| q).collect(), closed)).collect())
+    }
+
+    /// As [`recut`](Self::recut), with the points of the frames in their order along the outline.
+    pub(crate) fn recut_along(
+        &self,
+        runs: Vec<(Vec<Point2<f64>>, bool)>,
+        first: &Outline,
+        buffers: &mut Frame,
+    ) -> Option<Self> {
+        let contours = runs.into_iter().map(|(run, closed)| Contour::new(run, closed));
+        buffers.load(first, self.reference);
+        let least_noise = (tuning::LEAST_NOISE * self.noise.sigma).max(self.noise.rounding().of_point());
+        let of = (self.belief.model, self.reference);
+        let track = Self::draft(of, self.first_pose.pose, contours.collect(), least_noise, buffers)?;
         // Through points that do not lie on one line, as where the frames do not show the same, a contour runs to and fro.
         let is_longer = track.map.length() > tuning::LONGEST * self.map.length();
         if track.turn_is_unseen() || is_longer && self.map.cells().len() >= tuning::CELLS_OF_LENGTH {
             return None;
         }
-        track.first_pose = first_pose;
-        track.noise.adopt_level_of(&self.noise);
-        track.doubt_first_pose();
-        track.belief.motion = self.belief.motion;
+        Some(track)
+    }
+
+    /// Measures the first of the frames that a track was cut anew from, as what another that has taken them knows of it.
+    pub(crate) fn begin_as(&mut self, other: &Self, first: &Outline, buffers: &mut Frame) {
+        buffers.load(first, self.reference);
+        self.measure_draft(other.noise.rounding(), buffers);
+        self.first_pose = other.first_pose;
+        self.noise.adopt_level_of(&other.noise);
+        self.doubt_first_pose();
+        self.belief.motion = other.belief.motion;
+    }
+
+    /// A track that has been begun in the same frame and in the same pose as another, at that frame, for another motion, which that other track
+    /// has: an outline has cells of one length in both, so that frames that are measured on them tell the two apart by what they show. `None`
+    /// where the other track was not begun in the same pose.
+    pub(crate) fn with_motion_of(&self, other: &Self) -> Option<Self> {
+        if other.first_pose != self.first_pose || other.turn_is_unseen() {
+            return None;
+        }
+        let mut track = self.clone();
+        track.noise.adopt_level_of(&other.noise);
+        track.belief.motion = other.belief.motion;
+        Some(track)
+    }
+
+    /// A track that stands at the first of some frames, after the others have been taken one by one; `take` says whether a frame was. `None`
+    /// where one of them is not.
+    pub(crate) fn replayed(
+        mut self,
+        frames: &[PlacedFrame<'_>],
+        buffers: &mut Frame,
+        mut take: impl FnMut(&mut Self, &mut Frame, f64, &Outline) -> bool,
+    ) -> Option<Self> {
+        let (first, others) = frames.split_first()?;
         let mut before = first.time;
-        for PlacedFrame { time, outline, .. } in &frames[1..] {
-            if !take(&mut track, buffers, time - before, outline) {
+        for PlacedFrame { time, outline, .. } in others {
+            if !take(&mut self, buffers, time - before, outline) {
                 return None;
             }
             before = *time;
         }
-        Some(track)
+        Some(self)
     }
 
     /// The points of every frame out of `stride` in the body frame, with the cells that they were seen of.

@@ -107,7 +107,7 @@ impl Track {
         reference.update_stated(frame.deviations.good());
         let contours = frame.contours(&Matrix3::identity());
         let rounding = Self::rounding_of(outline, mask_pixel, &contours, reference.radius);
-        Self::cut(model, reference, Matrix3::identity(), contours, (0.0, rounding), frame)
+        Self::cut(model, reference, Matrix3::identity(), contours, rounding, frame)
     }
 
     /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise.
@@ -227,6 +227,21 @@ impl Track {
 
     pub(crate) fn set_tolerance(&mut self, tolerance: Tolerance) {
         self.noise.tolerance = tolerance;
+    }
+
+    /// Whether a frame may have more noise where that is relaxed: once frames have been compared they say how much.
+    pub(crate) fn tolerates_more_relaxed(&self) -> bool {
+        self.noise.tolerated_where(Tolerance::Relaxed) > self.noise.tolerated_where(Tolerance::Known)
+    }
+
+    /// Most noise of good points that a search may tolerate, normalised; infinite where points state deviations of their own, since good points
+    /// are then judged by others.
+    pub(crate) fn most_noise_tolerated(&self) -> f64 {
+        if self.reference.stated.is_finite() {
+            return f64::INFINITY;
+        }
+        let of_search = [Tolerance::Known, Tolerance::Relaxed].map(|tolerance| self.noise.tolerated_where(tolerance));
+        of_search.into_iter().fold(self.largest_noise() / self.reference.radius, f64::max)
     }
 
     /// Most noise of good points in a frame that shows the outline, image lengths.

@@ -41,10 +41,20 @@ pub(crate) mod registration {
     pub(crate) const NARROWER: f64 = 0.5;
     /// Steps of the search for each start, at most.
     pub(crate) const SEARCH_STEPS: usize = 8;
-    /// Steps after which searches that have come together are made once.
+    /// Steps after which searches that have come together are made once, and the best are chosen to go on.
     pub(crate) const FIRST_STEPS: usize = 4;
     /// As [`WIDEST`], after these.
     pub(crate) const WIDEST_FURTHER: f64 = WIDEST * NARROWER * NARROWER * NARROWER * NARROWER;
+    /// Searches that go on from there, and as many of smaller turns: of a disc with a notch, which few points show, that is hardly known yet.
+    pub(crate) const SEARCHED_ON: usize = 12;
+    /// Score in that of the best from which on a pose cannot explain the frame nearly as well: mean distances of twice the size are squares of
+    /// four times.
+    pub(crate) const FAR_WORSE: f64 = 2.0;
+    /// Deviation of the points in the best pose found with few of them, in the most noise that is tolerated, from which on no pose explains the frame:
+    /// the median of eighty is known to a seventh.
+    pub(crate) const HOPELESS: f64 = 1.7;
+    /// Fewest points of a frame that this is said of: a map of fewer may err by more than its noise says, and a search with all of them is soon made.
+    pub(crate) const ENOUGH_POINTS: usize = 200;
     /// Distance of the matrices of poses that have come together: a fiftieth of the turn that starts are apart.
     pub(crate) const TOGETHER: f64 = 0.005;
     /// Largest step after which a pose has settled, normalised, in deviations of the noise: less than what a pose is known to, and than what

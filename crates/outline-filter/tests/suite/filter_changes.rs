@@ -245,7 +245,7 @@ fn the_pose_of_an_object_that_is_pushed_again_and_again_is_within_its_deviations
         pushes.iter().enumerate().map(move |(number, omega)| omega * (time - phase(number)).clamp(0.0, 0.2))
     };
     let (mut rejected, mut wide) = (0, 0);
-    for seed in 0..6 {
+    for seed in 0..8 {
         let frames = frames_of(BuiltInShape::Bird, motion.clone(), Settings { fps: 15.0, ..settings(60, seed) });
         let found = turns(&frames, |time| parts(time).sum());
         for (off, std, is_used) in &found {
