@@ -9,15 +9,22 @@ const NEAR: f64 = 0.6;
 #[derive(Debug, Clone)]
 pub(super) struct StepFit {
     reach: usize,
-    /// Weights of the samples that give the height.
-    step: Vec<f64>,
-    /// Weights of the samples that give height times place.
-    place: Vec<f64>,
-    /// That of the samples near the edge.
-    near_step: Vec<f64>,
-    near_place: Vec<f64>,
+    /// Of every sample.
+    weights: Vec<Weights>,
     /// The step of height 1 about its middle.
     shape: Vec<f64>,
+}
+
+/// Weights of a sample in sums over a profile.
+#[derive(Debug, Clone, Copy)]
+struct Weights {
+    /// In that which gives the height.
+    step: f64,
+    /// In that which gives height times place.
+    place: f64,
+    /// Those of the samples near the edge.
+    near_step: f64,
+    near_place: f64,
 }
 
 /// What a profile shows.
@@ -39,9 +46,12 @@ impl StepFit {
         let (shape, slope): (Vec<f64>, Vec<f64>) =
             offsets(reach).map(|s| (normal_distribution(s / width) - 0.5, density(s / width) / width)).unzip();
         let near = ((NEAR * reach as f64).round() as usize).max(2);
-        let [step, place] = weights(&shape, &slope, reach, reach);
-        let [near_step, near_place] = weights(&shape, &slope, reach, near);
-        Self { reach, step, place, near_step, near_place, shape }
+        let [all, of_near] = [reach, near].map(|near| weights(&shape, &slope, reach, near));
+        let together = all.into_iter().zip(of_near);
+        let weights = together
+            .map(|([step, place], [near_step, near_place])| Weights { step, place, near_step, near_place })
+            .collect();
+        Self { reach, weights, shape }
     }
 
     /// Places of the samples, in pixels from the middle.
@@ -52,7 +62,7 @@ impl StepFit {
     /// Standard deviation of a height, for samples with this residual.
     pub(super) fn deviation_of_step(&self, residual: f64) -> f64 {
         // Samples of neighbouring places share pixels: half of them are independent.
-        residual * (2.0 * self.step.iter().map(|weight| weight * weight).sum::<f64>()).sqrt()
+        residual * (2.0 * self.weights.iter().map(|of| of.step * of.step).sum::<f64>()).sqrt()
     }
 
     /// Standard deviation of a place that a profile one pixel wide tells, in pixels, where noise is as large as the step: from the information
@@ -63,13 +73,19 @@ impl StepFit {
     }
 
     pub(super) fn of(&self, values: &[f64]) -> Step {
-        let dot = |weights: &[f64]| weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
         let place_of = |step: f64, shift: f64| if step == 0.0 { 0.0 } else { (-shift / step).clamp(-2.0, 2.0) };
-        let step = dot(&self.step);
-        let shift = dot(&self.place);
+        // All sums side by side: one alone waits for its own last addition.
+        let [mut step, mut shift, mut near_step, mut near_shift, mut sum] = [0.0; 5];
+        for (of, value) in self.weights.iter().zip(values) {
+            step += of.step * value;
+            shift += of.place * value;
+            near_step += of.near_step * value;
+            near_shift += of.near_place * value;
+            sum += value;
+        }
         let place = place_of(step, shift);
-        let inner = place_of(dot(&self.near_step), dot(&self.near_place)) - place;
-        let middle = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let inner = place_of(near_step, near_shift) - place;
+        let middle = sum / values.len().max(1) as f64;
         let squares = values.iter().zip(&self.shape).map(|(value, shape)| (value - middle - step * shape).powi(2));
         let residual = (squares.sum::<f64>() / (values.len().max(4) - 3) as f64).sqrt();
         Step { place, step, residual, inner }
@@ -81,7 +97,7 @@ fn offsets(reach: usize) -> impl Iterator<Item = f64> + use<> {
 }
 
 /// Weights that give height and height times place from the samples within `near` of the middle.
-fn weights(shape: &[f64], slope: &[f64], reach: usize, near: usize) -> [Vec<f64>; 2] {
+fn weights(shape: &[f64], slope: &[f64], reach: usize, near: usize) -> Vec<[f64; 2]> {
     let is_near = |k: usize| k.abs_diff(reach) <= near;
     let count = (2 * near + 1) as f64;
     let mean = (0..shape.len()).filter(|&k| is_near(k)).map(|k| slope[k]).sum::<f64>() / count;
@@ -91,7 +107,8 @@ fn weights(shape: &[f64], slope: &[f64], reach: usize, near: usize) -> [Vec<f64>
         values.into_iter().map(|value| value / square).collect()
     };
     // A step moved by e is the step less e times its slope.
-    [part(&|k| shape[k]), part(&|k| slope[k] - mean)]
+    let (of_step, of_place) = (part(&|k| shape[k]), part(&|k| slope[k] - mean));
+    of_step.into_iter().zip(of_place).map(|(step, place)| [step, place]).collect()
 }
 
 fn density(z: f64) -> f64 {
