@@ -216,3 +216,52 @@ fn a_blurred_disc_has_its_radius() {
         assert!((mean - radius).abs() < 0.03, "radius {radius}, blur {blur}: {mean}");
     }
 }
+
+/// How far edges at places within a pixel are off together, root mean square, and what is stated of that in the mean. The picture is changed
+/// before it is rounded, by the distance from the edge and the share of the light side.
+fn off_together(step: Step, change: impl Fn(f64, f64) -> f64) -> (f64, f64) {
+    let (mut squares, mut stated) = (0.0, 0.0);
+    for phase in 0..8_u32 {
+        let step = Step { place: f64::from(phase) / 8.0, ..step };
+        let mut rng = ChaCha8Rng::seed_from_u64(u64::from(phase));
+        let picture = GrayImage::from_fn(SIZE, SIZE, |column, row| {
+            let share = step.share(column, row);
+            let error: f64 = StandardNormal.sample(&mut rng);
+            let distance = step.distance(f64::from(column) + 0.5, f64::from(row) + 0.5);
+            let grey = 60.0 + step.contrast * share + change(distance, share) + step.noise * error;
+            Luma([grey.round().clamp(0.0, 255.0) as u8])
+        });
+        let traced = trace_mask(&picture, &TraceSettings::default()).expect("the light side");
+        let errors = step.errors(&traced);
+        squares += (errors.iter().sum::<f64>() / errors.len() as f64).powi(2) / 8.0;
+        stated += traced.edges.expect("edges").systematic / 8.0;
+    }
+    (squares.sqrt(), stated)
+}
+
+#[test]
+fn light_that_changes_on_one_side_alone_moves_edges_by_what_is_stated() {
+    for blur in [0.7, 1.0, 2.0, 3.0] {
+        for slope in [0.3, 0.7, 1.5] {
+            let step = Step { angle: 0.4, place: 0.0, contrast: 100.0, blur, shading: 0.0, noise: 1.0 };
+            let ground = |distance: f64, share: f64| (1.0 - share) * (slope * distance).clamp(-10.0, 45.0);
+            let (off, stated) = off_together(step, ground);
+            println!("blur {blur} slope {slope}: {off:.4} stated {stated:.4}");
+            assert!(off < 1.3 * stated && stated < 1.3 * off.max(0.02), "{off} {stated}");
+        }
+    }
+}
+
+#[test]
+fn what_the_grid_of_pixels_and_rounding_do_to_edges_along_the_rows_is_stated() {
+    for angle in [0.0, std::f64::consts::FRAC_PI_4] {
+        for (contrast, noise) in [(140.0, 1.0), (140.0, 0.0), (20.0, 0.0)] {
+            for blur in [0.5, 0.7, 1.0, 2.0] {
+                let (off, stated) =
+                    off_together(Step { angle, place: 0.0, contrast, blur, shading: 0.0, noise }, |_, _| 0.0);
+                println!("angle {angle} contrast {contrast} noise {noise} blur {blur}: {off:.4} stated {stated:.4}");
+                assert!(off < 1.3 * stated, "{off} {stated}");
+            }
+        }
+    }
+}
