@@ -13,8 +13,33 @@ use nalgebra::{Point2, Rotation2};
 
 const RATE: f64 = 30.0;
 const SECONDS: f64 = 1.0;
+/// What is taken for the systematic part of the edges.
+const WAYS: [&str; 2] = ["as traced", "none"];
 /// Half of an interval of 95 %, in deviations.
 const INTERVAL: f64 = 1.96;
+
+/// What bodies lie on.
+#[derive(Clone, Copy)]
+enum Ground {
+    Even,
+    /// Lighter by 75 grey values on the right of a slope of 40 pixels in the middle.
+    Slope,
+}
+
+impl Ground {
+    /// A picture with this ground in place of an even one.
+    fn under(self, mut grey: Vec<u8>, rendering: &Rendering) -> Vec<u8> {
+        if let Self::Slope = self {
+            let [width, _] = rendering.size;
+            for (index, value) in grey.iter_mut().enumerate() {
+                let of_ground = 1.0 - ((f64::from(*value) - rendering.ground) / rendering.contrast).clamp(0.0, 1.0);
+                let across = ((index % width) as f64 - 0.5 * width as f64) / 40.0 + 0.5;
+                *value = (f64::from(*value) + 75.0 * of_ground * across.clamp(0.0, 1.0)).round() as u8;
+            }
+        }
+        grey
+    }
+}
 
 /// Errors of poses, and the deviations that are stated.
 #[derive(Default, Clone)]
@@ -33,47 +58,54 @@ impl Errors {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let seeds: u64 = std::env::args().nth(1).unwrap_or_else(|| "4".into()).parse()?;
+    let seeds: u64 = std::env::args().nth(1).ok_or("usage: picture_poses SEEDS")?.parse()?;
     println!(
-        "edges: the systematic part measured (median) in pixels; errors over deviations: root mean square, share within 95 %"
+        "errors over deviations: root mean square, share within 95 % (errors, root mean square; deviations, median)"
     );
-    let light = Rendering::default();
-    let kinds: Vec<(&str, Rendering)> = vec![
-        ("contrast 140, blur 1, noise 3", light),
-        ("no noise to speak of", Rendering { noise: 0.6, ..light }),
-        ("contrast 20, noise 1", Rendering { contrast: 20.0, noise: 1.0, ..light }),
-        ("contrast 40, noise 4", Rendering { contrast: 40.0, noise: 4.0, ..light }),
-        ("blur 0.5", Rendering { blur: 0.5, noise: 1.0, ..light }),
-        ("blur 0.7", Rendering { blur: 0.7, noise: 1.0, ..light }),
-        ("blur 2", Rendering { blur: 2.0, noise: 2.0, ..light }),
-        ("blur 3", Rendering { blur: 3.0, noise: 2.0, ..light }),
-        ("shading of half the contrast", Rendering { shading: 0.5, noise: 1.5, ..light }),
-        ("shading of the contrast", Rendering { shading: 1.0, ground: 120.0, contrast: 80.0, noise: 1.5, ..light }),
-        ("noise 10", Rendering { noise: 10.0, ..light }),
-    ];
-    let mut of_all = vec![Errors::default(); 2];
-    for (name, rendering) in &kinds {
-        let mut of_kind = vec![Errors::default(); 2];
+    let mut of_all = vec![Errors::default(); WAYS.len()];
+    for (name, rendering, ground) in kinds() {
+        let mut of_kind = vec![Errors::default(); WAYS.len()];
         let mut systematic = Vec::new();
         for scene in [PictureScene::Gear, PictureScene::AcceleratingL, PictureScene::MarkedDiscs] {
             for seed in 0..seeds {
-                let own = run(scene, seed + 100, *rendering, &mut systematic)?;
+                let own = run((scene, seed + 100), rendering, ground, &mut systematic)?;
                 own.iter().zip(&mut of_kind).for_each(|(own, all)| all.add(own));
             }
         }
-        systematic.sort_by(f64::total_cmp);
-        if systematic.is_empty() {
-            continue;
-        }
-        println!("{name}: systematic {:.4}", systematic[systematic.len() / 2]);
-        for ((label, errors), all) in ["as traced", "none"].iter().zip(&of_kind).zip(&mut of_all) {
-            print(label, errors);
+        println!("{name}: systematic part {:.4} pixels", median(systematic));
+        for ((way, errors), all) in WAYS.iter().zip(&of_kind).zip(&mut of_all) {
+            print(way, errors);
             all.add(errors);
         }
     }
     println!("all");
-    ["as traced", "none"].iter().zip(&of_all).for_each(|(label, errors)| print(label, errors));
+    WAYS.iter().zip(&of_all).for_each(|(way, errors)| print(way, errors));
     Ok(())
+}
+
+/// Light of every kind, each with a name.
+fn kinds() -> Vec<(&'static str, Rendering, Ground)> {
+    let light = Rendering::default();
+    let even = [
+        ("contrast 140, blur 1, noise 3", light),
+        ("noise 0.6", Rendering { noise: 0.6, ..light }),
+        ("noise 10", Rendering { noise: 10.0, ..light }),
+        ("contrast 20, noise 1", Rendering { contrast: 20.0, noise: 1.0, ..light }),
+        ("contrast 40, noise 4", Rendering { contrast: 40.0, noise: 4.0, ..light }),
+        ("blur 0.5, noise 1", Rendering { blur: 0.5, noise: 1.0, ..light }),
+        ("blur 0.7, noise 1", Rendering { blur: 0.7, noise: 1.0, ..light }),
+        ("blur 2, noise 2", Rendering { blur: 2.0, noise: 2.0, ..light }),
+        ("blur 3, noise 2", Rendering { blur: 3.0, noise: 2.0, ..light }),
+        ("shading of half the contrast, noise 1.5", Rendering { shading: 0.5, noise: 1.5, ..light }),
+    ];
+    let slope = Rendering { ground: 50.0, contrast: 125.0, ..light };
+    let even = even.into_iter().map(|(name, rendering)| (name, rendering, Ground::Even));
+    even.chain([("ground with a slope", slope, Ground::Slope)]).collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 fn print(label: &str, errors: &Errors) {
@@ -82,12 +114,8 @@ fn print(label: &str, errors: &Errors) {
         let rms = (list.iter().map(|(e, s)| (e / s).powi(2)).sum::<f64>() / count).sqrt();
         let within = list.iter().filter(|(e, s)| e.abs() < INTERVAL * s).count() as f64 / count;
         let size = (list.iter().map(|(e, _)| e * e).sum::<f64>() / count).sqrt();
-        let mut stated: Vec<f64> = list.iter().map(|(_, s)| *s).collect();
-        stated.sort_by(f64::total_cmp);
-        format!(
-            "{rms:.2} {within:.3} (rms {size:.1e} stated {:.1e})",
-            stated.get(stated.len() / 2).unwrap_or(&f64::NAN)
-        )
+        let stated = median(list.iter().map(|(_, s)| *s).collect());
+        format!("{rms:.2} {within:.3} ({size:.1e}; {stated:.1e})")
     };
     println!(
         "  {label:9} turns {}, places {}, omega {}",
@@ -99,9 +127,9 @@ fn print(label: &str, errors: &Errors) {
 
 /// Errors with the systematic part as traced, and with none.
 fn run(
-    scene: PictureScene,
-    seed: u64,
+    (scene, seed): (PictureScene, u64),
     rendering: Rendering,
+    ground: Ground,
     systematic: &mut Vec<f64>,
 ) -> Result<Vec<Errors>, Box<dyn Error>> {
     let pictures = SimulatedPictures::new(scene, seed, RATE, SECONDS)?.with_rendering(rendering)?;
@@ -111,18 +139,21 @@ fn run(
     let mut frames: Vec<(f64, TracedOutline, Vec<BodyTruth>)> = Vec::new();
     for picture in pictures.iter() {
         let [width, height] = rendering.size.map(|size| size as u32);
-        let image = GrayImage::from_raw(width, height, picture.grey).ok_or("size")?;
+        let image = GrayImage::from_raw(width, height, ground.under(picture.grey, &rendering)).ok_or("size")?;
         if let Ok(traced) = trace_mask(&image, &trace) {
             frames.push((picture.time, traced, picture.bodies));
         }
     }
-    let mut of_edges: Vec<f64> = frames.iter().take(15).filter_map(|f| Some(f.1.edges.as_ref()?.systematic)).collect();
-    of_edges.sort_by(f64::total_cmp);
-    let Some(&length) = of_edges.get(of_edges.len() / 2) else { return Ok(vec![Errors::default(); 2]) };
+    let of_edges = frames.iter().take(15).filter_map(|(_, traced, _)| Some(traced.edges.as_ref()?.systematic));
+    let length = median(of_edges.collect());
+    if length.is_nan() {
+        return Ok(vec![Errors::default(); WAYS.len()]);
+    }
     systematic.push(length);
     [length, 0.0].into_iter().map(|length| errors(&frames, length)).collect()
 }
 
+/// Errors of a filter that takes this for the systematic part of edges, in pixels.
 fn errors(frames: &[(f64, TracedOutline, Vec<BodyTruth>)], edge_uncertainty: f64) -> Result<Errors, Box<dyn Error>> {
     let mut filter = MotionFilter::new(FilterSettings { edge_uncertainty, ..FilterSettings::default() })?;
     let mut found = Errors::default();
@@ -135,9 +166,7 @@ fn errors(frames: &[(f64, TracedOutline, Vec<BodyTruth>)], edge_uncertainty: f64
     };
     let start = bodies[body];
     for (time, traced, bodies) in frames {
-        let step = filter.step(*time, &traced.outline);
-        let Ok(step) = step else { continue };
-        if !step.is_accepted() {
+        if !filter.step(*time, &traced.outline).is_ok_and(|step| step.is_accepted()) {
             continue;
         }
         let Some(state) = filter.state() else { continue };

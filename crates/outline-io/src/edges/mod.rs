@@ -58,6 +58,10 @@ const FARTHEST_FROM_NEIGHBOURS: [f64; 2] = [0.7, 0.5];
 /// Share of the standard deviation of noise that bilinear interpolation leaves, in the mean over all places.
 const INTERPOLATED_NOISE: f64 = 2.0 / 3.0;
 
+/// Part of the deviation of a single point beside its noise, in pixels: bends, corners and the grid. What a whole side is off by does not tell
+/// which of its points count for more, and from picture to picture it is known too roughly to weigh one against the other.
+pub(crate) const OF_POINT: f64 = 0.01;
+
 /// Standard deviation of the Gaussian that heights of steps are smoothed by along the contour, in points.
 const STEPS_TOGETHER: f64 = 4.0;
 
