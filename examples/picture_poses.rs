@@ -22,7 +22,7 @@ const INTERVAL: f64 = 1.96;
 #[derive(Clone, Copy)]
 enum Ground {
     Even,
-    /// Lighter by 75 grey values on the right of a slope of 40 pixels in the middle.
+    /// Lighter by 30 grey values on the right of a slope of 40 pixels in the middle.
     Slope,
 }
 
@@ -34,7 +34,7 @@ impl Ground {
             for (index, value) in grey.iter_mut().enumerate() {
                 let of_ground = 1.0 - ((f64::from(*value) - rendering.ground) / rendering.contrast).clamp(0.0, 1.0);
                 let across = ((index % width) as f64 - 0.5 * width as f64) / 40.0 + 0.5;
-                *value = (f64::from(*value) + 75.0 * of_ground * across.clamp(0.0, 1.0)).round() as u8;
+                *value = (f64::from(*value) + 30.0 * of_ground * across.clamp(0.0, 1.0)).round() as u8;
             }
         }
         grey
