@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use crate::field::Field;
 
 /// Steps that values are told apart by.
@@ -17,19 +19,21 @@ pub(crate) struct Basin {
     pub(crate) at_edge: bool,
 }
 
-/// All basins of at least this area, by a flood that rises over the sorted samples (Vincent and Soille, Watersheds in
-/// digital spaces, 1991; here with the union of sets, so that every basin knows the level at which it overflows). Samples
-/// are 4-connected, so that what closes a basin in is 8-connected. Values are told apart by 1/16384 of the largest.
-pub(crate) fn basins(field: &Field, smallest_area: u32) -> Vec<Basin> {
+/// All basins of at least this area that overflow above a level of at least 0, by a flood that rises over the sorted samples (Vincent and
+/// Soille, Watersheds in digital spaces, 1991; here with the union of sets, so that every basin knows the level at which it overflows).
+/// Samples are 4-connected, so that what closes a basin in is 8-connected. Values are told apart by 1/16384 of the largest.
+///
+/// What is under water at that level is found row by row: most samples are, and need not be sorted.
+pub(crate) fn basins(field: &Field, smallest_area: u32, above: f32) -> Vec<Basin> {
     let largest = field.values.iter().copied().fold(0.0, f32::max);
     if largest <= 0.0 {
         return Vec::new();
     }
     let scale = (LEVELS - 1) as f32 / largest;
-    let order = sorted(field, scale);
-    let mut sets = Sets::new(field.values.len());
+    let high = from_level(&field.values, level(above, scale), scale);
+    let mut sets = Sets::under_water(field, &high);
     let mut found = Vec::new();
-    for &sample in &order {
+    for sample in sorted(field, scale, &high) {
         let sample = sample as usize;
         sets.start(sample, field.is_at_edge(sample));
         for neighbour in field.neighbours(sample) {
@@ -38,6 +42,7 @@ pub(crate) fn basins(field: &Field, smallest_area: u32) -> Vec<Basin> {
             }
             if let Some((seed, extent)) = sets.join(sample, neighbour)
                 && extent.area() >= smallest_area
+                && field.values[sample] > above
             {
                 let (area, at_edge) = (extent.area(), extent.is_at_edge());
                 found.push(Basin { seed, level: field.values[sample], area, at_edge });
@@ -47,15 +52,41 @@ pub(crate) fn basins(field: &Field, smallest_area: u32) -> Vec<Basin> {
     found
 }
 
-/// Indices of the samples from the lowest to the highest.
-fn sorted(field: &Field, scale: f32) -> Vec<u32> {
-    let level = |value: f32| ((value * scale) as usize).min(LEVELS - 1);
+/// Which of the levels told apart a value has.
+fn level(value: f32, scale: f32) -> u32 {
+    // The conversion keeps to what is not negative.
+    ((value * scale) as u32).min(LEVELS as u32 - 1)
+}
+
+/// Indices of the values from a level on.
+fn from_level(values: &[f32], from: u32, scale: f32) -> Vec<u32> {
+    // The least value of that level, by halving the numbers that are not negative, which lie in the order of their bits.
+    let (mut low, mut least) = (0, f32::INFINITY.to_bits());
+    while low < least {
+        let middle = low.midpoint(least);
+        if level(f32::from_bits(middle), scale) < from { low = middle + 1 } else { least = middle }
+    }
+    let least = f32::from_bits(least);
+    let count: usize = values.iter().map(|value| usize::from(*value >= least)).sum();
+    // Every index is written, and only those that count are kept: whether one does cannot be foreseen.
+    let (mut indices, mut end) = (vec![0; count + 1], 0);
+    for (index, value) in (0_u32..).zip(values) {
+        indices[end] = index;
+        end += usize::from(*value >= least);
+    }
+    indices.truncate(end);
+    indices
+}
+
+/// Some of the samples, by their indices, from the lowest to the highest.
+fn sorted(field: &Field, scale: f32, samples: &[u32]) -> Vec<u32> {
+    let level_of = |index: u32| level(field.values[index as usize], scale) as usize;
     let mut starts = vec![0_u32; LEVELS + 1];
-    field.values.iter().for_each(|value| starts[level(*value) + 1] += 1);
+    samples.iter().for_each(|&index| starts[level_of(index) + 1] += 1);
     (1..=LEVELS).for_each(|index| starts[index] += starts[index - 1]);
-    let mut order = vec![0; field.values.len()];
-    for (index, value) in (0_u32..).zip(&field.values) {
-        let place = &mut starts[level(*value)];
+    let mut order = vec![0; samples.len()];
+    for &index in samples {
+        let place = &mut starts[level_of(index)];
         order[*place as usize] = index;
         *place += 1;
     }
@@ -91,8 +122,45 @@ struct Sets {
 }
 
 impl Sets {
-    fn new(count: usize) -> Self {
-        Self { parents: vec![u32::MAX; count], extents: vec![Extent(0); count] }
+    /// The sets of connected samples that are under water, which all but the `high` ones are; these in order.
+    fn under_water(field: &Field, mut high: &[u32]) -> Self {
+        let (width, height, count) = (field.width, field.height, field.values.len());
+        let mut sets = Self { parents: vec![u32::MAX; count], extents: vec![Extent(0); count] };
+        let (mut above, mut runs): (Vec<Range<usize>>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+        for row in 0..height {
+            let is_edge_row = row == 0 || row + 1 == height;
+            let (first, end) = (row * width, (row + 1) * width);
+            let (of_row, rest) = high.split_at(high.partition_point(|index| (*index as usize) < end));
+            high = rest;
+            let mut start = first;
+            for stop in of_row.iter().map(|index| *index as usize).chain([end]) {
+                if stop > start {
+                    let mut extent = Extent::of_one(is_edge_row || start == first || stop == end);
+                    extent.0 += (stop - start) as u32 - 1;
+                    sets.extents[start] = extent;
+                    sets.parents[start..stop].fill(start as u32);
+                    runs.push(start..stop);
+                }
+                start = stop + 1;
+            }
+            sets.join_rows(&above, &runs, width);
+            std::mem::swap(&mut above, &mut runs);
+            runs.clear();
+        }
+        sets
+    }
+
+    /// Joins runs of samples with those of the row above.
+    fn join_rows(&mut self, above: &[Range<usize>], runs: &[Range<usize>], width: usize) {
+        let mut first = 0;
+        for run in runs {
+            while above.get(first).is_some_and(|other| other.end + width <= run.start) {
+                first += 1;
+            }
+            for other in above[first..].iter().take_while(|other| other.start + width < run.end) {
+                self.join(run.start, other.start);
+            }
+        }
     }
 
     fn started(&self, index: usize) -> bool {
@@ -130,6 +198,7 @@ impl Sets {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn a_basin_overflows_at_the_lowest_point_of_what_closes_it_in() {
@@ -141,10 +210,10 @@ mod tests {
             [0.0; 7],
         ];
         let field = Field { width: 7, height: 5, values: rows.concat() };
-        let found = basins(&field, 2);
+        let found = basins(&field, 2, 0.0);
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].level, found[0].area), (6.0, 4));
-        assert_eq!(basins(&field, 5), []);
+        assert_eq!(basins(&field, 5, 0.0), []);
     }
 
     #[test]
@@ -156,7 +225,7 @@ mod tests {
             [0.0; 7],
         ];
         let field = Field { width: 7, height: 4, values: rows.concat() };
-        let found: Vec<Basin> = basins(&field, 2).into_iter().filter(|basin| basin.level > 0.0).collect();
+        let found: Vec<Basin> = basins(&field, 2, 0.0).into_iter().filter(|basin| basin.level > 0.0).collect();
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].level, found[0].area, found[0].at_edge), (7.0, 7, true));
     }
@@ -164,6 +233,24 @@ mod tests {
     #[test]
     fn flat_ground_has_no_basin() {
         let field = Field { width: 4, height: 4, values: vec![0.0; 16] };
-        assert_eq!(basins(&field, 1), []);
+        assert_eq!(basins(&field, 1, 0.0), []);
+    }
+
+    proptest! {
+        #[test]
+        fn basins_above_a_level_are_those_of_a_flood_that_is_sorted_wholly(
+            values in (1..14_usize, 1..14_usize).prop_flat_map(|(w, h)|
+                prop::collection::vec(prop::collection::vec((0..9_u8).prop_map(f32::from), w), h)),
+            above in 0..9_u8,
+            smallest in 1..4_u32,
+        ) {
+            let field = Field { width: values[0].len(), height: values.len(), values: values.concat() };
+            let above = f32::from(above);
+            let told = |basins: Vec<Basin>| -> Vec<_> {
+                let high = basins.into_iter().filter(|basin| basin.level > above);
+                high.map(|Basin { level, area, at_edge, .. }| (level, area, at_edge)).collect()
+            };
+            prop_assert_eq!(told(basins(&field, smallest, above)), told(basins(&field, smallest, 0.0)));
+        }
     }
 }

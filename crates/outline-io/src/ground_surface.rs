@@ -28,20 +28,14 @@ pub(crate) fn ground_surface(picture: &GrayImage) -> GrayImage {
     let mut values: Vec<f64> = samples.iter().map(|(_, value)| *value).collect();
     let mut surface = SVector::<f64, 6>::zeros();
     surface[0] = middle(&mut values);
+    let mut residuals = Vec::with_capacity(samples.len());
     for _ in 0..ROUNDS {
-        let mut residuals: Vec<f64> = samples.iter().map(|(terms, value)| (value - surface.dot(terms)).abs()).collect();
-        let scale = 4.685 * (1.4826 * middle(&mut residuals)).max(1.0);
-        let (mut normal, mut right) = (SMatrix::<f64, 6, 6>::identity() * 1e-9, SVector::<f64, 6>::zeros());
-        for (terms, value) in &samples {
-            let residual = (value - surface.dot(terms)) / scale;
-            if residual.abs() < 1.0 {
-                let weight = (1.0 - residual * residual).powi(2);
-                normal += weight * terms * terms.transpose();
-                right += weight * *value * terms;
-            }
-        }
-        match normal.cholesky() {
-            Some(factor) => surface = factor.solve(&right),
+        residuals.clear();
+        residuals.extend(samples.iter().map(|(terms, value)| value - surface.dot(terms)));
+        let mut sizes: Vec<f64> = residuals.iter().map(|residual| residual.abs()).collect();
+        let scale = 4.685 * (1.4826 * middle(&mut sizes)).max(1.0);
+        match solved(&samples, &residuals, scale) {
+            Some(solution) => surface = solution,
             None => break,
         }
     }
@@ -55,6 +49,26 @@ pub(crate) fn ground_surface(picture: &GrayImage) -> GrayImage {
         values.extend(columns.iter().map(|x| (constant + x * (slope + bend * x)) as u8));
     }
     GrayImage::from_raw(width, height, values).unwrap_or_default()
+}
+
+/// The surface that fits the samples best, those with large residuals left out.
+fn solved(samples: &[(SVector<f64, 6>, f64)], residuals: &[f64], scale: f64) -> Option<SVector<f64, 6>> {
+    let (mut normal, mut right) = (SMatrix::<f64, 6, 6>::identity() * 1e-9, SVector::<f64, 6>::zeros());
+    for ((terms, value), residual) in samples.iter().zip(residuals) {
+        let residual = residual / scale;
+        if residual.abs() < 1.0 {
+            let weight = (1.0 - residual * residual).powi(2);
+            let weighted = weight * terms;
+            // What lies above the diagonal is not looked at where the matrix is factored.
+            for column in 0..6 {
+                for row in column..6 {
+                    normal[(row, column)] += weighted[row] * terms[column];
+                }
+            }
+            right += weight * *value * terms;
+        }
+    }
+    Some(normal.cholesky()?.solve(&right))
 }
 
 fn middle(values: &mut [f64]) -> f64 {

@@ -3,7 +3,7 @@ use image::GrayImage;
 use crate::basins::{Basin, basins};
 use crate::contrast::{Contrast, signal};
 use crate::field::Field;
-use crate::morphology::{dilated, eroded};
+use crate::morphology::{dilated, eroded, opened};
 use crate::object_mask::fill_holes;
 use crate::picture_error::TraceError;
 
@@ -80,8 +80,7 @@ impl Ring {
         let strength = self.strength(picture, reach, sigma);
         let median = median(&strength.values);
         let area = u32::try_from(smallest_area).unwrap_or(u32::MAX).max(1);
-        let mut candidates = basins(&strength, area);
-        candidates.retain(|basin| basin.level > STANDS_OUT * median);
+        let mut candidates = basins(&strength, area, STANDS_OUT * median);
         let score = |basin: &Basin| f64::from(basin.level) * f64::from(basin.area).sqrt();
         candidates.sort_by(|a, b| score(b).total_cmp(&score(a)));
         let mut taken = vec![false; strength.values.len()];
@@ -113,7 +112,7 @@ impl Ring {
         if sigma > 0.0 {
             lines.blur(sigma);
         }
-        let ground = dilated(&eroded(&lines, reach), reach);
+        let ground = opened(&lines, reach);
         lines.values.iter_mut().zip(&ground.values).for_each(|(line, ground)| *line -= ground);
         lines
     }
@@ -204,7 +203,8 @@ fn edge_share(within: &[usize], field: &Field, marked: &[bool]) -> f64 {
 
 /// Median of values that are not negative.
 fn median(values: &[f32]) -> f32 {
-    let mut sample: Vec<f32> = values.iter().step_by(1 + values.len() / 100_000).copied().collect();
+    // Numbers that are not negative lie in the order of their bits.
+    let mut sample: Vec<u32> = values.iter().step_by(1 + values.len() / 100_000).map(|value| value.to_bits()).collect();
     let middle = sample.len() / 2;
-    if sample.is_empty() { 0.0 } else { *sample.select_nth_unstable_by(middle, f32::total_cmp).1 }
+    if sample.is_empty() { 0.0 } else { f32::from_bits(*sample.select_nth_unstable(middle).1) }
 }

@@ -7,7 +7,7 @@ use nalgebra::Point2;
 
 use crate::affine_moment_invariants::{AffineMomentInvariants, AreaAndCentre};
 use crate::contrast::signal;
-use crate::edges::{EdgeFit, EdgeSource, UNSEEN};
+use crate::edges::{EdgeFit, EdgeSource, OF_POINT, UNSEEN};
 use crate::field::{Field, blur_reach};
 use crate::object_mask::{ObjectMask, Objects};
 use crate::picture_error::TraceError;
@@ -29,7 +29,7 @@ const MOST_HOLES: usize = 32;
 #[derive(Debug, Clone, PartialEq)]
 pub struct TracedOutline {
     /// The outline, running counter-clockwise in its own coordinates (positive area). In pictures of more than two grey values its points
-    /// have standard deviations: those of its edges with their systematic part, where it has been moved onto them, or those of edges that
+    /// have standard deviations: those of its edges, where it has been moved onto them, or those of edges that
     /// are not seen.
     pub outline: Outline,
     /// Whether the edge of the picture clips the object, so that part of its own outline is not seen.
@@ -282,7 +282,11 @@ impl Window<'_> {
             ClosedOutline::new(points.into_iter().map(|(point, _)| point).collect())?.with_inner(inner)?.into()
         };
         let outline = match (&edges, self.edges) {
-            (Some(fit), _) => outline.with_deviations(fit.with_systematic().map(three_digits).collect())?,
+            (Some(fit), _) => {
+                let of_point = OF_POINT * settings.pixel_size;
+                let deviations = fit.deviations.iter().map(|random| three_digits(random.hypot(of_point)));
+                outline.with_deviations(deviations.collect())?
+            }
             (None, Some(_)) => {
                 let unseen = three_digits(UNSEEN * settings.pixel_size);
                 let count = outline.point_count();

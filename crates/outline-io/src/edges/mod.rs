@@ -7,6 +7,7 @@ mod blur_width;
 mod crossings;
 mod edge_profile;
 mod step_fit;
+mod systematic;
 
 use freeform_curve_fit::isoline::Crossing;
 use image::GrayImage;
@@ -24,10 +25,14 @@ const FIRST_WIDTH: f64 = 1.2;
 /// Crossings to either side that the direction of an outline is taken from.
 const NEIGHBOURS: usize = 3;
 
-/// How far profiles reach, in widths of the edge: near enough for thin parts, and as far as the grey values of both sides are known well,
-/// where nothing else is in the way.
-const NARROW: f64 = 2.2;
-const WIDE: f64 = 4.0;
+/// How far narrow profiles reach, in widths of the edge and pixels: near enough for thin parts.
+const NARROW: [f64; 2] = [2.2, 1.2];
+
+/// How far wide ones do, where nothing else is in the way, the farther of the two: as far as the grey values of both sides are known well. Of the
+/// information on a place, 0.28 over the width, what is not known of them takes 0.5 over the reach. Four widths and the pixels beyond leave a
+/// deviation of up to 1.25 times what it would be for edges up to 1.5 pixels wide, but 1.34 times for wider ones. Farther than need be
+/// the light of one side changes.
+const WIDE: [[f64; 2]; 2] = [[4.0, 1.5], [6.0, -1.5]];
 
 /// Farthest that the wide profile may move an edge, in widths of it.
 const SAME_EDGE: f64 = 0.4;
@@ -53,14 +58,12 @@ const FARTHEST_FROM_NEIGHBOURS: [f64; 2] = [0.7, 0.5];
 /// Share of the standard deviation of noise that bilinear interpolation leaves, in the mean over all places.
 const INTERPOLATED_NOISE: f64 = 2.0 / 3.0;
 
-/// Least systematic uncertainty of an edge, in pixels: what the model and the grid of pixels leave.
-const LEAST_SYSTEMATIC: f64 = 0.01;
+/// Part of the deviation of a single point beside its noise, in pixels: bends, corners and the grid. What a whole side is off by does not tell
+/// which of its points count for more, and from picture to picture it is known too roughly to weigh one against the other.
+pub(crate) const OF_POINT: f64 = 0.01;
 
 /// Standard deviation of the Gaussian that heights of steps are smoothed by along the contour, in points.
 const STEPS_TOGETHER: f64 = 4.0;
-
-/// Points of a stretch over which the noise is averaged away to see the systematic part.
-const STRETCH: usize = 24;
 
 /// What the edges of an outline are like, and how well they tell its place.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,7 +71,8 @@ pub struct EdgeFit {
     /// Standard deviation of each point of the outline along its normal, from contrast, blur and noise, in the unit of the outline: that
     /// of a place told by one pixel of contour. Of a point without an edge of its own, which lies between its neighbours', larger.
     pub deviations: Vec<f64>,
-    /// Systematic uncertainty of the outline, in its unit: how much the edge depends on how far from it the grey values are looked at.
+    /// Systematic uncertainty of the outline, in its unit: how far edges may lie off together along a side of it, by the grid of pixels, the
+    /// rounding of grey values, light that changes on one side of the edge, and noise that neighbours share.
     pub systematic: f64,
     /// Median height of the step, in grey values; positive.
     pub contrast: f64,
@@ -105,8 +109,10 @@ struct Edge {
     step: f64,
     /// Root mean square of what the fit leaves.
     residual: f64,
-    /// How much farther out the edge lies by what is near it alone.
-    inner: f64,
+    /// How much farther out the edge is seen as the light changes on one side of it more than on the other.
+    one_sided: f64,
+    /// Standard deviation of the place by its profile, of a pixel of contour where noise is as large as the step.
+    deviation: f64,
 }
 
 impl EdgeSource<'_> {
@@ -127,23 +133,10 @@ impl EdgeSource<'_> {
         let at = |c: &Crossing| Point2::new(left as f64 + c.x, top as f64 + c.y);
         let points: Vec<Point2<f64>> = line.iter().map(at).collect();
         let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
-        let mut edges = vec![Edge::default(); line.len()];
-        self.fit_all(&points, &normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
-        let width = blur_width::of(self, &points, &normals, &edges)?;
-        self.fit_all(&points, &normals, &mut edges, &StepFit::new(width, (NARROW * width + 1.2).clamp(2.5, 8.0)), 3);
-        let fit = StepFit::new(width, (WIDE * width + 1.5).clamp(3.0, 12.0));
-        let mut wide = edges.clone();
-        self.fit_all(&points, &normals, &mut wide, &fit, 2);
+        let (edges, fit) = self.fitted(&points, &normals)?;
+        let width = fit.width();
         let own = |i: &usize| normals[*i].is_some();
         let all: Vec<usize> = (0..line.len()).filter(own).collect();
-        let typical = median(all.iter().map(|&i| wide[i].residual))?;
-        for (edge, wide) in edges.iter_mut().zip(wide) {
-            let is_same_edge = (wide.place - edge.place).abs() <= SAME_EDGE * width && wide.step >= 0.7 * edge.step;
-            if is_same_edge && wide.residual <= 1.5 * typical.max(0.5) {
-                *edge = wide;
-            }
-        }
-
         let contrast = median(all.iter().map(|&i| edges[i].step))?;
         let residual = median(all.iter().map(|&i| edges[i].residual))?;
         if contrast <= 0.0 {
@@ -166,11 +159,12 @@ impl EdgeSource<'_> {
         let steps = steps_around(&edges, &is_clear);
         let deviation = |i: usize| {
             let step = if is_clear[i] { steps[i] } else { contrast };
-            let random = noise.max(0.3) * fit.deviation_of_place(width) / step;
+            let random = noise.max(0.3) * edges[i].deviation / step;
             if is_clear[i] { random } else { random.max(0.5 * farthest) }
         };
         let deviations = (0..line.len()).map(deviation).collect();
-        let systematic = systematic(&edges, &is_clear);
+        let shifts = edges.iter().zip(&is_clear).filter(|(_, clear)| **clear).map(|(edge, _)| edge.one_sided);
+        let systematic = systematic::of(&fit, noise, contrast, shifts, line.len());
         let shift = |i: usize| (places[i] + bends[i]) * normals[i].unwrap_or_default();
         // Nothing is seen beyond the picture.
         let [right, lower] = [self.picture.width(), self.picture.height()].map(|size| f64::from(size) - 0.5);
@@ -185,6 +179,28 @@ impl EdgeSource<'_> {
         Some(EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share })
     }
 
+    /// The edges on the normals of points, each by the widest profile that shows it alone, and the widest fit. `None` where there are none.
+    fn fitted(&self, points: &[Point2<f64>], normals: &[Option<Vector2<f64>>]) -> Option<(Vec<Edge>, StepFit)> {
+        let mut edges = vec![Edge::default(); points.len()];
+        self.fit_all(points, normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
+        let width = blur_width::of(self, points, normals, &edges)?;
+        let narrow = StepFit::new(width, reach(NARROW, width).clamp(2.5, 8.0));
+        self.fit_all(points, normals, &mut edges, &narrow, 3);
+        let far = WIDE.map(|of| reach(of, width)).into_iter().fold(3.0, f64::max);
+        let fit = StepFit::new(width, far.min(18.0));
+        let mut wide = edges.clone();
+        self.fit_all(points, normals, &mut wide, &fit, 2);
+        let with_normal = wide.iter().zip(normals).filter(|(_, normal)| normal.is_some());
+        let typical = median(with_normal.map(|(edge, _)| edge.residual))?;
+        for (edge, wide) in edges.iter_mut().zip(wide) {
+            let is_same_edge = (wide.place - edge.place).abs() <= SAME_EDGE * width && wide.step >= 0.7 * edge.step;
+            if is_same_edge && wide.residual <= 1.5 * typical.max(0.5) {
+                *edge = wide;
+            }
+        }
+        Some((edges, fit))
+    }
+
     fn fit_all(
         &self,
         points: &[Point2<f64>],
@@ -193,8 +209,9 @@ impl EdgeSource<'_> {
         fit: &StepFit,
         rounds: usize,
     ) {
-        let mut values = Vec::new();
+        let (mut values, deviation) = (Vec::new(), fit.deviation_of_place());
         for ((point, normal), edge) in points.iter().zip(normals).zip(edges) {
+            edge.deviation = deviation;
             let Some(normal) = *normal else { continue };
             for _ in 0..rounds {
                 self.profile(point + edge.place * normal, normal, fit, &mut values);
@@ -202,7 +219,7 @@ impl EdgeSource<'_> {
                 // Outwards the signal falls.
                 edge.step = -found.step;
                 edge.residual = found.residual;
-                edge.inner = found.inner;
+                edge.one_sided = found.one_sided;
                 let moved = if edge.step > 0.0 { found.place.clamp(-1.0, 1.0) } else { 0.0 };
                 edge.place = (edge.place + moved).clamp(-8.0, 8.0);
                 if moved.abs() < 0.004 {
@@ -228,6 +245,11 @@ fn interpolated(picture: &GrayImage, place: Point2<f64>, value: impl Fn(u8) -> f
     let upper = pixel(at) + u * (pixel(at + right) - pixel(at));
     let lower = pixel(at + below) + u * (pixel(at + below + right) - pixel(at + below));
     upper + v * (lower - upper)
+}
+
+/// How far profiles reach, in pixels, by widths of the edge and pixels.
+fn reach([widths, pixels]: [f64; 2], width: f64) -> f64 {
+    widths * width + pixels
 }
 
 /// The unit normal outwards at a crossing, in columns and rows; `None` on the edge of the picture.
@@ -325,19 +347,6 @@ fn bends(points: &[Point2<f64>], normals: &[Option<Vector2<f64>>], places: &[f64
     };
     let bends: Vec<f64> = (0..count).map(bend).collect();
     smoothed(&bends, 2.0)
-}
-
-/// How far the edge moves, in pixels and beyond its noise, where only what is near it is looked at.
-fn systematic(edges: &[Edge], is_clear: &[bool]) -> f64 {
-    let shifts: Vec<f64> =
-        edges.iter().zip(is_clear).filter(|(_, clear)| **clear).map(|(edge, _)| edge.inner).collect();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let Some(typical) = median(shifts.iter().map(|shift| shift.abs())) else { return LEAST_SYSTEMATIC };
-    // Of what noise alone would make of the means of stretches, neighbours sharing half of their noise.
-    let noise = (1.4826 * typical).powi(2) * 2.0 / STRETCH as f64;
-    let stretches: Vec<f64> = shifts.chunks_exact(STRETCH).map(|stretch| mean(stretch).powi(2)).collect();
-    let beyond = if stretches.is_empty() { 0.0 } else { (mean(&stretches) - noise).max(0.0) };
-    beyond.sqrt().hypot(LEAST_SYSTEMATIC)
 }
 
 /// Median; `None` of nothing.

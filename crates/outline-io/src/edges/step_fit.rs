@@ -1,23 +1,29 @@
 /// Distance of the samples of a profile, in pixels.
 pub(super) const SPACING: f64 = 0.5;
 
-/// How far the samples near the edge reach, as a share of all.
-const NEAR: f64 = 0.6;
-
 /// A least-squares fit of a step of known width to a profile about it. The even part of the profile tells the place, the odd part the
 /// height: on a window that is symmetric about the edge the two do not disturb each other, nor does an even slope the place.
 #[derive(Debug, Clone)]
 pub(super) struct StepFit {
+    width: f64,
     reach: usize,
-    /// Weights of the samples that give the height.
-    step: Vec<f64>,
-    /// Weights of the samples that give height times place.
-    place: Vec<f64>,
-    /// That of the samples near the edge.
-    near_step: Vec<f64>,
-    near_place: Vec<f64>,
+    /// Of every sample.
+    weights: Vec<Weights>,
     /// The step of height 1 about its middle.
     shape: Vec<f64>,
+    /// Height times place that a change of light shows as, which is steady on one side and the opposite of it on the other.
+    place_of_bend: f64,
+}
+
+/// Weights of a sample in sums over a profile.
+#[derive(Debug, Clone, Copy)]
+struct Weights {
+    /// In that which gives the height.
+    step: f64,
+    /// In that which gives height times place.
+    place: f64,
+    /// In that which gives how much steeper the light rises on the far side than on the near one, half of it.
+    bend: f64,
 }
 
 /// What a profile shows.
@@ -28,8 +34,8 @@ pub(super) struct Step {
     /// Grey values that the profile rises by.
     pub(super) step: f64,
     pub(super) residual: f64,
-    /// How much farther along the edge lies by the samples near it.
-    pub(super) inner: f64,
+    /// How much farther along the edge is seen to lie as the light changes on one side of it more than on the other.
+    pub(super) one_sided: f64,
 }
 
 impl StepFit {
@@ -38,10 +44,24 @@ impl StepFit {
         let reach = ((reach / SPACING).round() as usize).max(3);
         let (shape, slope): (Vec<f64>, Vec<f64>) =
             offsets(reach).map(|s| (normal_distribution(s / width) - 0.5, density(s / width) / width)).unzip();
-        let near = ((NEAR * reach as f64).round() as usize).max(2);
-        let [step, place] = weights(&shape, &slope, reach, reach);
-        let [near_step, near_place] = weights(&shape, &slope, reach, near);
-        Self { reach, step, place, near_step, near_place, shape }
+        let bend: Vec<f64> = offsets(reach).map(f64::abs).collect();
+        let about_mean = |values: &[f64]| -> Vec<f64> {
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            values.iter().map(|value| value - mean).collect()
+        };
+        // A step moved by e is the step less e times its slope.
+        let (slope, bend) = (about_mean(&slope), about_mean(&bend));
+        let (of_step, of_place) = (weights(&shape), weights(&slope));
+        let place_of_bend = dot(&of_place, &bend);
+        let of_bend = weights(&bend.iter().zip(&slope).map(|(b, s)| b - place_of_bend * s).collect::<Vec<f64>>());
+        let together = of_step.into_iter().zip(of_place).zip(of_bend);
+        let weights = together.map(|((step, place), bend)| Weights { step, place, bend }).collect();
+        Self { width, reach, weights, shape, place_of_bend }
+    }
+
+    /// Width of the steps, in pixels.
+    pub(super) fn width(&self) -> f64 {
+        self.width
     }
 
     /// Places of the samples, in pixels from the middle.
@@ -52,27 +72,32 @@ impl StepFit {
     /// Standard deviation of a height, for samples with this residual.
     pub(super) fn deviation_of_step(&self, residual: f64) -> f64 {
         // Samples of neighbouring places share pixels: half of them are independent.
-        residual * (2.0 * self.step.iter().map(|weight| weight * weight).sum::<f64>()).sqrt()
+        residual * (2.0 * self.weights.iter().map(|of| of.step * of.step).sum::<f64>()).sqrt()
     }
 
     /// Standard deviation of a place that a profile one pixel wide tells, in pixels, where noise is as large as the step: from the information
     /// of the step, less what goes into the grey values of the two sides.
-    pub(super) fn deviation_of_place(&self, width: f64) -> f64 {
-        let information = 1.0 / (2.0 * std::f64::consts::PI.sqrt() * width) - 0.5 / (self.reach as f64 * SPACING);
+    pub(super) fn deviation_of_place(&self) -> f64 {
+        let information = 1.0 / (2.0 * std::f64::consts::PI.sqrt() * self.width) - 0.5 / (self.reach as f64 * SPACING);
         information.max(1e-3).powf(-0.5)
     }
 
     pub(super) fn of(&self, values: &[f64]) -> Step {
-        let dot = |weights: &[f64]| weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
         let place_of = |step: f64, shift: f64| if step == 0.0 { 0.0 } else { (-shift / step).clamp(-2.0, 2.0) };
-        let step = dot(&self.step);
-        let shift = dot(&self.place);
+        // All sums side by side: one alone waits for its own last addition.
+        let [mut step, mut shift, mut bend, mut sum] = [0.0; 4];
+        for (of, value) in self.weights.iter().zip(values) {
+            step += of.step * value;
+            shift += of.place * value;
+            bend += of.bend * value;
+            sum += value;
+        }
         let place = place_of(step, shift);
-        let inner = place_of(dot(&self.near_step), dot(&self.near_place)) - place;
-        let middle = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let one_sided = place_of(step, bend * self.place_of_bend);
+        let middle = sum / values.len().max(1) as f64;
         let squares = values.iter().zip(&self.shape).map(|(value, shape)| (value - middle - step * shape).powi(2));
         let residual = (squares.sum::<f64>() / (values.len().max(4) - 3) as f64).sqrt();
-        Step { place, step, residual, inner }
+        Step { place, step, residual, one_sided }
     }
 }
 
@@ -80,18 +105,14 @@ fn offsets(reach: usize) -> impl Iterator<Item = f64> + use<> {
     (0..=2 * reach).map(move |k| SPACING * (k as f64 - reach as f64))
 }
 
-/// Weights that give height and height times place from the samples within `near` of the middle.
-fn weights(shape: &[f64], slope: &[f64], reach: usize, near: usize) -> [Vec<f64>; 2] {
-    let is_near = |k: usize| k.abs_diff(reach) <= near;
-    let count = (2 * near + 1) as f64;
-    let mean = (0..shape.len()).filter(|&k| is_near(k)).map(|k| slope[k]).sum::<f64>() / count;
-    let part = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        let values: Vec<f64> = (0..shape.len()).map(|k| if is_near(k) { value(k) } else { 0.0 }).collect();
-        let square: f64 = values.iter().map(|value| value * value).sum();
-        values.into_iter().map(|value| value / square).collect()
-    };
-    // A step moved by e is the step less e times its slope.
-    [part(&|k| shape[k]), part(&|k| slope[k] - mean)]
+/// Weights that give how much of a shape there is.
+fn weights(shape: &[f64]) -> Vec<f64> {
+    let square = dot(shape, shape);
+    shape.iter().map(|value| value / square).collect()
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }
 
 fn density(z: f64) -> f64 {
@@ -136,5 +157,17 @@ mod tests {
         let fit = StepFit::new(1.5, 4.5);
         let values: Vec<f64> = fit.offsets().map(|s| 100.0 * normal_distribution(s / 1.5) + 2.0 * s).collect();
         assert!(fit.of(&values).place.abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_slope_of_the_light_on_one_side_alone_tells_how_far_it_moves_the_step() {
+        let fit = StepFit::new(1.5, 7.5);
+        for slope in [-0.7, 0.3] {
+            let light = |s: f64| slope * s.max(0.0) + 100.0 * normal_distribution(s / 1.5);
+            let Step { place, one_sided, .. } = fit.of(&fit.offsets().map(light).collect::<Vec<f64>>());
+            assert!(place.abs() > 0.01 && (one_sided / place - 1.0).abs() < 0.02, "{one_sided} {place}");
+        }
+        let even: Vec<f64> = fit.offsets().map(|s| 100.0 * normal_distribution((s - 0.01) / 1.5) + 0.5 * s).collect();
+        assert!(fit.of(&even).one_sided.abs() < 1e-4);
     }
 }
