@@ -2,7 +2,7 @@
 use freeform_estimate::{StateError, StateFormat};
 
 use super::motion_filter::{MotionFilter, Phase};
-use crate::track::Track;
+use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
@@ -59,7 +59,8 @@ impl MotionFilter {
             return inconsistent("times");
         }
         let (model, unit) = (self.settings.model, self.seconds_per_unit());
-        let restored = |track: &mut Track| track.model() == model && track.restore(unit);
+        let restored_with = |track: &mut Track, cells| track.model() == model && track.restore(unit, cells);
+        let restored = |track: &mut Track| restored_with(track, SavedCells::Measured);
         if !self.track.as_mut().is_none_or(restored) {
             return inconsistent("track");
         }
@@ -81,7 +82,7 @@ impl MotionFilter {
         if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
             return inconsistent("landmarks");
         }
-        if !self.window.restore(&self.settings, restored) {
+        if !self.window.restore(&self.settings, restored_with) {
             return inconsistent("first frames");
         }
         if !self.unfound_are_valid() {

@@ -4,6 +4,8 @@ use nalgebra::{Matrix3, Point2};
 use super::motion_change::MotionHistory;
 #[cfg(feature = "serde")]
 use super::settings::FilterSettings;
+#[cfg(feature = "serde")]
+use crate::track::SavedCells;
 use crate::{
     track::{PlacedFrame, Track},
     tuning::remapping as tuning,
@@ -78,14 +80,14 @@ pub(super) struct Remapped {
 
 #[cfg(feature = "serde")]
 impl Draft {
-    fn restore(&mut self, restore: &impl Fn(&mut Track) -> bool) -> bool {
+    fn restore(&mut self, restore: impl Fn(&mut Track) -> bool) -> bool {
         self.turn.is_finite() && self.cuts <= tuning::MOST_CUTS && restore(&mut self.track)
     }
 }
 
 #[cfg(feature = "serde")]
 impl Remapped {
-    fn restore(&mut self, settings: &FilterSettings, restore: &impl Fn(&mut Track) -> bool) -> bool {
+    fn restore(&mut self, settings: &FilterSettings, restore: impl Fn(&mut Track) -> bool) -> bool {
         self.history.is_valid(settings)
             && self.poses.iter().flatten().all(|entry| entry.is_finite())
             && restore(&mut self.track)
@@ -204,7 +206,12 @@ impl InitialisationWindow {
 #[cfg(feature = "serde")]
 impl InitialisationWindow {
     /// Whether frames and poses belong together and times increase; `restore` makes a track usable, or tells that it cannot.
-    pub(super) fn restore(&mut self, settings: &FilterSettings, restore: impl Fn(&mut Track) -> bool) -> bool {
+    pub(super) fn restore(
+        &mut self,
+        settings: &FilterSettings,
+        restore: impl Fn(&mut Track, SavedCells) -> bool,
+    ) -> bool {
+        let of_measured = |track: &mut Track| restore(track, SavedCells::Measured);
         let is_usable = match &mut self.remapping {
             Remapping::Idle => true,
             Remapping::Placed(placed) => {
@@ -213,12 +220,12 @@ impl InitialisationWindow {
                     && placed.cuts < tuning::MOST_CUTS
                     && points.all(|p| p.coords.iter().all(|coordinate| coordinate.is_finite()))
             }
-            Remapping::Drafted(draft) => draft.restore(&restore),
+            Remapping::Drafted(draft) => draft.restore(|track| restore(track, SavedCells::Drafted)),
             Remapping::Measured(measured) => {
                 let Measured { begun, present, rivals } = &mut **measured;
                 let rivals = rivals.iter_mut().filter_map(|(_, rival)| rival.as_mut());
-                begun.restore(&restore)
-                    && std::iter::once(present).chain(rivals).all(|remapped| remapped.restore(settings, &restore))
+                begun.restore(of_measured)
+                    && std::iter::once(present).chain(rivals).all(|remapped| remapped.restore(settings, of_measured))
             }
             Remapping::Again { cuts } => *cuts <= tuning::MOST_CUTS,
         };

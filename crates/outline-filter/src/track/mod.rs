@@ -11,6 +11,8 @@ mod known_outline;
 mod outline;
 mod remapping;
 mod rounding;
+#[cfg(feature = "serde")]
+mod saved;
 mod shape_change;
 #[cfg(test)]
 mod side_by_side_tests;
@@ -25,5 +27,7 @@ mod usual_agreement;
 pub(crate) use estimate::TurnTold;
 pub use known_outline::{KnownOutline, KnownPiece};
 pub(crate) use remapping::PlacedFrame;
+#[cfg(feature = "serde")]
+pub(crate) use saved::SavedCells;
 pub(crate) use track::{Comparison, Outcome, Track};
 pub(crate) use turn::{turn_between, wrapped};

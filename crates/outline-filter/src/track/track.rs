@@ -17,8 +17,6 @@ use crate::{
         FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold, with_hold,
     },
 };
-#[cfg(feature = "serde")]
-use freeform_estimate::StateFormat;
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
 ///
@@ -366,29 +364,5 @@ impl Track {
     /// Whether a frame may show the turn where those before it did not.
     pub(crate) fn may_show_turn(&self) -> bool {
         matches!(self.turn_evidence(), TurnEvidence::AtLast | TurnEvidence::NewAndHidden)
-    }
-}
-
-#[cfg(feature = "serde")]
-impl Track {
-    /// Builds what is not saved; false where what was saved is no track with such a unit of time, in seconds.
-    pub(crate) fn restore(&mut self, unit: f64) -> bool {
-        let cells = self.map.cells().len();
-        let Reference { origin, radius, time_unit, stated } = self.reference;
-        origin.iter().all(|coordinate| coordinate.is_finite())
-            && radius.is_normal()
-            && radius > 0.0
-            && stated > 0.0
-            && time_unit == unit
-            && self.frames < StateFormat::MOST_COUNTED
-            && self.belief.is_valid(cells)
-            && self.noise.is_valid(cells)
-            && self.shape.is_valid(cells)
-            && self.early_shape.is_valid(cells)
-            && self.usual.is_valid()
-            && self.sensitivity.is_valid(cells)
-            && self.family.is_valid()
-            && self.first_pose.is_finite()
-            && Arc::make_mut(&mut self.map).restore()
     }
 }
