@@ -18,7 +18,7 @@ const UNEVEN: f64 = 4.0;
 ///
 /// let corners = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (0.0, 1.0)];
 /// let polygon = Outline::closed(corners.iter().map(|(x, y)| Point2::new(*x, *y)).collect())?;
-/// assert_eq!(outline_of_polygon(&polygon).point_count(), 304);
+/// assert_eq!(outline_of_polygon(&polygon).point_count(), 302);
 /// # Ok::<(), freeform_motion::curve_fit::OutlineError>(())
 /// ```
 #[must_use]

@@ -378,7 +378,8 @@ fn corners_in_pixels(motion: RigidMotion, frame: u64) -> OutlineFrame {
     let time = frame as f64 / 30.0;
     let pose = Rotation2::new(-motion.omega * time);
     let corner = |i: usize| {
-        let (angle, radius) = (std::f64::consts::TAU * i as f64 / 9.0, [60.0, 35.0, 48.0][i % 3]);
+        let radius = [60.0, 35.0, 48.0, 52.0, 30.0, 44.0, 58.0, 40.0, 50.0][i];
+        let angle = std::f64::consts::TAU * i as f64 / 9.0;
         (pose * Point2::new(radius * angle.cos(), radius * angle.sin())).map(f64::round)
     };
     let outline = Outline::closed((0..9).map(corner).collect()).expect("an outline");
@@ -396,5 +397,5 @@ fn polygons_in_pixels_whose_corners_alone_are_given_tell_their_motion() {
     let estimate = results[0].estimate.as_ref().expect("a motion");
     let omega = estimate.parameters().next().expect("omega");
     let (value, deviation) = (omega.value.expect("a value"), omega.standard_deviation.expect("a value"));
-    assert!((value - 0.8).abs() < 3.0 * deviation && deviation < 0.05, "{value} +- {deviation}");
+    assert!((value - 0.8).abs() < 3.0 * deviation && deviation < 0.2, "{value} +- {deviation}");
 }

@@ -58,6 +58,8 @@ impl<const N: usize> InnovationSeries<N> {
                 self.blocks.truncate(tuning::BLOCKS / 2);
                 self.length *= 2;
             }
+            // A copy has no room for more.
+            self.blocks.reserve_exact(tuning::BLOCKS - self.blocks.len());
             self.blocks.push(SVector::zeros());
             self.filled = 0;
         }
