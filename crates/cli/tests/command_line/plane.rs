@@ -47,7 +47,7 @@ fn dynamics_that_a_plane_does_not_use_are_told_of() {
 #[test]
 fn of_a_plane_that_only_turns_the_normal_and_the_velocity_are_null_with_the_reason() {
     // With other noise a second plane may pass for it too.
-    let outlines = outlines("--seconds 1 --plane 0.1,-0.1,0.5,0,0,0 --seed 6");
+    let outlines = outlines("--seconds 1 --plane 0.1,-0.1,0.5,0,0,0 --seed 7");
     let document = json(&succeed(&format!("identify - {CAMERA} --json"), &outlines));
     let object = &document["objects"][0];
     assert!((object["parameters"]["wz"]["value"].as_f64().expect("a turn") - 0.5).abs() < 0.01);
