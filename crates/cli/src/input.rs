@@ -166,7 +166,7 @@ impl Input {
     }
 
     /// Polygons of annotation programs are handed on with their corners alone.
-    pub(crate) fn as_given(self) -> Self {
+    pub(crate) fn with_corners_alone(self) -> Self {
         Self { polygons: Polygons::Corners, ..self }
     }
 

@@ -4,7 +4,7 @@ use freeform_motion::riccati::{AffineMotion, ProjectiveMotion, RigidMotion};
 use freeform_motion::sim_camera::{
     BuiltInShape, Camera, Frame, Mask, Occlusion, Scene, SequenceLength, Settings, Shape, Simulator,
 };
-use nalgebra::{Point2, Vector2};
+use nalgebra::Vector2;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray as _, PyArray2, PyArray3};
 use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};

@@ -38,11 +38,9 @@ fn medians_of_nine(mut values: [Lanes; 9]) -> Lanes {
         (6, 4),
         (4, 2),
     ] {
-        for lane in 0..LANES {
-            let (x, y) = (values[a][lane], values[b][lane]);
-            values[a][lane] = if x < y { x } else { y };
-            values[b][lane] = if x < y { y } else { x };
-        }
+        let (x, y) = (values[a], values[b]);
+        values[a] = std::array::from_fn(|lane| if x[lane] < y[lane] { x[lane] } else { y[lane] });
+        values[b] = std::array::from_fn(|lane| if x[lane] < y[lane] { y[lane] } else { x[lane] });
     }
     values[4]
 }

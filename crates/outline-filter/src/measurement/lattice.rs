@@ -117,7 +117,7 @@ fn origin(values: &[f64], pitch: f64) -> Option<f64> {
 
 /// Whether points at nodes follow each other along rows, columns, and diagonals, none of them twice.
 fn is_chain(outline: &Outline, pitch: f64) -> bool {
-    let (mut steps, mut straight) = (0, 0);
+    let (mut steps, mut straight) = (0_usize, 0_usize);
     for piece in outline.pieces() {
         for pair in piece.points.windows(2) {
             let step = (pair[1] - pair[0]).abs();

@@ -57,7 +57,7 @@ proptest! {
             prop_assert!((lattice.pixel / pixel - 1.0).abs() < 1e-6, "{}", lattice.pixel);
         }
         // What OpenCV gives: pixels at the border, of which every third is another matter.
-        let mut nodes: Vec<_> = crossings(centre, radius, true).iter().map(|p| p.map(|v| v.round_ties_even())).collect();
+        let mut nodes: Vec<_> = crossings(centre, radius, true).iter().map(|p| p.map(f64::round_ties_even)).collect();
         nodes.dedup();
         let lattice = found(&nodes, pixel, origin).expect("a lattice");
         prop_assert!((lattice.pixel / pixel - 1.0).abs() < 1e-6, "{}", lattice.pixel);
