@@ -1,7 +1,8 @@
 //! What cannot be fitted is refused with a reason; what can is finite, however far, small or large.
 use crate::support::{any_star, closed, similarity, star};
 use freeform_curve_fit::{
-    Degree, Factorisation, FitError, FitSettings, Fitter, Method, OpenArc, OpenOutline, Outline, SettingsError,
+    ClosedOutline, Degree, Factorisation, FitError, FitSettings, Fitter, Method, OpenArc, OpenOutline, Outline,
+    SettingsError,
 };
 use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
@@ -86,4 +87,20 @@ proptest! {
             prop_assert!(d.geometric_residual.is_finite() && d.algebraic_residual.is_finite());
         }
     }
+}
+
+#[test]
+fn the_sides_of_a_polygon_have_points_as_close_as_asked_and_a_damaged_corner_does_not_ask_for_all_memory() {
+    let polygon = |corners: &[(f64, f64)]| {
+        ClosedOutline::new(corners.iter().map(|(x, y)| Point2::new(*x, *y)).collect()).expect("a polygon")
+    };
+    let square = polygon(&[(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0)]);
+    let filled = square.with_sides(1.0);
+    assert_eq!(filled.points().len(), 12);
+    assert_eq!((filled.length(), filled.signed_area()), (12.0, 9.0));
+    assert_eq!(square.with_sides(-1.0), square);
+    let damaged = polygon(&[(0.0, 0.0), (1e90, 0.0), (3.0, 3.0)]);
+    assert!((5_000..20_000).contains(&damaged.with_sides(1e-3).points().len()));
+    let measured = square.with_deviations(vec![0.1; 4]).expect("deviations");
+    assert_eq!(measured.with_sides(1.0), measured);
 }
