@@ -99,7 +99,7 @@ fn the_sides_of_a_polygon_have_points_as_close_as_asked_and_a_damaged_corner_doe
     assert_eq!(filled.points().len(), 12);
     assert_eq!((filled.length(), filled.signed_area()), (12.0, 9.0));
     assert_eq!(square.with_sides(-1.0), square);
-    let damaged = polygon(&[(0.0, 0.0), (1e90, 0.0), (3.0, 3.0)]);
+    let damaged = polygon(&[(0.0, 0.0), (1e90, 0.0), (0.0, 1e90)]);
     assert!((5_000..20_000).contains(&damaged.with_sides(1e-3).points().len()));
     let measured = square.with_deviations(vec![0.1; 4]).expect("deviations");
     assert_eq!(measured.with_sides(1.0), measured);
