@@ -96,8 +96,10 @@ def test_the_deviation_is_made_of_a_random_and_a_systematic_part(bird):
         wide.step(frame.time, frame.outline)
     estimate = wide.estimate
     np.testing.assert_array_equal(estimate.values, plain.estimate.values)
-    assert (estimate.std_systematic > 0).all() and (plain.estimate.std_systematic == 0).all()
-    np.testing.assert_allclose(estimate.std_random, plain.estimate.std)
+    assert (estimate.std_systematic > 0.005).all()
+    # What cameras are usually off by is systematic too.
+    assert (plain.estimate.std_systematic < 0.1 * estimate.std_systematic).all()
+    np.testing.assert_allclose(estimate.std_random, plain.estimate.std_random)
     np.testing.assert_allclose(np.hypot(estimate.std_random, estimate.std_systematic), estimate.std)
     omega = estimate["omega"]
     assert (omega.std_random, omega.std_systematic) == (estimate.std_random[0], estimate.std_systematic[0])
@@ -108,9 +110,9 @@ def test_the_rounding_of_masks_to_pixels_is_part_of_the_deviations():
     estimate = ff.identify(masks, fps=30)["1"].estimate
     assert (estimate.std_systematic > 0).all()
     assert abs(estimate["omega"].value - 0.02) < 2 * estimate["omega"].std
-    # What is given is obeyed: rounding that is not told of is taken for an outline that changes its shape, and so told.
-    given = ff.identify(masks, fps=30, edge_uncertainty=0.0)["1"]
-    assert "wrong_family_shape" in [warning.code for warning in given.warnings]
+    # Rounding that is not told of is found from the points.
+    found = ff.identify(masks, fps=30, edge_uncertainty=0.0)["1"].estimate
+    assert (found.std_systematic > 0.5 * estimate.std_systematic).all()
     # The pixels of another scale are of another size.
     scaled = ff.identify(masks, fps=30, pixel_size=0.1)["1"].estimate
     np.testing.assert_allclose(scaled.std_systematic, estimate.std_systematic * [1.0, 0.1, 0.1], rtol=1e-6)

@@ -125,7 +125,7 @@ def test_results_come_as_a_table_too(table):
     assert rows["object"].tolist() == ["left", "right"]
     assert rows["omega"].tolist() == [result.estimate.values[0] for result in results]
     assert rows["omega_std_random"].tolist() == [result.estimate.std_random[0] for result in results]
-    assert (rows["omega_std_systematic"] == 0.0).all()
+    assert rows["omega_std_systematic"].tolist() == [result.estimate.std_systematic[0] for result in results]
     assert rows["v1_std"].tolist() == [result.velocity.std[0] for result in results]
     assert len(results) == 2 and results[1].object == "right" and results[:1].objects == ["left"]
     assert "omega" in repr(results)
