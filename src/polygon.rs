@@ -1,5 +1,5 @@
 //! Outlines that are polygons, given by their corners.
-use freeform_curve_fit::{ClosedOutline, Outline};
+use freeform_curve_fit::Outline;
 
 /// Points that the sides of a polygon are filled with, together: a contour with as many hardly tells more with further ones.
 const POINTS_OF_POLYGON: f64 = 300.0;
@@ -37,16 +37,36 @@ pub(crate) fn outline_of_pixel_polygon(outline: &Outline) -> Option<Outline> {
     if outline.deviations().is_some() || !outline.points().all(|point| is_whole(point.x) && is_whole(point.y)) {
         return None;
     }
-    let is_polygon = polygon.points().len() < FEW_CORNERS || longest_side(polygon) > UNEVEN * mean_side(polygon);
+    let sides = polygon.side_lengths();
+    let (count, longest) = (sides.len(), sides.clone().fold(0.0, f64::max));
+    let mean = sides.sum::<f64>() / count as f64;
+    let is_polygon = count < FEW_CORNERS || longest > UNEVEN * mean;
     let filled = is_polygon.then(|| Outline::from(polygon.with_sides(1.0)))?;
     (filled.point_count() > outline.point_count()).then_some(filled)
 }
 
-fn longest_side(polygon: &ClosedOutline) -> f64 {
-    let next = polygon.points().iter().cycle().skip(1);
-    polygon.points().iter().zip(next).map(|(from, to)| (to - from).norm()).fold(0.0, f64::max)
-}
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::ClosedOutline;
+    use nalgebra::Point2;
 
-fn mean_side(polygon: &ClosedOutline) -> f64 {
-    polygon.length() / polygon.points().len() as f64
+    use super::*;
+
+    #[test]
+    fn a_long_side_tells_a_polygon_whatever_contours_lie_within() {
+        // Every pixel of three sides of a square, and nothing between the ends of the fourth.
+        let side = |from: (i32, i32), step: (i32, i32)| {
+            (0..20).map(move |k| Point2::new(f64::from(from.0 + k * step.0), f64::from(from.1 + k * step.1)))
+        };
+        let three = side((0, 0), (1, 0)).chain(side((20, 0), (0, 1))).chain(side((20, 20), (-1, 0)));
+        let square = three.chain([Point2::new(0.0, 20.0)]).collect();
+        let boundary = ClosedOutline::new(square).expect("a boundary");
+        // A mark that runs to and fro within it.
+        let zigzag = (0..40).map(|k| Point2::new(1.0 + 0.25 * f64::from(k) * 2.0, if k % 2 == 0 { 2.0 } else { 18.0 }));
+        let zigzag = zigzag.map(|p| p.map(f64::floor)).collect();
+        for outline in [boundary.clone(), boundary.with_inner(vec![zigzag]).expect("a mark")] {
+            let filled = outline_of_pixel_polygon(&outline.into()).expect("a polygon");
+            assert_eq!(filled.pieces().next().map(|piece| piece.points.len()), Some(80));
+        }
+    }
 }

@@ -1,6 +1,6 @@
 use std::borrow::Cow;
 
-use nalgebra::{Affine2, Point2};
+use nalgebra::{Affine2, Point2, Vector2};
 
 use crate::deviations::{check_deviations, mapped_deviations};
 use crate::error::OutlineError;
@@ -96,8 +96,7 @@ impl ClosedOutline {
         let longest = longest.max(self.length() / MOST_SIDES);
         let along = |points: &[Point2<f64>]| {
             let mut all = Vec::new();
-            for (i, from) in points.iter().enumerate() {
-                let side = points[(i + 1) % points.len()] - from;
+            for (from, side) in sides(points) {
                 let count = (side.amax() / longest).ceil().max(1.0);
                 all.extend((0..count as usize).map(|k| from + side * (k as f64 / count)));
             }
@@ -110,11 +109,12 @@ impl ClosedOutline {
     /// Length of all contours, the sides that close them included.
     #[must_use]
     pub fn length(&self) -> f64 {
-        let of_contour = |points: &[Point2<f64>]| {
-            let next = points.iter().cycle().skip(1);
-            points.iter().zip(next).map(|(from, to)| (to - from).norm()).sum::<f64>()
-        };
-        self.contours().map(of_contour).sum()
+        self.contours().flat_map(sides).map(|(_, side)| side.norm()).sum()
+    }
+
+    /// Lengths of the sides of the boundary, from each of its points to the next, the one that closes it last.
+    pub fn side_lengths(&self) -> impl ExactSizeIterator<Item = f64> + Clone {
+        sides(&self.points).map(|(_, side)| side.norm())
     }
 
     /// The points of the boundary in order.
@@ -128,6 +128,11 @@ impl ClosedOutline {
     pub fn signed_area(&self) -> f64 {
         signed_area(self.points.iter())
     }
+}
+
+/// Every point of a closed contour, and the way from there to the next.
+fn sides(points: &[Point2<f64>]) -> impl ExactSizeIterator<Item = (&Point2<f64>, Vector2<f64>)> + Clone {
+    (0..points.len()).map(|i| (&points[i], points[(i + 1) % points.len()] - points[i]))
 }
 
 /// What one frame shows of one object: the whole contour, or open arcs of it.
