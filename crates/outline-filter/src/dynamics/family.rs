@@ -86,9 +86,8 @@ struct Fit {
 }
 
 impl FamilyTests {
-    /// Adds what a frame says of an object whose centroid is so far from where it was first, one of every so much
-    /// time; `sigma` is the deviation of the noise of a point, and
-    /// `variance` that which dependence along the contour makes of it.
+    /// Adds what a frame says of an object whose centroid is at a distance from where it was first, with the time from frame to frame; `sigma` is the
+    /// deviation of the noise of a point, and `variance` that which dependence along the contour makes of it.
     pub(crate) fn add(&mut self, frame: &UnmodelledScore, (distance, step): (f64, f64), (sigma, variance): (f64, f64)) {
         self.told.take();
         self.sigma = sigma;
@@ -180,7 +179,7 @@ impl FamilyTests {
     ) {
         let usual = self.usual_size(members[0]);
         let members: Vec<usize> = members.iter().copied().filter(|i| self.information[(*i, *i)] > 0.0).collect();
-        let ratio = members.iter().map(|i| dependence[*i]).fold(1.0, f64::max);
+        let ratio = largest_of(dependence, &members);
         let n = known.numbers.len();
         let numbers: Vec<usize> = known.numbers.iter().chain(&members).copied().collect();
         // In units of what is usual, in which the prior has a variance of 1.
@@ -224,7 +223,7 @@ impl FamilyTests {
     fn with(&self, known: &Fit, others: &[usize], dependence: &UnmodelledVector) -> Option<(Fit, f64, f64)> {
         let new: Vec<usize> = others.iter().copied().filter(|i| !known.numbers.contains(i)).collect();
         let numbers: Vec<usize> = known.numbers.iter().copied().chain(new.iter().copied()).collect();
-        let dependence = new.iter().map(|i| dependence[*i]).fold(1.0, f64::max);
+        let dependence = largest_of(dependence, &new);
         let mut fit = self.fit(&numbers);
         fit.covariance *= dependence;
         let count = fit.numbers.len().saturating_sub(known.numbers.len());
@@ -257,6 +256,11 @@ impl FamilyTests {
     }
 }
 
+/// Largest dependence of some of the motions, at least 1.
+fn largest_of(dependence: &UnmodelledVector, numbers: &[usize]) -> f64 {
+    numbers.iter().map(|i| dependence[*i]).fold(1.0, f64::max)
+}
+
 /// Deviations of a normal distribution that are as improbable as so large a chi-square of so many degrees of freedom (E. B. Wilson and M. M.
 /// Hilferty, The distribution of chi-square, 1931).
 fn deviations(squared: f64, count: f64) -> f64 {
@@ -268,11 +272,8 @@ fn deviations(squared: f64, count: f64) -> f64 {
 impl FamilyTests {
     /// Whether more can be taken, and all numbers can be worked with.
     pub(crate) fn is_valid(&self) -> bool {
-        let vectors = self.information.iter().chain(&self.score).chain(&self.squares).chain([
-            &self.weight,
-            &self.sigma,
-            &self.reach,
-        ]);
+        let numbers = [&self.weight, &self.sigma, &self.reach, &self.step];
+        let vectors = self.information.iter().chain(&self.score).chain(&self.squares).chain(numbers);
         self.series.is_valid()
             && vectors.into_iter().all(|number| number.abs() < StateFormat::LARGEST_NUMBER)
             && self.sigma >= 0.0
