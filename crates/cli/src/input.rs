@@ -98,20 +98,19 @@ impl Input {
         }
     }
 
+    /// Of a file, whose polygons are outlines.
+    fn new(name: String, comments: Vec<String>, source: Source) -> Self {
+        Self { name, comments, source, is_stream: false, polygons: Polygons::Outlines }
+    }
+
     fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
-        Ok(Self {
-            name,
-            comments: Vec::new(),
-            source: Source::Pictures(Box::new(pictures)),
-            is_stream: false,
-            polygons: Polygons::Outlines,
-        })
+        Ok(Self::new(name, Vec::new(), Source::Pictures(Box::new(pictures))))
     }
 
     fn of_file(file: Result<OutlineFile, ReadError>, name: String) -> Result<Self, Failure> {
         let file = file.map_err(Failure::unusable)?;
         let comments = file.comments().lines().map(str::to_owned).collect();
-        Ok(Self { name, comments, source: Source::File(file), is_stream: false, polygons: Polygons::Outlines })
+        Ok(Self::new(name, comments, Source::File(file)))
     }
 
     fn of_polygons(
@@ -156,13 +155,7 @@ impl Input {
         // The head is read again with the rest, so that line numbers are right.
         let whole: Box<dyn Read> = Box::new(Cursor::new(head).chain(source));
         let outlines = OutlineReader::new(whole, name.clone()).map_err(Failure::unusable)?;
-        Ok(Self {
-            name,
-            comments,
-            source: Source::Csv(Box::new(outlines)),
-            is_stream: false,
-            polygons: Polygons::Outlines,
-        })
+        Ok(Self::new(name, comments, Source::Csv(Box::new(outlines))))
     }
 
     /// Polygons of annotation programs are handed on with their corners alone.

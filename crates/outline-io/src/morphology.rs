@@ -5,19 +5,19 @@ const STRIP: usize = 32;
 
 /// The largest value within `reach` samples along rows and columns (a square window), as far as the grid goes.
 pub(crate) fn dilated(field: &Field, reach: usize) -> Field {
-    let mut windows = Windows::new(reach);
-    let mut values = field.values.clone();
-    windows.along_rows(&mut values, field.width, larger);
-    windows.along_columns(&mut values, field.width, |strip| strip.of(larger));
-    Field { width: field.width, height: field.height, values }
+    windowed(field, reach, larger)
 }
 
 /// The smallest value within `reach` samples along rows and columns, as far as the grid goes.
 pub(crate) fn eroded(field: &Field, reach: usize) -> Field {
+    windowed(field, reach, smaller)
+}
+
+fn windowed(field: &Field, reach: usize, better: impl Fn(f32, f32) -> f32 + Copy) -> Field {
     let mut windows = Windows::new(reach);
     let mut values = field.values.clone();
-    windows.along_rows(&mut values, field.width, smaller);
-    windows.along_columns(&mut values, field.width, |strip| strip.of(smaller));
+    windows.along_rows(&mut values, field.width, better);
+    windows.along_columns(&mut values, field.width, |strip| strip.of(better));
     Field { width: field.width, height: field.height, values }
 }
 

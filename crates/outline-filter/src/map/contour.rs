@@ -69,9 +69,8 @@ impl Contour {
     /// what else is shorter than that. `None` for a contour of few points.
     pub(crate) fn scatter_over(&self, reach: f64) -> Option<f64> {
         let points = reach / self.median_step;
-        let largest = (self.points.len() / tuning::PARTS).min(*tuning::HALF_WINDOWS.end());
         let mut contour = self.clone();
-        contour.residual_scale((points.round() as usize).min(largest).max(*tuning::HALF_WINDOWS.start()))
+        contour.residual_scale((points.round() as usize).min(self.widest_usual()).max(*tuning::HALF_WINDOWS.start()))
     }
 
     /// Smallest window that gives normals a direction with a deviation of no more than `normal_noise`, in rad, for noise `sigma`: as far as
@@ -87,8 +86,12 @@ impl Contour {
     }
 
     fn half_window_for(&self, sigma: f64, normal_noise: f64) -> usize {
-        let largest = self.points.len() / tuning::PARTS;
-        self.narrowest(sigma, normal_noise, largest.min(*tuning::HALF_WINDOWS.end()))
+        self.narrowest(sigma, normal_noise, self.widest_usual())
+    }
+
+    /// Widest window that is usual, as far as the contour allows.
+    fn widest_usual(&self) -> usize {
+        (self.points.len() / tuning::PARTS).min(*tuning::HALF_WINDOWS.end())
     }
 
     fn narrowest(&self, sigma: f64, normal_noise: f64, largest: usize) -> usize {

@@ -9,7 +9,7 @@ use crate::tuning::lattice as tuning;
 
 /// How points lie on a lattice of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum PlaceOnLattice {
     /// At its nodes, one after another along rows, columns, or diagonals, as those of a mask do.
     Chain,
     /// At its nodes, in any order, as rounded coordinates do.
@@ -23,7 +23,7 @@ pub(crate) enum Place {
 pub(crate) struct PixelLattice {
     /// Size of a pixel, image lengths.
     pub(crate) pixel: f64,
-    pub(crate) place: Place,
+    pub(crate) place: PlaceOnLattice,
 }
 
 impl PixelLattice {
@@ -40,19 +40,20 @@ impl PixelLattice {
         let found = pitches.into_iter().map(lines).find(on_lines)?;
         // Points half way between pixels lie on the lines of a lattice as interpolated ones do, and on every second node of one twice as fine.
         let finer = lines(found.pitch / 2.0);
-        let place = |lines: &Lines| if is_chain(outline, lines.pitch) { Place::Chain } else { Place::Nodes };
+        let place =
+            |lines: &Lines| if is_chain(outline, lines.pitch) { PlaceOnLattice::Chain } else { PlaceOnLattice::Nodes };
         let of_nodes = [&found, &finer].into_iter().find_map(|lines| {
             let pixel = lines.pixel_of_nodes(&points)?;
             Some(Self { pixel, place: place(lines) })
         });
-        of_nodes.or(Some(Self { pixel: found.pitch, place: Place::Lines }))
+        of_nodes.or(Some(Self { pixel: found.pitch, place: PlaceOnLattice::Lines }))
     }
 }
 
 /// Lines at a pitch in both axes.
 struct Lines {
     pitch: f64,
-    /// Place of one of them in each axis, where there are any.
+    /// PlaceOnLattice of one of them in each axis, where there are any.
     origins: [Option<f64>; 2],
 }
 
@@ -103,7 +104,7 @@ fn usual_gaps(values: &[f64]) -> Vec<f64> {
     groups.iter().map(|group| group.iter().sum::<f64>() / group.len() as f64).collect()
 }
 
-/// Place of one of the lines at a pitch that most of the values lie on.
+/// PlaceOnLattice of one of the lines at a pitch that most of the values lie on.
 fn origin(values: &[f64], pitch: f64) -> Option<f64> {
     let mut remainders: Vec<f64> = values.iter().map(|value| value.rem_euclid(pitch)).collect();
     remainders.sort_unstable_by(f64::total_cmp);

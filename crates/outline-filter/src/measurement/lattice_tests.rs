@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
 
-use super::lattice::{PixelLattice, Place};
+use super::lattice::{PixelLattice, PlaceOnLattice};
 
 /// How much of a pixel a disc covers at most, told by the distance of its middle from the border.
 fn coverage(centre: Point2<f64>, radius: f64, x: i32, y: i32) -> f64 {
@@ -51,7 +51,7 @@ proptest! {
         let origin = Vector2::new(offset, -0.3 * offset) * pixel;
         for of_mask in [false, true] {
             let lattice = found(&crossings(centre, radius, of_mask), pixel, origin);
-            let place = if of_mask { Place::Chain } else { Place::Lines };
+            let place = if of_mask { PlaceOnLattice::Chain } else { PlaceOnLattice::Lines };
             let lattice = lattice.expect("a lattice");
             prop_assert_eq!(lattice.place, place);
             prop_assert!((lattice.pixel / pixel - 1.0).abs() < 1e-6, "{}", lattice.pixel);
@@ -77,7 +77,7 @@ proptest! {
         let unit = 10.0_f64.powi(-digits);
         let rounded: Vec<_> = points.iter().map(|p| p.map(|v| (v / unit).round() * unit)).collect();
         if let Some(lattice) = found(&rounded, 1.0, Vector2::zeros()) {
-            prop_assert!(lattice.place != Place::Chain);
+            prop_assert!(lattice.place != PlaceOnLattice::Chain);
             prop_assert!(lattice.pixel < 2.1 * unit, "{}", lattice.pixel);
         }
     }

@@ -14,7 +14,7 @@ mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
 pub(crate) use frame::{Frame, Piece, Reference};
-pub(crate) use lattice::{PixelLattice, Place};
+pub(crate) use lattice::{PixelLattice, PlaceOnLattice};
 pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;
 pub(crate) use noise::{Counted, NoiseModel, Rounding, Tolerance, correlation_of, spread};

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 
-use super::{Frame, NO_CELL, Place, variance_inflation::VarianceInflation};
+use super::{Frame, NO_CELL, PlaceOnLattice, variance_inflation::VarianceInflation};
 use crate::{
     map::{median, median_about},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise as tuning, statement::ROUNDING},
@@ -68,15 +68,15 @@ impl Rounding {
     }
 
     /// Of points on a lattice of pixels that scatter by `scatter` about their smoothed contour; lengths are normalised.
-    pub(crate) fn on_lattice(pixel: f64, place: Place, scatter: f64, (length, points): (f64, usize)) -> Self {
+    pub(crate) fn on_lattice(pixel: f64, place: PlaceOnLattice, scatter: f64, (length, points): (f64, usize)) -> Self {
         let scatter = scatter / pixel;
         let share = match place {
-            Place::Chain => 1.0,
+            PlaceOnLattice::Chain => 1.0,
             // Noise before the rounding makes its errors noise as well: the mean of a rounded Gaussian number (B. Widrow and I. Kollar,
             // Quantization Noise, 2008).
-            Place::Nodes => (-2.0 * (PI * scatter).powi(2) + 2.0 * (PI * ROUNDING).powi(2)).min(0.0).exp(),
+            PlaceOnLattice::Nodes => (-2.0 * (PI * scatter).powi(2) + 2.0 * (PI * ROUNDING).powi(2)).min(0.0).exp(),
             // How ragged a contour is that was smoothed or interpolated tells what it keeps of the pixels.
-            Place::Lines => (scatter / tuning::RAGGED_MASK).clamp(tuning::INTERPOLATED, 1.0),
+            PlaceOnLattice::Lines => (scatter / tuning::RAGGED_MASK).clamp(tuning::INTERPOLATED, 1.0),
         };
         Self::with_share(pixel, share, (length, points))
     }

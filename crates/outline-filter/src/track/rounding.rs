@@ -11,20 +11,21 @@ use crate::{
 };
 
 impl Track {
-    /// Rounding of the loaded points of an outline: to pixels of a given size, image lengths, or, where that is 0, to those of the lattice that
-    /// they lie on. A radius of the outline is to be 1. Points that state deviations of their own have said what they are off by.
+    /// Rounding of the points of an outline, whose contours are normalised by a radius: to pixels of a given size, image lengths, or, where that is 0, to those of the lattice that
+    /// they lie on. Points that state deviations of their own have said what they are off by.
     pub(super) fn rounding_of(outline: &Outline, mask_pixel: f64, contours: &[Contour], radius: f64) -> Rounding {
         let length = |piece: Piece<'_>| piece.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>();
         let extent = (outline.pieces().map(length).sum::<f64>() / radius, outline.point_count());
         if mask_pixel > 0.0 {
             return Rounding::of_mask(mask_pixel / radius, extent);
         }
-        let lattice = PixelLattice::of(outline).filter(|_| outline.deviations().is_none());
-        lattice.map_or(Rounding::NONE, |PixelLattice { pixel, place }| {
-            let pixel = pixel / radius;
-            let scatter = contours.iter().filter_map(|contour| contour.scatter_over(RAGGED_OVER * pixel));
-            Rounding::on_lattice(pixel, place, scatter.fold(0.0, f64::max), extent)
-        })
+        if outline.deviations().is_some() {
+            return Rounding::NONE;
+        }
+        let Some(PixelLattice { pixel, place }) = PixelLattice::of(outline) else { return Rounding::NONE };
+        let pixel = pixel / radius;
+        let scatter = contours.iter().filter_map(|contour| contour.scatter_over(RAGGED_OVER * pixel));
+        Rounding::on_lattice(pixel, place, scatter.fold(0.0, f64::max), extent)
     }
 
     /// Size of a pixel, and deviation of a side along the rows or columns, image lengths; zeros where points are not rounded.

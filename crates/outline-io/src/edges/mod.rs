@@ -84,13 +84,6 @@ pub struct EdgeFit {
     pub clear_share: f64,
 }
 
-impl EdgeFit {
-    /// The standard deviations of all points with the systematic part.
-    pub fn with_systematic(&self) -> impl Iterator<Item = f64> {
-        self.deviations.iter().map(|random| random.hypot(self.systematic))
-    }
-}
-
 /// What is looked at of a picture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EdgeSource<'a> {
