@@ -12,7 +12,7 @@ use crate::{
     map::{NullDirection, OutlineMap, TurnEvent, TurnEvidence},
     measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
-    tuning::{map::FEWEST_POINTS, update as tuning},
+    tuning::{map::FEWEST_POINTS, noise::LARGEST, update as tuning},
     update::{
         FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold, with_hold,
     },
@@ -176,7 +176,7 @@ impl Track {
         let rounding = self.noise.rounding().of_point();
         let noise = measurement.noise.map(|noise| measurement.of_good_points(noise));
         let correlation = correlation_of(frame, noise.map(|noise| (noise / radius).max(rounding)));
-        let verdict = gate.verdict(&measurement);
+        let verdict = self.verdict(gate, &measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
         let (mut shift, mut disagrees) = (SVector::zeros(), false);
@@ -196,6 +196,19 @@ impl Track {
         let pose = measured.map(|measured| measured.over(variance));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
         Outcome { measurement, verdict, innovation, pose, rounding, shift, disagrees, likelihood }
+    }
+
+    /// The verdict of a gate. Points may scatter by as much more than those of other frames as outlines that do what the motion model leaves out
+    /// have been seen to be off by.
+    pub(super) fn verdict(&self, gate: &Gate, measurement: &FrameMeasurement) -> Result<(), Rejection> {
+        let verdict = gate.verdict(measurement);
+        let Some(largest) = gate.largest_noise.filter(|_| matches!(verdict, Err(Rejection::NoiseTooLarge { .. })))
+        else {
+            return verdict;
+        };
+        let of_noise = self.unmodelled_motions().0.displacement / self.noise.sigma;
+        let widened = (of_noise.hypot(1.0) * largest).min(LARGEST * self.reference.radius);
+        Gate { largest_noise: Some(widened.max(largest)), ..*gate }.verdict(measurement)
     }
 
     /// Updates the noise by that of good points in an accepted frame and its correlation, as far as they are told, the frame counting for a

@@ -73,7 +73,8 @@ mod tests {
 
     use super::*;
     use crate::track::Comparison;
-    use crate::update::{Gate, UNMODELLED};
+    use crate::tuning::noise::LARGEST;
+    use crate::update::{FrameMeasurement, Gate, UNMODELLED};
 
     const STEP: f64 = 0.05;
     const MOTION: [f64; 3] = [1.3, 0.4, -0.7];
@@ -174,6 +175,29 @@ mod tests {
             // A unit of growth moves points by about their distance times the six seconds that have passed.
             println!("{variance}: {largest}");
             assert!(largest < 20.0, "{variance}: {largest}");
+        }
+    }
+
+    #[test]
+    fn points_may_scatter_more_where_outlines_do_what_the_motion_model_leaves_out() {
+        let [sheared, plain] = [0.02, 0.0].map(|size| tracked(size, 1, (40, [1e-4; 2])));
+        let displacement = sheared.unmodelled_motions().0.displacement;
+        assert!(displacement > 0.5 * sheared.noise.sigma, "{displacement} {}", sheared.noise.sigma);
+        for (track, is_more_accepted) in [(&sheared, true), (&plain, false)] {
+            let largest = track.largest_noise();
+            let accepts = |ratio: f64| {
+                let gate = Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: Some(largest) };
+                let of_frame = FrameMeasurement {
+                    agreement: 1.0,
+                    innovation: 0.0,
+                    noise: Some(ratio * largest),
+                    ..FrameMeasurement::unsolved(1)
+                };
+                track.verdict(&gate, &of_frame).is_ok()
+            };
+            let outline_of_another = 1.01 * LARGEST * track.reference().radius / largest;
+            let found = [0.99, 1.1, outline_of_another].map(accepts);
+            assert_eq!(found, [true, is_more_accepted, false]);
         }
     }
 }
