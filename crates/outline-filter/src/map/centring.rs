@@ -80,6 +80,10 @@ impl Centring {
         (Vector2::new(tangent.y, -tangent.x) / length, variance.min(ANY_DIRECTION))
     }
 
+    pub(super) fn spread(&self) -> f64 {
+        self.spread
+    }
+
     pub(super) fn is_stretched(&self) -> bool {
         self.stretch.is_some()
     }

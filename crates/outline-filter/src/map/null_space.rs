@@ -72,6 +72,12 @@ struct ContourArea {
     least: usize,
 }
 
+impl ContourArea {
+    fn centroid(&self) -> Option<Point2<f64>> {
+        (self.area != 0.0).then(|| self.origin + self.moment / (3.0 * self.area))
+    }
+}
+
 impl OutlineMap {
     /// The object's centroid in the body frame: the centroid of the area that the outline encloses, which a body of even thickness turns
     /// about where nothing holds it; the centre of the cells where the outline is not closed.
@@ -79,24 +85,36 @@ impl OutlineMap {
         self.null_space.centroid
     }
 
-    /// Centroid of the area within the polygon of the cells, if they are one closed contour; of several, within the largest, which is the
-    /// boundary of the body.
-    fn area_centroid(&self) -> Option<Point2<f64>> {
-        let first = self.contour_from(0)?;
-        let (mut largest, mut cells) = (first, first.cells);
-        let mut start = 1;
+    /// The contours that the cells make, if all of them are closed; none where there are no cells.
+    fn closed_contours(&self) -> Vec<ContourArea> {
+        let (mut contours, mut cells, mut start) = (Vec::new(), 0, 0);
         while cells < self.cells.len() && start < self.cells.len() {
-            let contour = self.contour_from(start)?;
+            let Some(contour) = self.contour_from(start) else { return Vec::new() };
             // Each contour counts once, from the first of its cells.
             if contour.least == start {
                 cells += contour.cells;
-                if contour.area.abs() > largest.area.abs() {
-                    largest = contour;
-                }
+                contours.push(contour);
             }
             start += 1;
         }
-        (largest.area != 0.0).then(|| largest.origin + largest.moment / (3.0 * largest.area))
+        contours
+    }
+
+    /// Centroid of the area within the polygon of the cells, if they are one closed contour; of several, within the largest, which is the
+    /// boundary of the body.
+    fn area_centroid(contours: &[ContourArea]) -> Option<Point2<f64>> {
+        contours.iter().max_by(|a, b| a.area.abs().total_cmp(&b.area.abs()))?.centroid()
+    }
+
+    /// Mean square of the lever arms of a turn that the places of closed contours beside each other have, if these are round; squares of the RMS
+    /// radius. Errors of normals, which make levers along a contour, do not make these.
+    fn levers_of_places(contours: &[ContourArea], spread: f64) -> f64 {
+        let total = contours.iter().map(|contour| contour.cells as f64).sum::<f64>();
+        let places = || contours.iter().filter_map(|contour| Some((contour.cells as f64 / total, contour.centroid()?)));
+        let middle = places().map(|(share, centre)| share * centre.coords).sum::<Vector2<f64>>();
+        let squares = places().map(|(share, centre)| share * (centre.coords - middle).norm_squared()).sum::<f64>();
+        // Half of the normals are across the way to the middle.
+        0.5 * squares / (spread * spread)
     }
 
     /// The closed contour that a cell is of; `None` where it is of an open one.
@@ -180,7 +198,11 @@ impl OutlineMap {
             levers += across * across.transpose() / count;
             levers_of_noise += variance / count * along * along.transpose();
         }
-        let centroid = self.area_centroid().unwrap_or(centring.centroid);
+        let contours = self.closed_contours();
+        let centroid = Self::area_centroid(&contours).unwrap_or(centring.centroid);
+        let of_places = Self::levers_of_places(&contours, centring.spread());
+        let noise = sigma / centring.spread();
+        let places_show_turn = of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
         let of_cells = direction_variance(sigma / self.step, self.half_window);
         let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_cells);
         let eigen = levers.symmetric_eigen();
@@ -196,7 +218,10 @@ impl OutlineMap {
             let mut is_shown = *value >= tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise);
             // Where shapes may change, a weak direction is more of that than of a turn.
             let is_turn = model <= MotionModel::Similarity && turn_rate(&generator).abs() > tuning::HOLDS_TURN;
-            if is_shown && is_turn {
+            if is_turn && places_show_turn {
+                space.weakest_turn = space.weakest_turn.min(told.max(of_places));
+                is_shown = true;
+            } else if is_shown && is_turn {
                 space.weakest_turn = space.weakest_turn.min(told);
                 is_shown = told >= needed;
             }

@@ -14,3 +14,4 @@ mod recorded;
 mod recording;
 #[cfg(feature = "serde")]
 mod saved_state;
+mod washers;

@@ -1,0 +1,74 @@
+//! Discs with a hole, which show their turn by the place of the hole alone.
+use freeform_curve_fit::{ClosedOutline, Outline};
+use freeform_outline_filter::MotionFilter;
+use freeform_riccati::MotionModel;
+use nalgebra::{Point2, Vector2};
+use rand::{Rng, RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal};
+
+use crate::filter_support::filter;
+
+const OMEGA: f64 = 2.0;
+const VELOCITY: Vector2<f64> = Vector2::new(0.4, -0.3);
+const FRAMES: u8 = 60;
+
+/// Points anywhere on a circle, in order, with noise.
+fn circle(centre: Point2<f64>, radius: f64, (points, noise): (u16, f64), random: &mut impl Rng) -> Vec<Point2<f64>> {
+    let normal = Normal::new(0.0, noise).expect("a deviation");
+    let stretch = std::f64::consts::TAU / f64::from(points);
+    let point = |i: u16| {
+        let (sine, cosine) = ((f64::from(i) + random.random::<f64>()) * stretch).sin_cos();
+        let along = centre + radius * Vector2::new(cosine, sine);
+        along + Vector2::new(normal.sample(random), normal.sample(random))
+    };
+    (0..points).map(point).collect()
+}
+
+/// A disc of radius 1 with a hole that is off its middle, which spins and travels straight.
+fn followed(hole: f64, off: f64, noise: f64, seed: u64) -> MotionFilter {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let start = random.random_range(0.0..std::f64::consts::TAU);
+    let mut run = filter(MotionModel::Rigid);
+    for frame in 0..FRAMES {
+        let time = f64::from(frame) / 30.0;
+        let centre = Point2::from(time * VELOCITY);
+        // Omega is clockwise.
+        let (sine, cosine) = (start - OMEGA * time).sin_cos();
+        let boundary = circle(centre, 1.0, (270, noise), &mut random);
+        let mut within = circle(centre + off * Vector2::new(cosine, sine), hole, (130, noise), &mut random);
+        within.reverse();
+        let outline = ClosedOutline::new(boundary).and_then(|outline| outline.with_inner(vec![within]));
+        run.step(time, &Outline::from(outline.expect("an outline"))).expect("increasing times");
+    }
+    run
+}
+
+#[test]
+fn a_hole_beside_the_middle_of_a_disc_tells_its_turn_and_one_in_the_middle_does_not() {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for (hole, off, noise) in [(0.5, 0.1, 0.001), (0.5, 0.15, 0.006), (0.2, 0.15, 0.006), (0.5, 0.3, 0.02)] {
+        for seed in 0..4 {
+            let run = followed(hole, off, noise, seed);
+            let estimate = run.estimate().expect("an estimate");
+            let omega = estimate.parameters().next().expect("omega comes first");
+            let context = format!("{hole} {off} {noise}, seed {seed}");
+            let (value, std) =
+                omega.value.zip(omega.standard_deviation).unwrap_or_else(|| panic!("unknown: {context}"));
+            assert!((value - OMEGA).abs() < 4.0 * std && std < 0.1, "{context}: {value} {std}");
+            squares += ((value - OMEGA) / std).powi(2);
+            count += 1.0;
+        }
+        for off in [0.0, 0.01] {
+            let run = followed(hole, off, noise, 9);
+            let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+            assert_eq!(omega.value, None, "{hole} {off} {noise}");
+            let velocity = run.velocity().expect("a velocity");
+            let error = (velocity.velocity - VELOCITY).norm() / velocity.standard_deviations().norm();
+            assert!(error < 4.0, "{hole} {off} {noise}: {error}");
+        }
+    }
+    // The mean of 16 squared deviations is beyond 3 once in 20,000 times.
+    let ratio: f64 = squares / count;
+    assert!(ratio < 3.0, "{ratio}");
+}
