@@ -70,7 +70,7 @@ pub use pipeline::{FrameResult, Pipeline};
 pub use pipeline_error::PipelineError;
 pub use pipeline_settings::PipelineSettings;
 pub use plane_by_outline::{PlaneByOutline, PlaneByOutlineError, plane_by_outline};
-pub use polygon::outline_of_polygon;
+pub use polygon::{outline_of_pixel_polygon, outline_of_polygon};
 pub use rectification::{Rectification, RectifyError};
 pub use rejection::with_causes;
 pub use tracker::{Tracker, TrackerSettings};

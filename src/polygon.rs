@@ -30,8 +30,20 @@ pub fn outline_of_polygon(outline: &Outline) -> Outline {
 }
 
 /// The outline of a polygon in pixels, with a point for each pixel of its sides; `None` where the points are no such polygon, or all there already.
-/// Masks are traced to such polygons, with the corners of straight stretches alone.
-pub(crate) fn outline_of_pixel_polygon(outline: &Outline) -> Option<Outline> {
+/// Masks are traced to such polygons, with the corners of straight stretches alone. Such a polygon is closed, has whole numbers for coordinates
+/// and no standard deviations, and has fewer than 40 points or a side of more than four times the mean length. [`Tracker`](crate::Tracker) fills them.
+///
+/// ```
+/// use freeform_motion::{curve_fit::Outline, outline_of_pixel_polygon};
+/// use nalgebra::Point2;
+///
+/// let corners = [(0.0, 0.0), (30.0, 0.0), (30.0, 10.0), (0.0, 10.0)];
+/// let polygon = Outline::closed(corners.iter().map(|(x, y)| Point2::new(*x, *y)).collect())?;
+/// assert_eq!(outline_of_pixel_polygon(&polygon).map(|outline| outline.point_count()), Some(80));
+/// # Ok::<(), freeform_motion::curve_fit::OutlineError>(())
+/// ```
+#[must_use]
+pub fn outline_of_pixel_polygon(outline: &Outline) -> Option<Outline> {
     let Outline::Closed(polygon) = outline else { return None };
     let is_whole = |value: f64| value.fract() == 0.0;
     if outline.deviations().is_some() || !outline.points().all(|point| is_whole(point.x) && is_whole(point.y)) {

@@ -2,6 +2,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use freeform_motion::estimate::ProcessNoise;
 use freeform_motion::outline_filter::{FilterSettings, FilterStep, MotionFilter, Phase};
+use freeform_motion::outline_of_pixel_polygon;
 use freeform_motion::tracker::ObjectPhase;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -137,7 +138,8 @@ impl PyMotionFilter {
     /// time : float
     ///     Seconds, after the time of the frame before.
     /// outline : Outline or array_like, shape (n, 2)
-    ///     An outline, or the points of a closed contour in order.
+    ///     An outline, or the points of a closed contour in order. Whole numbers with long sides between them are the corners of a
+    ///     polygon, as contours of a mask are that were simplified: points are put along its sides.
     ///
     /// Returns
     /// -------
@@ -150,6 +152,7 @@ impl PyMotionFilter {
     ///     Points that are no outline, or a time that does not increase. The filter is then unchanged.
     fn step(&self, py: Python<'_>, time: f64, outline: &Bound<'_, PyAny>) -> PyResult<PyFilterStep> {
         let outline = outline_of(outline)?;
+        let outline = outline_of_pixel_polygon(&outline).unwrap_or(outline);
         let inner = py.detach(|| self.lock().step(time, &outline)).map_err(value_error)?;
         Ok(PyFilterStep { inner })
     }
