@@ -1,4 +1,4 @@
-use nalgebra::{Complex, Matrix3, RowVector3};
+use nalgebra::{Complex, Matrix2, Matrix3, RowVector3};
 
 /// Norm beyond which no digit of an exponential is left in f64: a turn by 1e15 rad has lost its phase.
 const MEANINGFUL_NORM: f64 = 1e15;
@@ -20,6 +20,30 @@ pub(crate) fn exponential(m: &Matrix3<f64>) -> Matrix3<f64> {
         map.set_row(2, &RowVector3::new(0.0, 0.0, 1.0));
     }
     map
+}
+
+/// `expm(m)` of a linear map and `(expm(m) - 1) m^-1`, its mean over the way there, also of singular maps; all NaN as
+/// [`exponential`].
+///
+/// The latter by its series where the map is small, and doubled otherwise: of `2 m` it is half of `(expm(m) + 1)` times that of m.
+pub(crate) fn linear_exponential(m: &Matrix2<f64>) -> [Matrix2<f64>; 2] {
+    if !m.iter().all(|e| e.abs() < MEANINGFUL_NORM) {
+        return [Matrix2::repeat(f64::NAN); 2];
+    }
+    let norm = 2.0 * m.amax();
+    let halvings = if norm > SERIES_SIZE { (norm / SERIES_SIZE).log2().ceil() as i32 } else { 0 };
+    let small = m * 0.5_f64.powi(halvings);
+    // Horner's scheme for the sum of m^k / (k + 1)!.
+    let mut mean = Matrix2::identity();
+    for k in (2..=SERIES_TERMS).rev() {
+        mean = small * mean * (1.0 / f64::from(k)) + Matrix2::identity();
+    }
+    let mut map = small * mean + Matrix2::identity();
+    for _ in 0..halvings {
+        mean = (map + Matrix2::identity()) * mean * 0.5;
+        map *= map;
+    }
+    [map, mean]
 }
 
 /// `(e^z - 1) / z`, without loss of digits near 0.
@@ -59,6 +83,25 @@ mod tests {
                 }
                 let found = second_exponential_quotient(z);
                 assert!((found - series).norm() < 3e-15 * series.norm().max(0.1), "z = {z}: {found} {series}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_exponential_of_a_linear_map_and_its_mean_are_those_of_the_exponential_of_a_larger_matrix() {
+        let shapes = [[0.0, 1.0, -1.0, 0.0], [0.3, -0.7, 0.2, 0.5], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.4, 0.4, -0.3]];
+        for size in [0.0, 1e-12, 1e-3, 0.24, 0.26, 0.9, 3.0, 10.0] {
+            for [a, b, c, d] in shapes.map(|shape| shape.map(|entry| entry * size)) {
+                let [map, mean] = linear_exponential(&Matrix2::new(a, b, c, d));
+                for (j, [x, y]) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
+                    let whole = exponential(&Matrix3::new(a, b, x, c, d, y, 0.0, 0.0, 0.0));
+                    let tolerance = 1e-14 * (1.0 + size) * (1.0 + whole.amax());
+                    assert!((whole.fixed_view::<2, 2>(0, 0) - map).amax() < tolerance, "{size}: {whole} {map}");
+                    assert!(
+                        (whole.fixed_view::<2, 1>(0, 2) - mean.column(j)).amax() < tolerance,
+                        "{size}: {whole} {mean}"
+                    );
+                }
             }
         }
     }

@@ -16,6 +16,12 @@ pub fn turn_rate(generator: &Matrix3<f64>) -> f64 {
     0.5 * (generator[(0, 1)] - generator[(1, 0)])
 }
 
+/// Growth, turn and velocity of the similarity motion nearest to a generator, which is given by its entries.
+fn parameters_of_similarity(entry: impl Fn(usize, usize) -> f64) -> [f64; 4] {
+    let (sigma, omega) = (0.5 * (entry(0, 0) + entry(1, 1)), 0.5 * (entry(0, 1) - entry(1, 0)));
+    [sigma, omega, entry(0, 2), entry(1, 2)]
+}
+
 impl MotionModel {
     /// Parameters of the motion in this model that is nearest to a generator in its entries: the inverse of
     /// [`generator`](Self::generator) for one of this model. A multiple of the identity, which moves nothing, is taken off
@@ -56,7 +62,45 @@ impl MotionModel {
     /// Matrix of `E -> T E T^-1` on parameters, for a map T of the model's own group or a similarity, and its inverse.
     #[must_use]
     pub fn adjoint(self, map: &Matrix3<f64>, inverse: &Matrix3<f64>) -> ParameterMatrix {
-        self.parameter_columns(self.basis().iter().map(|e| map * e * inverse))
+        match self {
+            Self::Rigid | Self::Similarity => self.adjoint_of_similarity(map, inverse),
+            Self::Affine => Self::adjoint_of_affine(map, inverse),
+            Self::Projective => self.parameter_columns(self.basis().iter().map(|e| map * e * inverse)),
+        }
+    }
+
+    /// [`adjoint`](Self::adjoint) for affine motion: a generator with one entry becomes a column of the map times a row of the inverse.
+    fn adjoint_of_affine(map: &Matrix3<f64>, inverse: &Matrix3<f64>) -> ParameterMatrix {
+        const ENTRIES: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 0), (1, 1), (0, 2), (1, 2)];
+        let mut result = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+        for (entries, (i, j)) in result.iter_mut().zip(ENTRIES) {
+            for (entry, (row, column)) in entries.iter_mut().zip(ENTRIES) {
+                *entry = map[(i, row)] * inverse[(column, j)];
+            }
+        }
+        result
+    }
+
+    /// [`adjoint`](Self::adjoint) for rigid and similarity motion, without the zeros of their generators.
+    fn adjoint_of_similarity(self, map: &Matrix3<f64>, inverse: &Matrix3<f64>) -> ParameterMatrix {
+        let product = |row: usize, column: usize| move |i: usize, j: usize| map[(i, row)] * inverse[(column, j)];
+        let growth = |i, j| product(0, 0)(i, j) + product(1, 1)(i, j);
+        let turn = |i, j| product(0, 1)(i, j) - product(1, 0)(i, j);
+        let of_growth = parameters_of_similarity(growth);
+        let of_others = [
+            parameters_of_similarity(turn),
+            parameters_of_similarity(product(0, 2)),
+            parameters_of_similarity(product(1, 2)),
+        ];
+        let mut result = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+        let skipped = 4 - self.parameter_count();
+        let columns = std::iter::once(of_growth).chain(of_others).skip(skipped);
+        for (column, parameters) in columns.enumerate() {
+            for (row, value) in parameters.into_iter().skip(skipped).enumerate() {
+                result[row][column] = value;
+            }
+        }
+        result
     }
 
     /// Matrix whose columns are the parameters of the given generators, one for each parameter of the model.
@@ -69,5 +113,23 @@ impl MotionModel {
             }
         }
         result
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_adjoint_is_that_of_products_of_matrices() {
+        let similarity = Matrix3::new(0.8, 0.5, 3.0, -0.5, 0.8, -2.0, 0.0, 0.0, 1.0);
+        let affine = Matrix3::new(0.8, 0.3, 3.0, -0.6, 1.4, -2.0, 0.0, 0.0, 1.0);
+        let cases =
+            [(MotionModel::Rigid, similarity), (MotionModel::Similarity, similarity), (MotionModel::Affine, affine)];
+        for (model, map) in cases {
+            let inverse = map.try_inverse().expect("a regular map");
+            let plain = model.parameter_columns(model.basis().iter().map(|e| map * e * inverse));
+            assert_eq!(model.adjoint(&map, &inverse), plain, "{model}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 use nalgebra::{Complex, Matrix2, Matrix3, Projective2};
 
 use crate::{
-    exponential::exponential,
+    exponential::{exponential, linear_exponential},
     motion::{ProjectiveMotion, SimilarityMotion},
 };
 
@@ -180,13 +180,12 @@ impl MotionModel {
     /// If `parameters` does not have `parameter_count` entries.
     #[must_use]
     pub fn linear_flow(self, parameters: &[f64], seconds: f64) -> Matrix2<f64> {
-        let mut generator = self.generator(parameters);
+        let generator = self.generator(parameters);
         if self <= Self::Similarity {
             let linear = (Complex::new(generator[(0, 0)], -generator[(0, 1)]) * seconds).exp();
             return Matrix2::new(linear.re, -linear.im, linear.im, linear.re);
         }
-        (generator[(0, 2)], generator[(1, 2)]) = (0.0, 0.0);
-        exponential(&(generator * seconds)).fixed_view::<2, 2>(0, 0).into_owned()
+        linear_exponential(&(generator.fixed_view::<2, 2>(0, 0) * seconds))[0]
     }
 
     /// [`linear_flow`](Self::linear_flow), and its integral over the time: how far a velocity that turns with the object carries a point, for
@@ -196,7 +195,7 @@ impl MotionModel {
     /// If `parameters` does not have `parameter_count` entries.
     #[must_use]
     pub fn linear_flow_with_integral(self, parameters: &[f64], seconds: f64) -> (Matrix2<f64>, Matrix2<f64>) {
-        let mut generator = self.generator(parameters);
+        let generator = self.generator(parameters);
         if self <= Self::Similarity {
             // Turns and growth commute, so that the way of one velocity tells that of all.
             let (sigma, omega) = (generator[(0, 0)], generator[(0, 1)]);
@@ -204,13 +203,8 @@ impl MotionModel {
             let (along, across) = (flow[(0, 2)], flow[(1, 2)]);
             return (flow.fixed_view::<2, 2>(0, 0).into_owned(), Matrix2::new(along, -across, across, along));
         }
-        let mut flow = |velocity: [f64; 2]| {
-            (generator[(0, 2)], generator[(1, 2)]) = (velocity[0], velocity[1]);
-            exponential(&(generator * seconds))
-        };
-        let flows = [flow([1.0, 0.0]), flow([0.0, 1.0])];
-        let ways = flows.map(|flow| flow.fixed_view::<2, 1>(0, 2).into_owned());
-        (flows[0].fixed_view::<2, 2>(0, 0).into_owned(), Matrix2::from_columns(&ways))
+        let [flow, mean] = linear_exponential(&(generator.fixed_view::<2, 2>(0, 0) * seconds));
+        (flow, mean * seconds)
     }
 }
 

@@ -43,6 +43,36 @@ pub fn flow_sensitivity(generator: &Matrix3<f64>, direction: &Matrix3<f64>, seco
     sum
 }
 
+/// [`flow_sensitivity`] of an affine motion, for directions that are such motions too: the same sums without what the last rows have no part
+/// in.
+fn affine_sensitivity(generator: &Matrix3<f64>, direction: &Matrix3<f64>, seconds: f64) -> Matrix3<f64> {
+    let norm = (generator * seconds).norm();
+    if norm.is_nan() || norm > SERIES_NORM {
+        return flow_sensitivity(generator, direction, seconds);
+    }
+    let rows = |m: &Matrix3<f64>| [[m.m11, m.m12, m.m13], [m.m21, m.m22, m.m23]];
+    let product =
+        |a: &[[f64; 3]; 2], b: &[[f64; 3]; 2]| a.map(|[x, y, _]| [0, 1, 2].map(|j| x * b[0][j] + y * b[1][j]));
+    let largest = |m: &[[f64; 3]; 2]| m.iter().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    let generator = rows(generator);
+    let mut term = rows(&(direction * seconds));
+    let mut sum = term;
+    for k in 2..=SERIES_TERMS {
+        let (left, right, factor) = (product(&generator, &term), product(&term, &generator), seconds / f64::from(k));
+        for i in 0..2 {
+            for j in 0..3 {
+                term[i][j] = (left[i][j] - right[i][j]) * factor;
+                sum[i][j] += term[i][j];
+            }
+        }
+        if largest(&term) < LEFT_OUT * largest(&sum) {
+            break;
+        }
+    }
+    let [[m11, m12, m13], [m21, m22, m23]] = sum;
+    Matrix3::new(m11, m12, m13, m21, m22, m23, 0.0, 0.0, 0.0)
+}
+
 /// [`flow_sensitivity`] of a similarity motion, for directions that are such motions too, in closed form.
 ///
 /// With `q = x + j y` such a motion is `q' = a q + b`, and its flow takes the generator `(e, f)` along to `(e, exp(a s) f - e b phi(s))`, where
@@ -77,8 +107,9 @@ impl MotionModel {
             }
             return sensitivities;
         }
+        let of_one = if self == Self::Affine { affine_sensitivity } else { flow_sensitivity };
         for (v, e) in sensitivities.iter_mut().zip(self.basis()) {
-            *v = flow_sensitivity(&generator, e, seconds);
+            *v = of_one(&generator, e, seconds);
         }
         sensitivities
     }
@@ -103,6 +134,18 @@ mod tests {
                         "{model} {seconds}: {v} {expected}"
                     );
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn sensitivities_of_affine_motions_are_those_of_whole_matrices() {
+        let motion = [0.2, -1.3, 0.9, -0.4, 0.7, -0.5];
+        let model = MotionModel::Affine;
+        let generator = model.generator(&motion);
+        for seconds in [1e-6, 0.03, 0.1, 2.0] {
+            for (v, e) in model.flow_sensitivities(&motion, seconds).iter().zip(model.basis()) {
+                assert_eq!(*v, flow_sensitivity(&generator, e, seconds), "{seconds}");
             }
         }
     }

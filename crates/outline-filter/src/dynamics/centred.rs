@@ -93,79 +93,70 @@ pub(super) fn of_both(change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>, k: 
     both
 }
 
-/// `F P F'` over the first `n` entries, of which a state has two or three for each parameter.
+/// `F P F'` over the first `n` entries, of which a state has two or three for each parameter; none beyond.
 pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>, n: usize) -> SMatrix<f64, N, N> {
-    match n {
-        6 => carried_sized::<N, 6>(f, p),
-        8 => carried_sized::<N, 8>(f, p),
-        9 => carried_sized::<N, 9>(f, p),
-        12 => carried_sized::<N, 12>(f, p),
-        _ => carried_sized::<N, N>(f, p),
-    }
-}
-
-fn carried_sized<const N: usize, const S: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-    let mut carried = SMatrix::<f64, N, N>::zeros();
-    vectorised(
-        #[inline(always)]
-        || carry::<N, S>(f, p, &mut carried),
-    );
+    let mut carried = *p;
+    carry(f, &mut carried, n);
     carried
 }
 
-#[inline(always)]
-fn carry<const N: usize, const S: usize>(
-    f: &SMatrix<f64, N, N>,
-    p: &SMatrix<f64, N, N>,
-    carried: &mut SMatrix<f64, N, N>,
-) {
-    // By columns `P F'` and then `(F P) F'`. Most entries of a transition are zero.
-    let mut entries = [[0_u8; S]; S];
-    let mut counts = [0; S];
-    for i in 0..S {
-        for l in 0..S {
-            entries[i][counts[i]] = l as u8;
-            counts[i] += usize::from(f[(i, l)] != 0.0);
-        }
-    }
-    let mut whole = [[0.0; S]; S];
-    for j in 0..S {
-        for i in 0..S {
-            whole[j][i] = p[(i, j)];
-        }
-    }
-    let right = by_columns(f, &whole, (&entries, &counts));
-    let mut left = [[0.0; S]; S];
-    for j in 0..S {
-        for i in 0..S {
-            left[j][i] = right[i][j];
-        }
-    }
-    let both = by_columns(f, &left, (&entries, &counts));
-    for j in 0..S {
-        for i in 0..S {
-            carried[(i, j)] = both[j][i];
-        }
-    }
+/// As [`carried`], in the place of P.
+pub(super) fn carry<const N: usize>(f: &SMatrix<f64, N, N>, p: &mut SMatrix<f64, N, N>, n: usize) {
+    vectorised(
+        #[inline(always)]
+        || match n {
+            6 => carry_sized::<N, 6>(f, p),
+            8 => carry_sized::<N, 8>(f, p),
+            9 => carry_sized::<N, 9>(f, p),
+            12 => carry_sized::<N, 12>(f, p),
+            _ => carry_sized::<N, N>(f, p),
+        },
+    );
 }
 
-/// `P F'` by columns, with the numbers of the entries of each row of F that are not zero.
 #[inline(always)]
-fn by_columns<const N: usize, const S: usize>(
-    f: &SMatrix<f64, N, N>,
-    p: &[[f64; S]; S],
-    (entries, counts): (&[[u8; S]; S], &[usize; S]),
-) -> [[f64; S]; S] {
-    let mut product = [[0.0; S]; S];
-    for (i, column) in product.iter_mut().enumerate() {
-        for l in &entries[i][..counts[i]] {
-            let (factor, of_p) = (f[(i, usize::from(*l))], &p[usize::from(*l)]);
-            for row in 0..S {
-                column[row] += factor * of_p[row];
-            }
+fn carry_sized<const N: usize, const S: usize>(f: &SMatrix<f64, N, N>, p: &mut SMatrix<f64, N, N>) {
+    const { assert!(S <= u64::BITS as usize) };
+    // Most entries of a transition are zero: of each row, a bit for every one that is not.
+    let mut rows = [0_u64; S];
+    for (l, column) in f.data.0.iter().enumerate().take(S) {
+        for (row, entry) in rows.iter_mut().zip(column) {
+            *row |= u64::from(*entry != 0.0) << l;
         }
     }
-    product
+    // `P F'` by columns, and then `F (P F')` by rows, which are its columns as well.
+    let mut right = [[0.0; S]; S];
+    for (i, row) in rows.iter().enumerate() {
+        let column = combined::<N, N, S>(f, (i, *row), &p.data.0);
+        for (entries, entry) in right.iter_mut().zip(column) {
+            entries[i] = entry;
+        }
+    }
+    for (j, row) in rows.iter().enumerate() {
+        let column = combined::<N, S, S>(f, (j, *row), &right);
+        p.data.0[j][..S].copy_from_slice(&column);
+        p.data.0[j][S..].fill(0.0);
+    }
+    p.data.0[S..].fill([0.0; N]);
+}
+
+/// Sum of columns, each by the entry of a row of F; of those that are not zero.
+#[inline(always)]
+fn combined<const N: usize, const M: usize, const S: usize>(
+    f: &SMatrix<f64, N, N>,
+    (row, mut entries): (usize, u64),
+    columns: &[[f64; M]],
+) -> [f64; S] {
+    let mut sum = [0.0; S];
+    while entries != 0 {
+        let l = entries.trailing_zeros() as usize;
+        entries &= entries - 1;
+        let (factor, column) = (f.data.0[l][row], &columns[l][..S]);
+        for i in 0..S {
+            sum[i] += factor * column[i];
+        }
+    }
+    sum
 }
 
 /// Linear part of a generator and its velocity.

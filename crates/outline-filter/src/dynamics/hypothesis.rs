@@ -5,7 +5,7 @@ use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
 use crate::{tuning::dynamics as tuning, vectors::vectorised};
 
 use super::{
-    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carried, parts},
+    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carry, parts},
     course::Course,
 };
 
@@ -198,7 +198,8 @@ impl<const N: usize> Hypothesis<N> {
         if self.course == Course::ConstantVelocity {
             self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
         }
-        self.covariance = carried(&transition, &self.covariance, self.size());
+        let size = self.size();
+        carry(&transition, &mut self.covariance, size);
         self.add_change_of_accelerations(step);
         true
     }
