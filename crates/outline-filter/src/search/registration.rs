@@ -64,14 +64,13 @@ impl Registration {
             rigid.truncate(1);
             return Self { rigid, outlook };
         }
+        keep_near_best(&mut rigid, tuning::FAR_WORSE_BY_FEW);
         // Some come together only with all points: one taken twice would keep another out.
         let refine =
             |found: &RegisteredPose| refined(track, points, MotionModel::Rigid, &found.pose, Steps::REFINEMENT);
         rigid = distinct(rigid.iter().map(refine).collect());
         keep(&mut rigid, tuning::KEPT);
-        if let Some(limit) = rigid.first().map(|best| tuning::FAR_WORSE * best.score) {
-            rigid.retain(|found| found.score <= limit);
-        }
+        keep_near_best(&mut rigid, tuning::FAR_WORSE);
         Self { rigid, outlook }
     }
 
@@ -194,6 +193,13 @@ fn keep(list: &mut Vec<RegisteredPose>, count: usize) {
     ties.sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
     ties.truncate(count);
     list.append(&mut ties);
+}
+
+/// Keeps those, of which the best comes first, with scores of no more than so many times its own.
+fn keep_near_best(list: &mut Vec<RegisteredPose>, times: f64) {
+    if let Some(limit) = list.first().map(|best| times * best.score) {
+        list.retain(|found| found.score <= limit);
+    }
 }
 
 fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {

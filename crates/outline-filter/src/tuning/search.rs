@@ -50,6 +50,8 @@ pub(crate) mod registration {
     /// Score in that of the best from which on a pose cannot explain the frame nearly as well: mean distances of twice the size are squares of
     /// four times.
     pub(crate) const FAR_WORSE: f64 = 2.0;
+    /// As [`FAR_WORSE`], of scores with few points, which are known to a tenth, before a pose is refined with all of them.
+    pub(crate) const FAR_WORSE_BY_FEW: f64 = 3.0;
     /// Deviation of the points in the best pose found with few of them, in the most noise that is tolerated, from which on no pose explains the frame:
     /// the median of eighty is known to a seventh.
     pub(crate) const HOPELESS: f64 = 1.7;
