@@ -3,7 +3,7 @@ use freeform_riccati::{
 };
 use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::Landmarks;
+use super::{Landmarks, outlook::Outlook};
 use crate::{
     map::{OutlineMap, median},
     measurement::View,
@@ -32,20 +32,11 @@ pub(crate) struct Registration {
     outlook: Outlook,
 }
 
-/// Whether a frame may be found to show the object, as far as a search with few points says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outlook {
-    Open,
-    /// Even in the pose that explains it best it scatters by far more than is tolerated.
-    Hopeless,
-}
-
 impl Registration {
     /// Searches with normalised points of a frame, from turns all around; `landmarks` are the related points of the track in its present pose,
     /// and those of the frame.
     pub(crate) fn search(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Self {
-        let stride = (points.len() / tuning::FEW_POINTS).max(1);
-        let few: Vec<_> = points.iter().step_by(stride).copied().collect();
+        let few = few_of(points);
         let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
         let starts = starts(track, points, landmarks);
         let mut begun: Vec<RegisteredPose> = Vec::with_capacity(starts.len());
@@ -59,7 +50,7 @@ impl Registration {
         keep(&mut begun, tuning::SEARCHED_ON);
         let mut rigid = distinct(begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect());
         keep(&mut rigid, tuning::REFINED);
-        let outlook = outlook(track, points.len(), &rigid);
+        let outlook = rigid.first().map_or(Outlook::Open, |best| Outlook::of(track, points.len(), best.spread));
         if outlook == Outlook::Hopeless {
             rigid.truncate(1);
             return Self { rigid, outlook };
@@ -72,6 +63,18 @@ impl Registration {
         keep(&mut rigid, tuning::KEPT);
         keep_near_best(&mut rigid, tuning::FAR_WORSE);
         Self { rigid, outlook }
+    }
+
+    /// Whether the frame shows something else, as far as poses near that of the track say, found with few of its points.
+    pub(crate) fn is_hopeless_near(track: &Track, points: &[Point2<f64>]) -> bool {
+        let is_told = Outlook::is_told(track, points.len());
+        let spread = || refined(track, &few_of(points), MotionModel::Rigid, track.body_pose(), Steps::NEARBY).spread;
+        is_told && Outlook::of(track, points.len(), spread()) == Outlook::Hopeless
+    }
+
+    /// Whether the frame shows something else, as far as a search with few of its points says. There is one pose then.
+    pub(crate) fn is_hopeless(&self) -> bool {
+        self.outlook == Outlook::Hopeless
     }
 
     /// The poses of the track's model, at most four (eight with more parameters than rigid motion has), with the smallest turns either way of an
@@ -100,14 +103,10 @@ impl Registration {
     }
 }
 
-/// What the poses found with few points, the best of them first, promise. That there is nothing to be found is said of rigid motion alone,
-/// since others change the outline, of frames of enough points, and of outlines without ends, beyond which points may lie.
-fn outlook(track: &Track, points: usize, found: &[RegisteredPose]) -> Outlook {
-    let is_told = points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends();
-    let Some(best) = found.first().filter(|_| is_told) else {
-        return Outlook::Open;
-    };
-    if best.spread > tuning::HOPELESS * track.most_noise_tolerated() { Outlook::Hopeless } else { Outlook::Open }
+/// Some of the points, which a search is made with.
+fn few_of(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
+    let stride = (points.len() / tuning::FEW_POINTS).max(1);
+    points.iter().step_by(stride).copied().collect()
 }
 
 /// Changes of the present pose that searches start from: turns about the centroids all around, and those that related points tell.
@@ -168,6 +167,8 @@ impl Steps {
     const FIRST: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST };
     /// ...and from there on.
     const FURTHER: Self = Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
+    /// Of both, from one start.
+    const NEARBY: Self = Self { most: tuning::SEARCH_STEPS, widest: tuning::WIDEST };
     const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
 }
 
