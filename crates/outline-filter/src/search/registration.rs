@@ -5,7 +5,7 @@ use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::{Landmarks, outlook::Outlook};
 use crate::{
-    map::{OutlineMap, median},
+    map::{OutlineMap, median_about},
     measurement::View,
     track::{Track, turn_between, wrapped},
     tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning, symmetry as of_symmetry},
@@ -47,10 +47,19 @@ impl Registration {
                 begun.push(found);
             }
         }
+        let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
+        let least = begun.iter().map(|found| found.spread).fold(f64::INFINITY, f64::min);
         keep(&mut begun, tuning::SEARCHED_ON);
-        let mut rigid = distinct(begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect());
+        let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
+        if outlook_by(least / tuning::NOT_YET) == Outlook::Hopeless
+            && let Some(best) = begun.first().map(further)
+            && outlook_by(best.spread) == Outlook::Hopeless
+        {
+            return Self { rigid: vec![best], outlook: Outlook::Hopeless };
+        }
+        let mut rigid = distinct(begun.iter().map(further).collect());
         keep(&mut rigid, tuning::REFINED);
-        let outlook = rigid.first().map_or(Outlook::Open, |best| Outlook::of(track, points.len(), best.spread));
+        let outlook = rigid.first().map_or(Outlook::Open, |best| outlook_by(best.spread));
         if outlook == Outlook::Hopeless {
             rigid.truncate(1);
             return Self { rigid, outlook };
@@ -264,7 +273,9 @@ where
         }
         sizes.clear();
         sizes.extend(rows.iter().map(|(r, _)| r.abs()));
-        spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
+        let guess = if spread.is_finite() { spread } else { widest };
+        let middle = median_about(guess / MEDIAN_TO_DEVIATION, &mut sizes);
+        spread = MEDIAN_TO_DEVIATION * middle.unwrap_or(0.0).max(noise.sigma);
         let scale = tuning::TUKEY * spread.max(widest);
         let is_narrow = widest <= spread;
         widest *= tuning::NARROWER;

@@ -186,6 +186,11 @@ impl MotionFilter {
         (poses, mut measured): (&[RegisteredPose], Vec<Candidate>),
     ) -> Vec<Candidate> {
         let Some(track) = self.track.as_ref() else { return Vec::new() };
+        let is_same = |(found, candidate): (&RegisteredPose, &Candidate)| found.pose == candidate.found_in;
+        if !poses.is_empty() && poses.len() == measured.len() && poses.iter().zip(&measured).all(is_same) {
+            // Nothing has been added to what was measured and compared.
+            return measured;
+        }
         self.frame.load(outline, track.reference());
         let mut candidates = Vec::new();
         for found in poses {

@@ -5,7 +5,10 @@ use nalgebra::Matrix3;
 use super::{Track, wrapped};
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
-    tuning::{likelihood::{ENOUGH_POINTS, FAR_WORSE}, registration as tuning},
+    tuning::{
+        likelihood::{ENOUGH_POINTS, FAR_WORSE},
+        registration as tuning,
+    },
 };
 
 impl Track {

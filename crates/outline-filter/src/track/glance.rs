@@ -25,7 +25,12 @@ impl Track {
     }
 
     /// What a proposal has moved the pose by, which was solved for with what is held; `variance` is that of the noise.
-    pub(super) fn innovation_of(&self, proposal: &Proposal, hold: Option<&StateMatrix>, variance: f64) -> PoseInnovation {
+    pub(super) fn innovation_of(
+        &self,
+        proposal: &Proposal,
+        hold: Option<&StateMatrix>,
+        variance: f64,
+    ) -> PoseInnovation {
         let [before, after] = [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold));
         self.belief.pose_innovation([&*before, &*after], &proposal.state, &self.map.centroid(), variance)
     }

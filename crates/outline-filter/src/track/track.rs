@@ -13,9 +13,7 @@ use crate::{
     measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, noise::LARGEST, update as tuning},
-    update::{
-        FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold,
-    },
+    update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold},
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
