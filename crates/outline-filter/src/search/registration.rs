@@ -74,13 +74,6 @@ impl Registration {
         Self { rigid, outlook }
     }
 
-    /// Whether the frame shows something else, as far as poses near that of the track say, found with few of its points.
-    pub(crate) fn is_hopeless_near(track: &Track, points: &[Point2<f64>]) -> bool {
-        let is_told = Outlook::is_told(track, points.len());
-        let spread = || refined(track, &few_of(points), MotionModel::Rigid, track.body_pose(), Steps::NEARBY).spread;
-        is_told && Outlook::of(track, points.len(), spread()) == Outlook::Hopeless
-    }
-
     /// Whether the frame shows something else, as far as a search with few of its points says. There is one pose then.
     pub(crate) fn is_hopeless(&self) -> bool {
         self.outlook == Outlook::Hopeless
@@ -176,8 +169,6 @@ impl Steps {
     const FIRST: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST };
     /// ...and from there on.
     const FURTHER: Self = Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
-    /// Of both, from one start.
-    const NEARBY: Self = Self { most: tuning::SEARCH_STEPS, widest: tuning::WIDEST };
     const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
 }
 

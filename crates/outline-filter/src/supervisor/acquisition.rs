@@ -25,12 +25,10 @@ impl MotionFilter {
             let mut going_on = track.clone();
             going_on.predict(seconds);
             self.frame.load(outline, going_on.reference());
-            if !Registration::is_hopeless_near(&going_on, &self.frame.points) {
-                let outcome = going_on.update(&mut self.frame, &gate, Comparison::NotAsked);
-                if outcome.is_accepted() {
-                    self.replace(going_on, time, Phase::Tracking);
-                    return Some(outcome);
-                }
+            let outcome = going_on.update(&mut self.frame, &gate, Comparison::NotAsked);
+            if outcome.is_accepted() {
+                self.replace(going_on, time, Phase::Tracking);
+                return Some(outcome);
             }
         }
         self.search(time, seconds, outline)
@@ -75,8 +73,10 @@ impl MotionFilter {
         // where nothing fits without.
         self.track.as_mut().into_iter().for_each(Track::show_turn);
         let mut registration = self.registered(outline);
-        if let Some(hopeless) = registration.as_ref().filter(|registration| registration.is_hopeless()) {
-            return self.glance_at(hopeless, seconds);
+        if let Some(hopeless) = registration.as_ref().filter(|registration| registration.is_hopeless())
+            && let Some(outcome) = self.glance_at(hopeless, seconds)
+        {
+            return Some(outcome);
         }
         let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut registration);
         let is_relaxed = self.track.as_ref().is_some_and(Track::tolerates_more_relaxed);
@@ -102,13 +102,14 @@ impl MotionFilter {
         Some(outcome)
     }
 
-    /// What the loaded frame is off by in the best pose of a registration which says that it shows something else. Nothing is found then.
+    /// What the loaded frame is off by in the best pose of a registration which says that it shows something else, where one linearisation leaves
+    /// no doubt of it. Nothing is found then.
     fn glance_at(&mut self, registration: &Registration, seconds: f64) -> Option<Outcome> {
-        self.turn_hypotheses = TurnHypotheses::default();
         let poses = registration.poses(self.track.as_ref()?, &self.frame.points, self.symmetry);
         let mut moved = self.moved(poses.first()?, seconds)?;
         moved.set_tolerance(Tolerance::Relaxed);
-        let outcome = moved.glance(&mut self.frame, &gate(&self.settings, &moved));
+        let outcome = moved.glance(&mut self.frame, &gate(&self.settings, &moved))?;
+        self.turn_hypotheses = TurnHypotheses::default();
         if let Some(track) = self.track.as_mut().filter(|_| self.phase == Phase::Lost) {
             track.record_spread(&outcome.measurement);
         }

@@ -3,25 +3,27 @@ use super::{Outcome, Track};
 use crate::{
     belief::StateMatrix,
     measurement::Frame,
-    update::{FrameMeasurement, Gate, PoseInnovation, Proposal, hold, with_hold},
+    tuning::update::{BEYOND_DOUBT, PARTLY_THERE},
+    update::{Gate, PoseInnovation, Proposal, hold, with_hold},
 };
 
 impl Track {
-    /// What the loaded outline, which shows something else, is off by in the present pose, as one linearisation tells it. The frame is not
-    /// taken, whatever the gate says.
-    pub(crate) fn glance(&self, frame: &mut Frame, gate: &Gate) -> Outcome {
+    /// What the loaded outline is off by in the present pose, as one linearisation tells it, where that is so much that more of them would not
+    /// bring it through the gate. The frame is not taken.
+    pub(crate) fn glance(&self, frame: &mut Frame, gate: &Gate) -> Option<Outcome> {
         let view = self.view();
         let null = self.null_directions();
         let hold = hold(&self.belief, &self.map, &null);
-        let measurement = match view.solve(frame, &null, hold.as_ref(), 1) {
-            Ok(proposal) => {
-                let variance = view.comparable_noise().powi(2) * self.noise.correlation();
-                let innovation = self.innovation_of(&proposal, hold.as_ref(), variance).squared;
-                view.judge(frame, &proposal, innovation, self.reference.radius)
-            }
-            Err(iterations) => FrameMeasurement::unsolved(iterations),
+        let proposal = view.solve(frame, &null, hold.as_ref(), 1).ok()?;
+        let variance = view.comparable_noise().powi(2) * self.noise.correlation();
+        let innovation = self.innovation_of(&proposal, hold.as_ref(), variance).squared;
+        let measurement = view.judge(frame, &proposal, innovation, self.reference.radius);
+        let wide = Gate {
+            smallest_agreement: PARTLY_THERE * gate.smallest_agreement,
+            largest_innovation: None,
+            largest_noise: gate.largest_noise.map(|largest| BEYOND_DOUBT * largest),
         };
-        Outcome::unsolved(measurement, gate)
+        self.verdict(&wide, &measurement).is_err().then(|| Outcome::unsolved(measurement, gate))
     }
 
     /// What a proposal has moved the pose by, which was solved for with what is held; `variance` is that of the noise.
