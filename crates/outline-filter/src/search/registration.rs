@@ -5,7 +5,7 @@ use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::{Landmarks, outlook::Outlook};
 use crate::{
-    map::{OutlineMap, median_about},
+    map::{OutlineMap, median},
     measurement::View,
     track::{Track, turn_between, wrapped},
     tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning, symmetry as of_symmetry},
@@ -264,9 +264,7 @@ where
         }
         sizes.clear();
         sizes.extend(rows.iter().map(|(r, _)| r.abs()));
-        let guess = if spread.is_finite() { spread } else { widest };
-        let middle = median_about(guess / MEDIAN_TO_DEVIATION, &mut sizes);
-        spread = MEDIAN_TO_DEVIATION * middle.unwrap_or(0.0).max(noise.sigma);
+        spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
         let scale = tuning::TUKEY * spread.max(widest);
         let is_narrow = widest <= spread;
         widest *= tuning::NARROWER;
