@@ -80,17 +80,18 @@ impl View<'_> {
     }
 
     /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), for comparison with the first of the poses. What a first look finds
-    /// far worse than that, which is most of many poses, is not measured: its squares are those of the first look.
+    /// so many times worse than that, which is most of many poses, is not measured: its squares are those of the first look.
     pub(crate) fn negative_log_likelihoods_beside_first(
         &self,
         frame: &mut Frame,
         poses: &[Matrix3<f64>],
+        far_worse: f64,
     ) -> Vec<NegativeLogLikelihood> {
         let Some((first, others)) = poses.split_first() else { return Vec::new() };
         let look = FirstLook::at(frame);
         let mut numbers = vec![0; look.points.len()];
         let mut rough = |pose: &Matrix3<f64>| self.rough_mean_square(&look, pose, &mut numbers);
-        let limit = tuning::FAR_WORSE * rough(first).max(1.0);
+        let limit = far_worse * rough(first).max(1.0);
         let rough: Vec<_> = others.iter().map(rough).collect();
         let near = others.iter().zip(&rough).filter(|(_, square)| **square <= limit).map(|(pose, _)| *pose);
         let near: Vec<_> = std::iter::once(*first).chain(near).collect();

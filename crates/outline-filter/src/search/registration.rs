@@ -3,7 +3,7 @@ use freeform_riccati::{
 };
 use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use super::Landmarks;
+use super::{Landmarks, outlook::Outlook};
 use crate::{
     map::{OutlineMap, median},
     measurement::View,
@@ -32,20 +32,11 @@ pub(crate) struct Registration {
     outlook: Outlook,
 }
 
-/// Whether a frame may be found to show the object, as far as a search with few points says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outlook {
-    Open,
-    /// Even in the pose that explains it best it scatters by far more than is tolerated.
-    Hopeless,
-}
-
 impl Registration {
     /// Searches with normalised points of a frame, from turns all around; `landmarks` are the related points of the track in its present pose,
     /// and those of the frame.
     pub(crate) fn search(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Self {
-        let stride = (points.len() / tuning::FEW_POINTS).max(1);
-        let few: Vec<_> = points.iter().step_by(stride).copied().collect();
+        let few = few_of(points);
         let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
         let starts = starts(track, points, landmarks);
         let mut begun: Vec<RegisteredPose> = Vec::with_capacity(starts.len());
@@ -56,23 +47,36 @@ impl Registration {
                 begun.push(found);
             }
         }
+        let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
+        let least = begun.iter().map(|found| found.spread).fold(f64::INFINITY, f64::min);
         keep(&mut begun, tuning::SEARCHED_ON);
-        let mut rigid = distinct(begun.iter().map(|found| search(&found.pose, Steps::FURTHER)).collect());
+        let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
+        if outlook_by(least / tuning::NOT_YET) == Outlook::Hopeless
+            && let Some(best) = begun.first().map(further)
+            && outlook_by(best.spread) == Outlook::Hopeless
+        {
+            return Self { rigid: vec![best], outlook: Outlook::Hopeless };
+        }
+        let mut rigid = distinct(begun.iter().map(further).collect());
         keep(&mut rigid, tuning::REFINED);
-        let outlook = outlook(track, points.len(), &rigid);
+        let outlook = rigid.first().map_or(Outlook::Open, |best| outlook_by(best.spread));
         if outlook == Outlook::Hopeless {
             rigid.truncate(1);
             return Self { rigid, outlook };
         }
+        keep_near_best(&mut rigid, tuning::FAR_WORSE_BY_FEW);
         // Some come together only with all points: one taken twice would keep another out.
         let refine =
             |found: &RegisteredPose| refined(track, points, MotionModel::Rigid, &found.pose, Steps::REFINEMENT);
         rigid = distinct(rigid.iter().map(refine).collect());
         keep(&mut rigid, tuning::KEPT);
-        if let Some(limit) = rigid.first().map(|best| tuning::FAR_WORSE * best.score) {
-            rigid.retain(|found| found.score <= limit);
-        }
+        keep_near_best(&mut rigid, tuning::FAR_WORSE);
         Self { rigid, outlook }
+    }
+
+    /// Whether the frame shows something else, as far as a search with few of its points says. There is one pose then.
+    pub(crate) fn is_hopeless(&self) -> bool {
+        self.outlook == Outlook::Hopeless
     }
 
     /// The poses of the track's model, at most four (eight with more parameters than rigid motion has), with the smallest turns either way of an
@@ -101,14 +105,10 @@ impl Registration {
     }
 }
 
-/// What the poses found with few points, the best of them first, promise. That there is nothing to be found is said of rigid motion alone,
-/// since others change the outline, of frames of enough points, and of outlines without ends, beyond which points may lie.
-fn outlook(track: &Track, points: usize, found: &[RegisteredPose]) -> Outlook {
-    let is_told = points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends();
-    let Some(best) = found.first().filter(|_| is_told) else {
-        return Outlook::Open;
-    };
-    if best.spread > tuning::HOPELESS * track.most_noise_tolerated() { Outlook::Hopeless } else { Outlook::Open }
+/// Some of the points, which a search is made with.
+fn few_of(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
+    let stride = (points.len() / tuning::FEW_POINTS).max(1);
+    points.iter().step_by(stride).copied().collect()
 }
 
 /// Changes of the present pose that searches start from: turns about the centroids all around, and those that related points tell.
@@ -194,6 +194,13 @@ fn keep(list: &mut Vec<RegisteredPose>, count: usize) {
     ties.sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
     ties.truncate(count);
     list.append(&mut ties);
+}
+
+/// Keeps those, of which the best comes first, with scores of no more than so many times its own.
+fn keep_near_best(list: &mut Vec<RegisteredPose>, times: f64) {
+    if let Some(limit) = list.first().map(|best| times * best.score) {
+        list.retain(|found| found.score <= limit);
+    }
 }
 
 fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {

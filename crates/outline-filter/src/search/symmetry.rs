@@ -16,7 +16,7 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
         }
         let turns = orders.iter().map(|n| track.turned(pose, std::f64::consts::TAU / *n as f64));
         let poses: Vec<_> = std::iter::once(*pose).chain(turns).collect();
-        let likelihoods = track.compared_with_first(outline, &poses, frame);
+        let likelihoods = track.compared_with_first(outline, &poses, frame, tuning::FAR_WORSE * tuning::AS_GOOD);
         let is_as_good = likelihoods[1..].iter().map(|other| other.is_within(tuning::AS_GOOD, &likelihoods[0]));
         orders.into_iter().zip(is_as_good).filter_map(|(n, is_as_good)| is_as_good.then_some(n)).collect()
     };
@@ -37,7 +37,7 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
     let halves: Vec<_> = std::iter::once(*pose)
         .chain(found.iter().map(|n| track.turned(pose, std::f64::consts::PI / *n as f64)))
         .collect();
-    let likelihoods = track.compared_with_first(outline, &halves, frame);
+    let likelihoods = track.compared_with_first(outline, &halves, frame, tuning::FAR_WORSE * tuning::HALF_IS_WORSE);
     let seen = |at: &usize| !likelihoods[at + 1].is_within(tuning::HALF_IS_WORSE, &likelihoods[0]);
     (0..found.len()).find(seen).map_or(1, |at| found[at])
 }

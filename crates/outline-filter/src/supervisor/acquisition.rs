@@ -71,7 +71,13 @@ impl MotionFilter {
         self.searches.spend();
         // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
         // where nothing fits without.
-        let mut registration = None;
+        self.track.as_mut().into_iter().for_each(Track::show_turn);
+        let mut registration = self.registered(outline);
+        if let Some(hopeless) = registration.as_ref().filter(|registration| registration.is_hopeless())
+            && let Some(outcome) = self.glance_at(hopeless, seconds)
+        {
+            return Some(outcome);
+        }
         let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut registration);
         let is_relaxed = self.track.as_ref().is_some_and(Track::tolerates_more_relaxed);
         if is_relaxed && !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
@@ -91,6 +97,20 @@ impl MotionFilter {
             self.track.as_mut().into_iter().for_each(|track| track.record_turn(TurnEvent::Confirmed));
         }
         if let Some(track) = self.track.as_mut().filter(|_| outcome.is_accepted() || lost) {
+            track.record_spread(&outcome.measurement);
+        }
+        Some(outcome)
+    }
+
+    /// What the loaded frame is off by in the best pose of a registration which says that it shows something else, where one linearisation leaves
+    /// no doubt of it. Nothing is found then.
+    fn glance_at(&mut self, registration: &Registration, seconds: f64) -> Option<Outcome> {
+        let poses = registration.poses(self.track.as_ref()?, &self.frame.points, self.symmetry);
+        let mut moved = self.moved(poses.first()?, seconds)?;
+        moved.set_tolerance(Tolerance::Relaxed);
+        let outcome = moved.glance(&mut self.frame, &gate(&self.settings, &moved))?;
+        self.turn_hypotheses = TurnHypotheses::default();
+        if let Some(track) = self.track.as_mut().filter(|_| self.phase == Phase::Lost) {
             track.record_spread(&outcome.measurement);
         }
         Some(outcome)
@@ -167,6 +187,11 @@ impl MotionFilter {
         (poses, mut measured): (&[RegisteredPose], Vec<Candidate>),
     ) -> Vec<Candidate> {
         let Some(track) = self.track.as_ref() else { return Vec::new() };
+        let is_same = |(found, candidate): (&RegisteredPose, &Candidate)| found.pose == candidate.found_in;
+        if !poses.is_empty() && poses.len() == measured.len() && poses.iter().zip(&measured).all(is_same) {
+            // Nothing has been added to what was measured and compared.
+            return measured;
+        }
         self.frame.load(outline, track.reference());
         let mut candidates = Vec::new();
         for found in poses {

@@ -5,7 +5,10 @@ use nalgebra::Matrix3;
 use super::{Track, wrapped};
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
-    tuning::{likelihood::ENOUGH_POINTS, registration as tuning},
+    tuning::{
+        likelihood::{ENOUGH_POINTS, FAR_WORSE},
+        registration as tuning,
+    },
 };
 
 impl Track {
@@ -27,10 +30,11 @@ impl Track {
         outline: &Outline,
         poses: &[Matrix3<f64>],
         frame: &mut Frame,
+        far_worse: f64,
     ) -> Vec<NegativeLogLikelihood> {
         frame.load(outline, self.reference);
         frame.thin_out(ENOUGH_POINTS);
-        self.view().negative_log_likelihoods_beside_first(frame, poses)
+        self.view().negative_log_likelihoods_beside_first(frame, poses, far_worse)
     }
 
     /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
@@ -38,7 +42,7 @@ impl Track {
         let turns = (1..=tuning::OTHER_TURNS).map(|i| tuning::GOLDEN_ANGLE * i as f64);
         let others = turns.filter(|turn| wrapped(*turn).abs() >= tuning::NEAR).map(|turn| self.turned(pose, turn));
         let poses: Vec<_> = std::iter::once(*pose).chain(others).collect();
-        let likelihoods = self.compared_with_first(outline, &poses, frame);
+        let likelihoods = self.compared_with_first(outline, &poses, frame, FAR_WORSE);
         let worse = likelihoods[1..].iter().filter(|other| other.is_worse_than(&likelihoods[0])).count();
         // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in
         // what that frame does not show.

@@ -4,6 +4,7 @@ mod comparison;
 mod cutting;
 mod estimate;
 mod first_pose;
+mod glance;
 mod growth;
 #[cfg(test)]
 mod jacobians_tests;

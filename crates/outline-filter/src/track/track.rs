@@ -13,9 +13,7 @@ use crate::{
     measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, noise::LARGEST, update as tuning},
-    update::{
-        FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold, with_hold,
-    },
+    update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold},
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
@@ -69,7 +67,7 @@ pub(crate) struct Outcome {
 
 impl Outcome {
     /// Of a frame that no pose was found for.
-    fn unsolved(measurement: FrameMeasurement, gate: &Gate) -> Self {
+    pub(super) fn unsolved(measurement: FrameMeasurement, gate: &Gate) -> Self {
         Self {
             measurement,
             verdict: gate.verdict(&measurement).and(Err(Rejection::NotFound)),
@@ -157,15 +155,12 @@ impl Track {
         let (view, radius) = (self.view(), self.reference.radius);
         let null = self.map.null_directions(self.belief.model, &self.belief.pose);
         let hold = hold(&self.belief, &self.map, &null);
-        let proposal = match view.solve(frame, &null, hold.as_ref()) {
+        let proposal = match view.solve(frame, &null, hold.as_ref(), tuning::MOST_ITERATIONS) {
             Ok(proposal) => proposal,
             Err(iterations) => return Outcome::unsolved(FrameMeasurement::unsolved(iterations), gate),
         };
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
-        let [before, after] =
-            [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold.as_ref()));
-        let innovation =
-            self.belief.pose_innovation([&*before, &*after], &proposal.state, &self.map.centroid(), variance);
+        let innovation = self.innovation_of(&proposal, hold.as_ref(), variance);
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
             likelihood = view.negative_log_likelihood(frame);
@@ -206,9 +201,14 @@ impl Track {
         else {
             return verdict;
         };
-        let of_noise = self.unmodelled_motions().0.displacement / self.noise.sigma;
-        let widened = (of_noise.hypot(1.0) * largest).min(LARGEST * self.reference.radius);
+        let widened = self.widened(largest / self.reference.radius) * self.reference.radius;
         Gate { largest_noise: Some(widened.max(largest)), ..*gate }.verdict(measurement)
+    }
+
+    /// Deviation of points, normalised, with that of outlines which do what the motion model leaves out.
+    fn widened(&self, deviation: f64) -> f64 {
+        let of_noise = self.unmodelled_motions().0.displacement / self.noise.sigma;
+        (of_noise.hypot(1.0) * deviation).min(LARGEST).max(deviation)
     }
 
     /// Updates the noise by that of good points in an accepted frame and its correlation, as far as they are told, the frame counting for a
@@ -252,7 +252,7 @@ impl Track {
             return f64::INFINITY;
         }
         let of_search = [Tolerance::Known, Tolerance::Relaxed].map(|tolerance| self.noise.tolerated_where(tolerance));
-        of_search.into_iter().fold(self.largest_noise() / self.reference.radius, f64::max)
+        self.widened(of_search.into_iter().fold(self.largest_noise() / self.reference.radius, f64::max))
     }
 
     /// Most noise of good points in a frame that shows the outline, image lengths.

@@ -170,4 +170,7 @@ pub(crate) mod update {
     /// Share of the smallest agreement from which a frame may show the outline where a motion that has changed has taken it: that of two lines
     /// which cross, one of them held where it was expected.
     pub(crate) const PARTLY_THERE: f64 = 0.5;
+    /// Noise of a frame after one linearisation, in the most that is tolerated, from which on more of them do not bring it below that: the pose has
+    /// been searched for already.
+    pub(crate) const BEYOND_DOUBT: f64 = 1.3;
 }

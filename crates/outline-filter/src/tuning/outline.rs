@@ -216,6 +216,8 @@ pub(crate) mod symmetry {
     pub(crate) const AS_GOOD: f64 = 1.5;
     /// As [`AS_GOOD`], that half of a turn of a symmetry must exceed.
     pub(crate) const HALF_IS_WORSE: f64 = 2.0;
+    /// Times of these limits from which on a first look is enough to say that a turn is beyond them: its mean square is known to a fifth.
+    pub(crate) const FAR_WORSE: f64 = 2.0;
     /// Share of the angle of symmetry that a turn between frames may lie off a multiple of it for the turns to be the same.
     pub(crate) const OFF_MULTIPLE: f64 = 0.2;
     /// Turns on either side of none that are tried of a symmetric outline.

@@ -50,9 +50,13 @@ pub(crate) mod registration {
     /// Score in that of the best from which on a pose cannot explain the frame nearly as well: mean distances of twice the size are squares of
     /// four times.
     pub(crate) const FAR_WORSE: f64 = 2.0;
+    /// As [`FAR_WORSE`], of scores with few points, which are known to a tenth, before a pose is refined with all of them.
+    pub(crate) const FAR_WORSE_BY_FEW: f64 = 3.0;
     /// Deviation of the points in the best pose found with few of them, in the most noise that is tolerated, from which on no pose explains the frame:
     /// the median of eighty is known to a seventh.
     pub(crate) const HOPELESS: f64 = 1.7;
+    /// Times of that deviation that every search must leave for it to be said before all go on: they have come most of their way.
+    pub(crate) const NOT_YET: f64 = 1.3;
     /// Fewest points of a frame that this is said of: a map of fewer may err by more than its noise says, and a search with all of them is soon made.
     pub(crate) const ENOUGH_POINTS: usize = 200;
     /// Distance of the matrices of poses that have come together: a fiftieth of the turn that starts are apart.

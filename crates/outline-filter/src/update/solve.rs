@@ -33,12 +33,13 @@ pub(crate) struct Proposal {
 
 impl View<'_> {
     /// Linearises and solves until the pose settles; the number of linearisations where there is no solution. `null` are the null directions
-    /// of the predicted pose, `hold` is information that is added for the solution only.
+    /// of the predicted pose, `hold` is information that is added for the solution only, `most` is the number of linearisations at most.
     pub(crate) fn solve(
         &self,
         frame: &mut Frame,
         null: &[NullDirection],
         hold: Option<&StateMatrix>,
+        most: usize,
     ) -> Result<Proposal, usize> {
         let belief = self.belief;
         let (model, k) = (belief.model, belief.parameter_count());
@@ -54,7 +55,7 @@ impl View<'_> {
         let mut null = null.to_vec();
         let mut work = Arrowhead::new(k);
         let mut settled = false;
-        while proposal.iterations < tuning::MOST_ITERATIONS && !settled {
+        while proposal.iterations < most && !settled {
             // A turn that is not seen is one about the centroid as the frame has it.
             if proposal.iterations > 0 && !null.is_empty() {
                 null = self.map.null_directions(model, &proposal.pose);
