@@ -145,7 +145,7 @@ fn told_by_offsets<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
 
 /// As [`told_by_offsets`], one entry after the other, several cells at a time.
 fn told_row_by_row<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
-    let mut told = vectorised(
+    let lower = vectorised(
         #[inline(always)]
         || {
             let mut told = [[0.0; S]; S];
@@ -161,12 +161,7 @@ fn told_row_by_row<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
             told
         },
     );
-    for i in 0..S {
-        for j in 0..i {
-            told[j][i] = told[i][j];
-        }
-    }
-    told
+    std::array::from_fn(|i| std::array::from_fn(|j| lower[i.max(j)][i.min(j)]))
 }
 
 /// Adds the lower half of `c c' / o` of some cells, with what fills the last vector of a row.
