@@ -293,19 +293,28 @@ impl Views {
 
 /// The place of a closed polygon that is nearest to a point, and the normal there.
 fn foot(polygon: &[Point2<f64>], p: &Point2<f64>) -> (Point2<f64>, Vector2<f64>) {
-    let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    let mut best = (f64::INFINITY, *p, Vector2::x());
-    for (from, to) in ends {
-        let along = to - from;
-        let length = along.norm_squared();
-        let share = if length > 0.0 { (along.dot(&(p - from)) / length).clamp(0.0, 1.0) } else { 0.0 };
-        let foot = from + share * along;
-        let square = (p - foot).norm_squared();
+    let [x, y] = <[f64; 2]>::from(*p);
+    let mut best = (f64::INFINITY, [x, y], [1.0, 0.0]);
+    // Plain numbers: most of the search for a plane is spent here.
+    let mut compare = |from: &Point2<f64>, to: &Point2<f64>| {
+        let ([from_x, from_y], [to_x, to_y]) = (<[f64; 2]>::from(*from), <[f64; 2]>::from(*to));
+        let (along_x, along_y) = (to_x - from_x, to_y - from_y);
+        let length = along_x * along_x + along_y * along_y;
+        let projected = along_x * (x - from_x) + along_y * (y - from_y);
+        let share = if length > 0.0 { (projected / length).clamp(0.0, 1.0) } else { 0.0 };
+        let (foot_x, foot_y) = (from_x + share * along_x, from_y + share * along_y);
+        let square = (x - foot_x) * (x - foot_x) + (y - foot_y) * (y - foot_y);
         if square < best.0 {
-            best = (square, foot, along);
+            best = (square, [foot_x, foot_y], [along_x, along_y]);
         }
+    };
+    for side in polygon.windows(2) {
+        compare(&side[0], &side[1]);
     }
-    let (_, foot, along) = best;
+    if let [first, .., last] = polygon {
+        compare(last, first);
+    }
+    let (foot, along) = (Point2::from(best.1), Vector2::from(best.2));
     let across = Vector2::new(along.y, -along.x).try_normalize(0.0).unwrap_or_else(Vector2::x);
     let off = p - foot;
     // Beside a corner the distance is that from the corner.
