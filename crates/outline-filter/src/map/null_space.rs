@@ -106,9 +106,18 @@ impl OutlineMap {
         contours.iter().max_by(|a, b| a.area.abs().total_cmp(&b.area.abs()))?.centroid()
     }
 
-    /// Mean square of the lever arms of a turn that the places of closed contours beside each other have, if these are round; squares of the RMS
-    /// radius. Errors of normals, which make levers along a contour, do not make these.
-    fn levers_of_places(contours: &[ContourArea], spread: f64) -> f64 {
+    /// Mean square of the lever arms of a turn that the places of closed contours beside each other have; squares of the RMS radius. Errors of
+    /// normals, which make levers along a contour, do not make these. 0 where a contour is not round: a slit has no place to speak of, and
+    /// a curved slot has one beside its middle without showing the turn by its sides.
+    fn levers_of_places(&self, contours: &[ContourArea], spread: f64) -> f64 {
+        let is_round = |contour: &ContourArea| {
+            let length = contour.cells as f64 * self.spacing;
+            // The area is twice that of the contour.
+            std::f64::consts::TAU * contour.area.abs() > tuning::ROUND * length * length
+        };
+        if !contours.iter().all(is_round) {
+            return 0.0;
+        }
         let total = contours.iter().map(|contour| contour.cells as f64).sum::<f64>();
         let places = || contours.iter().filter_map(|contour| Some((contour.cells as f64 / total, contour.centroid()?)));
         let middle = places().map(|(share, centre)| share * centre.coords).sum::<Vector2<f64>>();
@@ -200,7 +209,7 @@ impl OutlineMap {
         }
         let contours = self.closed_contours();
         let centroid = Self::area_centroid(&contours).unwrap_or(centring.centroid);
-        let of_places = Self::levers_of_places(&contours, centring.spread());
+        let of_places = self.levers_of_places(&contours, centring.spread());
         let noise = sigma / centring.spread();
         let places_show_turn = of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
         let of_cells = direction_variance(sigma / self.step, self.half_window);

@@ -117,9 +117,12 @@ pub(crate) mod null_space {
     /// Eigenvalue of the lever arms above which it never is: that of an ellipse whose axes differ by a seventh.
     pub(crate) const HARDLY_SHOWN: f64 = 0.01;
     /// Mean square of the lever arms of closed contours beside each other, in squares of the RMS radius, from which on their places show the
-    /// turn: a hole of half the size of a disc a fifteenth of its radius off. Light, thickness and perspective move holes by up to half as much.
+    /// turn: a hole of half the size of a disc a seventeenth of its radius off. Light, thickness and perspective move holes by up to half as much.
     pub(crate) const SHOWN_BY_PLACES: f64 = 5e-4;
-    /// As that, in variances of the noise of a point: with less the turn of a washer was up to twice as far off as was stated, with more 1.3 times.
+    /// Area of a contour, in that of a circle of its length, from which on it is round enough for its place to show the turn: an ellipse three
+    /// times as long as wide.
+    pub(crate) const ROUND: f64 = 0.6;
+    /// As [`SHOWN_BY_PLACES`], in variances of the noise of a point: with less the turn of a washer was up to twice as far off as was stated, with more 1.3 times.
     pub(crate) const PLACES_PER_NOISE: f64 = 15.0;
     /// Deviation of a normal's direction that cells are far enough apart for, rad...
     pub(crate) const CHORD_NOISE: f64 = 0.035;
