@@ -29,14 +29,12 @@ impl MotionModel {
     #[must_use]
     pub fn parameters_of(self, generator: &Matrix3<f64>) -> ParameterVector {
         let g = generator - Matrix3::identity() * generator[(2, 2)];
-        let (b1, b2) = (g[(0, 2)], g[(1, 2)]);
-        let sigma = 0.5 * (g[(0, 0)] + g[(1, 1)]);
-        let omega = turn_rate(&g);
-        let full = [g[(0, 0)], g[(0, 1)], g[(1, 0)], g[(1, 1)], b1, b2, g[(2, 0)], g[(2, 1)]];
+        let of_similarity = parameters_of_similarity(|i, j| g[(i, j)]);
+        let full = [g[(0, 0)], g[(0, 1)], g[(1, 0)], g[(1, 1)], g[(0, 2)], g[(1, 2)], g[(2, 0)], g[(2, 1)]];
         let mut result = [0.0; MAX_PARAMETERS];
         match self {
-            Self::Rigid => result[..3].copy_from_slice(&[omega, b1, b2]),
-            Self::Similarity => result[..4].copy_from_slice(&[sigma, omega, b1, b2]),
+            Self::Rigid => result[..3].copy_from_slice(&of_similarity[1..]),
+            Self::Similarity => result[..4].copy_from_slice(&of_similarity),
             Self::Affine => result[..6].copy_from_slice(&full[..6]),
             Self::Projective => result = full,
         }

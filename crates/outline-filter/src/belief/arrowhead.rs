@@ -143,21 +143,27 @@ fn told_by_offsets<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
     if S > LARGEST_IN_LANES { told_row_by_row(cells) } else { told_side_by_side(cells) }
 }
 
+/// Hands on all cells, as many at a time as there are lanes; the last of them with cells that nothing is known of.
+#[inline(always)]
+fn for_lanes<const S: usize>(cells: &OffsetInformation, mut add: impl FnMut(&[[f64; S]; LANES], &Lanes)) {
+    let (rows, last_rows) = cells.rows::<S>().as_chunks::<LANES>();
+    let (own, last_own) = cells.own().as_chunks::<LANES>();
+    for (rows, own) in rows.iter().zip(own) {
+        add(rows, own);
+    }
+    let (mut rows, mut own) = ([[0.0; S]; LANES], [0.0; LANES]);
+    rows[..last_rows.len()].copy_from_slice(last_rows);
+    own[..last_own.len()].copy_from_slice(last_own);
+    add(&rows, &own);
+}
+
 /// As [`told_by_offsets`], one entry after the other, several cells at a time.
 fn told_row_by_row<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
     let lower = vectorised(
         #[inline(always)]
         || {
             let mut told = [[0.0; S]; S];
-            let (rows, last_rows) = cells.rows::<S>().as_chunks::<LANES>();
-            let (own, last_own) = cells.own().as_chunks::<LANES>();
-            for (rows, own) in rows.iter().zip(own) {
-                add_told_by_rows(rows, own, &mut told);
-            }
-            let (mut rows, mut own) = ([[0.0; S]; LANES], [0.0; LANES]);
-            rows[..last_rows.len()].copy_from_slice(last_rows);
-            own[..last_own.len()].copy_from_slice(last_own);
-            add_told_by_rows(&rows, &own, &mut told);
+            for_lanes(cells, |rows, own| add_told_by_rows(rows, own, &mut told));
             told
         },
     );
@@ -189,15 +195,7 @@ fn told_side_by_side<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S]
         #[inline(always)]
         || {
             let mut told = [[[0.0; LANES]; S]; S];
-            let (rows, last_rows) = cells.rows::<S>().as_chunks::<LANES>();
-            let (own, last_own) = cells.own().as_chunks::<LANES>();
-            for (rows, own) in rows.iter().zip(own) {
-                add_told(rows, own, &mut told);
-            }
-            let (mut rows, mut own) = ([[0.0; S]; LANES], [0.0; LANES]);
-            rows[..last_rows.len()].copy_from_slice(last_rows);
-            own[..last_own.len()].copy_from_slice(last_own);
-            add_told(&rows, &own, &mut told);
+            for_lanes(cells, |rows, own| add_told(rows, own, &mut told));
             told
         },
     );
