@@ -20,7 +20,7 @@ impl Outlook {
 
     /// Whether it is said that there is nothing to be found: of rigid motion alone, since others change the outline, of frames of enough
     /// points, and of outlines without ends, beyond which points may lie.
-    pub(super) fn is_told(track: &Track, points: usize) -> bool {
+    fn is_told(track: &Track, points: usize) -> bool {
         points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends()
     }
 }

@@ -36,7 +36,8 @@ impl Registration {
     /// Searches with normalised points of a frame, from turns all around; `landmarks` are the related points of the track in its present pose,
     /// and those of the frame.
     pub(crate) fn search(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Self {
-        let few = few_of(points);
+        let stride = (points.len() / tuning::FEW_POINTS).max(1);
+        let few: Vec<_> = points.iter().step_by(stride).copied().collect();
         let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
         let starts = starts(track, points, landmarks);
         let mut begun: Vec<RegisteredPose> = Vec::with_capacity(starts.len());
@@ -51,13 +52,16 @@ impl Registration {
         let least = begun.iter().map(|found| found.spread).fold(f64::INFINITY, f64::min);
         keep(&mut begun, tuning::SEARCHED_ON);
         let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
-        if outlook_by(least / tuning::NOT_YET) == Outlook::Hopeless
-            && let Some(best) = begun.first().map(further)
-            && outlook_by(best.spread) == Outlook::Hopeless
-        {
-            return Self { rigid: vec![best], outlook: Outlook::Hopeless };
+        let mut rigid = Vec::with_capacity(begun.len());
+        if outlook_by(least / tuning::NOT_YET) == Outlook::Hopeless {
+            rigid.extend(begun.first().map(further));
+            if rigid.first().is_some_and(|best: &RegisteredPose| outlook_by(best.spread) == Outlook::Hopeless) {
+                return Self { rigid, outlook: Outlook::Hopeless };
+            }
         }
-        let mut rigid = distinct(begun.iter().map(further).collect());
+        // Not again the one that has gone on already.
+        rigid.extend(begun.iter().skip(rigid.len()).map(further));
+        let mut rigid = distinct(rigid);
         keep(&mut rigid, tuning::REFINED);
         let outlook = rigid.first().map_or(Outlook::Open, |best| outlook_by(best.spread));
         if outlook == Outlook::Hopeless {
@@ -103,12 +107,6 @@ impl Registration {
         }
         best
     }
-}
-
-/// Some of the points, which a search is made with.
-fn few_of(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
-    let stride = (points.len() / tuning::FEW_POINTS).max(1);
-    points.iter().step_by(stride).copied().collect()
 }
 
 /// Changes of the present pose that searches start from: turns about the centroids all around, and those that related points tell.

@@ -69,19 +69,19 @@ impl MotionFilter {
             return None;
         }
         self.searches.spend();
-        // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
-        // where nothing fits without.
         self.track.as_mut().into_iter().for_each(Track::show_turn);
-        let mut registration = self.registered(outline);
-        if let Some(hopeless) = registration.as_ref().filter(|registration| registration.is_hopeless())
-            && let Some(outcome) = self.glance_at(hopeless, seconds)
+        let registration = self.registered(outline)?;
+        if registration.is_hopeless()
+            && let Some(outcome) = self.glance_at(&registration, seconds)
         {
             return Some(outcome);
         }
-        let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &mut registration);
+        // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
+        // where nothing fits without.
+        let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &registration);
         let is_relaxed = self.track.as_ref().is_some_and(Track::tolerates_more_relaxed);
         if is_relaxed && !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
-            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &mut registration);
+            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &registration);
             candidates = if relaxed.is_empty() { candidates } else { relaxed };
         }
         let agreement = |c: &Candidate| c.outcome.measurement.agreement;
@@ -116,21 +116,19 @@ impl MotionFilter {
         Some(outcome)
     }
 
-    /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen. `registration` is that found before
-    /// in the same frame; it stays if no pose is accepted, since nothing has changed then that it depends on.
+    /// All poses found, measured. A turn of which the frame shows next to nothing is taken to be unseen. The registration is one of the same
+    /// frame, in which the turn was asked for.
     fn candidates(
         &mut self,
         outline: &Outline,
         seconds: f64,
         tolerance: Tolerance,
-        registration: &mut Option<Registration>,
+        registration: &Registration,
     ) -> Vec<Candidate> {
         self.track.as_mut().into_iter().for_each(Track::show_turn);
-        let Some(found) = registration.take().or_else(|| self.registered(outline)) else { return Vec::new() };
-        let candidates = self.candidates_of(outline, seconds, tolerance, &found, Vec::new());
+        let candidates = self.candidates_of(outline, seconds, tolerance, registration, Vec::new());
         let fitting = candidates.iter().filter(|c| c.outcome.is_accepted());
         let Some(best) = fitting.min_by(|a, b| a.likelihood.squares.total_cmp(&b.likelihood.squares)) else {
-            *registration = Some(found);
             return candidates;
         };
         let pose = *best.track.body_pose();
@@ -144,7 +142,7 @@ impl MotionFilter {
             // What has been measured is so in the same way, unless others have vouched for it.
             let is_measured = candidates.iter().all(|candidate| candidate.verdict_of == VerdictOf::Itself);
             let measured = if is_measured { candidates } else { Vec::new() };
-            return self.candidates_of(outline, seconds, tolerance, &found, measured);
+            return self.candidates_of(outline, seconds, tolerance, registration, measured);
         }
         track.hide_turn();
         let Some(found) = self.registered(outline) else { return candidates };
