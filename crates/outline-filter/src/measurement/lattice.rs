@@ -53,7 +53,7 @@ impl PixelLattice {
 /// Lines at a pitch in both axes.
 struct Lines {
     pitch: f64,
-    /// PlaceOnLattice of one of them in each axis, where there are any.
+    /// Place of one of them in each axis, where there are any.
     origins: [Option<f64>; 2],
 }
 
@@ -104,7 +104,7 @@ fn usual_gaps(values: &[f64]) -> Vec<f64> {
     groups.iter().map(|group| group.iter().sum::<f64>() / group.len() as f64).collect()
 }
 
-/// PlaceOnLattice of one of the lines at a pitch that most of the values lie on.
+/// Place of one of the lines at a pitch that most of the values lie on.
 fn origin(values: &[f64], pitch: f64) -> Option<f64> {
     let mut remainders: Vec<f64> = values.iter().map(|value| value.rem_euclid(pitch)).collect();
     remainders.sort_unstable_by(f64::total_cmp);

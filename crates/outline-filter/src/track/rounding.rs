@@ -11,8 +11,8 @@ use crate::{
 };
 
 impl Track {
-    /// Rounding of the points of an outline, whose contours are normalised by a radius: to pixels of a given size, image lengths, or, where that is 0, to those of the lattice that
-    /// they lie on. Points that state deviations of their own have said what they are off by.
+    /// Rounding of the points of an outline, whose contours are normalised by a radius: to pixels of a given size, image lengths, or, where
+    /// that is 0, to those of the lattice that they lie on. Points that state deviations of their own have said what they are off by.
     pub(super) fn rounding_of(outline: &Outline, mask_pixel: f64, contours: &[Contour], radius: f64) -> Rounding {
         let length = |piece: Piece<'_>| piece.points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>();
         let extent = (outline.pieces().map(length).sum::<f64>() / radius, outline.point_count());

@@ -122,7 +122,8 @@ pub(crate) mod null_space {
     /// Area of a contour, in that of a circle of its length, from which on it is round enough for its place to show the turn: an ellipse three
     /// times as long as wide.
     pub(crate) const ROUND: f64 = 0.6;
-    /// As [`SHOWN_BY_PLACES`], in variances of the noise of a point: with less the turn of a washer was up to twice as far off as was stated, with more 1.3 times.
+    /// As [`SHOWN_BY_PLACES`], in variances of the noise of a point: with less the turn of a washer was up to twice as far off as was stated,
+    /// with more 1.3 times.
     pub(crate) const PLACES_PER_NOISE: f64 = 15.0;
     /// Deviation of a normal's direction that cells are far enough apart for, rad...
     pub(crate) const CHORD_NOISE: f64 = 0.035;
