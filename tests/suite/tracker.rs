@@ -397,5 +397,5 @@ fn polygons_in_pixels_whose_corners_alone_are_given_tell_their_motion() {
     let estimate = results[0].estimate.as_ref().expect("a motion");
     let omega = estimate.parameters().next().expect("omega");
     let (value, deviation) = (omega.value.expect("a value"), omega.standard_deviation.expect("a value"));
-    assert!((value - 0.8).abs() < 3.0 * deviation && deviation < 0.2, "{value} +- {deviation}");
+    assert!((value - 0.8).abs() < 3.0 * deviation && deviation < 0.1, "{value} +- {deviation}");
 }

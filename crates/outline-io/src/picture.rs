@@ -49,7 +49,8 @@ pub fn read_picture(path: impl AsRef<Path>) -> Result<GrayImage, PictureError> {
 /// # Errors
 /// As [`read_picture`].
 pub fn decode_picture(source: impl BufRead + Seek, name: &str) -> Result<GrayImage, PictureError> {
-    decode(source, Channel::Luminance).map_err(|kind| PictureError::of_file(name, kind))
+    let mut source = source;
+    decode(&mut source, Channel::Luminance).map_err(|kind| PictureError::of_file(name, kind))
 }
 
 /// Like [`read_picture`], with what is looked at of a colour picture.
@@ -59,11 +60,16 @@ pub fn decode_picture(source: impl BufRead + Seek, name: &str) -> Result<GrayIma
 pub fn read_picture_channel(path: impl AsRef<Path>, channel: Channel) -> Result<GrayImage, PictureError> {
     let path = path.as_ref();
     let picture = File::open(path).map_err(PictureErrorKind::Io);
-    let picture = picture.and_then(|file| decode(BufReader::new(file), channel));
+    let picture = picture.and_then(|file| decode(&mut BufReader::new(file), channel));
     picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))
 }
 
-pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Result<GrayImage, PictureErrorKind> {
+/// The bytes of a picture. Decoders are compiled once for all kinds of them.
+pub(crate) trait Source: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Source for T {}
+
+pub(crate) fn decode(source: &mut dyn Source, channel: Channel) -> Result<GrayImage, PictureErrorKind> {
     let start = source.fill_buf()?;
     if start.is_empty() {
         return Err(PictureErrorKind::Empty);
@@ -77,15 +83,15 @@ pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Resul
     if !format.reading_enabled() {
         return Err(PictureErrorKind::Unsupported { format: format.to_mime_type() });
     }
-    let mut source = reader.into_inner();
+    let source = reader.into_inner();
     if format == ImageFormat::Jpeg {
         let start = source.stream_position()?;
-        if !reaches_its_end(&mut source)? {
+        if !reaches_its_end(source)? {
             return Err(PictureErrorKind::CutShort);
         }
         source.seek(SeekFrom::Start(start))?;
     }
-    if let Some(format) = several_pictures(&mut source, format, &limits)? {
+    if let Some(format) = several_pictures(source, format, &limits)? {
         return Err(PictureErrorKind::SeveralPictures { format });
     }
     let mut reader = ImageReader::with_format(source, format);
@@ -107,7 +113,7 @@ pub(crate) fn decode(mut source: impl BufRead + Seek, channel: Channel) -> Resul
 
 /// Name of the kind of file, if it holds several pictures of which one alone would be read. Leaves the source at its beginning.
 fn several_pictures(
-    source: &mut (impl BufRead + Seek),
+    source: &mut dyn Source,
     format: ImageFormat,
     limits: &Limits,
 ) -> Result<Option<&'static str>, PictureErrorKind> {

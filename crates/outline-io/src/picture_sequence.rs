@@ -243,10 +243,10 @@ impl PictureSequence {
             let is_animation = start.starts_with(b"GIF");
             let mut bytes = Vec::new();
             source.take(STREAM_LIMIT).read_to_end(&mut bytes)?;
-            let bytes = Cursor::new(bytes);
+            let mut bytes = Cursor::new(bytes);
             match is_animation {
                 true => Pictures::Animation(Box::new(GifAnimation::open(bytes, channel)?)),
-                false => Pictures::One(Some(decode(bytes, channel)?)),
+                false => Pictures::One(Some(decode(&mut bytes, channel)?)),
             }
         };
         Ok(self.opened(name.to_owned(), pictures))

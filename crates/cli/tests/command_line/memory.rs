@@ -74,7 +74,7 @@ fn animation(frames: usize) -> Vec<u8> {
 #[test]
 fn frames_that_show_nothing_new_cost_next_to_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
-    let gif = file(folder.path(), "small.gif", animation(5000));
+    let gif = file(folder.path(), "small.gif", animation(2000));
     for arguments in [&["outline", &gif][..], &["track", &gif], &["outline", &gif, "--background", "median"]] {
         let (status, peak) = peak(arguments);
         assert_eq!(status, Some(1), "{arguments:?}");
@@ -108,12 +108,12 @@ fn a_colour_profile_that_unpacks_to_much_takes_no_memory() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut png = Vec::new();
     let mut encoder = PngEncoder::new(&mut png);
-    encoder.set_icc_profile(vec![0; 1 << 29]).expect("PNG has profiles");
+    encoder.set_icc_profile(vec![0; 1 << 27]).expect("PNG has profiles");
     encoder.write_image(&[0; 100], 10, 10, ExtendedColorType::L8).expect("memory");
     let path = file(folder.path(), "profile.png", png);
     let (status, peak) = peak(&["outline", &path]);
     assert_eq!(status, Some(1));
-    assert!(peak < 200 * 1024, "{peak} kB");
+    assert!(peak < 110 * 1024, "{peak} kB");
 }
 
 #[test]
@@ -135,7 +135,9 @@ fn an_ordinary_picture_takes_no_more_than_60_bytes_a_pixel() {
     for (name, picture) in pictures {
         let path = folder.path().join(name).display().to_string();
         picture.save(&path).expect("a picture");
-        for arguments in [&["outline", &path][..], &["identify", &path], &["track", &path, "--objects", "all"]] {
+        let commands = [&["outline", &path][..], &["identify", &path], &["track", &path, "--objects", "all"]];
+        // Once it is decoded it does not matter what the picture came from.
+        for arguments in &commands[..if name == "grey.png" { commands.len() } else { 1 }] {
             let (status, peak) = peak(arguments);
             assert!(status.is_some_and(|status| status < 2), "{arguments:?}: {status:?}");
             let most = u64::from(width * height) * 60 / 1024 + 50 * 1024;

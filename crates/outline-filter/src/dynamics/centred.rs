@@ -93,7 +93,7 @@ pub(super) fn of_both(change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>, k: 
     both
 }
 
-/// `F P F'` over the first `n` entries, of which a state has two or three for each parameter; none beyond.
+/// `F P F'` of a symmetric P over the first `n` entries, of which a state has two or three for each parameter. F and P have none beyond them.
 pub(super) fn carried<const N: usize>(f: &SMatrix<f64, N, N>, p: &SMatrix<f64, N, N>, n: usize) -> SMatrix<f64, N, N> {
     let mut carried = *p;
     carry(f, &mut carried, n);

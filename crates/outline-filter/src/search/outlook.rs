@@ -15,12 +15,12 @@ impl Outlook {
     /// Of a frame with so many points, from the deviation of few of them, normalised, in the pose that explains it best.
     pub(super) fn of(track: &Track, points: usize, spread: f64) -> Self {
         let is_far_off = spread > tuning::HOPELESS * track.most_noise_tolerated();
-        if is_far_off && Self::is_told(track, points) { Self::Hopeless } else { Self::Open }
+        if is_far_off && Self::can_be_told(track, points) { Self::Hopeless } else { Self::Open }
     }
 
-    /// Whether it is said that there is nothing to be found: of rigid motion alone, since others change the outline, of frames of enough
+    /// Whether few points can tell that there is nothing to be found: of rigid motion alone, since others change the outline, of frames of enough
     /// points, and of outlines without ends, beyond which points may lie.
-    fn is_told(track: &Track, points: usize) -> bool {
+    fn can_be_told(track: &Track, points: usize) -> bool {
         points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends()
     }
 }

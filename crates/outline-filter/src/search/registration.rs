@@ -53,7 +53,8 @@ impl Registration {
         keep(&mut begun, tuning::SEARCHED_ON);
         let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
         let mut rigid = Vec::with_capacity(begun.len());
-        if outlook_by(least / tuning::NOT_YET) == Outlook::Hopeless {
+        // Where all are far off by now, it is enough that the best of them remains so.
+        if outlook_by(least / tuning::STEPS_LEFT) == Outlook::Hopeless {
             rigid.extend(begun.first().map(further));
             if rigid.first().is_some_and(|best: &RegisteredPose| outlook_by(best.spread) == Outlook::Hopeless) {
                 return Self { rigid, outlook: Outlook::Hopeless };
@@ -391,7 +392,37 @@ fn turn_of(pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::weighted_sums;
+    use freeform_curve_fit::Outline;
+
+    use super::*;
+    use crate::measurement::Frame;
+
+    /// Points of a curve with lobes, turned.
+    fn shown(lobe: f64, turn: f64) -> Outline {
+        let point = |i: u32| {
+            let t = std::f64::consts::TAU * f64::from(i) / 400.0;
+            let r = 1.0 + lobe * (3.0 * t).cos() + 0.1 * (2.0 * t).sin();
+            Point2::new(r * (t + turn).cos(), r * (t + turn).sin())
+        };
+        Outline::closed((0..400).map(point).collect()).expect("an outline")
+    }
+
+    #[test]
+    fn a_search_ends_early_for_other_outlines_and_for_no_turn_of_its_own() {
+        let mut frame = Frame::default();
+        let track = Track::begin(MotionModel::Rigid, &shown(0.25, 0.0), 0.0, &mut frame).expect("a track");
+        for step in 0..12 {
+            let turn = std::f64::consts::TAU * f64::from(step) / 12.0 + 0.1;
+            frame.load(&shown(0.25, turn), track.reference());
+            let found = Registration::search(&track, &frame.points, None);
+            assert!(!found.is_hopeless(), "{turn}");
+            let best = found.rigid[0];
+            assert!(wrapped(best.turn - turn).abs() < 0.01, "{turn}: {best:?}");
+            frame.load(&shown(-0.1, turn), track.reference());
+            let other = Registration::search(&track, &frame.points, None);
+            assert!(other.is_hopeless() && other.rigid.len() == 1, "{turn}: {other:?}");
+        }
+    }
 
     #[test]
     fn points_that_do_not_count_add_nothing_even_where_they_are_no_numbers() {

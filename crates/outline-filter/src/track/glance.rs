@@ -9,7 +9,7 @@ use crate::{
 
 impl Track {
     /// What the loaded outline is off by in the present pose, as one linearisation tells it, where that is so much that more of them would not
-    /// bring it through the gate. The frame is not taken.
+    /// bring it through the gate: the pose has been searched for already, and they would change it little. The frame is not taken.
     pub(crate) fn glance(&self, frame: &mut Frame, gate: &Gate) -> Option<Outcome> {
         let view = self.view();
         let null = self.null_directions();
@@ -35,5 +35,55 @@ impl Track {
     ) -> PoseInnovation {
         let [before, after] = [&self.belief.marginal, &proposal.marginal].map(|marginal| with_hold(marginal, hold));
         self.belief.pose_innovation([&*before, &*after], &proposal.state, &self.map.centroid(), variance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::Outline;
+    use freeform_riccati::MotionModel;
+    use nalgebra::Point2;
+
+    use super::*;
+    use crate::track::Comparison;
+
+    /// Points that wave about a curve with three lobes, shifted to the right.
+    fn shown(lobe: f64, wave: f64, shift: f64) -> Outline {
+        let point = |i: u32| {
+            let t = std::f64::consts::TAU * f64::from(i) / 400.0;
+            let r = 1.0 + lobe * (3.0 * t).cos() + 0.1 * (2.0 * t).sin() + wave * (61.0 * t).sin();
+            Point2::new(shift + r * t.cos(), 0.8 * r * t.sin())
+        };
+        Outline::closed((0..400).map(point).collect()).expect("an outline")
+    }
+
+    #[test]
+    fn a_glance_rejects_other_outlines_and_nothing_that_an_update_accepts() {
+        let mut frame = Frame::default();
+        let mut track = Track::begin(MotionModel::Rigid, &shown(0.25, 0.001, 0.0), 0.0, &mut frame).expect("a track");
+        for _ in 0..10 {
+            track.predict(0.1);
+            frame.load(&shown(0.25, 0.001, 0.0), track.reference());
+            let gate = Gate { smallest_agreement: 0.7, largest_innovation: None, largest_noise: None };
+            assert!(track.update(&mut frame, &gate, Comparison::NotAsked).is_accepted());
+        }
+        let gate =
+            Gate { smallest_agreement: 0.7, largest_innovation: None, largest_noise: Some(track.largest_noise()) };
+        let (mut accepted, mut rejected_at_once) = (0, 0);
+        for lobe in [0.25, 0.2499, 0.249, 0.24, 0.2, -0.1] {
+            for wave in [0.001, 0.0015, 0.002, 0.1] {
+                for shift in [0.0, 0.002, 0.1] {
+                    frame.load(&shown(lobe, wave, shift), track.reference());
+                    let glance = track.glance(&mut frame, &gate);
+                    let update = track.clone().update(&mut frame, &gate, Comparison::NotAsked);
+                    accepted += u32::from(update.is_accepted());
+                    rejected_at_once += u32::from(glance.is_some());
+                    let context = format!("{lobe} {wave} {shift}: {glance:?} {update:?}");
+                    assert!(glance.is_none_or(|glance| !glance.is_accepted() && !update.is_accepted()), "{context}");
+                }
+            }
+        }
+        println!("{accepted} {rejected_at_once}");
+        assert!(accepted >= 10 && rejected_at_once >= 40, "{accepted} {rejected_at_once}");
     }
 }

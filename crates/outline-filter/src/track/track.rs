@@ -12,14 +12,14 @@ use crate::{
     map::{NullDirection, OutlineMap, TurnEvent, TurnEvidence},
     measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
-    tuning::{map::FEWEST_POINTS, noise::LARGEST, update as tuning},
+    tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning},
     update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold},
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
 ///
 /// A frame goes one way: loaded into a [`Frame`], associated and linearised ([`View::measure`]), solved for a proposal
-/// ([`View::solve`]), judged ([`Gate::verdict`]), committed ([`commit`]); then the map grows by what is new.
+/// ([`View::solve`]), judged ([`Track::verdict`]), committed ([`commit`]); then the map grows by what is new.
 /// Copies share the map until one of them changes it.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -66,7 +66,7 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    /// Of a frame that no pose was found for.
+    /// Of a frame that is not taken, and of which no pose is told.
     pub(super) fn unsolved(measurement: FrameMeasurement, gate: &Gate) -> Self {
         Self {
             measurement,
@@ -205,10 +205,11 @@ impl Track {
         Gate { largest_noise: Some(widened.max(largest)), ..*gate }.verdict(measurement)
     }
 
-    /// Deviation of points, normalised, with that of outlines which do what the motion model leaves out.
-    fn widened(&self, deviation: f64) -> f64 {
-        let of_noise = self.unmodelled_motions().0.displacement / self.noise.sigma;
-        (of_noise.hypot(1.0) * deviation).min(LARGEST).max(deviation)
+    /// The most noise that is tolerated, normalised, with what outlines have been seen to be displaced by beside their motion, or by a change
+    /// of shape. Those add up in squares: how much differs from frame to frame.
+    fn widened(&self, largest: f64) -> f64 {
+        let displacement = self.unmodelled_motions().0.displacement;
+        largest.hypot(of_noise::LARGEST_RATIO * displacement).min(of_noise::LARGEST).max(largest)
     }
 
     /// Updates the noise by that of good points in an accepted frame and its correlation, as far as they are told, the frame counting for a

@@ -55,8 +55,9 @@ pub(crate) mod registration {
     /// Deviation of the points in the best pose found with few of them, in the most noise that is tolerated, from which on no pose explains the frame:
     /// the median of eighty is known to a seventh.
     pub(crate) const HOPELESS: f64 = 1.7;
-    /// Times of that deviation that every search must leave for it to be said before all go on: they have come most of their way.
-    pub(crate) const NOT_YET: f64 = 1.3;
+    /// Times that deviation which all searches must leave after their first steps for it to be said before they all go on: by the rest of
+    /// their steps they come nearer by less.
+    pub(crate) const STEPS_LEFT: f64 = 1.3;
     /// Fewest points of a frame that this is said of: a map of fewer may err by more than its noise says, and a search with all of them is soon made.
     pub(crate) const ENOUGH_POINTS: usize = 200;
     /// Distance of the matrices of poses that have come together: a fiftieth of the turn that starts are apart.

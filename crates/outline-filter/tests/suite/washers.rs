@@ -2,7 +2,7 @@
 use freeform_curve_fit::{ClosedOutline, Outline};
 use freeform_outline_filter::MotionFilter;
 use freeform_riccati::MotionModel;
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Rotation2, Vector2};
 use rand::{Rng, RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
@@ -25,8 +25,12 @@ fn circle(centre: Point2<f64>, radius: f64, (points, noise): (u16, f64), random:
     (0..points).map(point).collect()
 }
 
-/// A disc of radius 1 with a hole that is off its middle, which spins and travels straight.
-fn followed(hole: f64, off: f64, noise: f64, seed: u64) -> MotionFilter {
+/// A disc of radius 1 with a hole, which spins and travels straight. The hole is drawn from the centre of the disc, its turn and chance.
+fn followed_with(
+    hole: impl Fn(Point2<f64>, Rotation2<f64>, &mut ChaCha8Rng) -> Vec<Point2<f64>>,
+    noise: f64,
+    seed: u64,
+) -> MotionFilter {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let start = random.random_range(0.0..std::f64::consts::TAU);
     let mut run = filter(MotionModel::Rigid);
@@ -34,14 +38,63 @@ fn followed(hole: f64, off: f64, noise: f64, seed: u64) -> MotionFilter {
         let time = f64::from(frame) / 30.0;
         let centre = Point2::from(time * VELOCITY);
         // Omega is clockwise.
-        let (sine, cosine) = (start - OMEGA * time).sin_cos();
+        let turn = Rotation2::new(start - OMEGA * time);
         let boundary = circle(centre, 1.0, (270, noise), &mut random);
-        let mut within = circle(centre + off * Vector2::new(cosine, sine), hole, (130, noise), &mut random);
+        let mut within = hole(centre, turn, &mut random);
         within.reverse();
         let outline = ClosedOutline::new(boundary).and_then(|outline| outline.with_inner(vec![within]));
         run.step(time, &Outline::from(outline.expect("an outline"))).expect("increasing times");
     }
     run
+}
+
+/// With a round hole that is off its middle.
+fn followed(hole: f64, off: f64, noise: f64, seed: u64) -> MotionFilter {
+    let within = |centre, turn: Rotation2<f64>, random: &mut ChaCha8Rng| {
+        circle(centre + turn * Vector2::new(off, 0.0), hole, (130, noise), random)
+    };
+    followed_with(within, noise, seed)
+}
+
+/// With a slot of a width along an arc of a radius and an angle about a point beside the middle.
+fn followed_with_slot((radius, angle, off): (f64, f64, f64), noise: f64, seed: u64) -> MotionFilter {
+    const WIDTH: f64 = 0.16;
+    const SIDE: u16 = 60;
+    let within = |centre: Point2<f64>, turn: Rotation2<f64>, random: &mut ChaCha8Rng| {
+        let normal = Normal::new(0.0, noise).expect("a deviation");
+        // There along the outer side, and back along the inner one.
+        let mut points = Vec::new();
+        for (side, is_back) in [(0.5, false), (-0.5, true)] {
+            for i in 0..SIDE {
+                let along = (f64::from(i) + random.random::<f64>()) / f64::from(SIDE);
+                let along = if is_back { 1.0 - along } else { along };
+                let (sine, cosine) = (angle * (along - 0.5)).sin_cos();
+                let point = Vector2::new(off, 0.0) + (radius + side * WIDTH) * Vector2::new(cosine, sine);
+                let error = Vector2::new(normal.sample(random), normal.sample(random));
+                points.push(centre + turn * point + error);
+            }
+        }
+        points
+    };
+    followed_with(within, noise, seed)
+}
+
+#[test]
+fn slits_and_curved_slots_in_a_disc_tell_the_turn_within_its_deviations_or_leave_it_unknown() {
+    // Along three quarters of a circle about the middle, along half of one, a straight slit beside the middle, and one through it.
+    let slots = [(0.6, 4.7, 0.0), (0.4, 3.1, 0.0), (20.0, 0.04, -19.6), (20.0, 0.04, -20.0)];
+    let mut told = 0;
+    for slot in slots {
+        for (noise, seed) in [(0.001, 1), (0.006, 2), (0.006, 3), (0.02, 4), (0.02, 5)] {
+            let run = followed_with_slot(slot, noise, seed);
+            let omega = run.estimate().expect("an estimate").parameters().next().expect("omega comes first");
+            if let Some((value, std)) = omega.value.zip(omega.standard_deviation) {
+                told += 1;
+                assert!((value - OMEGA).abs() < 4.0 * std, "{slot:?} {noise} {seed}: {value} {std}");
+            }
+        }
+    }
+    assert!(told >= 5, "{told}");
 }
 
 #[test]

@@ -6,10 +6,10 @@ use freeform_outline_io::{GrayImage, PictureErrorKind, ReadShapeError, decode_pi
 use image::codecs::png::PngEncoder;
 use image::{DynamicImage, ExtendedColorType, ImageEncoder as _, ImageFormat, Luma, LumaA, Rgb};
 
+use crate::support::encoded;
+
 fn png(picture: impl Into<DynamicImage>) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    picture.into().write_to(&mut bytes, ImageFormat::Png).expect("memory never fails");
-    bytes.into_inner()
+    encoded(picture, ImageFormat::Png)
 }
 
 fn disc() -> GrayImage {
@@ -126,15 +126,9 @@ fn a_png_cut_anywhere_is_an_error() {
     }
 }
 
-fn jpeg(picture: &GrayImage) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    picture.write_to(&mut bytes, ImageFormat::Jpeg).expect("memory never fails");
-    bytes.into_inner()
-}
-
 #[test]
 fn a_jpeg_cut_anywhere_is_an_error_and_what_follows_a_whole_one_is_not() {
-    let whole = jpeg(&disc());
+    let whole = encoded(disc(), ImageFormat::Jpeg);
     let expected = decode(&whole).expect("a picture");
     for length in (1..whole.len()).step_by(41).chain([whole.len() - 2, whole.len() - 1]) {
         assert!(decode(&whole[..length]).is_err(), "cut to {length} of {} bytes", whole.len());
@@ -150,7 +144,7 @@ fn a_jpeg_cut_anywhere_is_an_error_and_what_follows_a_whole_one_is_not() {
 
 #[test]
 fn a_small_picture_within_a_jpeg_does_not_stand_for_its_end() {
-    let (whole, small) = (jpeg(&disc()), jpeg(&GrayImage::new(8, 8)));
+    let (whole, small) = (encoded(disc(), ImageFormat::Jpeg), encoded(GrayImage::new(8, 8), ImageFormat::Jpeg));
     // As cameras write a preview: a segment behind the start of the file.
     let length = u16::try_from(small.len() + 2).expect("small").to_be_bytes();
     let with_preview = [&whole[..2], &[0xff, 0xe2], &length, &small, &whole[2..]].concat();

@@ -4,6 +4,8 @@ use std::io::Cursor;
 use freeform_outline_io::{GrayImage, PictureErrorKind, decode_picture};
 use image::{ImageFormat, Rgb, RgbImage};
 
+use crate::support::encoded;
+
 /// Two blocks of 8 x 8 pixels beside each other, by their inks: 0 for none, 255 for all of it.
 type Inks = [[u8; 4]; 2];
 
@@ -152,10 +154,8 @@ fn a_jpeg_of_three_colours_is_read_whatever_adobe_says_of_them() {
     assert!((0..2).all(|block| found[block].abs_diff(seen[block]) <= 2), "{found:?}, not {seen:?}");
     assert_eq!(blocks(&jpeg([[200, 128, 128], [30, 128, 128]], Some(1))), [200, 30]);
     // An ordinary one, for the colours themselves.
-    let mut ordinary = Cursor::new(Vec::new());
     let two = RgbImage::from_fn(16, 8, |x, _| Rgb(colours[usize::from(x > 7)]));
-    two.write_to(&mut ordinary, ImageFormat::Jpeg).expect("memory never fails");
-    let found = blocks(&ordinary.into_inner());
+    let found = blocks(&encoded(two, ImageFormat::Jpeg));
     assert!((0..2).all(|block| found[block].abs_diff(seen[block]) <= 2), "{found:?}, not {seen:?}");
 }
 

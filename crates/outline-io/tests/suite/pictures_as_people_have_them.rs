@@ -9,11 +9,7 @@ use freeform_outline_io::{
 };
 use image::{DynamicImage, ImageFormat, Luma};
 
-fn encoded(picture: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    picture.into().write_to(&mut bytes, format).expect("memory never fails");
-    bytes.into_inner()
-}
+use crate::support::encoded;
 
 /// A wedge of grey values that no turn or mirror leaves as it is.
 fn wedge() -> GrayImage {

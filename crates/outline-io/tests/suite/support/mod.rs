@@ -1,5 +1,13 @@
-//! Sequences that the tests go through.
+//! Pictures and sequences that the tests go through.
 use freeform_outline_io::{GrayImage, PictureError, PictureFrame, PictureOutlines, PictureSettings, TracedFrame};
+use image::{DynamicImage, ImageFormat};
+
+/// The bytes of a picture file. They are written to a file, since encoders are compiled anew for each other kind of writer.
+pub(crate) fn encoded(picture: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
+    let file = tempfile::NamedTempFile::new().expect("a file");
+    picture.into().save_with_format(file.path(), format).expect("a picture");
+    std::fs::read(file.path()).expect("the file")
+}
 
 fn frames(pictures: Vec<GrayImage>) -> impl Iterator<Item = Result<PictureFrame, PictureError>> {
     (0_u64..).zip(pictures).map(|(frame, picture)| {
