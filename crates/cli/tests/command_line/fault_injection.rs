@@ -19,7 +19,7 @@ const FAULTS: [(&str, &str); 5] = [
 const MOST_PLACES: usize = 60;
 
 /// As that, of a command that takes seconds and writes megabytes.
-const MOST_PLACES_OF_DEMO: usize = 4;
+const MOST_PLACES_OF_DEMO: usize = 2;
 
 /// Files by their names within a folder.
 type Files = BTreeMap<String, Vec<u8>>;

@@ -54,7 +54,7 @@ fn picture(folder: &Path, name: &str, shade: impl Fn(u32, u32) -> bool) -> Strin
 fn the_largest_picture_of_the_most_runs_and_points_stays_within_the_memory_that_is_promised() {
     let folder = tempfile::tempdir().expect("a folder");
     let comb = picture(folder.path(), "comb.png", |x, y| y == 0 || x % 2 == 0);
-    for arguments in [&["outline", &comb][..], &["track", &comb, "--objects", "all"]] {
+    for arguments in [&["outline", &comb][..], &["track", &comb, "--objects", "all", "--light"]] {
         let (status, peak) = peak(arguments);
         assert_eq!(status, Some(1), "{arguments:?}");
         assert!((1 << 17..LIMIT).contains(&peak), "{arguments:?}: {peak} kB");
@@ -74,8 +74,9 @@ fn animation(frames: usize) -> Vec<u8> {
 #[test]
 fn frames_that_show_nothing_new_cost_next_to_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
-    let gif = file(folder.path(), "small.gif", animation(2000));
-    for arguments in [&["outline", &gif][..], &["track", &gif], &["outline", &gif, "--background", "median"]] {
+    let gif = file(folder.path(), "small.gif", animation(5000));
+    for arguments in [&["outline", &gif][..], &["track", &gif, "--light"], &["outline", &gif, "--background", "median"]]
+    {
         let (status, peak) = peak(arguments);
         assert_eq!(status, Some(1), "{arguments:?}");
         assert!(peak < LIMIT, "{arguments:?}: {peak} kB");
@@ -89,7 +90,7 @@ fn objects_within_each_other_take_no_more_than_the_picture_does() {
         let depth = x.min(y).min(8191 - x).min(8191 - y);
         depth / 64 % 2 == 1
     });
-    let (status, peak) = peak(&["track", &nested, "--objects", "all"]);
+    let (status, peak) = peak(&["track", &nested, "--objects", "all", "--light"]);
     assert_eq!(status, Some(0));
     assert!(peak < LIMIT, "{peak} kB");
 }
