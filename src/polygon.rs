@@ -31,7 +31,8 @@ pub fn outline_of_polygon(outline: &Outline) -> Outline {
 
 /// The outline of a polygon in pixels, with a point for each pixel of its sides; `None` where the points are no such polygon, or all there already.
 /// Masks are traced to such polygons, with the corners of straight stretches alone. Such a polygon is closed, has whole numbers for coordinates
-/// and no standard deviations, and has fewer than 40 points or a side of more than four times the mean length. [`Tracker`](crate::Tracker) fills them.
+/// and no standard deviations, and has fewer than 40 points or a side of more than four times the mean length. [`Tracker`](crate::Tracker) fills
+/// them.
 ///
 /// ```
 /// use freeform_motion::{curve_fit::Outline, outline_of_pixel_polygon};

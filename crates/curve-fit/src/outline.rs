@@ -8,7 +8,8 @@ use crate::open_outline::OpenOutline;
 use crate::points::{Spread, check_not_collinear, check_points, signed_area};
 use crate::rectangle::Rectangle;
 
-/// Most points that sides are filled with, about: a contour of a few pixels' noise needs no more, and a damaged coordinate must not ask for all memory.
+/// Most points that sides are filled with, about: a contour of a few pixels' noise needs no more, and a damaged coordinate must not ask for all
+/// memory.
 const MOST_SIDES: f64 = 1e4;
 
 /// Points of the boundary of a body in the order in which they follow each other, either way round; the last is joined to the

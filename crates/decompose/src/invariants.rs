@@ -85,8 +85,8 @@ impl AffineInvariants {
         (self.degree == other.degree).then(|| squares.sum::<f64>().sqrt())
     }
 
-    /// Distance to other invariants in standard deviations (Mahalanobis 1936): the root of `d' C^-1 d`, d the difference of the unit vectors and C its
-    /// covariance, the sum of those of both where both are uncertain ([`CurveUncertainty`](crate::CurveUncertainty)). As
+    /// Distance to other invariants in standard deviations (Mahalanobis 1936): the root of `d' C^-1 d`, d the difference of the unit vectors and C
+    /// its covariance, the sum of those of both where both are uncertain ([`CurveUncertainty`](crate::CurveUncertainty)). As
     /// unit vectors do not vary along themselves C is singular; what it leaves out counts nothing. `None` for curves of
     /// different degree, and where C is not of the size of the vectors or not finite.
     #[must_use]

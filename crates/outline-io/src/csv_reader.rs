@@ -30,8 +30,8 @@ use crate::outline_rows::OutlineRows;
 ///
 /// The reader is an iterator. An outline is returned as soon as the row after it has been read; no more than two rows,
 /// the present outline, and the last frame number and time of every object are held (of more than 32768 objects those seen
-/// last), so memory does not grow with the number of frames. After an error for which [`ReadError::is_recoverable`] is true the iterator continues with the next
-/// outline, after any other it has ended. Outlines that are complete before the bad row are returned before the error;
+/// last), so memory does not grow with the number of frames. After an error for which [`ReadError::is_recoverable`] is true the iterator continues
+/// with the next outline, after any other it has ended. Outlines that are complete before the bad row are returned before the error;
 /// the one that the bad row interrupts is not returned.
 #[derive(Debug)]
 pub struct OutlineReader<R> {

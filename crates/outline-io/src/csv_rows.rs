@@ -71,8 +71,8 @@ impl<R: Read> Rows<R> {
         Ok((rows, found))
     }
 
-    /// Moves to the next row and returns its point, with its standard deviation where there is one, provided that what is buffered begins with that row, that it has
-    /// no quotes and that it agrees with the row before to the byte wherever that is the role of a column. Otherwise
+    /// Moves to the next row and returns its point, with its standard deviation where there is one, provided that what is buffered begins with that
+    /// row, that it has no quotes and that it agrees with the row before to the byte wherever that is the role of a column. Otherwise
     /// nothing changes, and [`Self::advance`] is to be called. There is a role for every column.
     pub(crate) fn next_point(&mut self, roles: &[Role]) -> Option<(Point2<f64>, Option<f64>)> {
         let mut rest = self.reader.get_ref().buffered();

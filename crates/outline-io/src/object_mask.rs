@@ -19,7 +19,8 @@ pub(crate) struct ObjectMask {
 }
 
 /// Windows of the objects of a picture have no more pixels than this together: twice those of the largest picture. Of a picture of up to
-/// half a million pixels that is never reached; of larger ones only by objects that lie within each other, such as rings, which windows would hold many times.
+/// half a million pixels that is never reached; of larger ones only by objects that lie within each other, such as rings, which windows would hold
+/// many times.
 const WINDOW_LIMIT: usize = 1 << 27;
 
 /// The largest objects of a picture: 8-connected sets of pixels.

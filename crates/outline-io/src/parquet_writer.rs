@@ -130,8 +130,8 @@ impl<W: Write> ParquetWriter<W> {
     /// Writes one outline.
     ///
     /// # Errors
-    /// As [`OutlineWriter::write`](crate::OutlineWriter::write); also a frame number beyond those of a signed 64-bit number. Nothing of the outline has been
-    /// written then, unless the sink failed.
+    /// As [`OutlineWriter::write`](crate::OutlineWriter::write); also a frame number beyond those of a signed 64-bit number. Nothing of the outline
+    /// has been written then, unless the sink failed.
     pub fn write(&mut self, frame: &OutlineFrame) -> Result<(), WriteError> {
         WriterOptions { object_column: true, ..self.options }.check(frame)?;
         let number = i64::try_from(frame.frame)

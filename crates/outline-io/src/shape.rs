@@ -22,8 +22,8 @@ use crate::trace_settings::TraceSettings;
 const MAGIC_LENGTH: u64 = 16;
 
 /// Reads one closed outline to use as a shape: from a picture, the outer outline of its largest object with the default
-/// [`TraceSettings`]; from Parquet, the first outline; from CSV as [`OutlineReader`] reads it, the first outline; from CSV with a header that has `x` and
-/// `y` but neither `frame` nor `time`, all its rows as one outline. Content and extension tell a picture from CSV. The
+/// [`TraceSettings`]; from Parquet, the first outline; from CSV as [`OutlineReader`] reads it, the first outline; from CSV with a header that has
+/// `x` and `y` but neither `frame` nor `time`, all its rows as one outline. Content and extension tell a picture from CSV. The
 /// outline returned is always closed.
 ///
 /// # Errors
