@@ -1,6 +1,9 @@
 //! The motion filter. It estimates outline, pose and motion of a flat object together from its outlines, frame by frame, with standard
 //! deviations. Its errors are near the Cramer-Rao bound from the third frame on. It is robust to hidden arcs, outliers and wrong frames.
 //!
+//! To begin with: the overview in `docs/motion-filter.md` of the repository says what happens to a frame, and where to change what. The rest of that
+//! document derives the equations, each with its code and test.
+//!
 //! The layers, from top to bottom. Each layer uses only the layers below it:
 //!
 //! | layer | holds |
@@ -16,8 +19,6 @@
 //! | `map` | cells, contour, nearest-cell field, null directions |
 //! | `belief` | pose, motion, offsets, arrowhead information matrix |
 //! | `tuning` | every constant once, with its reason: of the outline, of a frame, of searches, of motion, of the plane |
-//!
-//! `docs/motion-filter.md` of the repository derives the equations, each with its code and test.
 //!
 //! With the feature `serde` a filter can be saved and restored: `MotionFilter::to_bytes` and `MotionFilter::from_bytes`.
 //!

@@ -48,8 +48,7 @@ pub fn read_picture(path: impl AsRef<Path>) -> Result<GrayImage, PictureError> {
 ///
 /// # Errors
 /// As [`read_picture`].
-pub fn decode_picture(source: impl BufRead + Seek, name: &str) -> Result<GrayImage, PictureError> {
-    let mut source = source;
+pub fn decode_picture(mut source: impl BufRead + Seek, name: &str) -> Result<GrayImage, PictureError> {
     decode(&mut source, Channel::Luminance).map_err(|kind| PictureError::of_file(name, kind))
 }
 
@@ -64,7 +63,7 @@ pub fn read_picture_channel(path: impl AsRef<Path>, channel: Channel) -> Result<
     picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))
 }
 
-/// The bytes of a picture. Decoders are compiled once for all kinds of them.
+/// The bytes of a picture. Decoders of single pictures are compiled once for all kinds of them.
 pub(crate) trait Source: BufRead + Seek {}
 
 impl<T: BufRead + Seek> Source for T {}

@@ -138,7 +138,7 @@ impl PyMotionFilter {
     /// time : float
     ///     Seconds, after the time of the frame before.
     /// outline : Outline or array_like, shape (n, 2)
-    ///     An outline, or the points of a closed contour in order. Contours whose coordinates are all whole numbers, with fewer than 40 points or
+    ///     An outline, or the points of a closed contour in order. Contours without standard deviations whose coordinates are all whole numbers, with fewer than 40 points or
     ///     a side of more than four times the mean length, are polygons with the corners of a mask, also in an `Outline`: points are put along
     ///     their sides, one for each pixel.
     ///

@@ -18,7 +18,7 @@ const FAULTS: [(&str, &str); 5] = [
 /// Calls of a kind that fail, one in each run; of more, as many of them, evenly over the run.
 const MOST_PLACES: usize = 60;
 
-/// As that, of a command that takes seconds and writes megabytes.
+/// As that, of a command that takes a second and writes as others do: the first call, one half way, and the last.
 const MOST_PLACES_OF_DEMO: usize = 2;
 
 /// Files by their names within a folder.
@@ -107,7 +107,8 @@ fn whichever_call_fails_every_output_is_the_old_or_the_new_one_and_nothing_else_
             let is_one = |line: &str| names.split(',').any(|name| line.contains(&format!(" {name}(")));
             let count = calls.lines().filter(|line| is_one(line)).count();
             let most = if command.starts_with("demo") { MOST_PLACES_OF_DEMO } else { MOST_PLACES };
-            for place in (1..=count).step_by(count.div_ceil(most).max(1)) {
+            let last = (count > 0 && count > most).then_some(count);
+            for place in (1..=count).step_by(count.div_ceil(most).max(1)).chain(last) {
                 fill(folder, &old);
                 let (traced_calls, inject) =
                     (format!("trace={names}"), format!("inject={names}:error={error}:when={place}"));

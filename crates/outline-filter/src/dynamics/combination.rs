@@ -28,7 +28,7 @@ pub(crate) enum Purpose {
 struct Part<const N: usize> {
     weight: f64,
     mean: SVector<f64, N>,
-    /// None where it is less probable than what lies outside of an interval of 95 %: then its mean alone counts.
+    /// None for the least probable hypotheses, which have less than 5 % together: only their means count.
     covariance: Option<SMatrix<f64, N, N>>,
     /// Whether its pose is measured against the outline, and is not known together with it.
     is_measured: bool,

@@ -62,7 +62,8 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.predict(pose, seconds, null))
     }
 
-    /// Updates by what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
+    /// Updates by what an accepted frame tells of the pose: the error of the reference pose. `off` are standard deviations of that pose about the
+    /// centroid which come to those of the frame, such as for rounding.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         of_any_size!(self, hypotheses => hypotheses.update(measured, off));
     }
@@ -87,7 +88,7 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.weights())
     }
 
-    /// Whether the object must not be expected where a constant generator takes it.
+    /// Whether the hypotheses, and not a constant generator alone, say where the object is expected next.
     pub(crate) fn leads(&self) -> bool {
         of_any_size!(self, hypotheses => hypotheses.leads())
     }
@@ -97,7 +98,7 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.turn_is_of_path())
     }
 
-    /// Whether others than a constant generator are neither ruled out nor lead already.
+    /// Whether hypotheses other than a constant generator are not ruled out, and do not lead already.
     pub(crate) fn has_others(&self) -> bool {
         of_any_size!(self, hypotheses => hypotheses.has_others())
     }

@@ -202,7 +202,8 @@ impl FamilyTests {
         }
     }
 
-    /// Changes to and fro: of a mean square that noise does not have, or slow; or all of the motions together.
+    /// Whether the shape changes to and fro, and by what displacement: all motions that are left out together are more than none, or one of them has a
+    /// larger mean square than noise, or varies slowly.
     fn change_of_shape(&self, least: f64, dependence: &UnmodelledVector) -> Option<f64> {
         let n = self.series.frames() as f64;
         let all: Vec<usize> = (0..UNMODELLED).collect();

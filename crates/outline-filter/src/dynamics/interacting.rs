@@ -160,7 +160,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
-    /// Updates by what an accepted frame tells of the pose: the error of the reference pose. Besides, the pose is off by deviations about the centroid.
+    /// Updates by what an accepted frame tells of the pose: the error of the reference pose. `off` are standard deviations of that pose about the
+    /// centroid which come to those of the frame, such as for rounding.
     pub(crate) fn update(&mut self, measured: &PoseMeasurement, off: &CentredDeviations) {
         let k = self.model.parameter_count();
         let Some(to) = self.reference.about_origin(self.model) else { return };
@@ -227,7 +228,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         weights
     }
 
-    /// Whether the object must not be expected where a constant generator takes it.
+    /// Whether the hypotheses, and not a constant generator alone, say where the object is expected next.
     pub(crate) fn leads(&self) -> bool {
         self.leads
     }
@@ -237,7 +238,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         self.turn_is_of_path
     }
 
-    /// Whether others than a constant generator are neither ruled out nor lead already.
+    /// Whether hypotheses other than a constant generator are not ruled out, and do not lead already.
     pub(crate) fn has_others(&self) -> bool {
         let of_generator =
             self.hypotheses.iter().zip(&self.weights).find(|(h, _)| h.course == Course::ConstantGenerator);

@@ -86,7 +86,7 @@ fn leaving(course: Course) -> f64 {
     }
 }
 
-/// How often a change leads to a course, in that to one that is not [`Course::Shaken`].
+/// How often a change leads to a course, relative to others: 1 for all but [`Course::Shaken`].
 fn arriving(course: Course) -> f64 {
     match course {
         Course::Shaken { .. } => tuning::BEGINS_TO_SHAKE,

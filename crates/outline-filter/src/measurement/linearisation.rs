@@ -1,4 +1,5 @@
-//! The distance of a point from its cell, its Jacobian, and its weight.
+//! The distance of a point from its cell, its Jacobian, and its weight, point by point: the plain way. Most frames take
+//! [`View::measure_side_by_side`], which finds the same of all points together.
 use freeform_riccati::{MAX_PARAMETERS, ParameterVector, map_point, pull_back};
 use nalgebra::{Matrix3, Point2, Vector2};
 
@@ -95,7 +96,8 @@ impl View<'_> {
         self.weigh_by(measurements, values, (ratio, expected), pass);
     }
 
-    /// By the deviation of each point, and that of its residual with what is not known of its cell, both over the deviation of a good point.
+    /// As [`weigh`](Self::weigh). `ratio` is the deviation of a point, `expected` that of its residual, with what is not known of its cell; both are
+    /// in deviations of a good point.
     #[inline(always)]
     fn weigh_by(
         &self,

@@ -138,15 +138,17 @@ impl View<'_> {
         vectorised(
             #[inline(always)]
             || match self.belief.model {
-                MotionModel::Rigid => found.hand_over(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n)),
+                MotionModel::Rigid => {
+                    found.write_jacobians(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n))
+                }
                 MotionModel::Similarity => {
-                    found.hand_over(measurements, |p, n| MotionModel::Similarity.normal_velocities(p, n));
+                    found.write_jacobians(measurements, |p, n| MotionModel::Similarity.normal_velocities(p, n));
                 }
                 MotionModel::Affine => {
-                    found.hand_over(measurements, |p, n| MotionModel::Affine.normal_velocities(p, n));
+                    found.write_jacobians(measurements, |p, n| MotionModel::Affine.normal_velocities(p, n));
                 }
                 MotionModel::Projective => {
-                    found.hand_over(measurements, |p, n| MotionModel::Projective.normal_velocities(p, n));
+                    found.write_jacobians(measurements, |p, n| MotionModel::Projective.normal_velocities(p, n));
                 }
             },
         );
@@ -296,9 +298,10 @@ struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Makes measurements of it, with the normal velocities that each parameter of the pose error gives the feet of the points.
+    /// The Jacobians of all points, and measurements of all that was found: the normal velocities that each parameter of the pose error gives the
+    /// feet of the points.
     #[inline(always)]
-    fn hand_over(
+    fn write_jacobians(
         &self,
         measurements: &mut [Measurement],
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,

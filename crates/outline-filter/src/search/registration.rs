@@ -54,7 +54,7 @@ impl Registration {
         let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
         let mut rigid = Vec::with_capacity(begun.len());
         // Where all are far off by now, it is enough that the best of them remains so.
-        if outlook_by(least / tuning::STEPS_LEFT) == Outlook::Hopeless {
+        if outlook_by(least / tuning::MARGIN_BEFORE_LAST_STEPS) == Outlook::Hopeless {
             rigid.extend(begun.first().map(further));
             if rigid.first().is_some_and(|best: &RegisteredPose| outlook_by(best.spread) == Outlook::Hopeless) {
                 return Self { rigid, outlook: Outlook::Hopeless };
@@ -408,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_ends_early_for_other_outlines_and_for_no_turn_of_its_own() {
+    fn other_outlines_are_hopeless_and_no_turn_of_its_own_is() {
         let mut frame = Frame::default();
         let track = Track::begin(MotionModel::Rigid, &shown(0.25, 0.0), 0.0, &mut frame).expect("a track");
         for step in 0..12 {

@@ -72,7 +72,7 @@ impl MotionFilter {
         self.track.as_mut().into_iter().for_each(Track::show_turn);
         let registration = self.registered(outline)?;
         if registration.is_hopeless()
-            && let Some(outcome) = self.glance_at(&registration, seconds)
+            && let Some(outcome) = self.rejected_at_a_glance(&registration, seconds)
         {
             return Some(outcome);
         }
@@ -104,11 +104,11 @@ impl MotionFilter {
 
     /// What the loaded frame is off by in the best pose of a registration which says that it shows something else, where one linearisation leaves
     /// no doubt of it. Nothing is found then.
-    fn glance_at(&mut self, registration: &Registration, seconds: f64) -> Option<Outcome> {
+    fn rejected_at_a_glance(&mut self, registration: &Registration, seconds: f64) -> Option<Outcome> {
         let poses = registration.poses(self.track.as_ref()?, &self.frame.points, self.symmetry);
         let mut moved = self.moved(poses.first()?, seconds)?;
         moved.set_tolerance(Tolerance::Relaxed);
-        let outcome = moved.glance(&mut self.frame, &gate(&self.settings, &moved))?;
+        let outcome = moved.rejected_at_a_glance(&mut self.frame, &gate(&self.settings, &moved))?;
         self.turn_hypotheses = TurnHypotheses::default();
         if let Some(track) = self.track.as_mut().filter(|_| self.phase == Phase::Lost) {
             track.record_spread(&outcome.measurement);

@@ -41,6 +41,8 @@ impl MotionFilter {
         self.stated.get_or_init(|| self.stated_now()).as_ref()
     }
 
+    /// The covariance that is stated: what the track knows, with the hypotheses of dynamics, the dependence of frames and what contradicts it (random);
+    /// then what the motion model leaves out, edges and rounding (systematic).
     fn stated_now(&self) -> Option<Statement> {
         let track = self.track.as_ref()?;
         let own = track.summary()?;

@@ -151,7 +151,8 @@ fn outcome_by_others(
     Some(found)
 }
 
-/// Moves a track on to where its motion has led it, by what is known of its dynamics.
+/// Moves a track on to where its motion has led it. Process noise that is given is added; else the hypotheses of dynamics say where it is expected,
+/// once they lead, and until then the variances that innovations have told.
 pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHistory, seconds: f64) {
     if history.dynamics.is_none()
         && let Some(setting) = settings.followed_dynamics()

@@ -10,14 +10,14 @@ use crate::{
 impl Track {
     /// What the loaded outline is off by in the present pose, as one linearisation tells it, where that is so much that more of them would not
     /// bring it through the gate: the pose has been searched for already, and they would change it little. The frame is not taken.
-    pub(crate) fn glance(&self, frame: &mut Frame, gate: &Gate) -> Option<Outcome> {
+    pub(crate) fn rejected_at_a_glance(&self, frame: &mut Frame, gate: &Gate) -> Option<Outcome> {
         let view = self.view();
         let null = self.null_directions();
         let hold = hold(&self.belief, &self.map, &null);
         let proposal = view.solve(frame, &null, hold.as_ref(), 1).ok()?;
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
         let innovation = self.innovation_of(&proposal, hold.as_ref(), variance).squared;
-        let measurement = view.judge(frame, &proposal, innovation, self.reference.radius);
+        let measurement = view.compare(frame, &proposal, innovation, self.reference.radius);
         let wide = Gate {
             smallest_agreement: PARTLY_THERE * gate.smallest_agreement,
             largest_innovation: None,
@@ -74,7 +74,7 @@ mod tests {
             for wave in [0.001, 0.0015, 0.002, 0.1] {
                 for shift in [0.0, 0.002, 0.1] {
                     frame.load(&shown(lobe, wave, shift), track.reference());
-                    let glance = track.glance(&mut frame, &gate);
+                    let glance = track.rejected_at_a_glance(&mut frame, &gate);
                     let update = track.clone().update(&mut frame, &gate, Comparison::NotAsked);
                     accepted += u32::from(update.is_accepted());
                     rejected_at_once += u32::from(glance.is_some());

@@ -18,8 +18,8 @@ use crate::{
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
 ///
-/// A frame goes one way: loaded into a [`Frame`], associated and linearised ([`View::measure`]), solved for a proposal
-/// ([`View::solve`]), judged ([`Track::verdict`]), committed ([`commit`]); then the map grows by what is new.
+/// A frame goes one way: loaded into a [`Frame`], then [`Track::update`]: solved for a proposal ([`View::solve`], which associates and linearises,
+/// [`View::measure`], until the pose settles), judged ([`Track::verdict`]), committed ([`commit`]); then the map grows by what is new.
 /// Copies share the map until one of them changes it.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -166,7 +166,7 @@ impl Track {
             likelihood = view.negative_log_likelihood(frame);
             likelihood.squares += innovation.squared;
         }
-        let measurement = view.judge(frame, &proposal, innovation.squared, radius);
+        let measurement = view.compare(frame, &proposal, innovation.squared, radius);
         // Points that do not move show none of what they are rounded by.
         let rounding = self.noise.rounding().of_point();
         let noise = measurement.noise.map(|noise| measurement.of_good_points(noise));
@@ -193,8 +193,7 @@ impl Track {
         Outcome { measurement, verdict, innovation, pose, rounding, shift, disagrees, likelihood }
     }
 
-    /// The verdict of a gate. Points may scatter by as much more than those of other frames as outlines that do what the motion model leaves out
-    /// have been seen to be off by.
+    /// The verdict of a gate, whose limit on the noise is [`widened`](Self::widened) where outlines do what the motion model leaves out.
     pub(super) fn verdict(&self, gate: &Gate, measurement: &FrameMeasurement) -> Result<(), Rejection> {
         let verdict = gate.verdict(measurement);
         let Some(largest) = gate.largest_noise.filter(|_| matches!(verdict, Err(Rejection::NoiseTooLarge { .. })))
@@ -206,7 +205,8 @@ impl Track {
     }
 
     /// The most noise that is tolerated, normalised, with what outlines have been seen to be displaced by beside their motion, or by a change
-    /// of shape. Those add up in squares: how much differs from frame to frame.
+    /// of shape. Noise and displacement are independent, so that their squares add up; all of the displacement is allowed for, since it may
+    /// differ from frame to frame.
     fn widened(&self, largest: f64) -> f64 {
         let displacement = self.unmodelled_motions().0.displacement;
         largest.hypot(of_noise::LARGEST_RATIO * displacement).min(of_noise::LARGEST).max(largest)

@@ -73,7 +73,7 @@ mod tests {
 
     use super::*;
     use crate::track::Comparison;
-    use crate::tuning::noise::LARGEST;
+    use crate::tuning::noise::{LARGEST, LARGEST_RATIO};
     use crate::update::{FrameMeasurement, Gate, UNMODELLED};
 
     const STEP: f64 = 0.05;
@@ -198,6 +198,27 @@ mod tests {
             let outline_of_another = 1.01 * LARGEST * track.reference().radius / largest;
             let found = [0.99, 1.1, outline_of_another].map(accepts);
             assert_eq!(found, [true, is_more_accepted, false]);
+        }
+    }
+
+    #[test]
+    fn a_limit_that_allows_for_more_than_the_noise_is_widened_by_the_displacement_alone() {
+        let track = tracked(0.02, 1, (40, [1e-4; 2]));
+        let (radius, sigma) = (track.reference().radius, track.noise.sigma);
+        let displacement = track.unmodelled_motions().0.displacement;
+        let largest = 3.0 * LARGEST_RATIO * sigma;
+        let widened = largest.hypot(LARGEST_RATIO * displacement);
+        assert!(1.01 * widened < LARGEST, "{widened}");
+        for (noise, is_accepted) in [(0.99 * widened, true), (1.01 * widened, false)] {
+            let gate =
+                Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: Some(largest * radius) };
+            let of_frame = FrameMeasurement {
+                agreement: 1.0,
+                innovation: 0.0,
+                noise: Some(noise * radius),
+                ..FrameMeasurement::unsolved(1)
+            };
+            assert_eq!(track.verdict(&gate, &of_frame).is_ok(), is_accepted, "{noise} {largest} {displacement}");
         }
     }
 }

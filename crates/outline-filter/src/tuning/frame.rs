@@ -57,9 +57,10 @@ pub(crate) mod noise {
     pub(crate) const FIRST_WEIGHT: f64 = 0.5;
     /// Frames whose spread is looked back on to tell a bad frame.
     pub(crate) const FRAMES: usize = 9;
-    /// A frame with so many times the noise of most does not show the known outline, however well the map is bent to it.
+    /// A frame with more than so many times the noise of most frames does not show the known outline, however well the map is bent to it.
     pub(crate) const LARGEST_RATIO: f64 = 1.8;
-    /// Nor does one with more than this: outlines of different objects differ by more.
+    /// The noise of most frames counts for a limit of no more than this, in radii: outlines of different objects differ by more. So many times the noise
+    /// that is known ([`LARGEST_RATIO`]) are tolerated all the same.
     pub(crate) const LARGEST: f64 = 0.05;
     /// Spread that is remembered of a frame at most, in [`LARGEST`]: beyond, it is one that shows something else.
     pub(crate) const LARGEST_REMEMBERED: f64 = 2.0;
@@ -168,9 +169,9 @@ pub(crate) mod update {
     /// that once in a million frames.
     pub(crate) const SUDDEN: f64 = 25.0;
     /// Share of the smallest agreement from which a frame may show the outline where a motion that has changed has taken it: that of two lines
-    /// which cross, one of them held where it was expected.
+    /// which cross, one of them held where it was expected. A frame of a lost object with less is rejected after one linearisation.
     pub(crate) const PARTLY_THERE: f64 = 0.5;
-    /// Noise of a frame after one linearisation, in the most that is tolerated, from which on more of them do not bring it below that: the pose has
-    /// been searched for already.
+    /// If one linearisation in a pose that was searched for leaves more than so many times the noise that is tolerated, further ones do not bring it
+    /// below that.
     pub(crate) const BEYOND_DOUBT: f64 = 1.3;
 }

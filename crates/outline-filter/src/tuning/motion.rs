@@ -55,7 +55,7 @@ pub(crate) mod dynamics {
     pub(crate) const LEAVES_CONSTANT: f64 = 0.000_001_5;
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
-    /// How often a change is that a camera begins to shake, in one to a certain motion: cameras that do shake from the start. A motion that changes
+    /// How often a camera begins to shake, for one change to any other course: cameras that shake do so from the start. A motion that changes
     /// slowly looks for some frames like one seen by a camera that shakes.
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.01;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate. Where frames
@@ -182,7 +182,7 @@ pub(crate) mod statement {
     /// Fewest frames rejected, no fewer than taken, that say so: one by itself may be wrong, and where frames are wrong by chance two of the
     /// first four hardly are.
     pub(crate) const FEWEST_AGAINST: usize = 2;
-    /// Share of a squared distance that a variance has of which an interval of 95 % reaches so far, 1 / 1.96^2.
+    /// A variance of so many times the square of a distance has intervals of 95 % of that half width: 1 / 1.96^2.
     pub(crate) const REACH: f64 = 0.26;
 }
 

@@ -52,12 +52,12 @@ pub(crate) mod registration {
     pub(crate) const FAR_WORSE: f64 = 2.0;
     /// As [`FAR_WORSE`], of scores with few points, which are known to a tenth, before a pose is refined with all of them.
     pub(crate) const FAR_WORSE_BY_FEW: f64 = 3.0;
-    /// Deviation of the points in the best pose found with few of them, in the most noise that is tolerated, from which on no pose explains the frame:
-    /// the median of eighty is known to a seventh.
+    /// If few points in the best pose found deviate by more than so many times the most noise that is tolerated, no pose explains the frame: the median
+    /// of eighty is known to a seventh.
     pub(crate) const HOPELESS: f64 = 1.7;
-    /// Times that deviation which all searches must leave after their first steps for it to be said before they all go on: by the rest of
-    /// their steps they come nearer by less.
-    pub(crate) const STEPS_LEFT: f64 = 1.3;
+    /// If all searches leave so many times that deviation after their first steps, only the best goes on, to confirm it: by the rest of their steps
+    /// searches come nearer by less.
+    pub(crate) const MARGIN_BEFORE_LAST_STEPS: f64 = 1.3;
     /// Fewest points of a frame that this is said of: a map of fewer may err by more than its noise says, and a search with all of them is soon made.
     pub(crate) const ENOUGH_POINTS: usize = 200;
     /// Distance of the matrices of poses that have come together: a fiftieth of the turn that starts are apart.

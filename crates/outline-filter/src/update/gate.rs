@@ -57,7 +57,8 @@ pub enum Rejection {
     NotFound,
 }
 
-/// Conditions for accepting a frame.
+/// Conditions for accepting a frame. The limits are set by the `supervisor` (`tracking::gate`, `tracking::Gates`); that on noise is
+/// [`View::largest_noise`], which `Track::verdict` widens.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Gate {
     /// Smallest share of points that agree.
@@ -124,8 +125,8 @@ impl View<'_> {
         self.noise.tolerated().max(NEVER_TOO_MUCH * self.map.spacing()) * radius
     }
 
-    /// What a proposal leaves of a frame. Lengths are multiplied by `radius`.
-    pub(crate) fn judge(
+    /// The frame compared with the outline, in the pose of a proposal. Lengths are multiplied by `radius`.
+    pub(crate) fn compare(
         &self,
         frame: &mut Frame,
         proposal: &Proposal,

@@ -93,8 +93,8 @@ fn followed_with_slot((radius, angle, off): (f64, f64, f64), noise: f64, seed: u
 fn slits_and_curved_slots_in_a_disc_tell_the_turn_within_its_deviations_or_leave_it_unknown() {
     // Along three quarters of a circle about the middle, along half of one, a straight slit beside the middle, and one through it.
     let slots = [(0.6, 4.7, 0.0), (0.4, 3.1, 0.0), (20.0, 0.04, -19.6), (20.0, 0.04, -20.0)];
-    let mut told = 0;
     for slot in slots {
+        let mut told = 0;
         for (noise, seed) in [(0.001, 1), (0.006, 2), (0.006, 3), (0.02, 4), (0.02, 5)] {
             let run = followed_with_slot(slot, noise, seed);
             let omega = run.estimate().and_then(|estimate| estimate.parameters().next());
@@ -103,8 +103,9 @@ fn slits_and_curved_slots_in_a_disc_tell_the_turn_within_its_deviations_or_leave
                 assert!((value - OMEGA).abs() < 4.0 * std, "{slot:?} {noise} {seed}: {value} {std}");
             }
         }
+        // With little noise all of them are told.
+        assert!(told >= 1, "{slot:?}: {told}");
     }
-    assert!(told >= 5, "{told}");
 }
 
 #[test]
