@@ -139,7 +139,7 @@ impl View<'_> {
             #[inline(always)]
             || match self.belief.model {
                 MotionModel::Rigid => {
-                    found.write_jacobians(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n))
+                    found.write_jacobians(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n));
                 }
                 MotionModel::Similarity => {
                     found.write_jacobians(measurements, |p, n| MotionModel::Similarity.normal_velocities(p, n));
