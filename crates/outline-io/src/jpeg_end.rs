@@ -10,7 +10,7 @@ const END_OF_IMAGE: u8 = 0xd9;
 ///
 /// Goes from marker to marker (ISO/IEC 10918-1, annex B): a small picture within a segment has an end of its own, and so
 /// have pictures that follow the first.
-pub(crate) fn reaches_its_end(source: &mut (impl BufRead + ?Sized)) -> io::Result<bool> {
+pub(crate) fn reaches_its_end(source: &mut impl BufRead) -> io::Result<bool> {
     loop {
         if !skip_past(source, PREFIX)? {
             return Ok(false);
@@ -36,14 +36,14 @@ pub(crate) fn reaches_its_end(source: &mut (impl BufRead + ?Sized)) -> io::Resul
     }
 }
 
-fn byte(source: &mut (impl BufRead + ?Sized)) -> io::Result<Option<u8>> {
+fn byte(source: &mut impl BufRead) -> io::Result<Option<u8>> {
     let next = source.fill_buf()?.first().copied();
     source.consume(usize::from(next.is_some()));
     Ok(next)
 }
 
 /// Goes on behind the next byte of this value; false where there is none.
-fn skip_past(source: &mut (impl BufRead + ?Sized), wanted: u8) -> io::Result<bool> {
+fn skip_past(source: &mut impl BufRead, wanted: u8) -> io::Result<bool> {
     loop {
         let buffer = source.fill_buf()?;
         let (length, found) = (buffer.len(), buffer.iter().position(|byte| *byte == wanted));
@@ -55,7 +55,7 @@ fn skip_past(source: &mut (impl BufRead + ?Sized), wanted: u8) -> io::Result<boo
 }
 
 /// Goes on by so many bytes; false where there are fewer.
-fn skip(source: &mut (impl BufRead + ?Sized), mut count: usize) -> io::Result<bool> {
+fn skip(source: &mut impl BufRead, mut count: usize) -> io::Result<bool> {
     while count > 0 {
         let length = source.fill_buf()?.len().min(count);
         if length == 0 {

@@ -82,10 +82,10 @@ pub(crate) fn decode(source: &mut dyn Source, channel: Channel) -> Result<GrayIm
     if !format.reading_enabled() {
         return Err(PictureErrorKind::Unsupported { format: format.to_mime_type() });
     }
-    let source = reader.into_inner();
+    let mut source = reader.into_inner();
     if format == ImageFormat::Jpeg {
         let start = source.stream_position()?;
-        if !reaches_its_end(source)? {
+        if !reaches_its_end(&mut source)? {
             return Err(PictureErrorKind::CutShort);
         }
         source.seek(SeekFrom::Start(start))?;
@@ -112,7 +112,7 @@ pub(crate) fn decode(source: &mut dyn Source, channel: Channel) -> Result<GrayIm
 
 /// Name of the kind of file, if it holds several pictures of which one alone would be read. Leaves the source at its beginning.
 fn several_pictures(
-    source: &mut dyn Source,
+    mut source: &mut dyn Source,
     format: ImageFormat,
     limits: &Limits,
 ) -> Result<Option<&'static str>, PictureErrorKind> {
@@ -126,7 +126,7 @@ fn several_pictures(
         ImageFormat::WebP => WebPDecoder::new(&mut *source).is_ok_and(|webp| webp.has_animation()),
         _ => false,
     };
-    let has_pages = format == ImageFormat::Tiff && has_several_pages(source)?;
+    let has_pages = format == ImageFormat::Tiff && has_several_pages(&mut source)?;
     source.seek(SeekFrom::Start(start))?;
     Ok(match (is_animated, has_pages) {
         (true, _) if format == ImageFormat::Png => Some("an animated PNG"),

@@ -15,13 +15,13 @@ const MOST_ENTRIES: u64 = 4096;
 
 /// Whether there is more than one page, thumbnails and masks not counted. Leaves the source at its beginning. A file that
 /// contradicts itself has as many as are seen.
-pub(crate) fn has_several_pages(source: &mut (impl Read + Seek + ?Sized)) -> io::Result<bool> {
+pub(crate) fn has_several_pages(source: &mut (impl Read + Seek)) -> io::Result<bool> {
     let pages = pages(source).unwrap_or(0);
     source.rewind()?;
     Ok(pages > 1)
 }
 
-fn pages(source: &mut (impl Read + Seek + ?Sized)) -> io::Result<usize> {
+fn pages(source: &mut (impl Read + Seek)) -> io::Result<usize> {
     source.rewind()?;
     let mut head = [0; 4];
     source.read_exact(&mut head)?;
@@ -56,13 +56,13 @@ fn pages(source: &mut (impl Read + Seek + ?Sized)) -> io::Result<usize> {
 }
 
 /// Numbers of a file, which says in which order their bytes are.
-struct Numbers<'a, R: ?Sized> {
+struct Numbers<'a, R> {
     source: &'a mut R,
     is_big_endian: bool,
     is_long: bool,
 }
 
-impl<R: Read + ?Sized> Numbers<'_, R> {
+impl<R: Read> Numbers<'_, R> {
     fn number(&mut self, length: usize) -> io::Result<u64> {
         let mut bytes = [0; 8];
         self.source.read_exact(&mut bytes[..length])?;

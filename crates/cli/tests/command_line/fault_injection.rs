@@ -107,7 +107,7 @@ fn whichever_call_fails_every_output_is_the_old_or_the_new_one_and_nothing_else_
             let is_one = |line: &str| names.split(',').any(|name| line.contains(&format!(" {name}(")));
             let count = calls.lines().filter(|line| is_one(line)).count();
             let most = if command.starts_with("demo") { MOST_PLACES_OF_DEMO } else { MOST_PLACES };
-            let last = (count > 0 && count > most).then_some(count);
+            let last = (count > most).then_some(count);
             for place in (1..=count).step_by(count.div_ceil(most).max(1)).chain(last) {
                 fill(folder, &old);
                 let (traced_calls, inject) =

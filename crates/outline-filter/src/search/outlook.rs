@@ -19,8 +19,8 @@ impl Outlook {
     }
 
     /// Whether few points can tell that there is nothing to be found: of rigid motion alone, since others change the outline, of frames of enough
-    /// points, and of outlines without ends, beyond which points may lie. Of points
-    /// that state deviations it is not said either: [`Track::most_noise_tolerated`] is infinite then.
+    /// points, and of outlines without ends, beyond which points may lie. Of points that state deviations it is not said
+    /// either: [`Track::most_noise_tolerated`] is infinite then.
     fn can_be_told(track: &Track, points: usize) -> bool {
         points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends()
     }

@@ -54,14 +54,20 @@ impl Track {
     /// What the outlines do beside their motion, as far as it is told, and the second moments of what it makes of the errors of pose and
     /// motion.
     pub(crate) fn unmodelled_motions(&self) -> (UnmodelledEstimate, StateMatrix) {
+        let estimate = self.unmodelled_estimate();
+        let by_size = &self.sensitivity.state;
+        (estimate, by_size * estimate.moments * by_size.transpose())
+    }
+
+    /// What the outlines do beside their motion, as far as it is told.
+    pub(super) fn unmodelled_estimate(&self) -> UnmodelledEstimate {
         let mut estimate = *self.family.estimate();
         if estimate.family.is_none()
             && let Some(displacement) = self.change_of_shape()
         {
             (estimate.family, estimate.displacement) = (Some(WrongFamily::Shape), displacement);
         }
-        let by_size = &self.sensitivity.state;
-        (estimate, by_size * estimate.moments * by_size.transpose())
+        estimate
     }
 }
 
@@ -178,25 +184,23 @@ mod tests {
         }
     }
 
+    /// Whether a frame that agrees passes with a noise, where so much is the limit; image lengths.
+    fn accepts(track: &Track, noise: f64, largest: f64) -> bool {
+        let gate = Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: Some(largest) };
+        let unsolved = FrameMeasurement::unsolved(1);
+        let of_frame = FrameMeasurement { agreement: 1.0, innovation: 0.0, noise: Some(noise), ..unsolved };
+        track.verdict(&gate, &of_frame).is_ok()
+    }
+
     #[test]
     fn points_may_scatter_more_where_outlines_do_what_the_motion_model_leaves_out() {
         let [sheared, plain] = [0.02, 0.0].map(|size| tracked(size, 1, (40, [1e-4; 2])));
-        let displacement = sheared.unmodelled_motions().0.displacement;
+        let displacement = sheared.unmodelled_estimate().displacement;
         assert!(displacement > 0.5 * sheared.noise.sigma, "{displacement} {}", sheared.noise.sigma);
         for (track, is_more_accepted) in [(&sheared, true), (&plain, false)] {
             let largest = track.largest_noise();
-            let accepts = |ratio: f64| {
-                let gate = Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: Some(largest) };
-                let of_frame = FrameMeasurement {
-                    agreement: 1.0,
-                    innovation: 0.0,
-                    noise: Some(ratio * largest),
-                    ..FrameMeasurement::unsolved(1)
-                };
-                track.verdict(&gate, &of_frame).is_ok()
-            };
             let outline_of_another = 1.01 * LARGEST * track.reference().radius / largest;
-            let found = [0.99, 1.1, outline_of_another].map(accepts);
+            let found = [0.99, 1.1, outline_of_another].map(|ratio| accepts(track, ratio * largest, largest));
             assert_eq!(found, [true, is_more_accepted, false]);
         }
     }
@@ -205,20 +209,13 @@ mod tests {
     fn a_limit_that_allows_for_more_than_the_noise_is_widened_by_the_displacement_alone() {
         let track = tracked(0.02, 1, (40, [1e-4; 2]));
         let (radius, sigma) = (track.reference().radius, track.noise.sigma);
-        let displacement = track.unmodelled_motions().0.displacement;
+        let displacement = track.unmodelled_estimate().displacement;
         let largest = 3.0 * LARGEST_RATIO * sigma;
         let widened = largest.hypot(LARGEST_RATIO * displacement);
         assert!(1.01 * widened < LARGEST, "{widened}");
         for (noise, is_accepted) in [(0.99 * widened, true), (1.01 * widened, false)] {
-            let gate =
-                Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: Some(largest * radius) };
-            let of_frame = FrameMeasurement {
-                agreement: 1.0,
-                innovation: 0.0,
-                noise: Some(noise * radius),
-                ..FrameMeasurement::unsolved(1)
-            };
-            assert_eq!(track.verdict(&gate, &of_frame).is_ok(), is_accepted, "{noise} {largest} {displacement}");
+            let found = accepts(&track, noise * radius, largest * radius);
+            assert_eq!(found, is_accepted, "{noise} {largest} {displacement}");
         }
     }
 }
