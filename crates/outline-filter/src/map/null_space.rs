@@ -44,8 +44,7 @@ pub(super) struct NullSpace {
     pub(super) centroid: Point2<f64>,
     pub(super) turn: TurnEvidence,
     /// Smallest eigenvalue of the levers of a turn that may be shown, less what errors of the normals make of it.
-    #[cfg_attr(feature = "serde", serde(skip))]
-    weakest_turn: f64,
+    pub(super) weakest_turn: f64,
 }
 
 impl Default for NullSpace {
@@ -176,7 +175,7 @@ impl OutlineMap {
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
     pub(crate) fn show_turn(&mut self) {
         let space = &mut self.null_space;
-        if space.turn.is_hidden() {
+        if space.turn.is_hidden() && space.turn != TurnEvidence::Refuted {
             space.turn = space.turn.after(TurnEvent::AskedAnew);
             space.in_body.pop();
         }
@@ -247,14 +246,23 @@ impl OutlineMap {
         }
         (space.frame, space.centroid) = (to_body, centroid);
         space.turn = space.turn.after(TurnEvent::AskedAnew);
+        if space.turn == TurnEvidence::Refuted {
+            self.hide_turn(model);
+        }
+    }
+
+    /// Whether a turn is shown, but hardly.
+    pub(crate) fn shows_turn_weakly(&self) -> bool {
+        self.null_space.weakest_turn < tuning::WEAKLY_SHOWN
     }
 
     /// Deviation that directions of normals may have at most, in rad. Points slide along an outline that errs in its normals, and the
     /// levers that these errors make say that they do not: the less an outline shows of its turn, the better its normals must be.
     pub(crate) fn normal_noise(&self) -> f64 {
-        let weakest = self.null_space.weakest_turn;
-        let is_weak = weakest < tuning::WEAKLY_SHOWN;
-        if is_weak { NORMAL_NOISE.min((weakest / tuning::LEVER_PER_NOISE).sqrt()) } else { NORMAL_NOISE }
+        if !self.shows_turn_weakly() {
+            return NORMAL_NOISE;
+        }
+        NORMAL_NOISE.min((self.null_space.weakest_turn / tuning::LEVER_PER_NOISE).sqrt())
     }
 
     /// Normal of the outline at a cell by the cells some way before and after it. Where cells err together this does not, as their own normals

@@ -168,7 +168,7 @@ impl OutlineMap {
                 && (cell.normal.norm_squared() - 1.0).abs() < tuning::UNIT_NORMAL
                 && cell.neighbours.iter().all(|number| *number < count)
         };
-        let NullSpace { in_body, frame, centroid, .. } = &self.null_space;
+        let NullSpace { in_body, frame, centroid, weakest_turn, .. } = &self.null_space;
         let is_valid = (tuning::FEWEST_CELLS..=tuning::MOST_SAVED).contains(&count)
             && self.cells.iter().all(is_cell)
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
@@ -176,6 +176,7 @@ impl OutlineMap {
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.step)
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
+            && !weakest_turn.is_nan()
             && in_body.iter().flatten().chain(frame).all(within)
             && centroid.iter().all(|coordinate| coordinate.is_finite());
         if is_valid {

@@ -13,6 +13,8 @@ pub(crate) enum TurnEvidence {
     New,
     /// As [`New`](Self::New), and the last frame has not shown it again.
     NewAndHidden,
+    /// Frames together have not told it as well as the normals promise: it is not asked for any more.
+    Refuted,
 }
 
 /// What frames or cells say of the turn.
@@ -24,6 +26,8 @@ pub(crate) enum TurnEvent {
     Confirmed,
     /// A frame has not shown the turn.
     NotSeen,
+    /// Frames together have not told the turn as well as the normals promise.
+    Refuted,
     /// Whether it is seen is asked anew: of another frame, or of other cells.
     AskedAnew,
     /// New cells show it by their normals, where those before did not.
@@ -35,6 +39,7 @@ pub(crate) enum TurnEvent {
 impl TurnEvidence {
     pub(crate) fn after(self, event: TurnEvent) -> Self {
         match (event, self) {
+            (TurnEvent::Refuted, _) | (_, Self::Refuted) => Self::Refuted,
             (TurnEvent::Begun, Self::Hidden | Self::NewAndHidden) => Self::NewAndHidden,
             (TurnEvent::Begun, _) => Self::New,
             (TurnEvent::Confirmed, Self::New) => Self::AsTheNormals,
@@ -53,8 +58,8 @@ impl TurnEvidence {
         matches!(self, Self::New | Self::NewAndHidden)
     }
 
-    /// Whether a frame has not shown it, so that it is a null direction whatever the normals promise.
+    /// Whether frames have not shown it, so that it is a null direction whatever the normals promise.
     pub(crate) fn is_hidden(self) -> bool {
-        matches!(self, Self::Hidden | Self::NewAndHidden)
+        matches!(self, Self::Hidden | Self::NewAndHidden | Self::Refuted)
     }
 }

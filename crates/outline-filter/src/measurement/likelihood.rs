@@ -38,6 +38,20 @@ impl NegativeLogLikelihood {
         self.points > 0.0 && self.squares / self.points <= times * (other.squares / other.points).max(1.0)
     }
 
+    /// The difference of squares that is significant between two poses, for so many points that count for one each: see
+    /// [`is_worse_than`](Self::is_worse_than).
+    pub(crate) fn significant(weighted: f64) -> f64 {
+        tuning::SIGNIFICANT * (tuning::VARIANCE * weighted).sqrt()
+    }
+
+    /// Keeps a share of what has been added, and adds another.
+    pub(crate) fn add_to_faded(&mut self, kept: f64, other: &Self) {
+        for number in [&mut self.squares, &mut self.points, &mut self.weighted] {
+            *number *= kept;
+        }
+        self.add(other);
+    }
+
     pub(crate) fn add(&mut self, other: &Self) {
         self.squares += other.squares;
         self.points += other.points;
@@ -200,6 +214,14 @@ fn of_innovations(
     let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
     let squares = innovations.map(|innovation| innovation.map_or(tuning::UNKNOWN, square)).sum();
     NegativeLogLikelihood { squares, points, weighted: points * correlation }
+}
+
+#[cfg(test)]
+impl NegativeLogLikelihood {
+    /// Of independent points with such a sum of squares.
+    pub(crate) fn of_squares(squares: f64, points: f64) -> Self {
+        Self { squares, points, weighted: points }
+    }
 }
 
 #[cfg(feature = "serde")]

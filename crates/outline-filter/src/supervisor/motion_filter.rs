@@ -263,6 +263,10 @@ impl MotionFilter {
         if self.turn_hypotheses.present_turn() != turn || outcome.is_accepted() != was_accepted {
             self.history.begin_anew();
         }
+        if outcome.is_accepted() && track.turn_is_less_known_than_said(outline, &outcome, frame) {
+            track.refute_turn();
+            self.turn_hypotheses = TurnHypotheses::default();
+        }
         Some(outcome)
     }
 

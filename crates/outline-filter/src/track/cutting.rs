@@ -4,7 +4,9 @@ use std::sync::Arc;
 use freeform_riccati::MotionModel;
 use nalgebra::Matrix3;
 
-use super::{Track, first_pose::FirstPose, shape_change::EarlyShape, usual_agreement::UsualAgreement};
+use super::{
+    Track, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile, usual_agreement::UsualAgreement,
+};
 use crate::{
     belief::Belief,
     dynamics::FamilyTests,
@@ -91,6 +93,7 @@ impl Track {
             shape: ShapeNoise::default(),
             early_shape: EarlyShape::default(),
             usual: UsualAgreement::default(),
+            turn_profile: TurnProfile::default(),
             sensitivity: Sensitivity::new(),
             family: FamilyTests::default(),
             first_pose: FirstPose::default(),

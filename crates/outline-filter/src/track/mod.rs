@@ -22,6 +22,7 @@ mod sides_tests;
 #[expect(clippy::module_inception, reason = "the module holds the type that the layer is about")]
 mod track;
 mod turn;
+mod turn_profile;
 mod unmodelled;
 mod usual_agreement;
 

@@ -5,7 +5,9 @@ use freeform_estimate::ProcessNoise;
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
-use super::{first_pose::FirstPose, shape_change::EarlyShape, usual_agreement::UsualAgreement};
+use super::{
+    first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile, usual_agreement::UsualAgreement,
+};
 use crate::{
     belief::Belief,
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
@@ -31,6 +33,8 @@ pub(crate) struct Track {
     pub(super) shape: ShapeNoise,
     pub(super) early_shape: EarlyShape,
     pub(super) usual: UsualAgreement,
+    /// Whether frames tell a turn that the outline hardly shows.
+    pub(super) turn_profile: TurnProfile,
     /// What the model leaves out.
     pub(super) sensitivity: Sensitivity,
     pub(super) family: FamilyTests,

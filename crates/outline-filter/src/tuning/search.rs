@@ -95,6 +95,18 @@ pub(crate) mod registration {
     pub(crate) const NEARLY_ALL: f64 = 0.88;
 }
 
+/// Whether frames tell a turn that the outline hardly shows.
+pub(crate) mod turn_profile {
+    /// Frames that are looked back on: a turn of them all together must be told.
+    pub(crate) const MEMORY: usize = 8;
+    /// Share of what was found before that is kept from frame to frame.
+    pub(crate) const KEPT: f64 = 1.0 - 1.0 / MEMORY as f64;
+    /// Difference of squares that frames promise for the turns compared, in that which is significant: half of it may be missing.
+    pub(crate) const PROMISED: f64 = 2.0;
+    /// Largest turn that is compared, rad. Where frames do not promise to tell one, the deviation that is stated says how little is known.
+    pub(crate) const LARGEST: f64 = super::registration::NEAR;
+}
+
 /// Hypotheses: turns that explain a frame alike.
 pub(crate) mod turn_hypotheses {
     /// Turns that differ by less are the same, rad.

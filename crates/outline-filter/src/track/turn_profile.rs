@@ -1,0 +1,125 @@
+//! Whether frames tell a turn that the outline hardly shows as well as its normals promise.
+//!
+//! A disc with a thin slot along a circle tells its turn by the ends of the slot alone. A pose that misses them looks as good as any other: their few
+//! points are taken for outliers, and errors of the normals of all others promise that the turn is known well. The profile of the likelihood does
+//! not: poses turned a little either way must be worse.
+use freeform_curve_fit::Outline;
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::{Matrix3, SVector};
+
+use super::{Outcome, Track};
+use crate::{
+    map::TurnEvent,
+    measurement::{Frame, NegativeLogLikelihood},
+    tuning::{likelihood::ENOUGH_POINTS, turn_profile as tuning},
+};
+
+/// Likelihoods over the last frames of the poses as they were told, and of these turned by as much as the frames should tell.
+#[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct TurnProfile {
+    as_told: NegativeLogLikelihood,
+    /// Clockwise and anticlockwise.
+    turned: [NegativeLogLikelihood; 2],
+    frames: usize,
+}
+
+impl TurnProfile {
+    /// Adds those of a frame, of its pose and of the turned ones.
+    fn add(&mut self, as_told: &NegativeLogLikelihood, turned: [&NegativeLogLikelihood; 2]) {
+        self.as_told.add_to_faded(tuning::KEPT, as_told);
+        for (sum, of_frame) in self.turned.iter_mut().zip(turned) {
+            sum.add_to_faded(tuning::KEPT, of_frame);
+        }
+        self.frames = (self.frames + 1).min(tuning::MEMORY);
+    }
+
+    /// Whether frames that should have told a turn have not.
+    fn contradicts(&self) -> bool {
+        self.frames >= tuning::MEMORY && self.turned.iter().any(|turned| !turned.is_worse_than(&self.as_told))
+    }
+}
+
+impl Track {
+    /// Compares the pose of an accepted frame with turned ones, where the outline hardly shows its turn; whether the last frames do not tell it as
+    /// well as is said.
+    pub(crate) fn turn_is_less_known_than_said(
+        &mut self,
+        outline: &Outline,
+        outcome: &Outcome,
+        frame: &mut Frame,
+    ) -> bool {
+        if !self.map.shows_turn_weakly() || self.turn_is_unseen() {
+            return false;
+        }
+        let Some(turn) = self.turn_to_be_told(outcome, outline.point_count()) else { return false };
+        let pose = self.belief.pose;
+        let poses = [pose, self.turned(&pose, -turn), self.turned(&pose, turn)];
+        let [as_told, clockwise, anticlockwise] = &self.compared(outline, &poses, frame)[..] else { return false };
+        self.turn_profile.add(as_told, [clockwise, anticlockwise]);
+        self.turn_profile.contradicts()
+    }
+
+    /// The turn that frames like this one should tell from none beyond doubt, by the information that this one promises, rad; `None` where they
+    /// promise too little.
+    fn turn_to_be_told(&self, outcome: &Outcome, points: usize) -> Option<f64> {
+        let model = self.belief.model;
+        let clockwise = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        let about_centroid = SVector::from(model.parameters_of(&clockwise));
+        let direction: SVector<f64, MAX_PARAMETERS> = self.centred_pose().about_origin(model)? * about_centroid;
+        let of_turn = direction.dot(&(outcome.pose?.information * direction));
+        let points = points.min(ENOUGH_POINTS) as f64;
+        // Of squares, as they are compared.
+        let correlation = self.noise.correlation();
+        let needed = NegativeLogLikelihood::significant(points * correlation / tuning::MEMORY as f64);
+        let turn = (tuning::PROMISED * needed / (of_turn * correlation)).sqrt();
+        (turn <= tuning::LARGEST).then_some(turn)
+    }
+
+    /// Holds the turn as unseen from now on, after frames that have not told it: nothing is known of it any more.
+    pub(crate) fn refute_turn(&mut self) {
+        self.turn_profile = TurnProfile::default();
+        self.record_turn(TurnEvent::Refuted);
+        self.hide_turn();
+        let null = self.null_directions();
+        let variance = self.noise.effective_variance();
+        self.belief.forget(&null, variance);
+        null.iter().for_each(|null| null.subtract_from(&mut self.belief.motion));
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TurnProfile {
+    /// Whether it is one of so many frames.
+    pub(super) fn is_valid(&self) -> bool {
+        self.frames <= tuning::MEMORY
+            && self.as_told.is_valid()
+            && self.turned.iter().all(NegativeLogLikelihood::is_valid)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether so many frames of 400 points in which both turns are worse by such differences of squares contradict the turn.
+    fn contradicted(frames: usize, clockwise: f64, anticlockwise: f64) -> bool {
+        let of_frame = |difference: f64| NegativeLogLikelihood::of_squares(400.0 + difference, 400.0);
+        let mut profile = TurnProfile::default();
+        for _ in 0..frames {
+            profile.add(&of_frame(0.0), [of_frame(clockwise), of_frame(anticlockwise)].each_ref());
+        }
+        profile.contradicts()
+    }
+
+    #[test]
+    fn a_turn_is_contradicted_where_one_way_is_not_worse_by_half_of_what_was_promised_once_there_are_enough_frames() {
+        let promised = tuning::PROMISED * NegativeLogLikelihood::significant(400.0 / tuning::MEMORY as f64);
+        let enough = 4 * tuning::MEMORY;
+        assert!(!contradicted(enough, promised, promised));
+        assert!(!contradicted(enough, 0.6 * promised, 0.6 * promised));
+        assert!(contradicted(enough, promised, 0.4 * promised) && contradicted(enough, 0.4 * promised, promised));
+        assert!(contradicted(enough, promised, -promised));
+        assert!(contradicted(tuning::MEMORY, 0.0, 0.0) && !contradicted(tuning::MEMORY - 1, 0.0, 0.0));
+    }
+}
