@@ -180,16 +180,14 @@ mod tests {
     use freeform_curve_fit::Outline;
 
     use super::*;
-    use crate::measurement::Frame;
+    use crate::{
+        drawn_curves::{lobed, outline, polar},
+        measurement::Frame,
+    };
 
-    /// Points of a curve with lobes, turned.
+    /// A curve with three lobes, turned.
     fn shown(lobe: f64, turn: f64) -> Outline {
-        let point = |i: u32| {
-            let t = std::f64::consts::TAU * f64::from(i) / 400.0;
-            let r = 1.0 + lobe * (3.0 * t).cos() + 0.1 * (2.0 * t).sin();
-            Point2::new(r * (t + turn).cos(), r * (t + turn).sin())
-        };
-        Outline::closed((0..400).map(point).collect()).expect("an outline")
+        outline(400, |t| polar(lobed(t, &[(3.0, [lobe, 0.0]), (2.0, [0.0, 0.1])]), t + turn))
     }
 
     #[test]
