@@ -1,5 +1,5 @@
 //! The map from a picture to a plane, from an outline that is known in the plane and is seen at rest in the picture.
-use freeform_curve_fit::{AreaMoments, ClosedOutline, Outline, evenly_spaced};
+use freeform_curve_fit::{AreaMoments, ClosedOutline, Outline, evenly_spaced, share_along_side};
 use freeform_riccati::{MotionModel, map_point, pull_back};
 use nalgebra::{Affine2, Matrix3, Point2, Projective2, Rotation2, SMatrix, SVector, Vector2};
 
@@ -297,12 +297,9 @@ fn foot(polygon: &[Point2<f64>], p: &Point2<f64>) -> (Point2<f64>, Vector2<f64>)
     let mut best = (f64::INFINITY, [x, y], [1.0, 0.0]);
     // Plain numbers: most of the search for a plane is spent here.
     let mut compare = |from: &Point2<f64>, to: &Point2<f64>| {
-        let ([from_x, from_y], [to_x, to_y]) = (<[f64; 2]>::from(*from), <[f64; 2]>::from(*to));
-        let (along_x, along_y) = (to_x - from_x, to_y - from_y);
-        let length = along_x * along_x + along_y * along_y;
-        let projected = along_x * (x - from_x) + along_y * (y - from_y);
-        let share = if length > 0.0 { (projected / length).clamp(0.0, 1.0) } else { 0.0 };
-        let (foot_x, foot_y) = (from_x + share * along_x, from_y + share * along_y);
+        let share = share_along_side(from, to, p);
+        let (along_x, along_y) = (to.x - from.x, to.y - from.y);
+        let (foot_x, foot_y) = (from.x + share * along_x, from.y + share * along_y);
         let square = (x - foot_x) * (x - foot_x) + (y - foot_y) * (y - foot_y);
         if square < best.0 {
             best = (square, [foot_x, foot_y], [along_x, along_y]);

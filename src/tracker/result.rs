@@ -45,6 +45,36 @@ pub struct ObjectResult {
 }
 
 impl ObjectResult {
+    /// The result for an object of which nothing is known, with no frames. What is known of another object takes the place of its fields.
+    ///
+    /// ```
+    /// use freeform_motion::{riccati::MotionModel, tracker::{Method, ObjectResult}};
+    ///
+    /// let unknown = ObjectResult::unknown("left", Method::Filter, MotionModel::Rigid);
+    /// let lost = ObjectResult { frames: 30, frames_rejected: 30, ..unknown };
+    /// assert!(lost.parameters().is_none() && lost.warnings.is_empty());
+    /// ```
+    #[must_use]
+    pub fn unknown(object: impl Into<String>, method: Method, motion: impl Into<MotionFamily>) -> Self {
+        Self {
+            object: object.into(),
+            method,
+            motion: motion.into(),
+            frames: 0,
+            frames_rejected: 0,
+            first_rejection: None,
+            estimate: None,
+            covariance: None,
+            plane: None,
+            velocity: None,
+            ambiguity: None,
+            plane_ambiguity: None,
+            aliases: Vec::new(),
+            dynamics: None,
+            warnings: Vec::new(),
+        }
+    }
+
     /// The parameters of the motion, whichever family it is of; none where no motion was found.
     #[must_use]
     pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {

@@ -22,4 +22,5 @@ mod soak;
 mod tracker;
 #[cfg(feature = "serde")]
 mod tracker_state;
+mod trajectories;
 mod warnings;

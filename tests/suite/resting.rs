@@ -1,12 +1,12 @@
 //! Objects whose states wait in a file go on as if they had stayed in memory.
 use std::{cell::Cell, fs::File, num::NonZero};
 
-use crate::common::frames;
+use crate::common::seen_as;
 use freeform_motion::{
     Tracker, TrackerSettings,
     outline_io::OutlineFrame,
     riccati::RigidMotion,
-    sim_camera::{BuiltInShape, Camera, Scene, Settings, Simulator},
+    sim_camera::BuiltInShape,
     tracker::{Observation, ReadAhead, Recorded, RejectionCause},
 };
 
@@ -19,15 +19,7 @@ fn recording() -> Vec<OutlineFrame> {
     let mut outlines: Vec<OutlineFrame> = (0..OBJECTS)
         .flat_map(|object| {
             let shape = BuiltInShape::ALL[object as usize % BuiltInShape::ALL.len()];
-            let settings = Settings { points: 60, ..frames(FRAMES) };
-            let simulator = Simulator::new(Scene::new(shape, motion, Camera::default()), settings).expect("settings");
-            let seen: Vec<_> = simulator.frames().collect();
-            (0..).zip(seen).map(move |(frame, seen)| OutlineFrame {
-                frame,
-                time: seen.time,
-                object: object.to_string(),
-                outline: seen.outline,
-            })
+            seen_as(&object.to_string(), (shape, motion), 60, FRAMES)
         })
         .collect();
     outlines.sort_by_key(|outline| outline.frame);

@@ -1,7 +1,7 @@
 //! Many objects followed through a sequence.
 use std::{collections::BTreeSet, num::NonZero, panic};
 
-use crate::common::frames;
+use crate::common::seen_as;
 use freeform_motion::{
     Tracker, TrackerSettings, Warning,
     curve_fit::Outline,
@@ -9,38 +9,25 @@ use freeform_motion::{
     outline_filter::{Ambiguity, FilterError, FilterSettings},
     outline_io::OutlineFrame,
     riccati::{CameraScale, MotionModel, RigidMotion},
-    sim_camera::{BuiltInShape, Camera, Scene, Settings, Simulator},
+    sim_camera::BuiltInShape,
     tracker::{
-        Followed, FrameRanges, FrameRejection, Method, MethodSettings, ObjectPhase, Observation, ReadAhead, Recorded,
-        RejectionCause, SmoothingError, Trajectory,
+        Followed, FrameRanges, FrameRejection, Method, MethodSettings, ObjectPhase, ReadAhead, Recorded, RejectionCause,
     },
 };
 use nalgebra::{Isometry2, Point2, Rotation2, Vector2};
 use proptest::prelude::*;
 
-fn tracker(method: Method) -> Tracker {
+pub(crate) fn tracker(method: Method) -> Tracker {
     Tracker::new(TrackerSettings::new(method, MotionModel::Rigid)).expect("default settings")
 }
 
 /// What a camera sees of a shape with so many points on it.
-fn seen(shape: BuiltInShape, object: &str, points: usize, count: usize) -> Vec<OutlineFrame> {
-    moving(RigidMotion { omega: 1.0, b1: 0.5, b2: 0.2 }, shape, object, points, count)
-}
-
-fn moving(motion: RigidMotion, shape: BuiltInShape, object: &str, points: usize, count: usize) -> Vec<OutlineFrame> {
-    let settings = Settings { points, ..frames(count) };
-    let simulator = Simulator::new(Scene::new(shape, motion, Camera::default()), settings).expect("a simulation");
-    let frame = |(frame, seen): (u64, freeform_motion::sim_camera::Frame)| OutlineFrame {
-        frame,
-        time: seen.time,
-        object: object.to_owned(),
-        outline: seen.outline,
-    };
-    (0..).zip(simulator.frames()).map(frame).collect()
+pub(crate) fn seen(shape: BuiltInShape, object: &str, points: usize, count: usize) -> Vec<OutlineFrame> {
+    seen_as(object, (shape, RigidMotion { omega: 1.0, b1: 0.5, b2: 0.2 }), points, count)
 }
 
 /// An egg, turned anticlockwise by an angle in rad and shifted to the right, at a tenth of a second per frame.
-fn egg(frame: u64, angle: f64, shift: f64) -> OutlineFrame {
+pub(crate) fn egg(frame: u64, angle: f64, shift: f64) -> OutlineFrame {
     let pose = Isometry2::new(Vector2::new(shift, 0.0), angle);
     let points = (0..200).map(|i| {
         let t = std::f64::consts::TAU * f64::from(i) / 200.0;
@@ -235,7 +222,7 @@ fn each_method_warns_of_what_its_outlines_do_not_tell() {
         let mut tracker = tracker(method);
         // Round the middle of the shape, as a path would tell the turn of a circle.
         let motion = RigidMotion { omega: 1.0, b1: 0.0, b2: 0.0 };
-        moving(motion, shape, "0", 200, 30).iter().for_each(|frame| drop(tracker.push(frame)));
+        seen_as("0", (shape, motion), 200, 30).iter().for_each(|frame| drop(tracker.push(frame)));
         tracker.results()[0].warnings.iter().map(Warning::code).collect::<Vec<_>>()
     };
     assert_eq!(codes(Method::Filter, BuiltInShape::Bird), [""; 0]);
@@ -284,52 +271,6 @@ fn settings_out_of_range_are_refused_before_any_frame() {
     let refused =
         Tracker::new(TrackerSettings { method: MethodSettings::Filter(filter), ..TrackerSettings::default() });
     assert_eq!(refused.expect_err("no patience").to_string(), "patience of 0 is not at least 1");
-}
-
-fn followed(outlines: impl Iterator<Item = OutlineFrame>) -> (Tracker, Trajectory) {
-    let (mut tracker, mut trajectory) = (tracker(Method::Filter), Trajectory::default());
-    tracker.follow(outlines, |observation: Observation| trajectory.take(&observation));
-    (tracker, trajectory)
-}
-
-#[test]
-fn angles_of_a_trajectory_go_on_beyond_half_a_turn() {
-    let (_, trajectory) = followed((0..60).map(|frame| egg(frame, 0.2 * frame as f64, 0.0)));
-    let poses = trajectory.poses(None);
-    assert!(poses[0].is_none(), "the motion is not known in the first frame");
-    for (frame, known) in poses.iter().enumerate().skip(1) {
-        let angle = known.as_ref().expect("followed").pose[0];
-        // Positive where omega is, clockwise.
-        assert!((angle.value + 0.2 * frame as f64).abs() < 0.01, "frame {frame}: {angle:?}");
-    }
-}
-
-#[test]
-fn smoothing_fills_the_first_frame_and_leaves_no_pose_less_certain() {
-    let (tracker, filtered) = followed(seen(BuiltInShape::Bird, "bird", 200, 30).into_iter());
-    let mut smoothed = filtered.clone();
-    smoothed.smooth(&tracker).expect("a constant motion");
-    let (before, after) = (filtered.poses(None), smoothed.poses(None));
-    assert!(before[0].is_none() && after.iter().all(Option::is_some));
-    for (before, after) in before.iter().zip(&after).skip(1) {
-        let pairs = before.iter().zip(after).flat_map(|(before, after)| before.pose.iter().zip(&after.pose));
-        for (before, after) in pairs {
-            assert!(after.standard_deviation <= 1.000_001 * before.standard_deviation, "{before:?}, {after:?}");
-        }
-    }
-}
-
-#[test]
-fn a_trajectory_of_a_motion_that_changed_is_not_smoothed() {
-    let still = moving(RigidMotion::default(), BuiltInShape::Bird, "bird", 120, 150);
-    let (tracker, mut trajectory) = followed(still.into_iter().map(|frame| {
-        let turn = Rotation2::new(0.5 * frame.time + 0.5 * (1.5 * frame.time).sin());
-        let points = frame.outline.points().map(|point| turn * point).collect();
-        OutlineFrame { outline: Outline::closed(points).expect("a turned outline"), ..frame }
-    }));
-    let filtered = trajectory.clone();
-    assert_eq!(trajectory.smooth(&tracker), Err(SmoothingError::MotionChanged));
-    assert_eq!(trajectory, filtered);
 }
 
 proptest! {

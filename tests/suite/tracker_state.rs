@@ -1,23 +1,17 @@
 //! A tracker saved and restored goes on as before, to the last bit.
-use crate::common::frames;
+use crate::common::seen_as;
 use freeform_motion::{
     Rectification, Tracker, TrackerSettings,
     outline_filter::{FilterSettings, StateError},
     outline_io::OutlineFrame,
     riccati::{CameraScale, MotionModel, PinholeCamera, RigidMotion},
-    sim_camera::{BuiltInShape, Camera, Scene, Settings, Simulator},
+    sim_camera::BuiltInShape,
     tracker::{Method, MethodSettings, TrackerStateError},
 };
 use nalgebra::{Matrix3, Point2, Projective2};
 
 fn seen(shape: BuiltInShape, object: &str, count: usize) -> Vec<OutlineFrame> {
-    let motion = RigidMotion { omega: 1.0, b1: 0.5, b2: 0.2 };
-    let settings = Settings { points: 100, ..frames(count) };
-    let simulator = Simulator::new(Scene::new(shape, motion, Camera::default()), settings).expect("a simulation");
-    let frames = (0..).zip(simulator.frames());
-    frames
-        .map(|(frame, seen)| OutlineFrame { frame, time: seen.time, object: object.to_owned(), outline: seen.outline })
-        .collect()
+    seen_as(object, (shape, RigidMotion { omega: 1.0, b1: 0.5, b2: 0.2 }), 100, count)
 }
 
 fn tracker() -> Tracker {

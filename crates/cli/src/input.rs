@@ -38,21 +38,14 @@ pub(crate) struct Input {
     source: Source,
     /// Standard input or a pipe.
     is_stream: bool,
-    polygons: Polygons,
-}
-
-/// What is made of polygons whose corners are given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Polygons {
-    /// Outlines, with points along their sides.
-    Outlines,
-    /// They are left as they are.
-    Corners,
 }
 
 enum Source {
     Csv(Box<OutlineReader<Box<dyn Read>>>),
+    /// Outlines that are handed on as they are.
     File(OutlineFile),
+    /// Polygons that are handed on with points along their sides, of which the file has the corners alone.
+    Polygons(OutlineFile),
     Pictures(Box<PictureInput>),
 }
 
@@ -98,9 +91,8 @@ impl Input {
         }
     }
 
-    /// Of a file, whose polygons are outlines.
     fn new(name: String, comments: Vec<String>, source: Source) -> Self {
-        Self { name, comments, source, is_stream: false, polygons: Polygons::Outlines }
+        Self { name, comments, source, is_stream: false }
     }
 
     fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
@@ -110,7 +102,11 @@ impl Input {
     fn of_file(file: Result<OutlineFile, ReadError>, name: String) -> Result<Self, Failure> {
         let file = file.map_err(Failure::unusable)?;
         let comments = file.comments().lines().map(str::to_owned).collect();
-        Ok(Self::new(name, comments, Source::File(file)))
+        let source = match file.points() {
+            FilePoints::Corners => Source::Polygons(file),
+            FilePoints::Measured => Source::File(file),
+        };
+        Ok(Self::new(name, comments, source))
     }
 
     fn of_polygons(
@@ -160,7 +156,10 @@ impl Input {
 
     /// Polygons of annotation programs are handed on with their corners alone.
     pub(crate) fn with_corners_alone(self) -> Self {
-        Self { polygons: Polygons::Corners, ..self }
+        match self.source {
+            Source::Polygons(polygons) => Self { source: Source::File(polygons), ..self },
+            source => Self { source, ..self },
+        }
     }
 
     /// The motion that the head of the file says it was simulated with.
@@ -187,14 +186,14 @@ impl Input {
     pub(crate) fn has_deviation_column(&self) -> bool {
         match &self.source {
             Source::Csv(outlines) => outlines.has_deviation_column(),
-            Source::File(outlines) => outlines.has_deviation_column(),
+            Source::File(outlines) | Source::Polygons(outlines) => outlines.has_deviation_column(),
             Source::Pictures(_) => false,
         }
     }
 
     /// What may be wrong with the input, before it is read.
     pub(crate) fn warnings(&self) -> Vec<String> {
-        if matches!(&self.source, Source::File(file) if file.is_rate_assumed()) {
+        if matches!(&self.source, Source::File(file) | Source::Polygons(file) if file.is_rate_assumed()) {
             return vec![format!("{ASSUMED_RATE} frames/s assumed, the file does not say; give the rate with --fps")];
         }
         let Some(pictures) = self.pictures() else { return Vec::new() };
@@ -240,7 +239,7 @@ impl Input {
     /// The pictures that the outlines come from.
     pub(crate) fn pictures(&self) -> Option<&PictureInput> {
         match &self.source {
-            Source::Csv(_) | Source::File(_) => None,
+            Source::Csv(_) | Source::File(_) | Source::Polygons(_) => None,
             Source::Pictures(pictures) => Some(pictures),
         }
     }
@@ -253,11 +252,8 @@ impl Iterator for Input {
         match &mut self.source {
             Source::Pictures(pictures) => pictures.next().map(Ok),
             Source::Csv(outlines) => outlines.next().map(item),
-            Source::File(outlines) => {
-                let outline = outlines.next()?;
-                let fills = (outlines.points(), self.polygons) == (FilePoints::Corners, Polygons::Outlines);
-                Some(item(outline.map(|frame| if fills { filled(frame) } else { frame })))
-            }
+            Source::File(outlines) => outlines.next().map(item),
+            Source::Polygons(polygons) => polygons.next().map(|polygon| item(polygon.map(filled))),
         }
     }
 }

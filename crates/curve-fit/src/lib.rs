@@ -57,6 +57,7 @@ mod resampling;
 mod residuals;
 mod ridge;
 mod settings;
+mod side;
 mod smoothing;
 mod stray_parts;
 mod vectors;
@@ -83,6 +84,7 @@ pub use resampling::evenly_spaced;
 pub use residuals::Residuals;
 pub use ridge::rotation_invariant_ridge;
 pub use settings::{FitSettings, Method, Normalise};
+pub use side::share_along_side;
 pub use stray_parts::stray_parts;
 
 #[cfg(doctest)]

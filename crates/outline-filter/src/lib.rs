@@ -50,6 +50,8 @@ mod batch;
 mod belief;
 #[cfg(test)]
 mod dense_filter;
+#[cfg(test)]
+mod drawn_curves;
 mod dynamics;
 mod map;
 mod measurement;

@@ -124,7 +124,7 @@ impl OutlineFile {
     /// Opens a file of Parquet.
     ///
     /// # Errors
-    /// As [`ParquetReader::open`](crate::ParquetReader::open); Parquet without the feature.
+    /// The file cannot be read, is not Parquet, is damaged, or has no such columns; any file without the feature `parquet`.
     pub fn open_parquet(path: &Path) -> Result<Self, ReadError> {
         #[cfg(feature = "parquet")]
         {

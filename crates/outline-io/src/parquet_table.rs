@@ -242,39 +242,51 @@ fn unreadable(error: ParquetError) -> ReadErrorKind {
     ReadErrorKind::DamagedParquet { source }
 }
 
+/// So many cells of a column.
+fn cells(leaf: &mut Leaf, found: &Found, rows: usize) -> Result<Cells, HeaderError> {
+    leaf.read(rows).map_err(|error| of_library(found, error))
+}
+
+/// Those of a column that a file may have, and that may be wanted.
+fn optional<'a>(
+    leaf: &mut Option<Leaf>,
+    found: &'a Option<Found>,
+    rows: usize,
+) -> Result<Option<(&'a Found, Cells)>, HeaderError> {
+    match (leaf, found) {
+        (Some(leaf), Some(found)) => Ok(Some((found, cells(leaf, found, rows)?))),
+        _ => Ok(None),
+    }
+}
+
 impl Group {
     /// The next rows, and the first that is bad among them.
     fn read(&mut self, columns: &TableColumns, rows: usize) -> Result<(Batch, Option<BadRow>), HeaderError> {
-        let cells = |leaf: &mut Leaf, found: &Found| leaf.read(rows).map_err(|error| of_library(found, error));
-        let optional = |leaf: &mut Option<Leaf>, found: &Option<Found>| match (leaf, found) {
-            (Some(leaf), Some(found)) => cells(leaf, found).map(Some),
-            _ => Ok(None),
-        };
         let (mut batch, mut bad) = (Batch::default(), Vec::new());
-        let object: Option<Cells> = optional(&mut self.object, &columns.object)?;
-        let (names, bad_name) = names(columns.object.as_ref(), object.as_ref(), rows);
+        let object = optional(&mut self.object, &columns.object, rows)?;
+        let (names, bad_name) = names(columns.object.as_ref(), object.as_ref().map(|(_, cells)| cells), rows);
         batch.object = names;
         bad.extend(bad_name);
-        match (optional(&mut self.frame, &columns.frame)?, &columns.frame) {
-            (Some(cells), Some(found)) => {
+        match optional(&mut self.frame, &columns.frame, rows)? {
+            Some((found, cells)) => {
                 let (values, bad_frame) = frames(found, &cells, rows);
                 batch.frame = values;
                 bad.extend(bad_frame);
             }
-            _ => batch.frame = vec![0; rows],
+            None => batch.frame = vec![0; rows],
         }
-        match (optional(&mut self.time, &columns.time)?, &columns.time) {
-            (Some(cells), Some(found)) => {
+        match optional(&mut self.time, &columns.time, rows)? {
+            Some((found, cells)) => {
                 let (values, bad_time) = numbers(found, &cells, rows);
                 batch.time = values;
                 bad.extend(bad_time);
             }
-            _ => batch.time = vec![0.0; rows],
+            None => batch.time = vec![0.0; rows],
         }
         match &mut self.points {
             Some([x, y]) => {
-                let (x, ends, bad_x) = coordinates(&columns.x, cells(x, &columns.x)?, rows);
-                let (y, y_ends, bad_y) = coordinates(&columns.y, cells(y, &columns.y)?, rows);
+                let (x, ends, bad_x) = coordinates(&columns.x, cells(x, &columns.x, rows)?, rows);
+                let (y, y_ends, bad_y) = coordinates(&columns.y, cells(y, &columns.y, rows)?, rows);
                 bad.extend(bad_x);
                 bad.extend(bad_y);
                 bad.extend(unequal(&ends, &y_ends));
@@ -282,18 +294,16 @@ impl Group {
             }
             None => batch.ends = vec![0; rows],
         }
-        let mut marks_of = |leaf: &mut Option<Leaf>, found: &Option<Found>| match (leaf, found) {
-            (Some(leaf), Some(found)) => {
-                let (marks, bad_mark) = marks(found, &cells(leaf, found)?, &batch.ends);
-                bad.extend(bad_mark);
-                Ok(marks)
-            }
-            _ => Ok(Marks::None),
+        let mut marks_of = |leaf: &mut Option<Leaf>, found: &Option<Found>| {
+            let Some((found, cells)) = optional(leaf, found, rows)? else { return Ok(Marks::None) };
+            let (marks, bad_mark) = marks(found, &cells, &batch.ends);
+            bad.extend(bad_mark);
+            Ok(marks)
         };
         batch.arc = marks_of(&mut self.arc, &columns.arc)?;
         batch.contour = marks_of(&mut self.contour, &columns.contour)?;
-        if let (Some(leaf), Some(found)) = (&mut self.deviation, &columns.deviation) {
-            let (stated, bad_deviation) = deviations(found, &cells(leaf, found)?, &batch.ends);
+        if let Some((found, cells)) = optional(&mut self.deviation, &columns.deviation, rows)? {
+            let (stated, bad_deviation) = deviations(found, &cells, &batch.ends);
             batch.deviation = stated;
             bad.extend(bad_deviation);
         }

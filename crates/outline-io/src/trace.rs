@@ -265,14 +265,7 @@ impl Window<'_> {
                 edges.deviations = of_visible_arcs(&points, &edges.deviations);
             }
             for (contour, fit) in inner.iter().zip(of_inner) {
-                let unknown = edges.deviations.iter().copied().fold(0.0, f64::max);
-                let mut deviations = fit.map_or_else(|| vec![unknown; contour.len()], |fit| fit.deviations);
-                if !settings.y_up {
-                    deviations.reverse();
-                }
-                // An arc that is a whole contour repeats its first point.
-                deviations.extend(deviations.first().copied().filter(|_| is_open));
-                edges.deviations.append(&mut deviations);
+                edges.append(fit, contour.len(), settings, is_open);
             }
             edges.deviations.iter_mut().for_each(|deviation| *deviation *= settings.pixel_size);
         }
@@ -281,20 +274,44 @@ impl Window<'_> {
         } else {
             ClosedOutline::new(points.into_iter().map(|(point, _)| point).collect())?.with_inner(inner)?.into()
         };
-        let outline = match (&edges, self.edges) {
+        let outline = self.with_deviations(outline, edges.as_ref(), settings.pixel_size)?;
+        Ok(Some(Seen { outline, touches_border, centre, area, invariants, edges }))
+    }
+
+    /// An outline with the standard deviations of its points, where edges were looked for.
+    fn with_deviations(
+        &self,
+        outline: Outline,
+        edges: Option<&EdgeFit>,
+        pixel_size: f64,
+    ) -> Result<Outline, OutlineError> {
+        match (edges, self.edges) {
             (Some(fit), _) => {
-                let of_point = OF_POINT * settings.pixel_size;
+                let of_point = OF_POINT * pixel_size;
                 let deviations = fit.deviations.iter().map(|random| three_digits(random.hypot(of_point)));
-                outline.with_deviations(deviations.collect())?
+                outline.with_deviations(deviations.collect())
             }
             (None, Some(_)) => {
-                let unseen = three_digits(UNSEEN * settings.pixel_size);
+                let unseen = three_digits(UNSEEN * pixel_size);
                 let count = outline.point_count();
-                outline.with_deviations(vec![unseen; count])?
+                outline.with_deviations(vec![unseen; count])
             }
-            (None, None) => outline,
-        };
-        Ok(Some(Seen { outline, touches_border, centre, area, invariants, edges }))
+            (None, None) => Ok(outline),
+        }
+    }
+}
+
+impl EdgeFit {
+    /// Appends the deviations of another contour, of so many points, by its own fit, if any.
+    fn append(&mut self, fit: Option<EdgeFit>, points: usize, settings: &TraceSettings, is_open: bool) {
+        let unknown = self.deviations.iter().copied().fold(0.0, f64::max);
+        let mut deviations = fit.map_or_else(|| vec![unknown; points], |fit| fit.deviations);
+        if !settings.y_up {
+            deviations.reverse();
+        }
+        // An arc that is a whole contour repeats its first point.
+        deviations.extend(deviations.first().copied().filter(|_| is_open));
+        self.deviations.append(&mut deviations);
     }
 }
 

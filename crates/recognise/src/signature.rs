@@ -1,6 +1,7 @@
 //! What an outline is known by: its contour where its inertia is that of a disc, and the curve fitted there.
 use freeform_curve_fit::{
     AreaMoments, ClosedOutline, FitSettings, Fitter, Method, Normalisation, Normalise, Outline, evenly_spaced,
+    share_along_side,
 };
 use freeform_decompose::{AffineInvariants, CurveUncertainty, Decomposition, DecompositionError, RelatedPoints};
 use nalgebra::{Affine2, DMatrix, Point2, Rotation2, Vector2};
@@ -186,10 +187,7 @@ impl Contour {
 }
 
 fn to_segment(p: &Point2<f64>, from: &Point2<f64>, to: &Point2<f64>) -> f64 {
-    let (along, there) = (to - from, p - from);
-    let length = along.norm_squared();
-    let share = if length > 0.0 { (along.dot(&there) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (there - share * along).norm_squared()
+    (p - from - share_along_side(from, to, p) * (to - from)).norm_squared()
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
-//! What the pipeline tests share.
+//! What the tests of pipeline and tracker share.
 use freeform_motion::{
     Pipeline, PipelineSettings,
+    outline_io::OutlineFrame,
     riccati::{CameraScale, RigidMotion},
-    sim_camera::{Scene, SequenceLength, Settings, Simulator},
+    sim_camera::{BuiltInShape, Camera, Frame, Scene, SequenceLength, Settings, Simulator},
 };
 
 /// A run of so many seconds at 30 frames/s with the paper's noise.
@@ -13,6 +14,24 @@ pub(crate) fn seconds(seconds: f64) -> Settings {
 /// A run of so many frames.
 pub(crate) fn frames(count: usize) -> Settings {
     Settings { length: SequenceLength::Frames(count), seed: 1, ..Settings::default() }
+}
+
+/// What a camera sees of a shape in motion, with so many points on it in so many frames, as frames of an object.
+pub(crate) fn seen_as(
+    object: &str,
+    (shape, motion): (BuiltInShape, RigidMotion),
+    points: usize,
+    count: usize,
+) -> Vec<OutlineFrame> {
+    let settings = Settings { points, ..frames(count) };
+    let simulator = Simulator::new(Scene::new(shape, motion, Camera::default()), settings).expect("a simulation");
+    let frame = |(frame, seen): (u64, Frame)| OutlineFrame {
+        frame,
+        time: seen.time,
+        object: object.to_owned(),
+        outline: seen.outline,
+    };
+    (0..).zip(simulator.frames()).map(frame).collect()
 }
 
 /// The pipeline after a whole simulated run; frames that it rejects are left to its count.

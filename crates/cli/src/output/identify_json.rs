@@ -277,21 +277,11 @@ mod tests {
     fn what_is_not_observable_is_null_and_so_is_the_generator() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.3, 0.4], Some(&[0.1, 0.2, 0.3]));
         let result = ObjectResult {
-            object: "left".to_owned(),
-            method: Method::Adaptive,
-            motion: MotionModel::Rigid.into(),
             frames: 12,
             frames_rejected: 1,
-            first_rejection: None,
             estimate: Some(estimate.with_unobservable(0).in_space(CameraScale::new(0.1).expect("a scale"))),
-            covariance: None,
-            velocity: None,
-            ambiguity: None,
-            plane: None,
-            plane_ambiguity: None,
-            aliases: Vec::new(),
-            dynamics: None,
             warnings: vec![Warning::AffineBias, Warning::Lost],
+            ..ObjectResult::unknown("left", Method::Adaptive, MotionModel::Rigid)
         };
         let mut text = Vec::new();
         let b = MeaningOfB::in_coordinates(None);

@@ -48,21 +48,10 @@ mod tests {
     fn the_table_has_a_line_per_parameter_and_says_what_is_not_observable() {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[1.5, -0.31, 0.4], Some(&[0.001, 0.0123, 0.01]));
         let result = |estimate: Option<MotionEstimate>| ObjectResult {
-            object: "0".to_owned(),
-            method: Method::Adaptive,
-            motion: MotionModel::Rigid.into(),
             frames: 120,
             frames_rejected: 3,
-            first_rejection: None,
             estimate,
-            covariance: None,
-            velocity: None,
-            ambiguity: None,
-            plane: None,
-            plane_ambiguity: None,
-            aliases: Vec::new(),
-            dynamics: None,
-            warnings: Vec::new(),
+            ..ObjectResult::unknown("0", Method::Adaptive, MotionModel::Rigid)
         };
         let velocity = PointVelocity {
             point: Point2::new(1.5, -2.0),

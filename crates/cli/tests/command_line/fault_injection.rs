@@ -52,16 +52,8 @@ fn fill(folder: &Path, old: &Files) {
     old.iter().for_each(|(name, content)| fs::write(folder.join(name), content).expect("a file"));
 }
 
-#[test]
-fn whichever_call_fails_every_output_is_the_old_or_the_new_one_and_nothing_else_is_left() {
-    let is_there = Command::new("strace").args(["-qq", "-o", "/dev/null", "true"]).status();
-    if !is_there.is_ok_and(|status| status.success()) {
-        println!("skipped: no strace here, or it may not trace");
-        return;
-    }
-    let input = tempfile::tempdir().expect("a folder");
-    let csv = file(input.path(), "o.csv", sequence("--points 30 --seconds 0.2"));
-    let pictures = small_pictures(input.path(), 2);
+/// Commands that write files, from a table of outlines and a folder of pictures.
+fn writing_commands(csv: &str, pictures: &str) -> Vec<String> {
     let mut commands = vec![
         "simulate --points 200 --seconds 0.1 --output target".to_owned(),
         "simulate --pictures target-new --scene coin --seconds 0.05".to_owned(),
@@ -89,6 +81,20 @@ fn whichever_call_fails_every_output_is_the_old_or_the_new_one_and_nothing_else_
         commands.push("simulate --points 200 --seconds 0.1 --output target.parquet".to_owned());
         commands.push(format!("outline {csv} --output target.parquet"));
     }
+    commands
+}
+
+#[test]
+fn whichever_call_fails_every_output_is_the_old_or_the_new_one_and_nothing_else_is_left() {
+    let is_there = Command::new("strace").args(["-qq", "-o", "/dev/null", "true"]).status();
+    if !is_there.is_ok_and(|status| status.success()) {
+        println!("skipped: no strace here, or it may not trace");
+        return;
+    }
+    let input = tempfile::tempdir().expect("a folder");
+    let csv = file(input.path(), "o.csv", sequence("--points 30 --seconds 0.2"));
+    let pictures = small_pictures(input.path(), 2);
+    let commands = writing_commands(&csv, &pictures);
     let (work, log) = (tempfile::tempdir().expect("a folder"), input.path().join("calls"));
     let folder = work.path();
     let old: Files = ["target", "target.gif", "target.parquet"].map(|name| (name.to_owned(), b"old".to_vec())).into();

@@ -2,7 +2,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use image::{GrayImage, Luma};
+use crate::pears::pear;
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
@@ -27,16 +27,8 @@ fn commands(guide: &str) -> String {
 /// A pear that turns and drifts, light on dark.
 fn write_frames(folder: &Path) {
     std::fs::create_dir(folder).expect("a folder");
-    for frame in 0..12_u32 {
-        let angle = 0.05 * f64::from(frame);
-        let picture = GrayImage::from_fn(160, 120, |column, row| {
-            let (x, y) = (f64::from(column) - 70.0 - f64::from(frame), f64::from(row) - 60.0);
-            let (x, y) = (x * angle.cos() + y * angle.sin(), y * angle.cos() - x * angle.sin());
-            let width = 20.0 + 0.25 * x;
-            let depth = 1.0 - (x / 38.0).powi(2) - (y / width).powi(2);
-            Luma([(30.0 + 180.0 * (12.0 * depth + 0.5).clamp(0.0, 1.0)) as u8])
-        });
-        picture.save(folder.join(format!("frame-{frame}.png"))).expect("a picture");
+    for frame in 0..12 {
+        pear(frame).save(folder.join(format!("frame-{frame}.png"))).expect("a picture");
     }
 }
 

@@ -3,13 +3,24 @@ use std::path::Path;
 
 use image::{GrayImage, ImageFormat, Luma};
 
+/// How far within a pear, which turns by 0.05 rad and drifts by a pixel a frame, a pixel lies: 1 in its middle, 0 on its outline, and less
+/// without. The middle is that of the first frame; half the length and half the width are in pixels, and the width grows along it.
+pub(crate) fn depth_in_pear(
+    frame: u32,
+    [column, row]: [u32; 2],
+    middle: [f64; 2],
+    [length, width, growth]: [f64; 3],
+) -> f64 {
+    let angle = 0.05 * f64::from(frame);
+    let (x, y) = (f64::from(column) - middle[0] - f64::from(frame), f64::from(row) - middle[1]);
+    let (x, y) = (x * angle.cos() + y * angle.sin(), y * angle.cos() - x * angle.sin());
+    1.0 - (x / length).powi(2) - (y / (width + growth * x)).powi(2)
+}
+
 /// A pear that has turned and drifted for so many frames, light on dark, with grey edges.
 pub(crate) fn pear(frame: u32) -> GrayImage {
-    let angle = 0.05 * f64::from(frame);
     GrayImage::from_fn(160, 120, |column, row| {
-        let (x, y) = (f64::from(column) - 70.0 - f64::from(frame), f64::from(row) - 60.0);
-        let (x, y) = (x * angle.cos() + y * angle.sin(), y * angle.cos() - x * angle.sin());
-        let depth = 1.0 - (x / 38.0).powi(2) - (y / (20.0 + 0.25 * x)).powi(2);
+        let depth = depth_in_pear(frame, [column, row], [70.0, 60.0], [38.0, 20.0, 0.25]);
         Luma([(30.0 + 180.0 * (12.0 * depth + 0.5).clamp(0.0, 1.0)) as u8])
     })
 }

@@ -3,17 +3,15 @@ use std::path::Path;
 
 use image::{GrayImage, Luma};
 
+use crate::pears::depth_in_pear;
 use crate::support::{json, run, stderr, stdout, succeed};
 
 const FRAMES: u32 = 40;
 
-/// A pear that turns by 0.05 rad and drifts by a pixel a frame, with grey edges and some noise.
+/// A pear that turns and drifts, with grey edges and some noise.
 fn pear(frame: u32) -> GrayImage {
-    let angle = 0.05 * f64::from(frame);
     GrayImage::from_fn(240, 200, |column, row| {
-        let (x, y) = (f64::from(column) - 110.0 - f64::from(frame), f64::from(row) - 110.0);
-        let (x, y) = (x * angle.cos() + y * angle.sin(), y * angle.cos() - x * angle.sin());
-        let depth = 1.0 - (x / 48.0).powi(2) - (y / (26.0 + 0.3 * x)).powi(2);
+        let depth = depth_in_pear(frame, [column, row], [110.0, 110.0], [48.0, 26.0, 0.3]);
         let noise = f64::from((column * 7919 + row * 104_729 + frame * 15_485_863) % 11) - 5.0;
         Luma([(40.0 + 150.0 * (14.0 * depth + 0.5).clamp(0.0, 1.0) + 0.6 * noise) as u8])
     })

@@ -134,21 +134,10 @@ mod tests {
             covariance: Matrix2::identity() * 1e-6,
         };
         let result = |estimate| ObjectResult {
-            object: "0".to_owned(),
-            method: Method::Filter,
-            motion: MotionModel::Rigid.into(),
             frames: 30,
-            frames_rejected: 0,
-            first_rejection: None,
             estimate: Some(estimate),
-            covariance: None,
             velocity: Some(velocity),
-            ambiguity: None,
-            plane: None,
-            plane_ambiguity: None,
-            aliases: Vec::new(),
-            dynamics: None,
-            warnings: Vec::new(),
+            ..ObjectResult::unknown("0", Method::Filter, MotionModel::Rigid)
         };
         let motion = RigidMotion { omega: 1.5, b1: 0.3, b2: 0.4 };
         let truth = Truth::from(motion);

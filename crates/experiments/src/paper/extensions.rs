@@ -81,23 +81,15 @@ fn outcomes(name: &str, title: &str, caption: String, tracks: &[(&str, Track)], 
 /// What the last column of the tables counts.
 const LOST: &str = "Without estimate: frames after the first estimate in which the method gives none, or reports a parameter as unobservable.";
 
-pub(super) fn affine(run: &Run) -> Result<Section, ExperimentError> {
-    let sequence = bird(run, AFFINE.into())?;
-    let law = |law, pairs| Method::law(MotionModel::Affine, law, pairs, &[]);
-    let methods = [
-        ("36 numbers as printed", law(AdaptiveLaw::Printed, PairChoice::All)),
-        ("structured law", law(AdaptiveLaw::Structured, PairChoice::All)),
-        ("fast law", law(AdaptiveLaw::FilteredLeastSquares, PairChoice::All)),
-        ("motion filter", Method::filter(MotionModel::Affine)),
-    ];
-    let tracks = tracks(run, &methods, &sequence)?;
+/// The six parameters by two of the methods.
+fn affine_parameters(run: &Run, tracks: &[(&str, Track)], sequence: &Sequence) -> Drawing {
     let panel = |method: usize, range: std::ops::Range<usize>, y_label: &str| {
         let (name, track) = &tracks[method];
         Panel {
             title: format!("By the {name}"),
             x_label: "time (s)".to_owned(),
             y_label: y_label.to_owned(),
-            curves: parameter_curves(MotionModel::Affine, range, track, &sequence),
+            curves: parameter_curves(MotionModel::Affine, range, track, sequence),
             x_from: Some(0.0),
             x_to: Some(run.seconds),
             ..Panel::default()
@@ -108,7 +100,7 @@ pub(super) fn affine(run: &Run) -> Result<Section, ExperimentError> {
         .into_iter()
         .flat_map(|method| [panel(method, 0..4, "a1, a2, a3, a4 (1/s)"), panel(method, 4..6, "b1, b2 (lengths/s)")]);
     let AffineMotion { a1, a2, a3, a4, b1, b2 } = AFFINE;
-    let parameters = Drawing {
+    Drawing {
         name: "affine".to_owned(),
         caption: format!(
             "The flight bird's outline under the affine motion a = ({a1}, {a2}; {a3}, {a4}), b = ({b1}, {b2}) in space, \
@@ -116,7 +108,7 @@ pub(super) fn affine(run: &Run) -> Result<Section, ExperimentError> {
              Outlines are fitted in affine-normalised coordinates, since a 3L fit is not affine-equivariant otherwise: offsets \
              along the normals do not move affinely."
         ),
-        data: estimates_data(MotionModel::Affine, shown.map(|method| &tracks[method]), &sequence),
+        data: estimates_data(MotionModel::Affine, shown.map(|method| &tracks[method]), sequence),
         figure: Figure {
             title: "The flight bird's outline in affine motion".to_owned(),
             shares_legend: true,
@@ -124,7 +116,20 @@ pub(super) fn affine(run: &Run) -> Result<Section, ExperimentError> {
             columns: 2,
             panel_size: [460.0, 300.0],
         },
-    };
+    }
+}
+
+pub(super) fn affine(run: &Run) -> Result<Section, ExperimentError> {
+    let sequence = bird(run, AFFINE.into())?;
+    let law = |law, pairs| Method::law(MotionModel::Affine, law, pairs, &[]);
+    let methods = [
+        ("36 numbers as printed", law(AdaptiveLaw::Printed, PairChoice::All)),
+        ("structured law", law(AdaptiveLaw::Structured, PairChoice::All)),
+        ("fast law", law(AdaptiveLaw::FilteredLeastSquares, PairChoice::All)),
+        ("motion filter", Method::filter(MotionModel::Affine)),
+    ];
+    let tracks = tracks(run, &methods, &sequence)?;
+    let parameters = affine_parameters(run, &tracks, &sequence);
     let errors = Drawing {
         name: "affine-laws".to_owned(),
         caption: format!(
@@ -160,6 +165,51 @@ fn swinging(time: f64) -> AffineMotion {
     .into()
 }
 
+/// The estimates of several methods where the motion changes.
+fn changing_estimates(run: &Run, shown: &[(&str, Track)], sequence: &Sequence) -> Drawing {
+    let model = MotionModel::Rigid;
+    let RigidMotion { omega, b1, b2 } = PaperExperiment::FLIGHT_BIRD.motion;
+    let total = sequence.frames.len();
+    let lost: Vec<_> =
+        shown.iter().map(|(name, track)| format!("{} of {total} frames of the {name}", track.frames_lost())).collect();
+    let panels = model.parameter_names().iter().zip(model.units()).enumerate().map(|(k, (name, unit))| {
+        let found = shown
+            .iter()
+            .map(|(method, track)| curve(method, look_of(method), stretches(&times(track), &values(model, track, k))));
+        let truth = curve("true values", Look::Reference, vec![true_values(model, sequence, k)]);
+        Panel {
+            x_label: "time (s)".to_owned(),
+            y_label: format!("{name} ({})", unit.replace("1/s", "lengths/s")),
+            curves: found.chain([truth]).collect(),
+            x_from: Some(0.0),
+            x_to: Some(run.seconds),
+            ..Panel::default()
+        }
+    });
+    Drawing {
+        name: "changing".to_owned(),
+        caption: format!(
+            "The flight bird with a motion that swings within {SWING_SECONDS} s: omega = {omega:.4} (1 + {OMEGA_SWING} sin), \
+             b = ({b1} + {B_SWING} sin, {b2} + {B_SWING} cos) in space. The structured law follows with a lag of seconds; the fast law forgets \
+             so slowly that it averages over most of a swing. The motion filter has to see from its innovations that the motion \
+             changes, or is told how fast it may (process noise {} per square root of a second for omega, {} image lengths per \
+             second for b). A curve is broken where its method gives no estimate or \
+             reports a parameter as unobservable: in {}.",
+            PROCESS_NOISE.rates,
+            PROCESS_NOISE.velocities,
+            lost.join(", ")
+        ),
+        data: estimates_data(model, shown, sequence),
+        figure: Figure {
+            title: "A flight bird whose motion changes".to_owned(),
+            shares_legend: true,
+            panels: panels.collect(),
+            columns: 1,
+            panel_size: [720.0, 250.0],
+        },
+    }
+}
+
 pub(super) fn changing(run: &Run) -> Result<Section, ExperimentError> {
     let model = MotionModel::Rigid;
     let sequence = bird(run, Motion::varying(swinging))?;
@@ -174,46 +224,7 @@ pub(super) fn changing(run: &Run) -> Result<Section, ExperimentError> {
     let tracks = tracks(run, &methods, &sequence)?;
     // The filter that begins anew again and again would hide the others.
     let shown = &tracks[..4];
-    let RigidMotion { omega, b1, b2 } = PaperExperiment::FLIGHT_BIRD.motion;
-    let total = sequence.frames.len();
-    let lost: Vec<_> =
-        shown.iter().map(|(name, track)| format!("{} of {total} frames of the {name}", track.frames_lost())).collect();
-    let panels = model.parameter_names().iter().zip(model.units()).enumerate().map(|(k, (name, unit))| {
-        let found = shown
-            .iter()
-            .map(|(method, track)| curve(method, look_of(method), stretches(&times(track), &values(model, track, k))));
-        let truth = curve("true values", Look::Reference, vec![true_values(model, &sequence, k)]);
-        Panel {
-            x_label: "time (s)".to_owned(),
-            y_label: format!("{name} ({})", unit.replace("1/s", "lengths/s")),
-            curves: found.chain([truth]).collect(),
-            x_from: Some(0.0),
-            x_to: Some(run.seconds),
-            ..Panel::default()
-        }
-    });
-    let estimates = Drawing {
-        name: "changing".to_owned(),
-        caption: format!(
-            "The flight bird with a motion that swings within {SWING_SECONDS} s: omega = {omega:.4} (1 + {OMEGA_SWING} sin), \
-             b = ({b1} + {B_SWING} sin, {b2} + {B_SWING} cos) in space. The structured law follows with a lag of seconds; the fast law forgets \
-             so slowly that it averages over most of a swing. The motion filter has to see from its innovations that the motion \
-             changes, or is told how fast it may (process noise {} per square root of a second for omega, {} image lengths per \
-             second for b). A curve is broken where its method gives no estimate or \
-             reports a parameter as unobservable: in {}.",
-            PROCESS_NOISE.rates,
-            PROCESS_NOISE.velocities,
-            lost.join(", ")
-        ),
-        data: estimates_data(model, shown, &sequence),
-        figure: Figure {
-            title: "A flight bird whose motion changes".to_owned(),
-            shares_legend: true,
-            panels: panels.collect(),
-            columns: 1,
-            panel_size: [720.0, 250.0],
-        },
-    };
+    let estimates = changing_estimates(run, shown, &sequence);
     let errors = Drawing {
         name: "changing-laws".to_owned(),
         caption: format!(

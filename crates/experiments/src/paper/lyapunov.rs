@@ -1,5 +1,5 @@
 //! Beside the figures of the paper: e(t), the Lyapunov function and the 36 numbers, over lines that move exactly.
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, ops::Range};
 
 use freeform_identify::AdaptiveLaw;
 use freeform_motion::significant;
@@ -155,7 +155,22 @@ pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
             of_function,
         ));
     }
-    let drawing = Drawing {
+    let drawing = drawing(errors.into_iter().chain(functions).collect(), data);
+    let numbers = thirty_six_numbers(run)?;
+    run.advance();
+    Ok(Section {
+        heading: "The error of the estimator and the Lyapunov function".to_owned(),
+        text: "The paper shows that its Lyapunov function does not grow, and draws neither that nor the error. Outlines are fitted \
+               anew in every frame, so that their lines follow the motion only nearly; here they follow it exactly."
+            .to_owned(),
+        drawings: vec![drawing, numbers],
+        tables: vec![table],
+        findings: Vec::new(),
+    })
+}
+
+fn drawing(panels: Vec<Panel>, data: Table) -> Drawing {
+    Drawing {
         name: "lyapunov".to_owned(),
         caption: format!(
             "Error e = Xh - X of the estimator (above) and Lyapunov function V = e'Pe and the squared error of the parameters (below), over the \
@@ -168,22 +183,11 @@ pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
         figure: Figure {
             title: "Over exact lines: the error of the estimator and the Lyapunov function".to_owned(),
             shares_legend: true,
-            panels: errors.into_iter().chain(functions).collect(),
+            panels,
             columns: EXPERIMENTS.len(),
             panel_size: [330.0, 250.0],
         },
-    };
-    let numbers = thirty_six_numbers(run)?;
-    run.advance();
-    Ok(Section {
-        heading: "The error of the estimator and the Lyapunov function".to_owned(),
-        text: "The paper shows that its Lyapunov function does not grow, and draws neither that nor the error. Outlines are fitted \
-               anew in every frame, so that their lines follow the motion only nearly; here they follow it exactly."
-            .to_owned(),
-        drawings: vec![drawing, numbers],
-        tables: vec![table],
-        findings: Vec::new(),
-    })
+    }
 }
 
 fn panel(run: &Run, title: String, y_label: &str, limits: [f64; 2], curves: Vec<Curve>) -> Panel {
@@ -214,6 +218,46 @@ fn kinds() -> [(&'static str, Vec<(usize, usize)>); 5] {
     [("0", zeros), b2, a3, a2, b1]
 }
 
+/// The numbers of all matrices `[A | C | B]`, with their times in minutes.
+type Found = [(f64, SMatrix<f64, 4, 9>)];
+
+/// The entries of some of the columns over time.
+fn panel_of_entries(title: &str, columns: Range<usize>, found: &Found, truth: &SMatrix<f64, 4, 9>) -> Panel {
+    let curves = kinds().into_iter().enumerate().filter_map(|(kind, (name, entries))| {
+        let entries: Vec<_> = entries.into_iter().filter(|(_, column)| columns.contains(column)).collect();
+        let run = |entry: &(usize, usize)| found.iter().map(|(time, matrices)| [*time, matrices[*entry]]).collect();
+        let look = if kind == 0 { Look::Faint } else { Look::Series(kind - 1) };
+        (!entries.is_empty()).then(|| curve(name, look, entries.iter().map(run).collect()))
+    });
+    let end = found.last().map_or(0.0, |(time, _)| *time);
+    let levels = kinds().into_iter().flat_map(|(_, entries)| entries.into_iter().take(1));
+    let levels = levels.filter(|(_, column)| columns.contains(column)).map(|entry| truth[entry]);
+    let truths = levels.map(|level| vec![[0.0, level], [end, level]]).collect();
+    Panel {
+        title: title.to_owned(),
+        x_label: "time (min)".to_owned(),
+        y_label: "entries (1/s)".to_owned(),
+        curves: curves.chain([curve("true values", Look::Reference, truths)]).collect(),
+        x_from: Some(0.0),
+        x_to: Some(end),
+        ..Panel::default()
+    }
+}
+
+fn data_of_entries(found: &Found, truth: &SMatrix<f64, 4, 9>) -> Table {
+    let mut data = Table::of_data(&["matrix", "row", "column", "minutes", "value", "truth"]);
+    for (minutes, matrices) in found {
+        for (matrix, columns) in [("A", 0..4_usize), ("C", 4..8), ("B", 8..9)] {
+            for (row, column) in (0..4_usize).flat_map(|i| columns.clone().map(move |j| (i, j))) {
+                let place = [(row + 1) as f64, (column - columns.start + 1) as f64];
+                let numbers = [place[0], place[1], *minutes, matrices[(row, column)], truth[(row, column)]];
+                data.push(&[matrix], &numbers);
+            }
+        }
+    }
+    data
+}
+
 /// All entries of A, B and C by the law as printed, over the flight bird.
 fn thirty_six_numbers(run: &Run) -> Result<Drawing, ExperimentError> {
     let experiment = PaperExperiment::FLIGHT_BIRD;
@@ -237,37 +281,7 @@ fn thirty_six_numbers(run: &Run) -> Result<Drawing, ExperimentError> {
     let told = told.map(|(minutes, matrices)| {
         format!("{} % after {} min", significant(off(&matrices), 2), significant(minutes, 2))
     });
-    let panel = |title: &str, columns: std::ops::Range<usize>| {
-        let curves = kinds().into_iter().enumerate().filter_map(|(kind, (name, entries))| {
-            let entries: Vec<_> = entries.into_iter().filter(|(_, column)| columns.contains(column)).collect();
-            let run = |entry: &(usize, usize)| found.iter().map(|(time, matrices)| [*time, matrices[*entry]]).collect();
-            let look = if kind == 0 { Look::Faint } else { Look::Series(kind - 1) };
-            (!entries.is_empty()).then(|| curve(name, look, entries.iter().map(run).collect()))
-        });
-        let end = found.last().map_or(0.0, |(time, _)| *time);
-        let levels = kinds().into_iter().flat_map(|(_, entries)| entries.into_iter().take(1));
-        let levels = levels.filter(|(_, column)| columns.contains(column)).map(|entry| truth[entry]);
-        let truths = levels.map(|level| vec![[0.0, level], [end, level]]).collect();
-        Panel {
-            title: title.to_owned(),
-            x_label: "time (min)".to_owned(),
-            y_label: "entries (1/s)".to_owned(),
-            curves: curves.chain([curve("true values", Look::Reference, truths)]).collect(),
-            x_from: Some(0.0),
-            x_to: Some(end),
-            ..Panel::default()
-        }
-    };
-    let mut data = Table::of_data(&["matrix", "row", "column", "minutes", "value", "truth"]);
-    for (minutes, matrices) in &found {
-        for (matrix, columns) in [("A", 0..4_usize), ("C", 4..8), ("B", 8..9)] {
-            for (row, column) in (0..4_usize).flat_map(|i| columns.clone().map(move |j| (i, j))) {
-                let place = [(row + 1) as f64, (column - columns.start + 1) as f64];
-                let numbers = [place[0], place[1], *minutes, matrices[(row, column)], truth[(row, column)]];
-                data.push(&[matrix], &numbers);
-            }
-        }
-    }
+    let panel = |title, columns| panel_of_entries(title, columns, &found, &truth);
     Ok(Drawing {
         name: "36-numbers".to_owned(),
         caption: format!(
@@ -276,7 +290,7 @@ fn thirty_six_numbers(run: &Run) -> Result<Drawing, ExperimentError> {
              off by {} (Frobenius norm, of that of the truth).",
             told.join(", ")
         ),
-        data,
+        data: data_of_entries(&found, &truth),
         figure: Figure {
             title: "The 36 numbers of equation 21 over exact lines of the flight bird".to_owned(),
             shares_legend: true,

@@ -31,7 +31,6 @@ pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
         ),
         ..Table::of_data(&["object", "distance", "margin"])
     };
-    let fit_settings = FitSettings::default();
     for shape in BuiltInShape::FIGURE_1 {
         let camera = Camera::new(PaperExperiment::SCALE)?;
         let settings = Settings { length: SequenceLength::Frames(1), ..paper_settings(1.0, run.seed) };
@@ -55,7 +54,19 @@ pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
         distances.rows.push(std::iter::once(title(shape)).chain(numbers).collect());
         run.advance();
     }
-    let drawing = Drawing {
+    let drawing = drawing(panels, &with_far_ovals);
+    Ok(Section {
+        heading: "Fig. 1: free-form objects and their quartics".to_owned(),
+        text: String::new(),
+        drawings: vec![drawing],
+        tables: vec![distances],
+        findings: Vec::new(),
+    })
+}
+
+fn drawing(panels: Vec<Panel>, with_far_ovals: &[String]) -> Drawing {
+    let fit_settings = FitSettings::default();
+    Drawing {
         name: "fig1".to_owned(),
         caption: format!(
             "Fig. 1. Outlines of ten objects (grey: {POINTS} points each, noise {} on objects of size 1) with their \
@@ -78,14 +89,7 @@ pub(super) fn section(run: &Run) -> Result<Section, ExperimentError> {
             columns: 5,
             panel_size: [190.0, 212.0],
         },
-    };
-    Ok(Section {
-        heading: "Fig. 1: free-form objects and their quartics".to_owned(),
-        text: String::new(),
-        drawings: vec![drawing],
-        tables: vec![distances],
-        findings: Vec::new(),
-    })
+    }
 }
 
 fn title(shape: BuiltInShape) -> String {

@@ -65,6 +65,23 @@ fn drawing(run: &Run, figure: &PaperFigure) -> Result<Drawing, ExperimentError> 
         panels.push(image_panel(format!("t = {:.2} s", frame.time), &view, curves));
     }
     run.advance();
+    Ok(Drawing {
+        name: (*poses).to_owned(),
+        caption: caption(figure, turn, with_far_ovals),
+        data: data_of(&panels),
+        figure: Figure {
+            title: format!("One turn of the {}", experiment.title),
+            shares_legend: true,
+            panels,
+            columns: 3,
+            panel_size: [330.0, 340.0],
+        },
+    })
+}
+
+/// Of a turn that takes so many seconds, with so many moments that have far ovals.
+fn caption(figure: &PaperFigure, turn: f64, with_far_ovals: usize) -> String {
+    let experiment = &figure.experiment;
     let motion = experiment.motion;
     let mut caption = format!(
         "Fig. {}, {}. {MOMENTS} moments of one turn ({turn:.2} s) of the rigid motion omega = {:.4} rad/s, b = ({}, {}) \
@@ -88,16 +105,5 @@ fn drawing(run: &Run, figure: &PaperFigure) -> Result<Drawing, ExperimentError> 
     if with_far_ovals > 0 {
         let _ = write!(caption, "{FAR_OVALS} {with_far_ovals} of the moments.");
     }
-    Ok(Drawing {
-        name: (*poses).to_owned(),
-        caption,
-        data: data_of(&panels),
-        figure: Figure {
-            title: format!("One turn of the {}", experiment.title),
-            shares_legend: true,
-            panels,
-            columns: 3,
-            panel_size: [330.0, 340.0],
-        },
-    })
+    caption
 }

@@ -169,21 +169,10 @@ mod tests {
     fn result(omega: f64) -> ObjectResult {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[omega, 0.5, 0.1], Some(&[0.01, 0.1, 0.1]));
         ObjectResult {
-            object: "0".to_owned(),
-            method: Method::Filter,
-            motion: MotionModel::Rigid.into(),
             frames: 50,
             frames_rejected: 1,
-            first_rejection: None,
             estimate: Some(estimate),
-            covariance: None,
-            velocity: None,
-            ambiguity: None,
-            plane: None,
-            plane_ambiguity: None,
-            aliases: Vec::new(),
-            dynamics: None,
-            warnings: Vec::new(),
+            ..ObjectResult::unknown("0", Method::Filter, MotionModel::Rigid)
         }
     }
 

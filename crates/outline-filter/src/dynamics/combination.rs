@@ -88,17 +88,52 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
     /// outline as well. The pose is counted from where the outline was when they began.
     pub(crate) fn combined(&self, given: Option<&Summary>, purpose: Purpose) -> Option<Summary> {
-        let (model, k) = (self.model, self.model.parameter_count());
+        let k = self.model.parameter_count();
         let of_generator = match given {
             Some(given) => Some(self.of_generator(given)?),
             None => None,
         };
+        let parts_of_all = self.parts(of_generator, purpose);
+        let all = || parts_of_all.iter().flatten();
+        let sum: f64 = all().map(|part| part.weight).sum();
+        // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
+        let mean = match of_generator {
+            Some((mean, _)) => mean,
+            _ => all().fold(SVector::zeros(), |mean, part| mean + part.mean * (part.weight / sum)),
+        };
+        let reach = if of_generator.is_some() { self.reach(sum) } else { 1.0 };
+        let mut covariance = SMatrix::<f64, N, N>::zeros();
+        let (mut measured, mut accelerated) = (0.0, 0.0);
+        for part in all() {
+            let (weight, x) = (part.weight / sum, &part.mean);
+            measured += if part.is_measured { weight } else { 0.0 };
+            accelerated += if part.accelerates { weight } else { 0.0 };
+            for j in 0..2 * k {
+                for i in 0..2 * k {
+                    let own = part.covariance.as_ref().map_or(0.0, |p| p[(i, j)]);
+                    covariance[(i, j)] += weight * (own + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
+                }
+            }
+        }
+        if purpose == Purpose::Statement {
+            let rates = parts(&self.model.generator(&mean.as_slice()[k..2 * k])).0;
+            self.common.add_to(&mut covariance, &self.reference, (measured, accelerated), &rates)?;
+        }
+        self.about_origin(&mean, &covariance)
+    }
+
+    /// The hypotheses that are not left out, mean and covariance of a constant generator replaced by what is known of it, if that is.
+    fn parts(
+        &self,
+        of_generator: Option<(SVector<f64, N>, SMatrix<f64, N, N>)>,
+        purpose: Purpose,
+    ) -> [Option<Part<N>>; MOST] {
         let likely = self.least_weight(tuning::OUTSIDE_INTERVAL);
         let least = match purpose {
             Purpose::Prediction => likely,
             Purpose::Statement => self.least_weight(tuning::OUTSIDE_THREE_DEVIATIONS),
         };
-        let part = |number: usize| {
+        std::array::from_fn(|number| {
             let (hypothesis, weight) = (self.hypotheses.get(number)?, self.weights[number]);
             let is_generator = hypothesis.course == Course::ConstantGenerator;
             (weight >= least).then(|| match of_generator.filter(|_| is_generator) {
@@ -113,39 +148,19 @@ impl<const N: usize> InteractingHypotheses<N> {
                     Part { weight, mean, covariance, is_measured: true, accelerates }
                 }
             })
-        };
-        let all: [Option<Part<N>>; MOST] = std::array::from_fn(part);
-        let all = || all.iter().flatten();
-        let sum: f64 = all().map(|part| part.weight).sum();
-        // As long as a constant generator is not ruled out its own estimate is the best there is; the others only widen it.
-        let mean = match of_generator {
-            Some((mean, _)) => mean,
-            _ => all().fold(SVector::zeros(), |mean, part| mean + part.mean * (part.weight / sum)),
-        };
-        let mut covariance = SMatrix::<f64, N, N>::zeros();
-        // Where one of them is stated, its interval of 95 % reaches others that have as much as lies outside; others count by their weight.
+        })
+    }
+
+    /// What squared distances from the constant generator, which is stated, count more than by the weights, of which `sum` is taken: its
+    /// interval of 95 % reaches others that have as much as lies outside.
+    fn reach(&self, sum: f64) -> f64 {
         let others = 1.0 - self.weights().generator / sum;
-        let reach = if of_generator.is_some() && others > 0.0 {
-            (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0)
-        } else {
-            1.0
-        };
-        let (mut measured, mut accelerated) = (0.0, 0.0);
-        for part in all() {
-            let (weight, x) = (part.weight / sum, &part.mean);
-            measured += if part.is_measured { weight } else { 0.0 };
-            accelerated += if part.accelerates { weight } else { 0.0 };
-            for j in 0..2 * k {
-                for i in 0..2 * k {
-                    let own = part.covariance.as_ref().map_or(0.0, |p| p[(i, j)]);
-                    covariance[(i, j)] += weight * (own + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
-                }
-            }
-        }
-        if purpose == Purpose::Statement {
-            let rates = parts(&model.generator(&mean.as_slice()[k..2 * k])).0;
-            self.common.add_to(&mut covariance, &self.reference, (measured, accelerated), &rates)?;
-        }
+        if others > 0.0 { (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0) } else { 1.0 }
+    }
+
+    /// Mean and covariance about the centroid, as pose and motion about the origin; `None` where they are not finite.
+    fn about_origin(&self, mean: &SVector<f64, N>, covariance: &SMatrix<f64, N, N>) -> Option<Summary> {
+        let (model, k) = (self.model, self.model.parameter_count());
         let to = self.reference.about_origin(model)?;
         let large =
             |at: usize| SVector::<f64, MAX_PARAMETERS>::from_fn(|j, _| if j < k { mean[at * k + j] } else { 0.0 });

@@ -7,7 +7,8 @@ use nalgebra::{Matrix2, Vector2};
 use super::{
     centred::{carried, parts},
     course::Course,
-    hypothesis::{Hypothesis, Step, turned_along},
+    hypothesis::Hypothesis,
+    step::{Step, turned_along},
 };
 use crate::vectors::vectorised;
 

@@ -7,10 +7,11 @@ use super::{
     combination::centred,
     common_error::CommonError,
     course::Course,
-    hypothesis::{CentredMeasurement, Hypothesis, Step},
+    hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
     mixing::mix,
     setting::{Dynamics, DynamicsWeights},
+    step::Step,
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;

@@ -15,6 +15,7 @@ mod innovations;
 mod interacting;
 mod mixing;
 mod setting;
+mod step;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use combination::Purpose;

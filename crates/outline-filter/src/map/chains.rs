@@ -1,4 +1,5 @@
 //! Chains of cells, and points in their order along them.
+use freeform_curve_fit::share_along_side;
 use nalgebra::Point2;
 
 use super::OutlineMap;
@@ -70,9 +71,9 @@ impl OutlineMap {
         let at = |i: usize| self.outline_at(chain[i], offsets);
         let here = at(index);
         let towards = |other: Option<usize>| {
-            let side = at(other?) - here;
-            let share = (side.dot(&(q - here)) / side.norm_squared()).clamp(0.0, 1.0);
-            share.is_finite().then(|| (share, (here + share * side - q).norm_squared()))
+            let there = at(other?);
+            let share = share_along_side(&here, &there, q);
+            Some((share, (here + share * (there - here) - q).norm_squared()))
         };
         let after = if index + 1 < count { Some(index + 1) } else { closed.then_some(0) };
         let before = if index > 0 { Some(index - 1) } else { closed.then_some(count - 1) };

@@ -4,7 +4,7 @@
 use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by};
 use nalgebra::{Matrix3, Point2, Vector2};
 
-use super::{Frame, Measurement, NO_CELL, Pass, View, association::mean_of_neighbours};
+use super::{Frame, Measurement, NO_CELL, Pass, Piece, View, association::mean_of_neighbours};
 use crate::{
     map::NullDirection,
     tuning::measurement as tuning,
@@ -56,21 +56,15 @@ impl View<'_> {
     ) {
         let map = self.map;
         let Frame { points, measurements, values, shifts, pieces, places, columns, .. } = frame;
-        let count = points.len();
+        columns.make_room(points.len(), map.cells().len());
+        places.resize(points.len(), Point2::origin());
         let Columns { own_places, weighted, numbers, residuals, weights, lines } = columns;
-        numbers.resize(count, 0);
-        residuals.resize(count, 0.0);
-        weights.resize(count, 0.0);
         match pass {
             Pass::First if half_window == 0 => weights.fill(0.0),
             // They will be found.
             Pass::First => {}
             Pass::Again => weights.iter_mut().zip(measurements.iter()).for_each(|(weight, m)| *weight = m.weight),
         }
-        own_places.resize(count, Point2::origin());
-        places.resize(count, Point2::origin());
-        weighted.resize(count, [0.0; LANES]);
-        lines.resize(map.cells().len() + 1, CellLine::NONE);
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (own_places, places, weighted) =
             (own_places.as_mut_slice(), places.as_mut_slice(), weighted.as_mut_slice());
@@ -103,31 +97,7 @@ impl View<'_> {
             vectorised(
                 #[inline(always)]
                 || {
-                    for (weighted, (q, weight)) in weighted.iter_mut().zip(own_places.iter().zip(weights.iter())) {
-                        *weighted = [weight * q.x, weight * q.y, *weight, 0.0];
-                    }
-                    for piece in pieces.iter() {
-                        let range = piece.range();
-                        let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
-                        let places = &mut places[range];
-                        if piece.closed {
-                            write_means(weighted, half_window, own, places);
-                            continue;
-                        }
-                        mean_of_neighbours(
-                            weighted.len(),
-                            #[inline(always)]
-                            |i| weighted[i],
-                            false,
-                            half_window,
-                            #[inline(always)]
-                            |i, mean| places[i] = mean.unwrap_or(own[i]),
-                        );
-                    }
-                    // The means where the points count, the points where they do not.
-                    for ((own, place), weight) in own_places.iter_mut().zip(places.iter()).zip(weights.iter()) {
-                        *own = if *weight > 0.0 { *place } else { *own };
-                    }
+                    write_places((pieces, half_window), (weights, weighted), own_places, places);
                     map.associate(own_places.iter().copied(), numbers);
                 },
             );
@@ -137,20 +107,7 @@ impl View<'_> {
         let found = Found { points, numbers, residuals, weights, lines };
         vectorised(
             #[inline(always)]
-            || match self.belief.model {
-                MotionModel::Rigid => {
-                    found.write_jacobians(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n));
-                }
-                MotionModel::Similarity => {
-                    found.write_jacobians(measurements, |p, n| MotionModel::Similarity.normal_velocities(p, n));
-                }
-                MotionModel::Affine => {
-                    found.write_jacobians(measurements, |p, n| MotionModel::Affine.normal_velocities(p, n));
-                }
-                MotionModel::Projective => {
-                    found.write_jacobians(measurements, |p, n| MotionModel::Projective.normal_velocities(p, n));
-                }
-            },
+            || found.write_jacobians_of(self.belief.model, measurements),
         );
         for direction in null {
             measurements.iter_mut().for_each(|m| direction.project_out(&mut m.jacobian));
@@ -180,6 +137,41 @@ impl View<'_> {
                 *weight = weight_of(*residual, &lines[*number as usize], 1.0 / scale) * share;
             }
         }
+    }
+}
+
+/// Weighs points in the body frame, and writes the means of their neighbours in `places`, and in their own place where they count.
+#[inline(always)]
+fn write_places(
+    (pieces, half_window): (&[Piece], usize),
+    (weights, weighted): (&[f64], &mut [Lanes]),
+    own_places: &mut [Point2<f64>],
+    places: &mut [Point2<f64>],
+) {
+    for (weighted, (q, weight)) in weighted.iter_mut().zip(own_places.iter().zip(weights)) {
+        *weighted = [weight * q.x, weight * q.y, *weight, 0.0];
+    }
+    for piece in pieces {
+        let range = piece.range();
+        let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
+        let places = &mut places[range];
+        if piece.closed {
+            write_means(weighted, half_window, own, places);
+            continue;
+        }
+        mean_of_neighbours(
+            weighted.len(),
+            #[inline(always)]
+            |i| weighted[i],
+            false,
+            half_window,
+            #[inline(always)]
+            |i, mean| places[i] = mean.unwrap_or(own[i]),
+        );
+    }
+    // The means where the points count, the points where they do not.
+    for ((own, place), weight) in own_places.iter_mut().zip(places.iter()).zip(weights) {
+        *own = if *weight > 0.0 { *place } else { *own };
     }
 }
 
@@ -298,6 +290,25 @@ struct Found<'a> {
 }
 
 impl Found<'_> {
+    /// [`write_jacobians`](Self::write_jacobians) of a model, which is known before the loop over the points.
+    #[inline(always)]
+    fn write_jacobians_of(&self, model: MotionModel, measurements: &mut [Measurement]) {
+        match model {
+            MotionModel::Rigid => {
+                self.write_jacobians(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n));
+            }
+            MotionModel::Similarity => {
+                self.write_jacobians(measurements, |p, n| MotionModel::Similarity.normal_velocities(p, n));
+            }
+            MotionModel::Affine => {
+                self.write_jacobians(measurements, |p, n| MotionModel::Affine.normal_velocities(p, n));
+            }
+            MotionModel::Projective => {
+                self.write_jacobians(measurements, |p, n| MotionModel::Projective.normal_velocities(p, n));
+            }
+        }
+    }
+
     /// The Jacobians of all points, and measurements of all that was found: the normal velocities that each parameter of the pose error gives the
     /// feet of the points.
     #[inline(always)]
@@ -323,6 +334,16 @@ impl Found<'_> {
 }
 
 impl Columns {
+    /// Room for so many points and cells.
+    fn make_room(&mut self, points: usize, cells: usize) {
+        self.own_places.resize(points, Point2::origin());
+        self.weighted.resize(points, [0.0; LANES]);
+        self.numbers.resize(points, 0);
+        self.residuals.resize(points, 0.0);
+        self.weights.resize(points, 0.0);
+        self.lines.resize(cells + 1, CellLine::NONE);
+    }
+
     /// Sets the cells to those of measurements, with their weights.
     pub(super) fn set_cells(&mut self, measurements: &[Measurement]) {
         self.numbers.clear();

@@ -1,29 +1,15 @@
-use freeform_riccati::{
-    MAX_PARAMETERS, MotionModel, ParameterVector, is_affine, map_point, map_point_by, pull_back_by,
-};
-use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
+use freeform_riccati::{MotionModel, map_point};
+use nalgebra::{Matrix3, Point2, Vector2};
 
-use super::{Landmarks, outlook::Outlook};
+use super::{
+    Landmarks,
+    outlook::Outlook,
+    refinement::{RegisteredPose, Steps, refined, turn_of},
+};
 use crate::{
-    map::{OutlineMap, median},
-    measurement::View,
     track::{Track, turn_between, wrapped},
-    tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning, symmetry as of_symmetry},
-    vectors::vectorised,
+    tuning::{registration as tuning, symmetry as of_symmetry},
 };
-
-/// A pose that fits a frame.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RegisteredPose {
-    /// Body to image, normalised coordinates.
-    pub(crate) pose: Matrix3<f64>,
-    /// Mean distance of the points from the map, normalised; those far off count as if they were [`tuning::FARTHEST`] away.
-    score: f64,
-    /// Deviation of the points from the lines through their cells before the last step, normalised; no less than that of the noise.
-    spread: f64,
-    /// Turn from the pose before, rad, anticlockwise where y points up.
-    pub(crate) turn: f64,
-}
 
 /// Rigid poses that bring the outline of a track onto the points of a frame, apart from those that a symmetry adds.
 #[derive(Debug, Clone)]
@@ -154,23 +140,6 @@ fn add_turns_of_symmetry(best: &mut Vec<RegisteredPose>, track: &Track, points: 
     best.retain(|h| h.score.is_finite());
 }
 
-/// How a start is followed.
-#[derive(Debug, Clone, Copy)]
-struct Steps {
-    most: usize,
-    /// Deviation of the residuals that the first step allows for, normalised. Where the median residual is small from the beginning, as on a
-    /// disc with a pin, the points that tell the turn are those that are far off.
-    widest: f64,
-}
-
-impl Steps {
-    /// Of a search, until searches may have come together...
-    const FIRST: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST };
-    /// ...and from there on.
-    const FURTHER: Self = Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
-    const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
-}
-
 /// The best of those that are the same, for each.
 fn distinct(list: Vec<RegisteredPose>) -> Vec<RegisteredPose> {
     let mut best: Vec<RegisteredPose> = Vec::new();
@@ -206,205 +175,19 @@ fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {
     wrapped(a.turn - b.turn).abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < tuning::SAME_POSE
 }
 
-/// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals, at most so many.
-fn refined(
-    track: &Track,
-    points: &[Point2<f64>],
-    model: MotionModel,
-    start: &Matrix3<f64>,
-    steps: Steps,
-) -> RegisteredPose {
-    match model.parameter_count() {
-        3 => refined_sized::<3>(track, points, model, start, steps),
-        4 => refined_sized::<4>(track, points, model, start, steps),
-        6 => refined_sized::<6>(track, points, model, start, steps),
-        _ => refined_sized::<8>(track, points, model, start, steps),
-    }
-}
-
-fn refined_sized<const K: usize>(
-    track: &Track,
-    points: &[Point2<f64>],
-    model: MotionModel,
-    start: &Matrix3<f64>,
-    steps: Steps,
-) -> RegisteredPose
-where
-    Const<K>: DimMin<Const<K>, Output = Const<K>>,
-{
-    let View { map, belief, noise } = track.view();
-    let mut pose = *start;
-    let mut numbers = vec![0; points.len()];
-    let mut rows: Vec<(f64, [f64; K])> = vec![(0.0, [0.0; K]); points.len()];
-    let mut sizes = Vec::with_capacity(points.len());
-    let (mut widest, mut spread) = (steps.widest, f64::INFINITY);
-    for _ in 0..steps.most {
-        let Some(inverse) = pose.try_inverse() else { break };
-        let null = if model == belief.model { map.null_directions(model, &pose) } else { Vec::new() };
-        let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
-        let (numbers, all) = (numbers.as_mut_slice(), rows.as_mut_slice());
-        vectorised(
-            #[inline(always)]
-            || match (model, is_affine(&inverse)) {
-                (MotionModel::Rigid, true) => {
-                    seen.linearise::<true, K>(numbers, all, |p, n| MotionModel::Rigid.normal_velocities(p, n));
-                }
-                (_, true) => seen.linearise::<true, K>(numbers, all, |p, n| model.normal_velocities(p, n)),
-                (_, false) => seen.linearise::<false, K>(numbers, all, |p, n| model.normal_velocities(p, n)),
-            },
-        );
-        for direction in &null {
-            for (_, row) in &mut rows {
-                let mut jacobian = [0.0; MAX_PARAMETERS];
-                jacobian[..K].copy_from_slice(row);
-                direction.project_out(&mut jacobian);
-                row.copy_from_slice(&jacobian[..K]);
-            }
-        }
-        sizes.clear();
-        sizes.extend(rows.iter().map(|(r, _)| r.abs()));
-        spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
-        let scale = tuning::TUKEY * spread.max(widest);
-        let is_narrow = widest <= spread;
-        widest *= tuning::NARROWER;
-        let rows = rows.as_slice();
-        let (gram, right) = vectorised(
-            #[inline(always)]
-            || weighted_sums(rows, 1.0 / scale),
-        );
-        let gram = SMatrix::<f64, K, K>::from_fn(|i, j| gram[i][j] + if i == j { tuning::DAMPING } else { 0.0 });
-        let Some(factor) = gram.cholesky() else { break };
-        let x = factor.solve(&SVector::from(right));
-        let next = model.flow(x.as_slice(), 1.0).into_inner() * pose;
-        if !next.iter().all(|e| e.is_finite()) || next.determinant().abs() < tuning::SMALLEST_AREA {
-            break;
-        }
-        pose = next;
-        if is_narrow && x.amax() < tuning::SETTLED * noise.sigma {
-            break;
-        }
-    }
-    let score = mean_distance(track, points, &pose, &mut numbers);
-    let turn = turn_of(&pose, track.body_pose());
-    RegisteredPose { pose, score, spread, turn }
-}
-
-/// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.
-struct Seen<'a> {
-    points: &'a [Point2<f64>],
-    inverse: &'a Matrix3<f64>,
-    map: &'a OutlineMap,
-    offsets: &'a [f64],
-}
-
-impl Seen<'_> {
-    #[inline(always)]
-    fn mean_distance<const AFFINE: bool>(&self, numbers: &mut [u32]) -> f64 {
-        let Self { points, inverse, map, offsets } = self;
-        let places = points.iter().map(
-            #[inline(always)]
-            |p| map_point_by::<AFFINE>(inverse, p),
-        );
-        map.associate_all(places.clone(), numbers);
-        let cells = map.cells();
-        let mut sum = 0.0;
-        for (q, number) in places.zip(numbers) {
-            let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
-            sum += (q - (cell.centre + offset * cell.normal)).norm().min(tuning::FARTHEST);
-        }
-        sum / points.len() as f64
-    }
-
-    /// Residuals of all points and their derivatives, which `velocities` tell.
-    #[inline(always)]
-    fn linearise<const AFFINE: bool, const K: usize>(
-        &self,
-        numbers: &mut [u32],
-        rows: &mut [(f64, [f64; K])],
-        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
-    ) {
-        let Self { points, inverse, map, offsets } = self;
-        map.associate_all(
-            points.iter().map(
-                #[inline(always)]
-                |p| map_point_by::<AFFINE>(inverse, p),
-            ),
-            numbers,
-        );
-        let cells = map.cells();
-        for ((p, number), row) in points.iter().zip(numbers).zip(rows) {
-            let q = map_point_by::<AFFINE>(inverse, p);
-            let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
-            let distance = cell.normal.x * (q.x - cell.centre.x) + cell.normal.y * (q.y - cell.centre.y) - offset;
-            let pulled = pull_back_by::<AFFINE>(inverse, p, &q, &cell.normal);
-            let slope = 1.0 / (pulled.x * pulled.x + pulled.y * pulled.y).sqrt();
-            let (residual, normal) = (distance * slope, pulled * slope);
-            let along = velocities(&(p - residual * normal), &normal);
-            row.0 = residual;
-            row.1.copy_from_slice(&along[..K]);
-        }
-    }
-}
-
-/// Normal equations with Tukey's weights, for the inverse of their scale.
-#[inline(always)]
-fn weighted_sums<const K: usize>(rows: &[(f64, [f64; K])], scale: f64) -> ([[f64; K]; K], [f64; K]) {
-    let (mut gram, mut right) = ([[0.0; K]; K], [0.0; K]);
-    for (residual, row) in rows {
-        let u = residual * scale;
-        let kept = 1.0 - u * u;
-        // Points that do not count are left out: their rows may be no numbers, which nothing multiplied by zero takes back.
-        if kept.is_nan() || kept <= 0.0 {
-            continue;
-        }
-        let weight = kept * kept;
-        for i in 0..K {
-            let weighted = weight * row[i];
-            right[i] += residual * weighted;
-            for j in 0..K {
-                gram[i][j] += weighted * row[j];
-            }
-        }
-    }
-    (gram, right)
-}
-
-/// Mean distance of points from the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away; `numbers` has room for one of
-/// each point.
-fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, numbers: &mut [u32]) -> f64 {
-    let View { map, belief, .. } = track.view();
-    let Some(inverse) = pose.try_inverse() else { return f64::INFINITY };
-    if points.is_empty() || map.cells().is_empty() {
-        return f64::INFINITY;
-    }
-    let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
-    vectorised(
-        #[inline(always)]
-        || if is_affine(&inverse) { seen.mean_distance::<true>(numbers) } else { seen.mean_distance::<false>(numbers) },
-    )
-}
-
-/// Turn of a pose from the one before.
-fn turn_of(pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
-    let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
-    (step[(1, 0)] - step[(0, 1)]).atan2(step[(0, 0)] + step[(1, 1)])
-}
-
 #[cfg(test)]
 mod tests {
     use freeform_curve_fit::Outline;
 
     use super::*;
-    use crate::measurement::Frame;
+    use crate::{
+        drawn_curves::{lobed, outline, polar},
+        measurement::Frame,
+    };
 
-    /// Points of a curve with lobes, turned.
+    /// A curve with three lobes, turned.
     fn shown(lobe: f64, turn: f64) -> Outline {
-        let point = |i: u32| {
-            let t = std::f64::consts::TAU * f64::from(i) / 400.0;
-            let r = 1.0 + lobe * (3.0 * t).cos() + 0.1 * (2.0 * t).sin();
-            Point2::new(r * (t + turn).cos(), r * (t + turn).sin())
-        };
-        Outline::closed((0..400).map(point).collect()).expect("an outline")
+        outline(400, |t| polar(lobed(t, &[(3.0, [lobe, 0.0]), (2.0, [0.0, 0.1])]), t + turn))
     }
 
     #[test]
@@ -422,15 +205,5 @@ mod tests {
             let other = Registration::search(&track, &frame.points, None);
             assert!(other.is_hopeless() && other.rigid.len() == 1, "{turn}: {other:?}");
         }
-    }
-
-    #[test]
-    fn points_that_do_not_count_add_nothing_even_where_they_are_no_numbers() {
-        let good = [(0.1, [1.0, 0.5, -0.2]), (-0.3, [0.4, 1.0, 0.7])];
-        let sums = weighted_sums(&good, 1.0);
-        for bad in [(f64::NAN, [1.0; 3]), (f64::INFINITY, [1.0; 3]), (2.0, [f64::NAN; 3]), (1.0, [f64::INFINITY; 3])] {
-            assert_eq!(weighted_sums(&[good[0], bad, good[1]], 1.0), sums, "{bad:?}");
-        }
-        assert!(sums.1.iter().all(|sum| *sum != 0.0), "{sums:?}");
     }
 }

@@ -226,14 +226,11 @@ mod tests {
     use nalgebra::{Point2, Rotation2};
 
     use super::*;
+    use crate::drawn_curves::{outline, polar};
 
     #[test]
     fn frames_are_not_kept_for_ever_where_the_turn_stays_unknown() {
-        let circle = |i: i32| {
-            let angle = std::f64::consts::TAU * f64::from(i) / 100.0;
-            Point2::new(angle.cos(), angle.sin())
-        };
-        let outline = Outline::closed((0..100).map(circle).collect()).expect("an outline");
+        let outline = outline(100, |angle| polar(1.0, angle));
         let mut filter =
             MotionFilter::new(FilterSettings { model: MotionModel::Rigid, ..Default::default() }).expect("settings");
         for frame in 0..100 {

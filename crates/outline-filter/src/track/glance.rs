@@ -45,16 +45,17 @@ mod tests {
     use nalgebra::Point2;
 
     use super::*;
-    use crate::track::Comparison;
+    use crate::{
+        drawn_curves::{lobed, outline, polar},
+        track::Comparison,
+    };
 
     /// Points that wave about a curve with three lobes, shifted to the right.
     fn shown(lobe: f64, wave: f64, shift: f64) -> Outline {
-        let point = |i: u32| {
-            let t = std::f64::consts::TAU * f64::from(i) / 400.0;
-            let r = 1.0 + lobe * (3.0 * t).cos() + 0.1 * (2.0 * t).sin() + wave * (61.0 * t).sin();
-            Point2::new(shift + r * t.cos(), 0.8 * r * t.sin())
-        };
-        Outline::closed((0..400).map(point).collect()).expect("an outline")
+        outline(400, |t| {
+            let p = polar(lobed(t, &[(3.0, [lobe, 0.0]), (2.0, [0.0, 0.1]), (61.0, [0.0, wave])]), t);
+            Point2::new(shift + p.x, 0.8 * p.y)
+        })
     }
 
     #[test]

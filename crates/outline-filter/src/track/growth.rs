@@ -92,25 +92,19 @@ mod tests {
     use super::*;
     use crate::{
         dense_filter::{AGREES, DenseFilter},
+        drawn_curves::{all_around, lobed, outline, polar},
         measurement::Measurement,
         tuning::map::MOST_TIMES_SEEN,
     };
 
     /// Three quarters of an outline that shows every model of motion, and all of it, in the same body frame.
     fn part_and_whole() -> [Outline; 2] {
-        let point = |i: i32| {
-            let t = std::f64::consts::TAU * f64::from(i) / 320.0;
-            // The last term keeps residuals from being zero.
-            let r = 0.5
-                + 0.12 * (3.0 * t).cos()
-                + 0.08 * (2.0 * t).sin()
-                + 0.05 * (5.0 * t).cos()
-                + 0.002 * (31.0 * t).sin();
-            Point2::new(r * t.cos(), r * t.sin())
-        };
-        let arc = OpenArc::new((0..240).map(point).collect()).expect("an arc");
+        // The last lobes keep residuals from being zero.
+        let lobes = [(3.0, [0.24, 0.0]), (2.0, [0.0, 0.16]), (5.0, [0.1, 0.0]), (31.0, [0.0, 0.004])];
+        let all = all_around(320, |t| polar(0.5 * lobed(t, &lobes), t));
+        let arc = OpenArc::new(all[..240].to_vec()).expect("an arc");
         let part = Outline::Open(OpenOutline::new(vec![arc]).expect("an outline"));
-        [part, Outline::closed((0..320).map(point).collect()).expect("an outline")]
+        [part, Outline::closed(all).expect("an outline")]
     }
 
     #[test]
@@ -160,13 +154,8 @@ mod tests {
 
     #[test]
     fn a_map_that_wrong_poses_add_to_for_ever_stops_growing() {
-        let egg = |shift: f64| {
-            let point = |i: i32| {
-                let t = std::f64::consts::TAU * f64::from(i) / 300.0;
-                Point2::new(shift + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin())
-            };
-            Outline::closed((0..300).map(point).collect()).expect("an outline")
-        };
+        let egg =
+            |shift: f64| outline(300, |t| Point2::new(shift + 0.5 * t.cos() + 0.05 * (2.0 * t).cos(), 0.35 * t.sin()));
         let mut frame = Frame::default();
         let mut track = Track::begin(MotionModel::Rigid, &egg(0.0), 0.0, &mut frame).expect("a track");
         let count = |track: &Track| track.map.cells().len();

@@ -1,10 +1,10 @@
 //! What a frame is linearised to, on whole tracks: Jacobians, weights, null directions.
-use freeform_curve_fit::Outline;
 use freeform_riccati::{MotionModel, map_point};
 use nalgebra::{Matrix3, Point2, Vector2};
 
 use super::Track;
 use crate::{
+    drawn_curves::outline,
     map::NullDirection,
     measurement::{Frame, Measurement, NO_CELL, Pass},
 };
@@ -13,11 +13,7 @@ const SMALL: f64 = 1e-9;
 
 /// A track of an oval, whose second axis is so many times the first, with next to no noise.
 fn oval(model: MotionModel, axis: f64, frame: &mut Frame) -> Track {
-    let point = |i: i32| {
-        let t = std::f64::consts::TAU * f64::from(i) / 300.0;
-        Point2::new(t.cos() + 0.2 * (1.0 - axis) * (2.0 * t).cos(), axis * t.sin())
-    };
-    let outline = Outline::closed((0..300).map(point).collect()).expect("an outline");
+    let outline = outline(300, |t| Point2::new(t.cos() + 0.2 * (1.0 - axis) * (2.0 * t).cos(), axis * t.sin()));
     let mut track = Track::begin(model, &outline, 0.0, frame).expect("a track");
     track.set_noise(SMALL);
     track

@@ -169,15 +169,15 @@ mod tests {
     use nalgebra::{Matrix3, Point2, Vector3};
 
     use super::*;
+    use crate::drawn_curves::{lobed, outline, polar};
 
     /// An egg with three bulges, its points elsewhere on it from frame to frame.
     fn egg(frame: u32) -> Outline {
-        let point = |i: u32| {
-            let t = std::f64::consts::TAU * (f64::from(i) + 0.37 * f64::from(frame)) / 900.0;
-            let r = 1.0 + 0.2 * (3.0 * t).cos() + 0.1 * t.sin();
-            Point2::new(r * t.cos(), 0.8 * r * t.sin())
-        };
-        Outline::closed((0..900).map(point).collect()).expect("an outline")
+        let along = 0.37 * std::f64::consts::TAU / 900.0 * f64::from(frame);
+        outline(900, |t| {
+            let p = polar(lobed(t + along, &[(3.0, [0.2, 0.0]), (1.0, [0.0, 0.1])]), t + along);
+            Point2::new(p.x, 0.8 * p.y)
+        })
     }
 
     #[test]

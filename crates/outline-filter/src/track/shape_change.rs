@@ -103,14 +103,17 @@ impl EarlyShape {
 
 #[cfg(test)]
 mod tests {
-    use freeform_curve_fit::Outline;
     use freeform_riccati::MotionModel;
     use nalgebra::Point2;
     use rand::{RngExt as _, SeedableRng as _};
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::{track::Comparison, update::Gate};
+    use crate::{
+        drawn_curves::{lobed, outline, polar},
+        track::Comparison,
+        update::Gate,
+    };
 
     /// A body that turns, seen after a stretch along x in the picture by `1 + stretch` times the number of the frame; and with noise.
     fn change_of(stretch: f64) -> Option<f64> {
@@ -119,13 +122,11 @@ mod tests {
         let mut track: Option<Track> = None;
         for frame in 0..40 {
             let elapsed = f64::from(frame) / 30.0;
-            let point = |i: i32| {
-                let t = std::f64::consts::TAU * f64::from(i) / 400.0;
-                let r = 1.0 + 0.25 * (3.0 * t).cos() + 0.15 * (2.0 * t).sin() + rng.random_range(-0.01..0.01);
-                let (x, y) = (r * (t + elapsed).cos(), r * (t + elapsed).sin());
-                Point2::new(x * (1.0 + stretch * f64::from(frame)), y)
-            };
-            let outline = Outline::closed((0..400).map(point).collect()).expect("an outline");
+            let outline = outline(400, |t| {
+                let r = lobed(t, &[(3.0, [0.25, 0.0]), (2.0, [0.0, 0.15])]) + rng.random_range(-0.01..0.01);
+                let p = polar(r, t + elapsed);
+                Point2::new(p.x * (1.0 + stretch * f64::from(frame)), p.y)
+            });
             match &mut track {
                 None => track = Track::begin(MotionModel::Rigid, &outline, 0.0, &mut buffers),
                 Some(track) => {

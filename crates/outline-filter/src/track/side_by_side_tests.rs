@@ -6,14 +6,18 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
 use super::Track;
-use crate::measurement::{Frame, Pass};
+use crate::{
+    drawn_curves::{lobed, polar},
+    measurement::{Frame, Pass},
+};
 
 /// Points of an egg with three bulges, within part of a round, each elsewhere on it.
 fn egg(rng: &mut ChaCha8Rng, count: u32, part: f64) -> Vec<Point2<f64>> {
     let point = |i: u32| {
         let t = std::f64::consts::TAU * part * (f64::from(i) + rng.random_range(0.0..1.0)) / f64::from(count);
-        let r = 1.0 + 0.2 * (3.0 * t).cos() + 0.1 * t.sin() + rng.random_range(-0.01..0.01);
-        Point2::new(r * t.cos(), 0.8 * r * t.sin())
+        let r = lobed(t, &[(3.0, [0.2, 0.0]), (1.0, [0.0, 0.1])]) + rng.random_range(-0.01..0.01);
+        let p = polar(r, t);
+        Point2::new(p.x, 0.8 * p.y)
     };
     (0..count).map(point).collect()
 }

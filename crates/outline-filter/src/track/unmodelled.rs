@@ -73,11 +73,11 @@ impl Track {
 
 #[cfg(test)]
 mod tests {
-    use freeform_curve_fit::Outline;
     use freeform_riccati::{MotionModel, map_point};
     use nalgebra::{Point2, Vector2};
 
     use super::*;
+    use crate::drawn_curves::{lobed, outline, polar};
     use crate::track::Comparison;
     use crate::tuning::noise::{LARGEST, LARGEST_RATIO};
     use crate::update::{FrameMeasurement, Gate, UNMODELLED};
@@ -85,11 +85,10 @@ mod tests {
     const STEP: f64 = 0.05;
     const MOTION: [f64; 3] = [1.3, 0.4, -0.7];
 
-    /// Points of a body at rest, about its centroid.
-    fn body(i: usize) -> Point2<f64> {
-        let t = std::f64::consts::TAU * i as f64 / 600.0;
-        let r = 1.0 + 0.25 * (3.0 * t).cos() + 0.15 * (2.0 * t).sin() + 0.1 * (5.0 * t).cos();
-        Point2::new(0.3 + r * t.cos(), -0.2 + 0.8 * r * t.sin())
+    /// Points of a body at rest, by the angle about its centroid.
+    fn body(t: f64) -> Point2<f64> {
+        let p = polar(lobed(t, &[(3.0, [0.25, 0.0]), (2.0, [0.0, 0.15]), (5.0, [0.1, 0.0])]), t);
+        Point2::new(0.3 + p.x, -0.2 + 0.8 * p.y)
     }
 
     /// Where a point of a frame is moved to by a unit of each motion that is left out, in the normalised coordinates of a track.
@@ -115,7 +114,7 @@ mod tests {
     /// A track of a body in rigid motion, displaced by some of a motion that is left out, that may change by variances per second.
     fn tracked(size: f64, l: usize, (frames, change): (u8, [f64; 2])) -> Track {
         let model = MotionModel::Rigid;
-        let at_rest = Outline::closed((0..600).map(body).collect()).expect("an outline");
+        let at_rest = outline(600, body);
         let mut buffers = Frame::default();
         let plain = Track::begin(model, &at_rest, 0.0, &mut buffers).expect("a track");
         let reference = plain.reference();
@@ -127,13 +126,12 @@ mod tests {
             let flow = model.flow(&MOTION, elapsed).into_inner();
             let centre = map_point(&(from * flow * to), &centroid);
             let generator = from * model.generator(&MOTION) * to;
-            let point = |i: usize| {
-                let p = map_point(&(from * flow), &body(i));
+            let outline = outline(600, |t| {
+                let p = map_point(&(from * flow), &body(t));
                 let velocity = (generator * p.to_homogeneous()).xy();
                 let moved = p + size * displaced(l, &p, (&centre, elapsed, &velocity));
                 map_point(&to, &moved)
-            };
-            let outline = Outline::closed((0..600).map(point).collect()).expect("an outline");
+            });
             match &mut track {
                 None => track = Track::begin(model, &outline, 0.0, &mut buffers),
                 Some(track) => {

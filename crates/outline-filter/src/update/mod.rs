@@ -7,6 +7,8 @@ mod normal_equations;
 mod pose_measurement;
 mod sensitivity;
 mod solve;
+mod unmodelled_displacement;
+mod unmodelled_score;
 
 pub(crate) use commit::commit;
 pub(crate) use gate::Gate;
@@ -15,5 +17,7 @@ pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
 pub(crate) use normal_equations::accumulate;
 pub(crate) use pose_measurement::PoseMeasurement;
-pub(crate) use sensitivity::{Sensitivity, UNMODELLED, UnmodelledMatrix, UnmodelledScore, UnmodelledVector};
+pub(crate) use sensitivity::Sensitivity;
 pub(crate) use solve::Proposal;
+pub(crate) use unmodelled_displacement::{UNMODELLED, UnmodelledMatrix, UnmodelledVector};
+pub(crate) use unmodelled_score::UnmodelledScore;

@@ -5,25 +5,20 @@
 //! Pose and outline are learnt from frames that show the same errors of the model, and take them in. What is left in the residuals of a
 //! frame is the displacement by a unit of the motion, less what pose and outline have taken in before. It is taken to be the same over a
 //! cell: how residuals vary within one is a matter of how the outline bends.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, map_point};
-use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix3, SMatrix};
 
-use super::pose_measurement::PoseMeasurement;
+use super::{
+    pose_measurement::PoseMeasurement,
+    unmodelled_displacement::{Instant, UNMODELLED, UnmodelledVector},
+    unmodelled_score::{OfCell, Sums, UnmodelledScore},
+};
 use crate::{
     belief::{Belief, OffsetInformation, STATE, StateMatrix, scaled_solution},
     map::{Cell, OutlineMap},
     measurement::Frame,
     prediction::ErrorTransition,
-    tuning::family as tuning,
     vectors::vectorised,
 };
-
-/// Motions that may be left out: growth, stretch, skew, two of perspective, that of rows which are read one after the other, and three of a
-/// lens.
-pub(crate) const UNMODELLED: usize = 9;
-
-pub(crate) type UnmodelledVector = SVector<f64, UNMODELLED>;
-pub(crate) type UnmodelledMatrix = SMatrix<f64, UNMODELLED, UNMODELLED>;
 
 /// How far a unit of each motion that is left out has moved the estimates.
 #[derive(Debug, Clone)]
@@ -35,68 +30,6 @@ pub(crate) struct Sensitivity {
     offsets: Vec<UnmodelledVector>,
     /// Time since the first frame.
     elapsed: f64,
-}
-
-/// What one frame says of the motions that are left out, its pose taken to be unknown.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct UnmodelledScore {
-    /// In units of the noise.
-    pub(crate) information: UnmodelledMatrix,
-    /// Information times the sizes that the frame asks for.
-    pub(crate) score: UnmodelledVector,
-    /// Sum of the weights of points on known cells.
-    pub(crate) weight: f64,
-}
-
-/// Which of them a model has.
-fn has(model: MotionModel) -> [bool; UNMODELLED] {
-    let (growth, shear, perspective) =
-        (model != MotionModel::Rigid, model >= MotionModel::Affine, model >= MotionModel::Projective);
-    // The slant of a rolling shutter is a shear.
-    [growth, shear, shear, perspective, perspective, shear, perspective, perspective, perspective]
-}
-
-/// A pose and motion that displacements are taken at.
-#[derive(Debug, Clone, Copy)]
-struct Instant {
-    pose: Matrix3<f64>,
-    /// Transposed inverse of the linear part: normals of the body to those of the image, not normalised.
-    of_normals: Matrix2<f64>,
-    /// Of the object, in the image.
-    centroid: Point2<f64>,
-    generator: Matrix3<f64>,
-    elapsed: f64,
-    is_had: [bool; UNMODELLED],
-}
-
-impl Instant {
-    /// Displacement of a cell along its normal in the body frame by a unit of each motion, and how far an error of the pose moves it.
-    #[inline(always)]
-    fn displacement(&self, cell: &Cell, offset: f64) -> ([f64; UNMODELLED], Point2<f64>, Vector2<f64>) {
-        let p = map_point(&self.pose, &(cell.centre + offset * cell.normal));
-        // A step of the image along n moves the body point by as much along the normal of the cell.
-        let n = self.of_normals * cell.normal;
-        let along = n.dot(&p.coords);
-        // A row is seen later the further down it is; the outline has moved on meanwhile.
-        let g = &self.generator;
-        let velocity = Vector2::new(g.m11 * p.x + g.m12 * p.y + g.m13, g.m21 * p.x + g.m22 * p.y + g.m23);
-        let square = p.coords.norm_squared();
-        let mut all = [
-            self.elapsed * n.dot(&(p - self.centroid)),
-            n.x * p.x - n.y * p.y,
-            n.x * p.y + n.y * p.x,
-            p.x * along,
-            p.y * along,
-            p.y * (n.x * velocity.x + n.y * velocity.y),
-            square * along,
-            2.0 * p.x * along + square * n.x,
-            2.0 * p.y * along + square * n.y,
-        ];
-        for (displacement, is_had) in all.iter_mut().zip(self.is_had) {
-            *displacement = if is_had { 0.0 } else { *displacement };
-        }
-        (all, p, n)
-    }
 }
 
 impl Sensitivity {
@@ -124,7 +57,7 @@ impl Sensitivity {
 
     /// Cells are new from those that it has on, and are measured by a frame in the pose that is believed: their offsets take in all of it.
     pub(crate) fn begin_cells(&mut self, belief: &Belief, map: &OutlineMap) {
-        let Some(at) = self.instant(belief, &belief.pose, map) else {
+        let Some(at) = Instant::new(belief, &belief.pose, map, self.elapsed) else {
             self.offsets.resize(map.cells().len(), UnmodelledVector::zeros());
             return;
         };
@@ -165,7 +98,7 @@ impl Sensitivity {
         measured: &PoseMeasurement,
         repeats: f64,
     ) -> Option<UnmodelledScore> {
-        let at = self.instant(belief, pose, map)?;
+        let at = Instant::new(belief, pose, map, self.elapsed)?;
         let [with, before] = [&frame.cells_with_frame, &belief.information.cells];
         let mut left = std::mem::take(&mut frame.values);
         left.resize(with.len() * UNMODELLED, 0.0);
@@ -257,137 +190,6 @@ impl Sensitivity {
                 }
             },
         );
-    }
-
-    /// `None` where the model has all of the motions, or the pose has collapsed.
-    fn instant(&self, belief: &Belief, pose: &Matrix3<f64>, map: &OutlineMap) -> Option<Instant> {
-        let is_had = has(belief.model);
-        let linear = pose.fixed_view::<2, 2>(0, 0).into_owned();
-        if is_had.iter().all(|had| *had) || linear.determinant() <= 0.0 {
-            return None;
-        }
-        Some(Instant {
-            pose: *pose,
-            of_normals: linear.try_inverse()?.transpose(),
-            centroid: map_point(pose, &map.centroid()),
-            generator: belief.model.generator(&belief.motion[..belief.parameter_count()]),
-            elapsed: self.elapsed,
-            is_had,
-        })
-    }
-}
-
-/// What is known of a cell with a frame and without it, and what the frame adds: the information `own`, its right-hand side, and K entries
-/// of the coupling.
-struct OfCell<'a, const K: usize, const S: usize> {
-    with: f64,
-    before: f64,
-    own: f64,
-    right: f64,
-    coupling: &'a [f64; S],
-    added: &'a [f64; K],
-}
-
-/// Sums over the cells of a frame, the offsets eliminated.
-struct Sums<const K: usize, const S: usize> {
-    information: [[f64; UNMODELLED]; UNMODELLED],
-    score: [f64; UNMODELLED],
-    /// Squares of the displacements with what pose and outline have taken in.
-    whole: [f64; UNMODELLED],
-    /// With the pose.
-    with_pose: [[f64; UNMODELLED]; K],
-    weight: f64,
-    /// What pose and motion are moved by.
-    right: [[f64; UNMODELLED]; S],
-}
-
-impl<const K: usize, const S: usize> Sums<K, S> {
-    const NOTHING: Self = Self {
-        information: [[0.0; UNMODELLED]; UNMODELLED],
-        score: [0.0; UNMODELLED],
-        whole: [0.0; UNMODELLED],
-        with_pose: [[0.0; UNMODELLED]; K],
-        weight: 0.0,
-        right: [[0.0; UNMODELLED]; S],
-    };
-
-    /// Adds a cell that is displaced by `whole`, of which its offset and the pose have taken some in; returns what is left.
-    #[inline(always)]
-    fn add(
-        &mut self,
-        whole: &[f64; UNMODELLED],
-        taken_in: &[f64],
-        of_pose: &[[f64; UNMODELLED]; K],
-        cell: &OfCell<'_, K, S>,
-    ) -> [f64; UNMODELLED] {
-        let OfCell { with, before, own, right, coupling, added } = *cell;
-        let mut left = [0.0; UNMODELLED];
-        for l in 0..UNMODELLED {
-            left[l] = whole[l] - taken_in[l];
-        }
-        let inverse = 1.0 / own;
-        for (i, row) in of_pose.iter().enumerate() {
-            let factor = added[i] * inverse;
-            for l in 0..UNMODELLED {
-                left[l] -= factor * row[l];
-            }
-        }
-        let by_known = own / with;
-        for (i, row) in self.right.iter_mut().enumerate() {
-            let direct = if i < K { added[i] } else { 0.0 };
-            let factor = direct - coupling[i] * by_known;
-            for l in 0..UNMODELLED {
-                row[l] += factor * left[l];
-            }
-        }
-        if before > 0.0 {
-            // Only what was known before can be compared with.
-            let share = before / with;
-            let shared = left.map(|left| share * left);
-            for (m, row) in self.information.iter_mut().enumerate() {
-                let of_own = shared[m] * own;
-                for l in 0..UNMODELLED {
-                    row[l] += of_own * left[l];
-                }
-            }
-            for (i, row) in self.with_pose.iter_mut().enumerate() {
-                for l in 0..UNMODELLED {
-                    row[l] += shared[l] * added[i];
-                }
-            }
-            for l in 0..UNMODELLED {
-                self.score[l] += shared[l] * right;
-                self.whole[l] += share * own * whole[l] * whole[l];
-            }
-            self.weight += own;
-        }
-        left
-    }
-
-    /// The pose eliminated.
-    fn score(&self, pose: &PoseMeasurement) -> Option<UnmodelledScore> {
-        let known = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| {
-            if i < K && j < K { pose.information[(i, j)] } else { f64::from(u8::from(i == j)) }
-        });
-        let jitter = (0..K).map(|i| known[(i, i)]).fold(0.0, f64::max) * tuning::SINGULAR;
-        let with_pose =
-            SMatrix::<f64, MAX_PARAMETERS, UNMODELLED>::from_fn(|i, l| if i < K { self.with_pose[i][l] } else { 0.0 });
-        let explained = (known + SMatrix::identity() * jitter).cholesky()?.solve(&with_pose);
-        let mut information = UnmodelledMatrix::from_fn(|a, b| {
-            self.information[a.max(b)][a.min(b)] - with_pose.column(a).dot(&explained.column(b))
-        });
-        let mut score = UnmodelledVector::from(self.score) - explained.transpose() * pose.pulled;
-        // What has been taken in is known to some percent.
-        for l in 0..UNMODELLED {
-            if information[(l, l)] > tuning::LEFT * self.whole[l] {
-                continue;
-            }
-            information.row_mut(l).fill(0.0);
-            information.column_mut(l).fill(0.0);
-            score[l] = 0.0;
-        }
-        let found = UnmodelledScore { information, score, weight: self.weight };
-        (self.weight > 0.0 && information.iter().chain(&score).all(|e| e.is_finite())).then_some(found)
     }
 }
 

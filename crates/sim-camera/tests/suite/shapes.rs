@@ -1,7 +1,7 @@
 //! The built-in shapes and shapes from polygons.
 use std::f64::consts::{PI, TAU};
 
-use freeform_curve_fit::OutlineError;
+use freeform_curve_fit::{OutlineError, share_along_side};
 use freeform_sim_camera::{BuiltInShape, Shape, ShapeError};
 use nalgebra::{Point2, Rotation2, Vector2};
 use proptest::prelude::*;
@@ -24,11 +24,7 @@ fn contains(polygon: &[Point2<f64>], p: &Point2<f64>) -> bool {
 
 fn distance_to(polygon: &[Point2<f64>], p: &Point2<f64>) -> f64 {
     let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
-    let distances = edges.map(|(a, b)| {
-        let edge = b - a;
-        let t = ((p - a).dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
-        (p - (a + t * edge)).norm()
-    });
+    let distances = edges.map(|(a, b)| (p - (a + share_along_side(a, b, p) * (b - a))).norm());
     distances.fold(f64::INFINITY, f64::min)
 }
 

@@ -1,0 +1,77 @@
+//! A step in time, as all hypotheses of dynamics take it.
+use freeform_riccati::MotionModel;
+use nalgebra::{Matrix2, SMatrix, Vector2};
+
+use super::centred::{CentredPose, CentredVector, as_map};
+
+/// A step in time between two reference poses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step<'a> {
+    pub(super) model: MotionModel,
+    pub(super) seconds: f64,
+    /// Linear part of the pose before, with that of the pose after it taken off.
+    pub(super) turned: Matrix2<f64>,
+    /// Its logarithm, as rates.
+    pub(super) turned_by: CentredVector,
+    /// The centroid before the step, as seen from the one after it.
+    pub(super) centre: Vector2<f64>,
+    /// Variance of a pose as one frame tells it, of every parameter.
+    pub(super) pose_variance: &'a CentredVector,
+    /// What accelerations that change at random add: blocks, and what they get of a variance over the fifth power of a step.
+    pub(super) by_change: [(usize, usize, f64); 6],
+}
+
+impl<'a> Step<'a> {
+    /// `None` where the numbers do not allow it.
+    pub(super) fn new(
+        (model, seconds): (MotionModel, f64),
+        [from, to]: [&CentredPose; 2],
+        pose_variance: &'a CentredVector,
+    ) -> Option<Self> {
+        let turned = from.linear() * to.linear().try_inverse()?;
+        let by = model.motion_between(&as_map(&turned), 1.0)?;
+        let turned_by = CentredVector::from_fn(|j, _| by[j]);
+        let by_change = [
+            (0, 0, 1.0 / 20.0),
+            (0, 1, 1.0 / (8.0 * seconds)),
+            (0, 2, 1.0 / (6.0 * seconds.powi(2))),
+            (1, 1, 1.0 / (3.0 * seconds.powi(2))),
+            (1, 2, 1.0 / (2.0 * seconds.powi(3))),
+            (2, 2, 1.0 / seconds.powi(4)),
+        ];
+        let centre = from.centre() - to.centre();
+        Some(Self { model, seconds, turned, turned_by, centre, pose_variance, by_change })
+    }
+
+    /// Propagation of the N = 3 k errors of a hypothesis, as far as it is that of the pose by itself, where the rates stay and its centroid
+    /// does not turn; `turn` is the linear part of the motion over the step.
+    pub(super) fn pose_transition<const N: usize>(&self, turn: &Matrix2<f64>) -> SMatrix<f64, N, N> {
+        let (model, k, dt) = (self.model, N / 3, self.seconds);
+        let rates = k - 2;
+        let mut f = SMatrix::<f64, N, N>::identity();
+        if model <= MotionModel::Similarity {
+            // Turns and growth commute.
+            (0..rates).for_each(|i| f[(i, k + i)] = dt);
+        } else {
+            let map = as_map(turn);
+            let carried = model.adjoint(&map, &map.try_inverse().unwrap_or(map));
+            for i in 0..rates {
+                for j in 0..rates {
+                    let own = f64::from(u8::from(i == j));
+                    f[(i, j)] = carried[i][j];
+                    f[(i, k + j)] = 0.5 * dt * (own + carried[i][j]);
+                }
+            }
+        }
+        for i in rates..k {
+            f[(i, k + i)] = dt;
+        }
+        f
+    }
+}
+
+/// How much farther than at the velocity before a step its part that turns with the object carries over the step, from the integral of the
+/// turn.
+pub(super) fn turned_along(along: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
+    along - Matrix2::identity() * seconds
+}
