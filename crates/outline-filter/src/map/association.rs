@@ -79,11 +79,16 @@ impl OutlineMap {
         }
         let none = self.cells.len() as u32;
         for (number, q) in numbers.iter_mut().zip(places) {
-            let nearest = *number as usize;
-            if self.bisectors[nearest].is_end && self.is_beyond_end(nearest, &q) {
+            if self.lies_beyond_end(*number as usize, &q) {
                 *number = none;
             }
         }
+    }
+
+    /// Whether a place lies beyond a known end of the outline that the cell nearest to it is.
+    #[inline(always)]
+    pub(crate) fn lies_beyond_end(&self, nearest: usize, q: &Point2<f64>) -> bool {
+        self.has_ends && self.bisectors[nearest].is_end && self.is_beyond_end(nearest, q)
     }
 
     /// As [`associate`](Self::associate), of places beyond ends too.

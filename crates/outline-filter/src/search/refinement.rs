@@ -137,7 +137,7 @@ struct Seen<'a> {
 
 impl Seen<'_> {
     #[inline(always)]
-    fn mean_distance<const AFFINE: bool>(&self, numbers: &mut [u32]) -> f64 {
+    fn mean_distance<const AFFINE: bool>(&self, beyond_end: f64, numbers: &mut [u32]) -> f64 {
         let Self { points, inverse, map, offsets } = self;
         let places = points.iter().map(
             #[inline(always)]
@@ -148,7 +148,8 @@ impl Seen<'_> {
         let mut sum = 0.0;
         for (q, number) in places.zip(numbers) {
             let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
-            sum += (q - (cell.centre + offset * cell.normal)).norm().min(tuning::FARTHEST);
+            let most = if map.lies_beyond_end(*number as usize, &q) { beyond_end } else { tuning::FARTHEST };
+            sum += (q - (cell.centre + offset * cell.normal)).norm().min(most);
         }
         sum / points.len() as f64
     }
@@ -221,18 +222,25 @@ fn weighted_sums<const K: usize>(rows: &[Row<K>], scale: f64) -> ([[f64; K]; K],
     (gram, right)
 }
 
-/// Mean distance of points from the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away; `numbers` has room for one of
-/// each point.
+/// Mean distance of points from the cells of the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away, those beyond its
+/// known ends as if they were a little further than points on it are; `numbers` has room for one of each point.
 fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, numbers: &mut [u32]) -> f64 {
-    let View { map, belief, .. } = track.view();
+    let View { map, belief, noise } = track.view();
     let Some(inverse) = pose.try_inverse() else { return f64::INFINITY };
     if points.is_empty() || map.cells().is_empty() {
         return f64::INFINITY;
     }
     let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
+    let beyond_end = tuning::BEYOND_END * noise.sigma.hypot(tuning::FROM_CENTRE * map.spacing());
     vectorised(
         #[inline(always)]
-        || if is_affine(&inverse) { seen.mean_distance::<true>(numbers) } else { seen.mean_distance::<false>(numbers) },
+        || {
+            if is_affine(&inverse) {
+                seen.mean_distance::<true>(beyond_end, numbers)
+            } else {
+                seen.mean_distance::<false>(beyond_end, numbers)
+            }
+        },
     )
 }
 

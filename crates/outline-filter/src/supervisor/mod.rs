@@ -6,6 +6,7 @@ mod expected_outline;
 mod initialisation;
 mod motion_change;
 mod motion_filter;
+mod repeated_frames;
 mod search_budget;
 mod settings;
 mod starts;
@@ -14,6 +15,7 @@ mod state_bytes;
 mod statement;
 mod tracking;
 mod turn_hypotheses;
+mod turn_hypothesis;
 mod window;
 
 pub use ambiguity::Ambiguity;

@@ -1,12 +1,13 @@
-use std::sync::OnceLock;
+use std::{f64::consts::PI, sync::OnceLock};
 
 use freeform_curve_fit::Outline;
 use freeform_estimate::TimeNotIncreasing;
 use nalgebra::{Point2, Projective2};
 
 use super::{
-    error::FilterError, motion_change::MotionHistory, search_budget::SearchBudget, settings::FilterSettings,
-    statement::Statement, tracking::advance, turn_hypotheses::TurnHypotheses, window::InitialisationWindow,
+    error::FilterError, motion_change::MotionHistory, repeated_frames::RepeatedFrames, search_budget::SearchBudget,
+    settings::FilterSettings, statement::Statement, tracking::advance, turn_hypotheses::TurnHypotheses,
+    window::InitialisationWindow,
 };
 use crate::{
     dynamics::{DynamicsFilter, DynamicsWeights},
@@ -147,6 +148,9 @@ pub struct MotionFilter {
     pub(super) window: InitialisationWindow,
     /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
     pub(super) unfound: Vec<(f64, Outline)>,
+    pub(super) repeated: RepeatedFrames,
+    /// Shortest time between frames one after the other.
+    pub(super) shortest_step: f64,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
     /// What is stated after the last step, once it has been asked for.
@@ -177,6 +181,8 @@ impl MotionFilter {
             turn_hypotheses: TurnHypotheses::default(),
             window: InitialisationWindow::default(),
             unfound: Vec::new(),
+            repeated: RepeatedFrames::default(),
+            shortest_step: f64::INFINITY,
             frame: Frame::default(),
             stated: OnceLock::new(),
         })
@@ -189,6 +195,7 @@ impl MotionFilter {
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
         TimeNotIncreasing::check(self.last_time * self.seconds_per_unit(), time)?;
         self.stated.take();
+        let is_repeated = self.repeated.is_repeated(outline);
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
@@ -196,8 +203,19 @@ impl MotionFilter {
             self.counts.accepted_in_recording += 1;
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
+        if is_repeated && self.may_have_moved() {
+            self.last_time = time;
+            let rejection = Some(Rejection::Repeated);
+            return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection });
+        }
+        self.shortest_step = self.shortest_step.min(time - self.track_time);
         let (measurement, rejection) = self.process(time, outline);
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
+    }
+
+    /// Whether a frame that repeats the one before it cannot show the object: as far as is known it is not at rest.
+    fn may_have_moved(&self) -> bool {
+        self.phase != Phase::Tracking || self.track.as_ref().is_some_and(Track::moves)
     }
 
     /// Processes a frame after the first, at a time in units of time: it is followed where the object is tracked, else looked for; what is taken is kept
@@ -217,6 +235,7 @@ impl MotionFilter {
             self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
+            self.doubt_turns_beyond_half_a_circle();
             if self.track.as_ref().is_some_and(Track::may_show_turn) {
                 self.begin_with_turn(outline);
             }
@@ -225,6 +244,15 @@ impl MotionFilter {
             self.fall_back(time, outline);
         }
         (outcome.map(|outcome| outcome.measurement), rejection)
+    }
+
+    /// Of two turns that look alike the smaller is taken, so that no frames tell one of more than half a circle between them.
+    fn doubt_turns_beyond_half_a_circle(&mut self) {
+        let Some(track) = self.track.as_ref().filter(|track| !track.turn_is_unseen()) else { return };
+        let (turn, shortest) = (track.turn_in(self.shortest_step), self.shortest_step);
+        if turn.abs() > PI {
+            self.turn_hypotheses.doubt_more_than_half_a_circle(turn, shortest);
+        }
     }
 
     /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
@@ -238,6 +266,7 @@ impl MotionFilter {
         self.time_unit = Some(unit);
         self.last_time /= unit;
         self.track_time /= unit;
+        self.shortest_step /= unit;
         self.window.divide_times(unit);
         self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
     }
@@ -358,34 +387,5 @@ impl MotionFilter {
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts
-    }
-}
-
-#[cfg(feature = "serde")]
-impl MotionFilter {
-    /// Whether the last time is finite, or there was none, that of the track is, and the unit is a power of two.
-    pub(super) fn times_are_valid(&self) -> bool {
-        let before_first = self.last_time == f64::NEG_INFINITY && self.track.is_none();
-        let is_power_of_two = |unit: f64| unit > 0.0 && unit.is_normal() && unit == unit.log2().round().exp2();
-        let is_unit = |unit: f64| is_power_of_two(unit) && (1.0 / unit).is_normal();
-        (self.last_time.is_finite() || before_first)
-            && self.track_time.is_finite()
-            && self.time_unit.is_none_or(is_unit)
-    }
-
-    /// Whether no counter is near its end.
-    pub(super) fn counts_are_below(&self, most: usize) -> bool {
-        let Counts {
-            accepted_in_recording,
-            rejected_in_recording,
-            rejected_in_a_row,
-            accepted_by_track,
-            rejected_by_track,
-            restarts,
-            fruitless_starts,
-        } = self.counts;
-        let of_recording =
-            [accepted_in_recording, rejected_in_recording, rejected_in_a_row, restarts, fruitless_starts];
-        of_recording.iter().chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }
 }

@@ -1,7 +1,7 @@
 //! A filter as bytes and back.
 use freeform_estimate::{StateError, StateFormat};
 
-use super::motion_filter::{MotionFilter, Phase};
+use super::motion_filter::{Counts, MotionFilter, Phase};
 use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
@@ -76,7 +76,7 @@ impl MotionFilter {
         if !self.history.is_valid(&self.settings) {
             return inconsistent("changes of the motion");
         }
-        if !self.counts_are_below(StateFormat::MOST_COUNTED) || !self.searches.is_valid() {
+        if !self.counts_are_below(StateFormat::MOST_COUNTED) || !self.searches.is_valid() || !self.repeated.is_valid() {
             return inconsistent("counts");
         }
         if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
@@ -89,6 +89,33 @@ impl MotionFilter {
             return inconsistent("frames without the object");
         }
         Ok(())
+    }
+
+    /// Whether the last time is finite, or there was none, that of the track is, and the unit is a power of two.
+    fn times_are_valid(&self) -> bool {
+        let before_first = self.last_time == f64::NEG_INFINITY && self.track.is_none();
+        let is_power_of_two = |unit: f64| unit > 0.0 && unit.is_normal() && unit == unit.log2().round().exp2();
+        let is_unit = |unit: f64| is_power_of_two(unit) && (1.0 / unit).is_normal();
+        (self.last_time.is_finite() || before_first)
+            && self.track_time.is_finite()
+            && self.shortest_step > 0.0
+            && self.time_unit.is_none_or(is_unit)
+    }
+
+    /// Whether no counter is near its end.
+    fn counts_are_below(&self, most: usize) -> bool {
+        let Counts {
+            accepted_in_recording,
+            rejected_in_recording,
+            rejected_in_a_row,
+            accepted_by_track,
+            rejected_by_track,
+            restarts,
+            fruitless_starts,
+        } = self.counts;
+        let of_recording =
+            [accepted_in_recording, rejected_in_recording, rejected_in_a_row, restarts, fruitless_starts];
+        of_recording.iter().chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }
 }
 

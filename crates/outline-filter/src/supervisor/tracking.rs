@@ -105,27 +105,41 @@ fn outcome_with_changes(
         outcome = found;
     }
     let innovation = outcome.innovation;
+    // If the outline is there, but for the second time (or beyond doubt) not where it was going, the motion has changed. Held to where it was
+    // going, it agrees in part: in the end it must agree like any other.
     let is_partly_there = outcome.measurement.agreement >= PARTLY_THERE * settings.smallest_agreement;
     if !outcome.is_accepted()
         && let Some(gate) = gates.after_sudden_change
         && is_partly_there
-        && innovation.fisher[0] > 0.0
+        && let Some((changed, found)) = after_sudden_change(track, frame, &outcome, &gate, comparison)
     {
-        // If the outline is there, but for the second time (or beyond doubt) not where it was going, the motion has changed. Held to where it was
-        // going, it agrees in part: in the end it must agree like any other.
-        let mut changed = track.clone();
-        changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
-        let found = changed.update(frame, &gate, comparison);
-        if found.is_accepted() {
-            *track = changed;
-            change.was_sudden = true;
-            outcome = found;
-        }
+        *track = changed;
+        change.was_sudden = true;
+        outcome = found;
     }
     if outcome.is_accepted() {
         change.update(&innovation, track.model().parameter_count());
     }
     outcome
+}
+
+/// A track whose motion has changed by as much as the innovation of a frame says, which was not taken, with what becomes of the frame then; `None`
+/// where it is not accepted either.
+pub(super) fn after_sudden_change(
+    track: &Track,
+    frame: &mut Frame,
+    outcome: &Outcome,
+    gate: &Gate,
+    comparison: Comparison,
+) -> Option<(Track, Outcome)> {
+    let innovation = outcome.innovation;
+    if innovation.fisher[0] <= 0.0 {
+        return None;
+    }
+    let mut changed = track.clone();
+    changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
+    let found = changed.update(frame, gate, comparison);
+    found.is_accepted().then_some((changed, found))
 }
 
 /// What becomes of a frame not where a constant generator takes the object, but where other dynamics do that are not ruled out; `None`, with

@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 
 use super::{
     settings::FilterSettings,
-    tracking::{gate, largest_innovation},
+    turn_hypothesis::{Reason, TurnHypothesis, gate_of_motion},
 };
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
@@ -16,7 +16,6 @@ use crate::{
         symmetry::{OFF_MULTIPLE, SAME},
         turn_hypotheses as tuning,
     },
-    update::Gate,
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -40,26 +39,6 @@ pub(super) enum VerdictOf {
     Itself,
     /// Others, which show that the noise of the frame says nothing against it.
     Others,
-}
-
-/// One other way in which the object may have turned.
-#[derive(Debug, Clone)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct TurnHypothesis {
-    /// While it is followed.
-    track: Option<Track>,
-    likelihood: NegativeLogLikelihood,
-    reason: Reason,
-}
-
-/// Why a turn may have been another.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-enum Reason {
-    /// It explains the frames so far as well, and is followed until a frame decides.
-    Likeness,
-    /// The outline has a symmetry: no frame will decide, and the path of the object must not.
-    Symmetry,
 }
 
 /// All other turns than that of the present track, and what it is compared with them by.
@@ -138,6 +117,18 @@ impl TurnHypotheses {
             turns.retain(|turn| is_doubtful(*turn, present));
         }
         turns
+    }
+
+    /// Puts a turn in doubt that is more than half a circle over so short a time that no frames have told it from one in the other direction.
+    pub(super) fn doubt_more_than_half_a_circle(&mut self, turn: f64, seconds: f64) {
+        if self.rivals.iter().any(|hypothesis| hypothesis.reason == Reason::Symmetry) {
+            return;
+        }
+        (self.present_turn, self.acquired_over) = (turn, seconds);
+        self.symmetry_angle = if self.symmetry_angle > 0.0 { self.symmetry_angle } else { TAU };
+        self.rival_turns.push(turn - TAU.copysign(turn));
+        let likelihood = NegativeLogLikelihood::default();
+        self.rivals.push(TurnHypothesis { likelihood, track: None, reason: Reason::Symmetry });
     }
 
     /// After an exchange, names the turns that look like the one taken now in place of those that look like the one before.
@@ -336,37 +327,6 @@ impl TurnHypotheses {
         self.rivals.remove(index);
         self.rival_turns.remove(index);
     }
-}
-
-impl TurnHypothesis {
-    /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed.
-    fn follow(
-        &mut self,
-        settings: &FilterSettings,
-        (present, frame): (&Track, &mut Frame),
-        outcome: &Outcome,
-        seconds: f64,
-    ) -> Option<Outcome> {
-        let track = self.track.as_mut()?;
-        track.predict(seconds);
-        track.add_process_noise(&settings.process_noise, seconds);
-        track.adopt_noise_of(present);
-        let gate = gate_of_motion(settings, track);
-        let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
-        let found = track.update(frame, &gate, Comparison::Asked);
-        track.record_spread(&found.measurement);
-        self.likelihood.add(&found.likelihood);
-        Some(found)
-    }
-
-    fn has_met(&self, present: &Track, different_turn: f64) -> bool {
-        self.track.as_ref().is_some_and(|track| present.has_met(track, different_turn))
-    }
-}
-
-/// The gate for a frame of a track whose motion goes on as it was.
-fn gate_of_motion(settings: &FilterSettings, track: &Track) -> Gate {
-    Gate { largest_innovation: Some(largest_innovation(track)), ..gate(settings, track) }
 }
 
 /// Turns this far apart are different, with an angle of symmetry.

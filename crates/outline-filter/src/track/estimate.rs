@@ -1,7 +1,7 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
 use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point};
-use nalgebra::{DMatrix, Matrix3, Point2, SVector, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix3, Point2, SVector, Vector2};
 
 use super::Track;
 use crate::{
@@ -11,6 +11,7 @@ use crate::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
         supervisor::STEPS_KNOWN,
         turn_hypotheses::DIFFERENT,
+        update::SUDDEN,
     },
     update::{hold, with_hold},
 };
@@ -72,6 +73,16 @@ impl Track {
         let squares = cells.iter().map(|cell| motion.velocity(&map_point(pose, &cell.centre)).norm_squared());
         let speed = (squares.sum::<f64>() / cells.len().max(1) as f64).sqrt();
         speed * span * self.reference.radius
+    }
+
+    /// Whether the object moves beyond doubt: by the squared motion in its covariance.
+    pub(crate) fn moves(&self) -> bool {
+        let k = self.belief.parameter_count();
+        let Some(summary) = self.summary() else { return false };
+        let covariance = DMatrix::from_fn(k, k, |i, j| summary.covariance[(k + i, k + j)]);
+        let motion = DVector::from_fn(k, |i, _| summary.motion[i]);
+        let squared = covariance.cholesky().map(|factor| motion.dot(&factor.solve(&motion)));
+        squared.is_some_and(|squared| squared > SUDDEN * k as f64)
     }
 
     /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.

@@ -1,7 +1,7 @@
 //! Turns of an object in the plane.
 use std::f64::consts::{PI, TAU};
 
-use freeform_riccati::map_point;
+use freeform_riccati::{map_point, turn_rate};
 use nalgebra::{Matrix3, Rotation2, Vector2};
 
 use super::Track;
@@ -21,6 +21,12 @@ pub(crate) fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -
 }
 
 impl Track {
+    /// The turn that the motion makes in a time, in the filter's unit; rad, anticlockwise where y points up.
+    pub(crate) fn turn_in(&self, time: f64) -> f64 {
+        let model = self.model();
+        -time * turn_rate(&model.generator(&self.belief().motion[..model.parameter_count()]))
+    }
+
     /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid.
     pub(crate) fn turned(&self, pose: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
         let centre = map_point(pose, &self.map.centroid()).coords;

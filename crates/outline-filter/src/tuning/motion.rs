@@ -18,6 +18,8 @@ pub(crate) mod motion_change {
 
 /// Phases of the filter, and what of the motion is stated.
 pub(crate) mod supervisor {
+    /// Frames in a row that may repeat one that was stored several times: 24 pictures a second are stored as 60 with two or three times each.
+    pub(crate) const MOST_REPEATED: usize = 3;
     /// Frames rejected in a row before the second one was ever found: the first was not the object.
     pub(crate) const FALSE_START: usize = 3;
     /// Starts that came to nothing, one after the other, after which frames are no longer asked whether they are the wrong one: where one

@@ -32,6 +32,12 @@ pub(crate) mod registration {
     /// Distance beyond which points count alike in the score of a pose, in radii: they may be hidden in the map or wrong. Trimming a share of
     /// the points instead would leave out the pin of a disc, which alone tells its turn.
     pub(crate) const FARTHEST: f64 = 0.1;
+    /// Most that a point beyond the known ends of an outline counts for in that score, in what points on it do: nothing says where it should lie. With
+    /// as much as points that are far off, poses were taken that put the most points on what was known, though others put all of those there
+    /// where the outline is: a square with a chamfer turned by a right angle too much.
+    pub(crate) const BEYOND_END: f64 = 1.5;
+    /// Mean distance of a point on the outline from the middle of its cell, in spacings.
+    pub(crate) const FROM_CENTRE: f64 = 0.25;
     /// Deviation of the residuals that the first step of a search allows for, in radii: starts lie up to 7.5 degrees off, which is 0.13 at the
     /// RMS radius, and Tukey's weights reach 4.7 deviations.
     pub(crate) const WIDEST: f64 = 0.065;

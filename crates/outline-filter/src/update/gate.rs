@@ -53,6 +53,9 @@ pub enum Rejection {
         /// Standard deviation of this frame's noise, image lengths.
         noise: f64,
     },
+    /// The frame repeats the one before it to the last digit, and the object is not known to be at rest: a picture that was stored twice shows nothing of
+    /// the time that it is given with. After three in a row the object rests.
+    Repeated,
     /// No pose was found, or none was looked for, as too many frames have been searched in vain.
     NotFound,
 }
@@ -73,6 +76,11 @@ impl Gate {
     /// This gate without the limit on the noise, for a frame that is known to show the object.
     pub(crate) fn without_noise(self) -> Self {
         Self { largest_noise: None, ..self }
+    }
+
+    /// This gate for a frame that shows the object wherever its motion has led.
+    pub(crate) fn anywhere(self) -> Self {
+        Self { largest_innovation: None, ..self }
     }
 
     /// Tests the measurement of a frame.
@@ -245,6 +253,7 @@ impl fmt::Display for Rejection {
                     "its points scatter by {noise:.decimals$} about the outline known, more than those of other frames"
                 )
             }
+            Self::Repeated => f.write_str("repeats the frame before it"),
             Self::NotFound => f.write_str("the object was not found"),
         }
     }

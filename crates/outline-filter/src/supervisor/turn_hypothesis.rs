@@ -1,0 +1,69 @@
+//! One other way in which the object may have turned.
+use super::{
+    settings::FilterSettings,
+    tracking::{after_sudden_change, gate, largest_innovation},
+};
+use crate::{
+    measurement::{Frame, NegativeLogLikelihood},
+    track::{Comparison, Outcome, Track},
+    update::{Gate, Rejection},
+};
+
+/// One other way in which the object may have turned.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct TurnHypothesis {
+    /// While it is followed.
+    pub(super) track: Option<Track>,
+    pub(super) likelihood: NegativeLogLikelihood,
+    pub(super) reason: Reason,
+}
+
+/// Why a turn may have been another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum Reason {
+    /// It explains the frames so far as well, and is followed until a frame decides.
+    Likeness,
+    /// The outline has a symmetry: no frame will decide, and the path of the object must not.
+    Symmetry,
+}
+
+impl TurnHypothesis {
+    /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed.
+    pub(super) fn follow(
+        &mut self,
+        settings: &FilterSettings,
+        (present, frame): (&Track, &mut Frame),
+        outcome: &Outcome,
+        seconds: f64,
+    ) -> Option<Outcome> {
+        let track = self.track.as_mut()?;
+        track.predict(seconds);
+        track.add_process_noise(&settings.process_noise, seconds);
+        track.adopt_noise_of(present);
+        let gate = gate_of_motion(settings, track);
+        let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
+        let mut found = track.update(frame, &gate, Comparison::Asked);
+        // It has no hypotheses of dynamics of its own, so that what is not constant in its motion is no evidence against its turn.
+        if settings.finds_changes()
+            && matches!(found.verdict, Err(Rejection::InnovationTooLarge { .. }))
+            && let Some((changed, outcome)) =
+                after_sudden_change(track, frame, &found, &gate.anywhere(), Comparison::Asked)
+        {
+            (*track, found) = (changed, outcome);
+        }
+        track.record_spread(&found.measurement);
+        self.likelihood.add(&found.likelihood);
+        Some(found)
+    }
+
+    pub(super) fn has_met(&self, present: &Track, different_turn: f64) -> bool {
+        self.track.as_ref().is_some_and(|track| present.has_met(track, different_turn))
+    }
+}
+
+/// The gate for a frame of a track whose motion goes on as it was.
+pub(super) fn gate_of_motion(settings: &FilterSettings, track: &Track) -> Gate {
+    Gate { largest_innovation: Some(largest_innovation(track)), ..gate(settings, track) }
+}
