@@ -14,6 +14,8 @@ use crate::{
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct NegativeLogLikelihood {
     pub(crate) squares: f64,
+    /// What the path adds to that: how far poses were from where they had been expected.
+    pub(crate) of_path: f64,
     points: f64,
     /// Number of points, with a larger weight for points with correlated errors.
     weighted: f64,
@@ -29,8 +31,23 @@ impl NegativeLogLikelihood {
 
     /// Whether the difference is more than so many of its deviations: see [`is_worse_than`](Self::is_worse_than).
     pub(crate) fn is_worse_by(&self, deviations: f64, other: &Self) -> bool {
+        self.difference_in_deviations(other) > deviations
+    }
+
+    /// As [`is_worse_than`](Self::is_worse_than), by the points alone, whatever the path.
+    pub(crate) fn shows_less_than(&self, other: &Self) -> bool {
+        let [own, of_other] = [self, other].map(|likelihood| Self { of_path: 0.0, ..*likelihood });
+        own.is_worse_than(&of_other)
+    }
+
+    fn difference_in_deviations(&self, other: &Self) -> f64 {
         let unit = (other.squares / other.points).max(1.0);
-        self.squares - other.squares > deviations * unit * (tuning::VARIANCE * other.weighted).sqrt()
+        (self.all() - other.all()) / (unit * (tuning::VARIANCE * other.weighted).sqrt())
+    }
+
+    /// Of points and path.
+    pub(crate) fn all(&self) -> f64 {
+        self.squares + self.of_path
     }
 
     /// Whether the mean square of the innovations is no more than so many times that of another, which is noise at least.
@@ -46,7 +63,7 @@ impl NegativeLogLikelihood {
 
     /// Keeps a share of what has been added, and adds another.
     pub(crate) fn add_to_faded(&mut self, kept: f64, other: &Self) {
-        for number in [&mut self.squares, &mut self.points, &mut self.weighted] {
+        for number in [&mut self.squares, &mut self.of_path, &mut self.points, &mut self.weighted] {
             *number *= kept;
         }
         self.add(other);
@@ -54,6 +71,7 @@ impl NegativeLogLikelihood {
 
     pub(crate) fn add(&mut self, other: &Self) {
         self.squares += other.squares;
+        self.of_path += other.of_path;
         self.points += other.points;
         self.weighted += other.weighted;
     }
@@ -213,14 +231,14 @@ fn of_innovations(
     let points = innovations.len() as f64;
     let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
     let squares = innovations.map(|innovation| innovation.map_or(tuning::UNKNOWN, square)).sum();
-    NegativeLogLikelihood { squares, points, weighted: points * correlation }
+    NegativeLogLikelihood { squares, of_path: 0.0, points, weighted: points * correlation }
 }
 
 #[cfg(test)]
 impl NegativeLogLikelihood {
     /// Of independent points with such a sum of squares.
     pub(crate) fn of_squares(squares: f64, points: f64) -> Self {
-        Self { squares, points, weighted: points }
+        Self { squares, of_path: 0.0, points, weighted: points }
     }
 }
 
@@ -228,7 +246,7 @@ impl NegativeLogLikelihood {
 impl NegativeLogLikelihood {
     /// Whether no number is NaN.
     pub(crate) fn is_valid(&self) -> bool {
-        ![self.squares, self.points, self.weighted].iter().any(|number| number.is_nan())
+        ![self.squares, self.of_path, self.points, self.weighted].iter().any(|number| number.is_nan())
     }
 }
 
@@ -247,8 +265,7 @@ mod tests {
         let (points, runs) = (50, 2000);
         let (mut sum, mut worse) = (0.0, 0);
         for _ in 0..runs {
-            let mut poses =
-                [NegativeLogLikelihood { squares: 0.0, points: f64::from(points), weighted: f64::from(points) }; 2];
+            let mut poses = [NegativeLogLikelihood::of_squares(0.0, f64::from(points)); 2];
             for _ in 0..points {
                 let shared = normal();
                 poses.iter_mut().for_each(|pose| pose.squares += 0.5 * (shared + normal()).powi(2));

@@ -57,7 +57,7 @@ pub(super) fn refined(
     }
 }
 
-/// Residual of a point, and how far a unit of each parameter of the motion moves the outline there.
+/// Residual of a point, infinite where it has none, and how far a unit of each parameter of the motion moves the outline there.
 type Row<const K: usize> = (f64, [f64; K]);
 
 fn refined_sized<const K: usize>(
@@ -84,7 +84,7 @@ where
             map.null_directions(model, &pose).iter().for_each(|direction| leave_out(direction, &mut rows));
         }
         sizes.clear();
-        sizes.extend(rows.iter().map(|(r, _)| r.abs()));
+        sizes.extend(rows.iter().map(|(residual, _)| residual.abs()).filter(|size| size.is_finite()));
         spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
         let scale = tuning::TUKEY * spread.max(widest);
         let is_narrow = widest <= spread;
@@ -127,6 +127,14 @@ where
     Some(gram.cholesky()?.solve(&SVector::from(right)))
 }
 
+/// Distances that points count for at most in the score of a pose.
+#[derive(Debug, Clone, Copy)]
+struct MostDistance {
+    /// Nearest to a known end of the outline, and beyond it.
+    beyond_end: f64,
+    elsewhere: f64,
+}
+
 /// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.
 struct Seen<'a> {
     points: &'a [Point2<f64>],
@@ -137,7 +145,7 @@ struct Seen<'a> {
 
 impl Seen<'_> {
     #[inline(always)]
-    fn mean_distance<const AFFINE: bool>(&self, beyond_end: f64, numbers: &mut [u32]) -> f64 {
+    fn mean_distance<const AFFINE: bool>(&self, most: MostDistance, numbers: &mut [u32]) -> f64 {
         let Self { points, inverse, map, offsets } = self;
         let places = points.iter().map(
             #[inline(always)]
@@ -148,7 +156,7 @@ impl Seen<'_> {
         let mut sum = 0.0;
         for (q, number) in places.zip(numbers) {
             let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
-            let most = if map.lies_beyond_end(*number as usize, &q) { beyond_end } else { tuning::FARTHEST };
+            let most = if map.lies_beyond_end(*number as usize, &q) { most.beyond_end } else { most.elsewhere };
             sum += (q - (cell.centre + offset * cell.normal)).norm().min(most);
         }
         sum / points.len() as f64
@@ -193,7 +201,8 @@ impl Seen<'_> {
             let slope = 1.0 / (pulled.x * pulled.x + pulled.y * pulled.y).sqrt();
             let (residual, normal) = (distance * slope, pulled * slope);
             let along = velocities(&(p - residual * normal), &normal);
-            row.0 = residual;
+            // Beyond a known end nothing says where a point should lie.
+            row.0 = if map.lies_beyond_end(*number as usize, &q) { f64::INFINITY } else { residual };
             row.1.copy_from_slice(&along[..K]);
         }
     }
@@ -222,8 +231,9 @@ fn weighted_sums<const K: usize>(rows: &[Row<K>], scale: f64) -> ([[f64; K]; K],
     (gram, right)
 }
 
-/// Mean distance of points from the cells of the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away, those beyond its
-/// known ends as if they were a little further than points on it are; `numbers` has room for one of each point.
+/// Mean distance of points from the cells of the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away. Where the outline has
+/// ends, points may lie in its gaps: beyond an end they count a little more than points on it, elsewhere some times as much. `numbers` has room
+/// for one of each point.
 fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, numbers: &mut [u32]) -> f64 {
     let View { map, belief, noise } = track.view();
     let Some(inverse) = pose.try_inverse() else { return f64::INFINITY };
@@ -231,14 +241,18 @@ fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, num
         return f64::INFINITY;
     }
     let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
-    let beyond_end = tuning::BEYOND_END * noise.sigma.hypot(tuning::FROM_CENTRE * map.spacing());
+    let of_point = noise.sigma.hypot(tuning::FROM_CENTRE * map.spacing());
+    let most = MostDistance {
+        beyond_end: tuning::BEYOND_END * of_point,
+        elsewhere: if map.has_ends() { tuning::FARTHEST.min(tuning::IN_GAP * of_point) } else { tuning::FARTHEST },
+    };
     vectorised(
         #[inline(always)]
         || {
             if is_affine(&inverse) {
-                seen.mean_distance::<true>(beyond_end, numbers)
+                seen.mean_distance::<true>(most, numbers)
             } else {
-                seen.mean_distance::<false>(beyond_end, numbers)
+                seen.mean_distance::<false>(most, numbers)
             }
         },
     )

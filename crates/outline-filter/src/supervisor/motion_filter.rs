@@ -5,8 +5,14 @@ use freeform_estimate::TimeNotIncreasing;
 use nalgebra::{Point2, Projective2};
 
 use super::{
-    error::FilterError, motion_change::MotionHistory, repeated_frames::RepeatedFrames, search_budget::SearchBudget,
-    settings::FilterSettings, statement::Statement, tracking::advance, turn_hypotheses::TurnHypotheses,
+    error::FilterError,
+    motion_change::MotionHistory,
+    repeated_frames::{BeforeRepeated, RepeatedFrames},
+    search_budget::SearchBudget,
+    settings::FilterSettings,
+    statement::Statement,
+    tracking::advance,
+    turn_hypotheses::TurnHypotheses,
     window::InitialisationWindow,
 };
 use crate::{
@@ -149,8 +155,7 @@ pub struct MotionFilter {
     /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
     pub(super) unfound: Vec<(f64, Outline)>,
     pub(super) repeated: RepeatedFrames,
-    /// Shortest time between frames one after the other.
-    pub(super) shortest_step: f64,
+    pub(super) before_repeated: Option<Box<BeforeRepeated>>,
     #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) frame: Frame,
     /// What is stated after the last step, once it has been asked for.
@@ -182,7 +187,7 @@ impl MotionFilter {
             window: InitialisationWindow::default(),
             unfound: Vec::new(),
             repeated: RepeatedFrames::default(),
-            shortest_step: f64::INFINITY,
+            before_repeated: None,
             frame: Frame::default(),
             stated: OnceLock::new(),
         })
@@ -195,7 +200,7 @@ impl MotionFilter {
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
         TimeNotIncreasing::check(self.last_time * self.seconds_per_unit(), time)?;
         self.stated.take();
-        let is_repeated = self.repeated.is_repeated(outline);
+        let is_repeated = self.repeated.is_repeated(time, outline);
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
@@ -204,11 +209,11 @@ impl MotionFilter {
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
         if is_repeated && self.may_have_moved() {
-            self.last_time = time;
+            self.pass_over(time);
             let rejection = Some(Rejection::Repeated);
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection });
         }
-        self.shortest_step = self.shortest_step.min(time - self.track_time);
+        self.go_back_before_repeated();
         let (measurement, rejection) = self.process(time, outline);
         Ok(FilterStep { time: seconds, phase: self.phase, measurement, rejection })
     }
@@ -249,7 +254,8 @@ impl MotionFilter {
     /// Of two turns that look alike the smaller is taken, so that no frames tell one of more than half a circle between them.
     fn doubt_turns_beyond_half_a_circle(&mut self) {
         let Some(track) = self.track.as_ref().filter(|track| !track.turn_is_unseen()) else { return };
-        let (turn, shortest) = (track.turn_in(self.shortest_step), self.shortest_step);
+        let Some(shortest) = self.repeated.shortest_step().map(|step| step / self.seconds_per_unit()) else { return };
+        let turn = track.turn_in(shortest);
         if turn.abs() > PI {
             self.turn_hypotheses.doubt_more_than_half_a_circle(turn, shortest);
         }
@@ -266,7 +272,6 @@ impl MotionFilter {
         self.time_unit = Some(unit);
         self.last_time /= unit;
         self.track_time /= unit;
-        self.shortest_step /= unit;
         self.window.divide_times(unit);
         self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
     }

@@ -2,36 +2,87 @@
 use freeform_curve_fit::Outline;
 use nalgebra::Point2;
 
-use crate::tuning::supervisor::MOST_REPEATED;
+use super::{
+    motion_change::MotionHistory,
+    motion_filter::{MotionFilter, Phase},
+    tracking::predict,
+};
+use crate::{track::Track, tuning::supervisor::MOST_REPEATED};
 
-/// The points of the last frame, and how often it has been repeated. A camera or a converter that stores pictures twice gives outlines that are the same
+/// The points of the last frame, when it was seen first, and how often it has been repeated. A camera or a converter that stores pictures twice gives outlines that are the same
 /// to the last digit. They are no measurements of the times that they are given with: their noise is that of the frame before.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RepeatedFrames {
     points: Vec<Point2<f64>>,
     times: usize,
+    /// Seconds.
+    since: f64,
+    /// Shortest time between frames one after the other that differ, s; none before the second.
+    shortest_step: Option<f64>,
 }
 
 impl RepeatedFrames {
-    /// Takes the outline of a frame; whether it repeats the one before it, and not so often that the object must be at rest.
-    pub(super) fn is_repeated(&mut self, outline: &Outline) -> bool {
+    /// Takes the outline of a frame at a time in seconds; whether it repeats the one before it, and not so often that the object must be at rest.
+    pub(super) fn is_repeated(&mut self, time: f64, outline: &Outline) -> bool {
         let points = || outline.pieces().flat_map(|piece| piece.points);
         if points().eq(&self.points) {
             self.times = (self.times + 1).min(MOST_REPEATED + 1);
         } else {
+            if !self.points.is_empty() {
+                let step = time - self.since;
+                self.shortest_step = Some(self.shortest_step.map_or(step, |shortest| shortest.min(step)));
+            }
+            self.since = time;
             self.points.clear();
             self.points.extend(points());
             self.times = 0;
         }
         (1..=MOST_REPEATED).contains(&self.times)
     }
+
+    /// Shortest time between frames one after the other that differ, s; none before the second.
+    pub(super) fn shortest_step(&self) -> Option<f64> {
+        self.shortest_step
+    }
+}
+
+/// What was known at the last frame that was looked at. After frames that repeat it the track stands at their times, so that what is stated does; the
+/// next frame is looked at as if they had not been there.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct BeforeRepeated {
+    pub(super) track: Track,
+    pub(super) history: MotionHistory,
+    pub(super) time: f64,
+}
+
+impl MotionFilter {
+    /// Moves on to the time of a frame that repeats the one before it.
+    pub(super) fn pass_over(&mut self, time: f64) {
+        self.last_time = time;
+        let Some(track) = self.track.as_mut().filter(|_| self.phase == Phase::Tracking) else { return };
+        if self.before_repeated.is_none() {
+            let (track, history) = (track.clone(), self.history.clone());
+            self.before_repeated = Some(Box::new(BeforeRepeated { track, history, time: self.track_time }));
+        }
+        predict(&self.settings, track, &mut self.history, time - self.track_time);
+        self.track_time = time;
+    }
+
+    /// Goes back to the last frame that was looked at.
+    pub(super) fn go_back_before_repeated(&mut self) {
+        if let Some(before) = self.before_repeated.take() {
+            let BeforeRepeated { track, history, time } = *before;
+            (self.track, self.history, self.track_time) = (Some(track), history, time);
+        }
+    }
 }
 
 #[cfg(feature = "serde")]
 impl RepeatedFrames {
     pub(super) fn is_valid(&self) -> bool {
-        self.times <= MOST_REPEATED + 1
+        self.times <= MOST_REPEATED + 1 && self.since.is_finite() && self.shortest_step.is_none_or(|step| step > 0.0)
     }
 }
 
@@ -46,10 +97,10 @@ mod tests {
             Outline::closed((0..9).map(point).collect()).expect("an outline")
         };
         let mut frames = RepeatedFrames::default();
-        let mut found = |shift| frames.is_repeated(&outline(shift));
-        assert_eq!(
-            [0.0, 0.0, 1e-15, 1e-15, 1e-15, 1e-15, 1e-15, 1e-15, 0.0, 0.0].map(&mut found),
-            [false, true, false, true, true, true, false, false, false, true]
-        );
+        let shifts = [0.0, 0.0, 1e-15, 1e-15, 1e-15, 1e-15, 1e-15, 1e-15, 0.0, 0.0];
+        let found: Vec<_> =
+            (0_u32..).zip(shifts).map(|(i, shift)| frames.is_repeated(f64::from(i), &outline(shift))).collect();
+        assert_eq!(found, [false, true, false, true, true, true, false, false, false, true]);
+        assert_eq!(frames.shortest_step(), Some(2.0));
     }
 }

@@ -1,7 +1,10 @@
 //! A filter as bytes and back.
 use freeform_estimate::{StateError, StateFormat};
 
-use super::motion_filter::{Counts, MotionFilter, Phase};
+use super::{
+    motion_filter::{Counts, MotionFilter, Phase},
+    repeated_frames::BeforeRepeated,
+};
 use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
@@ -64,6 +67,13 @@ impl MotionFilter {
         if !self.track.as_mut().is_none_or(restored) {
             return inconsistent("track");
         }
+        let settings = &self.settings;
+        let is_valid = |before: &mut Box<BeforeRepeated>| {
+            restored(&mut before.track) && before.history.is_valid(settings) && before.time.is_finite()
+        };
+        if !self.before_repeated.as_mut().is_none_or(is_valid) {
+            return inconsistent("repeated frames");
+        }
         if !self.turn_hypotheses.restore(restored) {
             return inconsistent("hypotheses");
         }
@@ -98,7 +108,6 @@ impl MotionFilter {
         let is_unit = |unit: f64| is_power_of_two(unit) && (1.0 / unit).is_normal();
         (self.last_time.is_finite() || before_first)
             && self.track_time.is_finite()
-            && self.shortest_step > 0.0
             && self.time_unit.is_none_or(is_unit)
     }
 

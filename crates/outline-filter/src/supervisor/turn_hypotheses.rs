@@ -236,11 +236,19 @@ impl TurnHypotheses {
                 let again = track.update(frame, &gate, Comparison::NotAsked);
                 outcome = if again.is_accepted() { again } else { outcome };
             }
-            let is_better = is_alike
-                && (self.likelihood.is_worse_than(&of_rival) || have_met && of_rival.squares < self.likelihood.squares);
+            // Of what looked the same but does not, the path decides nothing.
+            let is_better = if is_alike {
+                self.likelihood.is_worse_than(&of_rival) || have_met && of_rival.all() < self.likelihood.all()
+            } else {
+                self.likelihood.shows_less_than(&of_rival)
+            };
+            let are_told_apart = !is_alike && is_better && found.is_accepted();
             if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 self.exchange(index, track);
-                is_another |= is_alike;
+                if are_told_apart {
+                    self.deny_symmetry();
+                }
+                is_another |= is_alike || are_told_apart;
                 let is_worse = !outcome.is_accepted() || self.rivals[index].likelihood.is_worse_than(&self.likelihood);
                 if is_worse || have_met {
                     self.rule_out(index);
@@ -268,6 +276,14 @@ impl TurnHypotheses {
         }
         std::mem::swap(&mut self.likelihood, &mut rival.likelihood);
         std::mem::swap(&mut self.present_turn, &mut self.rival_turns[index]);
+    }
+
+    /// After frames that tell turns apart which had looked the same: an outline with a mark that was hidden, or smaller than what one frame shows.
+    fn deny_symmetry(&mut self) {
+        self.symmetry_angle = TAU;
+        for hypothesis in self.rivals.iter_mut().filter(|hypothesis| hypothesis.track.is_some()) {
+            hypothesis.reason = Reason::Likeness;
+        }
     }
 
     /// After a frame that decides against a rival.

@@ -168,7 +168,8 @@ impl Track {
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
             likelihood = view.negative_log_likelihood(frame);
-            likelihood.squares += innovation.squared.min(tuning::SUDDEN * self.model().parameter_count() as f64);
+            // No more than a motion has that goes on as it was: another says nothing of the turn.
+            likelihood.of_path = innovation.squared.min(tuning::SUDDEN * self.model().parameter_count() as f64);
         }
         let measurement = view.compare(frame, &proposal, innovation.squared, radius);
         // Points that do not move show none of what they are rounded by.

@@ -36,6 +36,8 @@ pub(crate) mod registration {
     /// as much as points that are far off, poses were taken that put the most points on what was known, though others put all of those there
     /// where the outline is: a square with a chamfer turned by a right angle too much.
     pub(crate) const BEYOND_END: f64 = 1.5;
+    /// As that, of any other point where the outline has gaps: in the middle of one it lies nearest to what is across.
+    pub(crate) const IN_GAP: f64 = 4.0;
     /// Mean distance of a point on the outline from the middle of its cell, in spacings.
     pub(crate) const FROM_CENTRE: f64 = 0.25;
     /// Deviation of the residuals that the first step of a search allows for, in radii: starts lie up to 7.5 degrees off, which is 0.13 at the
