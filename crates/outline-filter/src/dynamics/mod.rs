@@ -7,6 +7,7 @@ mod centred;
 mod combination;
 mod common_error;
 mod commuting;
+mod correction;
 mod course;
 mod dynamics_filter;
 mod family;
@@ -15,6 +16,7 @@ mod innovations;
 mod interacting;
 mod mixing;
 mod setting;
+mod turned_chains;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use combination::Purpose;
