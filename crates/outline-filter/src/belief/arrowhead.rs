@@ -184,7 +184,7 @@ mod tests {
                 }
             }
         }
-        let found = told_by_offsets(&information);
+        let found = told_by_offsets::<S>(&information);
         found.iter().flatten().zip(expected.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
