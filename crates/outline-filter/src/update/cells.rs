@@ -1,0 +1,180 @@
+//! The normal equations of a frame by sums over the points of each cell, where cells are lines in the image.
+//!
+//! The Jacobian of a point is that of its foot on the line of its cell, `a + t b` with the coordinate t along the line. The sums of the
+//! weights w, of w t and of w t^2 say what all points of a cell tell of pose and offset, and those of w r and w t r what their residuals r ask
+//! for. The plain way is `accumulate`, point by point; a test compares the two.
+use freeform_riccati::{MotionModel, ParameterVector};
+use nalgebra::{Point2, Vector2};
+
+use super::normal_equations::Added;
+use crate::{
+    belief::{Arrowhead, OffsetInformation, StateVector},
+    measurement::{CellLine, CellSums, Columns, Frame},
+    vectors::vectorised,
+};
+
+impl Frame {
+    /// Adds the points, of which the cells have the Jacobians, to what was known of the offsets and to the dense part of `work`; returns what
+    /// they add to pose and motion, and leaves the right-hand sides of the offsets in the frame. `state` is the step that the residuals were
+    /// taken after.
+    pub(super) fn accumulate_cells(
+        &mut self,
+        known: &OffsetInformation,
+        work: &mut Arrowhead,
+        state: &StateVector,
+    ) -> Added {
+        self.right.resize(known.len(), 0.0);
+        self.columns.sum_up();
+        match work.k {
+            3 => self.accumulate_sized::<3, 6>(known, work, state, |p, n| MotionModel::Rigid.normal_velocities(p, n)),
+            4 => {
+                let velocities = |p: &Point2<f64>, n: &Vector2<f64>| MotionModel::Similarity.normal_velocities(p, n);
+                self.accumulate_sized::<4, 8>(known, work, state, velocities)
+            }
+            6 => self.accumulate_sized::<6, 12>(known, work, state, |p, n| MotionModel::Affine.normal_velocities(p, n)),
+            _ => {
+                let velocities = |p: &Point2<f64>, n: &Vector2<f64>| MotionModel::Projective.normal_velocities(p, n);
+                self.accumulate_sized::<8, 16>(known, work, state, velocities)
+            }
+        }
+    }
+
+    fn accumulate_sized<const K: usize, const S: usize>(
+        &mut self,
+        known: &OffsetInformation,
+        work: &mut Arrowhead,
+        state: &StateVector,
+        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector + Copy,
+    ) -> Added {
+        match K {
+            3 => self.accumulate_padded::<K, S, 4>(known, work, state, velocities),
+            4 | 6 => self.accumulate_padded::<K, S, 8>(known, work, state, velocities),
+            _ => self.accumulate_padded::<K, S, 12>(known, work, state, velocities),
+        }
+    }
+
+    /// P is room for the right-hand side beside a row of the information, in whole vectors.
+    fn accumulate_padded<const K: usize, const S: usize, const P: usize>(
+        &mut self,
+        known: &OffsetInformation,
+        work: &mut Arrowhead,
+        state: &StateVector,
+        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector + Copy,
+    ) -> Added {
+        let step: [f64; K] = std::array::from_fn(|i| state[i]);
+        work.cells.resize_as(known);
+        let (own, coupling) = work.cells.all_mut::<S>();
+        let Self { right, shifts, columns: Columns { lines, sums, rows_of_cells, .. }, .. } = self;
+        rows_of_cells.resize(2 * P * shifts.len(), 0.0);
+        let rows = pairs_mut::<P>(rows_of_cells);
+        let known = known.own().iter().zip(known.rows::<S>());
+        let total = vectorised(
+            #[inline(always)]
+            || {
+                // Rows are written first: the sums after that run in vectors.
+                for (rows, (line, shift)) in rows.iter_mut().zip(lines.iter().zip(shifts.iter())) {
+                    write_rows::<K, P>(rows, line, (*shift, &step), velocities);
+                }
+                let mut total = [[0.0; P]; K];
+                let of_cells = rows.iter().zip(lines.iter().zip(sums.iter())).zip(known.clone());
+                let added = own.iter_mut().zip(coupling.iter_mut()).zip(right.iter_mut());
+                for (((rows, (line, sums)), (known, known_row)), ((own, row), right)) in of_cells.zip(added) {
+                    let by_foot = add_cell::<K, P>(&mut total, rows, sums);
+                    let by_offset = line.by_offset;
+                    *own = known + sums.moments[0] * by_offset * by_offset;
+                    *right = by_offset * by_foot[K];
+                    let mut with = *known_row;
+                    for i in 0..K {
+                        with[i] += by_offset * by_foot[i];
+                    }
+                    *row = with;
+                }
+                total
+            },
+        );
+        // Rounded apart in its two halves.
+        let information: [[f64; K]; K] =
+            std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (total[i][j] + total[j][i])));
+        Added::to(&mut work.dense, &information, &std::array::from_fn(|i| total[i][K]))
+    }
+
+    /// Moves the residuals of the points, of which the cells have the Jacobians, by a step of the pose and one of the offset of each cell.
+    pub(super) fn move_residuals_of_cells<const K: usize>(&mut self, step: &[f64; K], by_cell: &[f64]) {
+        match K {
+            3 => self.move_residuals_padded::<K, 4>(step, by_cell),
+            4 | 6 => self.move_residuals_padded::<K, 8>(step, by_cell),
+            _ => self.move_residuals_padded::<K, 12>(step, by_cell),
+        }
+    }
+
+    fn move_residuals_padded<const K: usize, const P: usize>(&mut self, step: &[f64; K], by_cell: &[f64]) {
+        let Columns { lines, moves, numbers, residuals, along, rows_of_cells, .. } = &mut self.columns;
+        moves.resize(lines.len(), [0.0; 2]);
+        // What is none has not moved.
+        moves[by_cell.len()..].fill([0.0; 2]);
+        let (moves, rows) = (moves.as_mut_slice(), pairs_mut::<P>(rows_of_cells));
+        vectorised(
+            #[inline(always)]
+            || {
+                let of_cells = rows.iter().zip(lines.iter().zip(by_cell));
+                for (moved, ([foot, further], (line, by_cell))) in moves.iter_mut().zip(of_cells) {
+                    let (mut at, mut slope) = (line.by_offset * by_cell, 0.0);
+                    for i in 0..K {
+                        at += foot[i] * step[i];
+                        slope += further[i] * step[i];
+                    }
+                    *moved = [at, slope];
+                }
+                for (residual, (number, t)) in residuals.iter_mut().zip(numbers.iter().zip(along.iter())) {
+                    let [at, slope] = moves[*number as usize];
+                    *residual -= at + slope * t;
+                }
+            },
+        );
+    }
+}
+
+/// Of each cell a row for the foot of its line, and one for what comes to it along the line: the Jacobian, and in place K what the residuals
+/// were more before the step that they were taken after.
+#[inline(always)]
+fn pairs_mut<const P: usize>(rows: &mut [f64]) -> &mut [[[f64; P]; 2]] {
+    rows.as_chunks_mut().0.as_chunks_mut().0
+}
+
+#[inline(always)]
+fn write_rows<const K: usize, const P: usize>(
+    [foot, further]: &mut [[f64; P]; 2],
+    line: &CellLine,
+    (shift, step): (f64, &[f64; K]),
+    velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
+) {
+    let [at_foot, along] = line.jacobian::<K>(velocities);
+    let (mut at, mut slope) = (line.by_offset * shift, 0.0);
+    for i in 0..K {
+        (foot[i], further[i]) = (at_foot[i], along[i]);
+        at += at_foot[i] * step[i];
+        slope += along[i] * step[i];
+    }
+    (foot[K], further[K]) = (at, slope);
+}
+
+/// Adds what the points of a cell say of the pose, with the right-hand side in column K; returns the same of the offset, for a unit of it.
+#[inline(always)]
+fn add_cell<const K: usize, const P: usize>(
+    total: &mut [[f64; P]; K],
+    [foot, further]: &[[f64; P]; 2],
+    CellSums { moments: [w, wt, wtt, wr], along: wtr }: &CellSums,
+) -> [f64; P] {
+    let (mut by_foot, mut by_along) = ([0.0; P], [0.0; P]);
+    for j in 0..P {
+        let of_residuals = if j == K { 1.0 } else { 0.0 };
+        by_foot[j] = w * foot[j] + wt * further[j] + wr * of_residuals;
+        by_along[j] = wt * foot[j] + wtt * further[j] + wtr * of_residuals;
+    }
+    for i in 0..K {
+        for j in 0..P {
+            total[i][j] += foot[i] * by_foot[j] + further[i] * by_along[j];
+        }
+    }
+    by_foot
+}
