@@ -136,14 +136,16 @@ fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &Paramet
 
 /// Sum of `c c' / o` over the cells; nothing is told of those that nothing is known of.
 fn told_by_offsets<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
-    let (rows, own) = (cells.rows::<S>(), cells.own());
+    let count = cells.len();
+    let (rows, own) = (&cells.rows::<S>()[..count], &cells.own()[..count]);
     vectorised(
         #[inline(always)]
         || {
-            sum_of_outer_products(rows.iter().zip(own).map(
+            sum_of_outer_products(
+                count,
                 #[inline(always)]
-                |(row, own)| (row, if *own > 0.0 { 1.0 / own } else { 0.0 }),
-            ))
+                |number| (&rows[number], if own[number] > 0.0 { 1.0 / own[number] } else { 0.0 }),
+            )
         },
     )
 }

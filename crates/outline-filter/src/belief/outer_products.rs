@@ -3,29 +3,48 @@ use std::borrow::Borrow;
 
 use crate::vectors::{LANES, Lanes};
 
-/// Sum of `s r r'` over rows r with scales s, symmetric. To be called where vector instructions are at hand.
+/// Rows that are written side by side before they are summed up, where that takes more than one round.
+const BLOCK: usize = 16;
+
+/// Sum of `s r r'` over so many rows r with scales s, given by their numbers; symmetric. To be called where vector instructions are at hand.
 ///
 /// As many rows of the sum are summed up at a time as fit into registers, up to their diagonal in whole vectors; with six entries all of them at
 /// once, in vectors that overlap.
 #[inline(always)]
-pub(crate) fn sum_of_outer_products<const S: usize>(
-    rows: impl Iterator<Item = (impl Borrow<[f64; S]>, f64)> + Clone,
+pub(crate) fn sum_of_outer_products<R: Borrow<[f64; S]>, const S: usize>(
+    count: usize,
+    row_with_scale: impl Fn(usize) -> (R, f64),
 ) -> [[f64; S]; S] {
     const { assert!(S == 6 || (S.is_multiple_of(LANES) && S <= 16)) }
     let mut sum = [[0.0; S]; S];
     if S == 6 {
-        add_rows::<S, 6, 2>(rows, 0, &mut sum);
+        add_rows::<S, 6, 2>(count, &ByNumber(row_with_scale), 0, &mut sum);
         return sum;
     }
-    add_rows::<S, LANES, 1>(rows.clone(), 0, &mut sum);
-    if S > 4 {
-        add_rows::<S, LANES, 2>(rows.clone(), 4, &mut sum);
+    if S == 4 {
+        add_rows::<S, 4, 1>(count, &ByNumber(row_with_scale), 0, &mut sum);
+        return sum;
     }
-    if S > 8 {
-        add_rows::<S, LANES, 3>(rows.clone(), 8, &mut sum);
-    }
-    if S > 12 {
-        add_rows::<S, LANES, 4>(rows, 12, &mut sum);
+    let (mut rows, mut scales) = ([[0.0; S]; BLOCK], [0.0; BLOCK]);
+    for start in (0..count).step_by(BLOCK) {
+        let length = BLOCK.min(count - start);
+        for i in 0..length {
+            let (row, scale) = row_with_scale(start + i);
+            (rows[i], scales[i]) = (*row.borrow(), scale);
+        }
+        let block = Written { rows: &rows[..length], scales: &scales[..length] };
+        add_rows::<S, 4, 1>(length, &block, 0, &mut sum);
+        if S > 4 {
+            add_rows::<S, 4, 2>(length, &block, 4, &mut sum);
+        }
+        if S > 8 {
+            add_rows::<S, 2, 3>(length, &block, 8, &mut sum);
+            add_rows::<S, 2, 3>(length, &block, 10, &mut sum);
+        }
+        if S > 12 {
+            add_rows::<S, 2, 4>(length, &block, 12, &mut sum);
+            add_rows::<S, 2, 4>(length, &block, 14, &mut sum);
+        }
     }
     for i in 0..S {
         for j in 0..i {
@@ -35,17 +54,45 @@ pub(crate) fn sum_of_outer_products<const S: usize>(
     sum
 }
 
-/// Some rows of the sum, from one on, over the first so many vectors of each.
+/// Rows with their scales.
+trait Rows<const S: usize> {
+    fn get(&self, number: usize) -> (impl Borrow<[f64; S]>, f64);
+}
+
+struct ByNumber<F>(F);
+
+impl<const S: usize, R: Borrow<[f64; S]>, F: Fn(usize) -> (R, f64)> Rows<S> for ByNumber<F> {
+    #[inline(always)]
+    fn get(&self, number: usize) -> (impl Borrow<[f64; S]>, f64) {
+        (self.0)(number)
+    }
+}
+
+struct Written<'a, const S: usize> {
+    rows: &'a [[f64; S]],
+    scales: &'a [f64],
+}
+
+impl<const S: usize> Rows<S> for Written<'_, S> {
+    #[inline(always)]
+    fn get(&self, number: usize) -> (impl Borrow<[f64; S]>, f64) {
+        (&self.rows[number], self.scales[number])
+    }
+}
+
+/// Adds to some rows of the sum, from one on, over the first so many vectors of each.
 #[inline(always)]
 fn add_rows<const S: usize, const ROWS: usize, const VECTORS: usize>(
-    rows: impl Iterator<Item = (impl Borrow<[f64; S]>, f64)>,
+    count: usize,
+    rows: &impl Rows<S>,
     from: usize,
     sum: &mut [[f64; S]; S],
 ) {
     // The last vector overlaps the one before where the rows are no multiple of vectors.
     let start = |vector: usize| (LANES * vector).min(S - LANES);
     let mut sums = [[[0.0; LANES]; VECTORS]; ROWS];
-    for (row, scale) in rows {
+    for number in 0..count {
+        let (row, scale) = rows.get(number);
         let row: &[f64; S] = row.borrow();
         let mut scaled = [[0.0; LANES]; VECTORS];
         for (vector, scaled) in scaled.iter_mut().enumerate() {
@@ -62,7 +109,16 @@ fn add_rows<const S: usize, const ROWS: usize, const VECTORS: usize>(
     }
     for (sums, sum) in sums.iter().zip(&mut sum[from..]) {
         for (vector, sums) in sums.iter().enumerate() {
-            sum[start(vector)..][..LANES].copy_from_slice(sums);
+            if S == 6 {
+                // All at once, and what vectors that overlap have both is the same in both.
+                sum[start(vector)..][..LANES].copy_from_slice(sums);
+                continue;
+            }
+            // Written so, the sums stay in registers.
+            let before = if vector > 0 { start(vector - 1) + LANES } else { 0 };
+            for lane in before - start(vector).min(before)..LANES {
+                sum[start(vector) + lane] += sums[lane];
+            }
         }
     }
 }
@@ -88,7 +144,7 @@ mod tests {
         let rows: Vec<([f64; S], f64)> = (0..count).map(|_| (std::array::from_fn(|_| draw()), draw())).collect();
         let found = vectorised(
             #[inline(always)]
-            || sum_of_outer_products(rows.iter().map(|(row, scale)| (row, *scale))),
+            || sum_of_outer_products(rows.len(), |number| (&rows[number].0, rows[number].1)),
         );
         let expected = |i: usize, j: usize| rows.iter().map(|(row, scale)| scale * row[i] * row[j]).sum::<f64>();
         let entries = (0..S).flat_map(|i| (0..S).map(move |j| (i, j)));
@@ -97,7 +153,7 @@ mod tests {
 
     #[test]
     fn sums_in_registers_are_those_entry_by_entry() {
-        for count in [0, 1, 2, 30] {
+        for count in [0, 1, 2, 16, 45] {
             let all = [difference::<4>(count), difference::<6>(count), difference::<8>(count)];
             let all = all.into_iter().chain([difference::<12>(count), difference::<16>(count)]);
             assert!(all.fold(0.0, f64::max) < 1e-13, "{count}");

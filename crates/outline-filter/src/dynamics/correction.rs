@@ -41,40 +41,49 @@ impl<const K: usize> Weight<K> {
     /// By the root of the information and the covariance of the pose, both by columns.
     #[inline(always)]
     fn of(root: &[[f64; K]; K], pose: &[[f64; K]; K]) -> Self {
-        // P L by columns, and the lower triangle of I + L' P L.
+        // Long columns are worked on as whole vectors, with zeros and with what is not needed of them.
+        let first = |j: usize| if K < 6 { j } else { 0 };
+        let mut rows = [[0.0; K]; K];
+        for i in 0..K {
+            for j in 0..K {
+                rows[i][j] = root[j][i];
+            }
+        }
+        // P L and I + L' P L by columns.
         let mut sum = [[0.0; K]; K];
         for j in 0..K {
-            let mut column = [0.0; K];
-            for l in j..K {
+            let (mut column, mut of_sum) = ([0.0; K], [0.0; K]);
+            for l in first(j)..K {
                 for i in 0..K {
                     column[i] += pose[l][i] * root[j][l];
                 }
             }
-            for i in j..K {
-                for l in i..K {
-                    sum[j][i] += root[i][l] * column[l];
+            of_sum[j] = 1.0;
+            for l in 0..K {
+                for i in first(j)..K {
+                    of_sum[i] += rows[l][i] * column[l];
                 }
             }
-            sum[j][j] += 1.0;
+            sum[j] = of_sum;
         }
-        // Its root C, column by column, and with it the columns of T, which L is.
+        // The columns of its root C from the diagonal on, and with them the columns of T, which L is.
         let (mut columns, mut determinant) = (*root, 1.0);
         for j in 0..K {
             determinant *= sum[j][j];
             let inverse = 1.0 / sum[j][j].sqrt();
-            for i in j..K {
-                sum[j][i] *= inverse;
-            }
+            let (mut pivot, mut column) = (sum[j], columns[j]);
             for i in 0..K {
-                columns[j][i] *= inverse;
+                pivot[i] *= inverse;
+                column[i] *= inverse;
             }
+            columns[j] = column;
             for l in j + 1..K {
-                let factor = sum[j][l];
-                for i in l..K {
-                    sum[l][i] -= factor * sum[j][i];
+                let factor = pivot[l];
+                for i in first(l)..K {
+                    sum[l][i] -= factor * pivot[i];
                 }
                 for i in 0..K {
-                    columns[l][i] -= factor * columns[j][i];
+                    columns[l][i] -= factor * column[i];
                 }
             }
         }

@@ -9,17 +9,17 @@ impl Track {
     /// The motion of the body frame that moves the outline as the frame just taken has moved the offsets of its cells, by least squares; what
     /// is known of a cell is its weight, so that what frames move here and there adds up to what it is all together.
     pub(super) fn common_shift(&self, frame: &Frame) -> SVector<f64, MAX_PARAMETERS> {
-        let information = self.belief.information.cells.own().iter().copied();
-        self.motion_of_outline(&information.zip(frame.shifts.iter().copied()))
+        let (information, shifts) = (self.belief.information.cells.own(), frame.shifts.as_slice());
+        self.motion_of_outline(
+            #[inline(always)]
+            |number| (information[number], shifts[number]),
+        )
     }
 
-    /// The motion of the body frame that moves the outline as the offsets of its cells have changed, by least squares; of each cell the weight
-    /// and the change.
+    /// The motion of the body frame that moves the outline as the offsets of its cells have changed, by least squares; of each cell, by its
+    /// number, the weight and the change.
     #[inline(always)]
-    pub(super) fn motion_of_outline(
-        &self,
-        moved: &(impl Iterator<Item = (f64, f64)> + Clone),
-    ) -> SVector<f64, MAX_PARAMETERS> {
+    pub(super) fn motion_of_outline(&self, moved: impl Fn(usize) -> (f64, f64)) -> SVector<f64, MAX_PARAMETERS> {
         match self.belief.model {
             MotionModel::Rigid => {
                 self.motion_of_outline_sized::<3>(moved, |p, n| MotionModel::Rigid.normal_velocities(p, n))
@@ -39,7 +39,7 @@ impl Track {
     #[inline(always)]
     fn motion_of_outline_sized<const K: usize>(
         &self,
-        moved: &(impl Iterator<Item = (f64, f64)> + Clone),
+        moved: impl Fn(usize) -> (f64, f64),
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
     ) -> SVector<f64, MAX_PARAMETERS>
     where
@@ -64,23 +64,25 @@ impl Track {
     #[inline(always)]
     fn sums_of_cells<const K: usize, const P: usize>(
         &self,
-        moved: &(impl Iterator<Item = (f64, f64)> + Clone),
+        moved: impl Fn(usize) -> (f64, f64),
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
     ) -> Sums<K> {
-        let of_cells = self.map.cells().iter().zip(moved.clone());
+        let cells = self.map.cells();
         let sums = vectorised(
             #[inline(always)]
             || {
-                sum_of_outer_products::<P>(of_cells.clone().map(
+                sum_of_outer_products::<_, P>(
+                    cells.len(),
                     #[inline(always)]
-                    |(cell, (weight, change))| {
+                    |number| {
+                        let (cell, (weight, change)) = (&cells[number], moved(number));
                         let along = velocities(&cell.centre, &cell.normal);
                         let mut row = [0.0; P];
                         row[..K].copy_from_slice(&along[..K]);
                         row[K] = change;
                         (row, weight)
                     },
-                ))
+                )
             },
         );
         Sums {

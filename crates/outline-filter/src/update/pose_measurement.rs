@@ -91,21 +91,26 @@ fn padded<const K: usize, const S: usize, const P: usize>(
     [with, before]: [&OffsetInformation; 2],
     right: &[f64],
 ) -> Taken<K> {
-    let of_cells = with.own().iter().zip(before.own()).zip(with.rows::<S>().iter().zip(before.rows::<S>())).zip(right);
+    let count = right.len();
+    let (own, own_before, right) = (&with.own()[..count], &before.own()[..count], &right[..count]);
+    let (coupling, coupling_before) = (&with.rows::<S>()[..count], &before.rows::<S>()[..count]);
     let sum = vectorised(
         #[inline(always)]
         || {
-            sum_of_outer_products::<P>(of_cells.clone().map(
+            sum_of_outer_products::<_, P>(
+                count,
                 #[inline(always)]
-                |(((own, own_before), (coupling, coupling_before)), right)| {
+                |number| {
+                    let (coupling, before) = (&coupling[number], &coupling_before[number]);
                     let mut added = [0.0; P];
                     for i in 0..K {
-                        added[i] = coupling[i] - coupling_before[i];
+                        added[i] = coupling[i] - before[i];
                     }
-                    added[K] = *right;
-                    (added, if own > own_before { 1.0 / own } else { 0.0 })
+                    added[K] = right[number];
+                    let own = own[number];
+                    (added, if own > own_before[number] { 1.0 / own } else { 0.0 })
                 },
-            ))
+            )
         },
     );
     Taken {
