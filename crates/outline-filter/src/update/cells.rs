@@ -178,3 +178,88 @@ fn add_cell<const K: usize, const P: usize>(
     }
     by_foot
 }
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::Outline;
+    use nalgebra::{Matrix3, Point2, Vector2};
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::{
+        measurement::{Jacobians, Pass},
+        track::Track,
+    };
+
+    /// Points of an egg with three bulges, each elsewhere on it, and some anywhere.
+    fn egg(rng: &mut ChaCha8Rng, count: u32) -> Outline {
+        let point = |i: u32| {
+            let t = std::f64::consts::TAU * (f64::from(i) + rng.random_range(0.0..1.0)) / f64::from(count);
+            let r = 1.0 + 0.2 * (3.0 * t).cos() + 0.1 * t.sin() + rng.random_range(-0.01..0.01);
+            let off = if i % 19 == 3 { Vector2::new(0.2, -0.1) } else { Vector2::zeros() };
+            Point2::new(r * t.cos(), 0.8 * r * t.sin()) + off
+        };
+        Outline::closed((0..count).map(point).collect()).expect("an outline")
+    }
+
+    fn assert_near(found: impl IntoIterator<Item = f64>, expected: impl IntoIterator<Item = f64>, what: &str) {
+        let (found, expected): (Vec<_>, Vec<_>) = (found.into_iter().collect(), expected.into_iter().collect());
+        let size = expected.iter().fold(0.0, |size, entry| f64::max(size, entry.abs()));
+        assert_eq!(found.len(), expected.len(), "{what}");
+        assert!(size > 0.0, "{what}");
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).abs() < 1e-12 * size, "{what}: {found} {expected}");
+        }
+    }
+
+    fn compare<const K: usize>(model: MotionModel, count: u32) {
+        let mut rng = ChaCha8Rng::seed_from_u64(u64::from(count));
+        let mut frame = Frame::default();
+        let track = Track::begin(model, &egg(&mut rng, 300), 0.0, &mut frame).expect("a track");
+        let view = track.view();
+        let mut draw = |size: f64| rng.random_range(-size..size);
+        let pose = Matrix3::new(1.01, 0.02, 0.01, -0.03, 0.98, 0.02, 0.0, 0.0, 1.0);
+        let state = StateVector::from_fn(|i, _| if i < K { draw(0.01) } else { 0.0 });
+        let step: [f64; K] = std::array::from_fn(|_| draw(0.01));
+        let shifts: Vec<f64> = (0..view.map.cells().len()).map(|_| draw(0.005)).collect();
+        let by_cell: Vec<f64> = shifts.iter().map(|_| draw(0.005)).collect();
+        frame.load(&egg(&mut rng, count), track.reference());
+        frame.shifts = shifts;
+        view.measure_by_columns(&mut frame, &pose, &[], Pass::First);
+        assert_eq!(frame.columns.jacobians, Jacobians::OfCells);
+        let mut plain = frame.clone();
+        view.write_measurements(&mut plain, &[]);
+        assert_eq!(plain.columns.jacobians, Jacobians::OfPoints);
+
+        let known = &view.belief.information;
+        let [mut work, mut expected] = [Arrowhead::new(K), Arrowhead::new(K)];
+        let found = frame.accumulate_onto(known, &mut work, &state);
+        let of_points = plain.accumulate_onto(known, &mut expected, &state);
+        let name = |what: &str| format!("{model}, {count} points: {what}");
+        let flat = |m: &[[f64; 8]; 8]| m.iter().flatten().copied().collect::<Vec<_>>();
+        assert_near(flat(&found.information), flat(&of_points.information), &name("information"));
+        assert_near(found.right.iter().copied(), of_points.right.iter().copied(), &name("right-hand side"));
+        assert_near(work.dense.into_iter().flatten(), expected.dense.into_iter().flatten(), &name("dense"));
+        assert_near(frame.right.clone(), plain.right.clone(), &name("right-hand sides of offsets"));
+        assert_near(work.cells.own().to_vec(), expected.cells.own().to_vec(), &name("information on offsets"));
+        let couplings = |work: &Arrowhead| work.cells.couplings().flatten().copied().collect::<Vec<_>>();
+        assert_near(couplings(&work), couplings(&expected), &name("couplings"));
+
+        frame.move_residuals_of_cells(&step, &by_cell);
+        plain.move_residuals_of_points(&step, &by_cell);
+        assert_near(frame.columns.residuals.clone(), plain.columns.residuals.clone(), &name("residuals"));
+        let of_measurements = plain.measurements.iter().map(|m| m.residual);
+        assert_near(frame.columns.residuals.clone(), of_measurements, &name("residuals of measurements"));
+    }
+
+    #[test]
+    fn sums_of_cells_say_what_all_of_their_points_do_one_by_one() {
+        for count in [40, 301, 1603] {
+            compare::<3>(MotionModel::Rigid, count);
+            compare::<4>(MotionModel::Similarity, count);
+            compare::<6>(MotionModel::Affine, count);
+            compare::<8>(MotionModel::Projective, count);
+        }
+    }
+}

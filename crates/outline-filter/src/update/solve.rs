@@ -135,7 +135,7 @@ impl Frame {
     }
 
     /// Moves the residuals by a step of the pose and one of the offset of each cell.
-    fn move_residuals_of_points<const K: usize>(&mut self, step: &[f64; K], by_cell: &[f64]) {
+    pub(super) fn move_residuals_of_points<const K: usize>(&mut self, step: &[f64; K], by_cell: &[f64]) {
         let Self { measurements, columns, .. } = self;
         vectorised(
             #[inline(always)]
