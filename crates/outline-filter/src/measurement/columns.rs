@@ -5,27 +5,24 @@ use nalgebra::{Point2, Vector2};
 use super::{Measurement, NO_CELL};
 use crate::vectors::{LANES, Lanes, vectorised};
 
-/// The outline at a cell in the image of one frame. Its numbers lie in the order of a vector, in which those of the points are looked up.
+/// The outline at a cell in the image of one frame, in the order of a vector: the normal, where the line lies along it, and, over that of the
+/// noise, the inverse deviation of the points of the cell.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct CellLine {
-    /// The normal, where the line lies along it, and, over that of the noise, the inverse deviation of the points of the cell.
-    pub(super) row: Lanes,
-    pub(crate) by_offset: f64,
-}
+pub(crate) struct CellLine(pub(super) Lanes);
 
 impl CellLine {
     /// Of a point without a cell: it has no distance and does not count.
-    pub(super) const NONE: Self = Self { row: [0.0; LANES], by_offset: 0.0 };
+    pub(super) const NONE: Self = Self([0.0; LANES]);
 
     #[inline(always)]
     pub(crate) fn normal(&self) -> Vector2<f64> {
-        Vector2::new(self.row[0], self.row[1])
+        Vector2::new(self.0[0], self.0[1])
     }
 
     /// Where it lies along its normal.
     #[inline(always)]
     pub(crate) fn at(&self) -> f64 {
-        self.row[2]
+        self.0[2]
     }
 }
 
@@ -50,8 +47,9 @@ pub(crate) struct Columns {
     pub(crate) by_offsets: Vec<f64>,
     /// Coordinates along the lines of the cells, where Jacobians are those of cells.
     pub(crate) along: Vec<f64>,
-    /// Of every cell, and one for none.
+    /// Of every cell, and one for none; and how fast the residuals of its points fall as its offset grows.
     pub(crate) lines: Vec<CellLine>,
+    pub(crate) by_offsets_of_cells: Vec<f64>,
     /// Of every cell, and one for none: what its points add up to, and what a step makes of their residuals.
     pub(crate) sums: Vec<CellSums>,
     pub(crate) moves: Vec<[f64; 2]>,

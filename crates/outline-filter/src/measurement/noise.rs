@@ -197,6 +197,15 @@ impl NoiseModel {
         self.inflation[cell].variance
     }
 
+    /// As [`inflation`](Self::inflation), of all cells.
+    #[inline(always)]
+    pub(super) fn inflations(&self) -> impl ExactSizeIterator<Item = f64> {
+        self.inflation.iter().map(
+            #[inline(always)]
+            |inflation| inflation.variance,
+        )
+    }
+
     /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any.
     pub(crate) fn tolerated(&self) -> f64 {
         self.tolerated_where(self.tolerance)

@@ -32,12 +32,13 @@ impl View<'_> {
         }
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (points, places) = (points.as_slice(), places.as_mut_slice());
-        let Columns { own_places, lines, .. } = columns;
+        let Columns { own_places, lines, by_offsets_of_cells, .. } = columns;
         let (own_places, lines) = (own_places.as_mut_slice(), lines.as_mut_slice());
+        let by_offsets_of_cells = by_offsets_of_cells.as_mut_slice();
         vectorised(
             #[inline(always)]
             || {
-                write_lines(self, inverse, shifts, lines);
+                write_lines(self, inverse, shifts, (lines, by_offsets_of_cells));
                 for (place, p) in own_places.iter_mut().zip(points.iter()) {
                     *place = map_point_by::<true>(inverse, p);
                 }
@@ -57,10 +58,10 @@ impl View<'_> {
         }
         self.keep_to_sides(columns.numbers_and_weights(), pieces, places, half_window);
         self.weigh_side_by_side(points, columns, values, pass);
-        let Columns { numbers, by_offsets, lines, .. } = columns;
-        let lines = lines.as_slice();
+        let Columns { numbers, by_offsets, by_offsets_of_cells, .. } = columns;
+        let by_offsets_of_cells = by_offsets_of_cells.as_slice();
         for (by_offset, number) in by_offsets.iter_mut().zip(numbers.iter()) {
-            *by_offset = lines[*number as usize].by_offset;
+            *by_offset = by_offsets_of_cells[*number as usize];
         }
     }
 
@@ -111,7 +112,7 @@ impl View<'_> {
             values.extend(known.map(|(residual, _)| residual.abs()));
             let (scale, share) = self.scale_of_wide_frame(values, pass);
             for ((weight, residual), number) in weights.iter_mut().zip(residuals.iter()).zip(numbers.iter()) {
-                *weight = weight_of(*residual, lines[*number as usize].row[3], 1.0 / scale) * share;
+                *weight = weight_of(*residual, lines[*number as usize].0[3], 1.0 / scale) * share;
             }
         }
     }
@@ -120,7 +121,7 @@ impl View<'_> {
 impl Columns {
     /// Makes room for so many points, measured side by side with so many cells.
     fn make_room(&mut self, points: usize, cells: usize) {
-        let Self { own_places, weighted, rows, numbers, residuals, weights, by_offsets, along, lines, .. } = self;
+        let Self { own_places, weighted, rows, numbers, residuals, weights, by_offsets, along, .. } = self;
         numbers.resize(points, 0);
         for column in [residuals, weights, by_offsets, along] {
             column.resize(points, 0.0);
@@ -128,7 +129,8 @@ impl Columns {
         own_places.resize(points, Point2::origin());
         weighted.resize(points, [0.0; LANES]);
         rows.resize(points, [0.0; LANES]);
-        lines.resize(cells + 1, CellLine::NONE);
+        self.lines.resize(cells + 1, CellLine::NONE);
+        self.by_offsets_of_cells.resize(cells + 1, 0.0);
         self.jacobians = Jacobians::OfCells;
     }
 
@@ -210,20 +212,32 @@ fn write_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], plac
 
 /// What every cell is to the points in a pose, given by its inverse, with corrections of the offsets.
 #[inline(always)]
-fn write_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &mut [CellLine]) {
+fn write_lines(
+    view: &View<'_>,
+    inverse: &Matrix3<f64>,
+    shifts: &[f64],
+    (lines, by_offsets): (&mut [CellLine], &mut [f64]),
+) {
     let (cells, offsets) = (view.map.cells(), &view.belief.offsets);
     let (origin, away) = (Point2::origin(), map_point_by::<true>(inverse, &Point2::origin()));
-    for (number, (line, ((cell, offset), shift))) in
-        lines.iter_mut().zip(cells.iter().zip(offsets).zip(shifts)).enumerate()
+    let inflations = view.noise.inflations();
+    for ((line, inflation), ((cell, offset), shift)) in
+        lines.iter_mut().zip(inflations).zip(cells.iter().zip(offsets).zip(shifts))
     {
-        // A unit step along the image normal moves the body point by |D' n| along n.
         let pulled = pull_back_by::<true>(inverse, &origin, &away, &cell.normal);
-        let by_offset = 1.0 / pulled.norm();
         let at = cell.normal.dot(&(cell.centre - away)) + offset + shift;
-        let share = 1.0 / view.noise.inflation(number);
-        *line = CellLine { row: [pulled.x * by_offset, pulled.y * by_offset, at * by_offset, share.sqrt()], by_offset };
+        *line = CellLine([pulled.x, pulled.y, at, inflation]);
+    }
+    // Roots and quotients in vectors.
+    for (CellLine([x, y, at, of_points]), by_offset) in lines.iter_mut().zip(by_offsets.iter_mut()) {
+        // A unit step along the image normal moves the body point by |D' n| along n.
+        let scale = 1.0 / (*x * *x + *y * *y).sqrt();
+        (*x, *y, *at) = (*x * scale, *y * scale, *at * scale);
+        *of_points = (1.0 / *of_points).sqrt();
+        *by_offset = scale;
     }
     lines[cells.len()] = CellLine::NONE;
+    by_offsets[cells.len()] = 0.0;
 }
 
 /// Distances of points from the lines of their cells, coordinates along these, and Tukey's weights for a deviation; how many of the points are
@@ -235,7 +249,7 @@ fn write_residuals_and_weights(points: &[Point2<f64>], columns: &mut Columns, si
     let (lines, rows) = (lines.as_slice(), rows.as_mut_slice());
     // What lies anywhere is looked up first: the loop after that runs in vectors.
     for (row, number) in rows.iter_mut().zip(numbers.iter()) {
-        *row = lines[*number as usize].row;
+        *row = lines[*number as usize].0;
     }
     let mut near = 0;
     let found = residuals.iter_mut().zip(along.iter_mut().zip(weights.iter_mut()));

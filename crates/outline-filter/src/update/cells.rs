@@ -64,7 +64,8 @@ impl Frame {
         let step: [f64; K] = std::array::from_fn(|i| state[i]);
         work.cells.resize_as(known);
         let (own, coupling) = work.cells.all_mut::<S>();
-        let Self { right, shifts, columns: Columns { lines, sums, rows_of_cells, .. }, .. } = self;
+        let Self { right, shifts, columns, .. } = self;
+        let Columns { lines, by_offsets_of_cells, sums, rows_of_cells, .. } = columns;
         rows_of_cells.resize(2 * P * shifts.len(), 0.0);
         let rows = pairs_mut::<P>(rows_of_cells);
         let known = known.own().iter().zip(known.rows::<S>());
@@ -72,15 +73,15 @@ impl Frame {
             #[inline(always)]
             || {
                 // Rows are written first: the sums after that run in vectors.
-                for (rows, (line, shift)) in rows.iter_mut().zip(lines.iter().zip(shifts.iter())) {
-                    write_rows::<K, P>(rows, line, (*shift, &step), velocities);
+                let of_lines = lines.iter().zip(by_offsets_of_cells.iter());
+                for (rows, ((line, by_offset), shift)) in rows.iter_mut().zip(of_lines.zip(shifts.iter())) {
+                    write_rows::<K, P>(rows, line, (by_offset * shift, &step), velocities);
                 }
                 let mut total = [[0.0; P]; K];
-                let of_cells = rows.iter().zip(lines.iter().zip(sums.iter())).zip(known.clone());
+                let of_cells = rows.iter().zip(by_offsets_of_cells.iter().zip(sums.iter())).zip(known.clone());
                 let added = own.iter_mut().zip(coupling.iter_mut()).zip(right.iter_mut());
-                for (((rows, (line, sums)), (known, known_row)), ((own, row), right)) in of_cells.zip(added) {
+                for (((rows, (by_offset, sums)), (known, known_row)), ((own, row), right)) in of_cells.zip(added) {
                     let by_foot = add_cell::<K, P>(&mut total, rows, sums);
-                    let by_offset = line.by_offset;
                     *own = known + sums.moments[0] * by_offset * by_offset;
                     *right = by_offset * by_foot[K];
                     let mut with = *known_row;
@@ -108,17 +109,17 @@ impl Frame {
     }
 
     fn move_residuals_padded<const K: usize, const P: usize>(&mut self, step: &[f64; K], by_cell: &[f64]) {
-        let Columns { lines, moves, numbers, residuals, along, rows_of_cells, .. } = &mut self.columns;
-        moves.resize(lines.len(), [0.0; 2]);
+        let Columns { by_offsets_of_cells, moves, numbers, residuals, along, rows_of_cells, .. } = &mut self.columns;
+        moves.resize(by_offsets_of_cells.len(), [0.0; 2]);
         // What is none has not moved.
         moves[by_cell.len()..].fill([0.0; 2]);
         let (moves, rows) = (moves.as_mut_slice(), pairs_mut::<P>(rows_of_cells));
         vectorised(
             #[inline(always)]
             || {
-                let of_cells = rows.iter().zip(lines.iter().zip(by_cell));
-                for (moved, ([foot, further], (line, by_cell))) in moves.iter_mut().zip(of_cells) {
-                    let (mut at, mut slope) = (line.by_offset * by_cell, 0.0);
+                let of_cells = rows.iter().zip(by_offsets_of_cells.iter().zip(by_cell));
+                for (moved, ([foot, further], (by_offset, by_cell))) in moves.iter_mut().zip(of_cells) {
+                    let (mut at, mut slope) = (by_offset * by_cell, 0.0);
                     for i in 0..K {
                         at += foot[i] * step[i];
                         slope += further[i] * step[i];
@@ -145,11 +146,11 @@ fn pairs_mut<const P: usize>(rows: &mut [f64]) -> &mut [[[f64; P]; 2]] {
 fn write_rows<const K: usize, const P: usize>(
     [foot, further]: &mut [[f64; P]; 2],
     line: &CellLine,
-    (shift, step): (f64, &[f64; K]),
+    (moved, step): (f64, &[f64; K]),
     velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
 ) {
     let [at_foot, along] = line.jacobian::<K>(velocities);
-    let (mut at, mut slope) = (line.by_offset * shift, 0.0);
+    let (mut at, mut slope) = (moved, 0.0);
     for i in 0..K {
         (foot[i], further[i]) = (at_foot[i], along[i]);
         at += at_foot[i] * step[i];

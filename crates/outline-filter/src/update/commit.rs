@@ -22,7 +22,7 @@ pub(crate) fn commit(
     belief.pose = proposal.pose;
     (0..k).for_each(|i| belief.motion[i] += proposal.state[k + i]);
     belief.offsets.iter_mut().zip(&frame.shifts).for_each(|(offset, shift)| *offset += shift);
-    shape.compare_innovations(belief, &frame.shifts, &cells_before, noise);
+    shape.compare_innovations(belief, &frame.shifts, &cells_before, noise, &mut frame.values);
     // Room for the next frame.
     frame.cells_with_frame = cells_before;
     let units = 1.0 / (noise.sigma * noise.sigma);
