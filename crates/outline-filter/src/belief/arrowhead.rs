@@ -113,11 +113,24 @@ fn moved_sized<const K: usize, const S: usize>(
     inverse: &ParameterMatrix,
     product: &ParameterMatrix,
 ) -> [[f64; S]; S] {
-    let mut rows: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| m(i, j)));
-    rows.iter_mut().for_each(|row| transform::<K, S>(row, inverse, product));
-    let mut columns: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
-    columns.iter_mut().for_each(|column| transform::<K, S>(column, inverse, product));
-    columns
+    let entries: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| m(i, j)));
+    vectorised(
+        #[inline(always)]
+        || {
+            let mut rows = entries;
+            for row in &mut rows {
+                transform::<K, S>(row, inverse, product);
+            }
+            let mut columns = [[0.0; S]; S];
+            for (i, column) in columns.iter_mut().enumerate() {
+                for (entry, row) in column.iter_mut().zip(&rows) {
+                    *entry = row[i];
+                }
+                transform::<K, S>(column, inverse, product);
+            }
+            columns
+        },
+    )
 }
 
 /// `v <- F^-T v`.

@@ -57,9 +57,21 @@ pub(super) fn mix<const N: usize>(
         vectorised(
             #[inline(always)]
             || {
-                // What lies beyond the entries in use is none, in all of them. Columns are written anew, where nothing else is.
+                // Columns are written anew, where nothing else is.
+                let of_covariance = covariance.iter_mut().zip(of_all_covariance).enumerate();
+                if shared == N {
+                    for (j, (entries, of_all)) in of_covariance {
+                        let (mut column, by_column) = ([0.0; N], changed * apart[j]);
+                        for i in 0..N {
+                            column[i] = changed * of_all[i] + own * (entries[i] + by_column * apart[i]);
+                        }
+                        *entries = column;
+                    }
+                    return;
+                }
+                // What lies beyond the entries in use is none, in all of them.
                 let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { changed } else { 0.0 });
-                for (j, (entries, of_all)) in covariance.iter_mut().zip(of_all_covariance).enumerate() {
+                for (j, (entries, of_all)) in of_covariance {
                     let (mut column, by_column) = ([0.0; N], changed * apart[j]);
                     let counts = if j < shared { 1.0 } else { 0.0 };
                     for i in 0..N {
