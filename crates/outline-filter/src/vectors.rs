@@ -23,29 +23,3 @@ pub(crate) fn vectorised<R>(run: impl FnMut() -> R) -> R {
 pub(crate) const LANES: usize = 4;
 
 pub(crate) type Lanes = [f64; LANES];
-
-/// Rows as columns of lanes.
-#[inline(always)]
-pub(crate) fn in_lanes<const N: usize>(rows: &[[f64; N]; LANES]) -> [Lanes; N] {
-    let mut columns = [[0.0; LANES]; N];
-    for (i, column) in columns.iter_mut().enumerate() {
-        for lane in 0..LANES {
-            column[lane] = rows[lane][i];
-        }
-    }
-    columns
-}
-
-/// Adds products, lane by lane.
-#[inline(always)]
-pub(crate) fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
-    for lane in 0..LANES {
-        sum[lane] += a[lane] * b[lane];
-    }
-}
-
-/// Lane by lane; by nothing where the divisor is not positive.
-#[inline(always)]
-pub(crate) fn positive_inverse(divisor: &Lanes) -> Lanes {
-    divisor.map(|d| if d > 0.0 { 1.0 / d } else { 0.0 })
-}

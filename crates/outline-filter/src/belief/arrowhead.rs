@@ -2,14 +2,11 @@
 use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 use nalgebra::{SMatrix, SVector};
 
-use super::OffsetInformation;
-use crate::vectors::{LANES, Lanes, add_product, in_lanes, positive_inverse, vectorised};
+use super::{OffsetInformation, outer_products::sum_of_outer_products};
+use crate::vectors::vectorised;
 
 /// Pose error and motion parameters of the largest model.
 pub(crate) const STATE: usize = 2 * MAX_PARAMETERS;
-
-/// Entries of a state up to which cells are summed over side by side.
-const LARGEST_IN_LANES: usize = 8;
 
 pub(crate) type StateVector = SVector<f64, STATE>;
 pub(crate) type StateMatrix = SMatrix<f64, STATE, STATE>;
@@ -116,11 +113,24 @@ fn moved_sized<const K: usize, const S: usize>(
     inverse: &ParameterMatrix,
     product: &ParameterMatrix,
 ) -> [[f64; S]; S] {
-    let mut rows: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| m(i, j)));
-    rows.iter_mut().for_each(|row| transform::<K, S>(row, inverse, product));
-    let mut columns: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
-    columns.iter_mut().for_each(|column| transform::<K, S>(column, inverse, product));
-    columns
+    let entries: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| m(i, j)));
+    vectorised(
+        #[inline(always)]
+        || {
+            let mut rows = entries;
+            for row in &mut rows {
+                transform::<K, S>(row, inverse, product);
+            }
+            let mut columns = [[0.0; S]; S];
+            for (i, column) in columns.iter_mut().enumerate() {
+                for (entry, row) in column.iter_mut().zip(&rows) {
+                    *entry = row[i];
+                }
+                transform::<K, S>(column, inverse, product);
+            }
+            columns
+        },
+    )
 }
 
 /// `v <- F^-T v`.
@@ -137,83 +147,20 @@ fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &Paramet
     *v = moved;
 }
 
-/// Sum of `c c' / o` over the cells.
+/// Sum of `c c' / o` over the cells; nothing is told of those that nothing is known of.
 fn told_by_offsets<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
-    // Of more entries than that the sums of several cells side by side are too many to be near at hand.
-    if S > LARGEST_IN_LANES { told_row_by_row(cells) } else { told_side_by_side(cells) }
-}
-
-/// Hands on all cells, as many at a time as there are lanes; the last of them with cells that nothing is known of.
-#[inline(always)]
-fn for_lanes<const S: usize>(cells: &OffsetInformation, mut add: impl FnMut(&[[f64; S]; LANES], &Lanes)) {
-    let (rows, last_rows) = cells.rows::<S>().as_chunks::<LANES>();
-    let (own, last_own) = cells.own().as_chunks::<LANES>();
-    for (rows, own) in rows.iter().zip(own) {
-        add(rows, own);
-    }
-    let (mut rows, mut own) = ([[0.0; S]; LANES], [0.0; LANES]);
-    rows[..last_rows.len()].copy_from_slice(last_rows);
-    own[..last_own.len()].copy_from_slice(last_own);
-    add(&rows, &own);
-}
-
-/// As [`told_by_offsets`], one entry after the other, several cells at a time.
-fn told_row_by_row<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
-    let lower = vectorised(
+    let count = cells.len();
+    let (rows, own) = (&cells.rows::<S>()[..count], &cells.own()[..count]);
+    vectorised(
         #[inline(always)]
         || {
-            let mut told = [[0.0; S]; S];
-            for_lanes(cells, |rows, own| add_told_by_rows(rows, own, &mut told));
-            told
+            sum_of_outer_products(
+                count,
+                #[inline(always)]
+                |number| (&rows[number], if own[number] > 0.0 { 1.0 / own[number] } else { 0.0 }),
+            )
         },
-    );
-    std::array::from_fn(|i| std::array::from_fn(|j| lower[i.max(j)][i.min(j)]))
-}
-
-/// Adds the lower half of `c c' / o` of some cells, with what fills the last vector of a row.
-#[inline(always)]
-fn add_told_by_rows<const S: usize>(rows: &[[f64; S]; LANES], own: &Lanes, told: &mut [[f64; S]; S]) {
-    debug_assert!(S.is_multiple_of(LANES), "{S} entries");
-    let inverse = positive_inverse(own);
-    let blocks: [&[Lanes]; LANES] = std::array::from_fn(|cell| rows[cell].as_chunks::<LANES>().0);
-    for (i, sums) in told.iter_mut().enumerate() {
-        let factors: Lanes = std::array::from_fn(|cell| rows[cell][i] * inverse[cell]);
-        let sums = sums.as_chunks_mut::<LANES>().0;
-        for (block, sums) in sums.iter_mut().enumerate().take(i / LANES + 1) {
-            let mut sum = *sums;
-            for cell in 0..LANES {
-                add_product(&mut sum, &[factors[cell]; LANES], &blocks[cell][block]);
-            }
-            *sums = sum;
-        }
-    }
-}
-
-/// As [`told_by_offsets`], several cells side by side.
-fn told_side_by_side<const S: usize>(cells: &OffsetInformation) -> [[f64; S]; S] {
-    let told = vectorised(
-        #[inline(always)]
-        || {
-            let mut told = [[[0.0; LANES]; S]; S];
-            for_lanes(cells, |rows, own| add_told(rows, own, &mut told));
-            told
-        },
-    );
-    let sum = |i: usize, j: usize| told[i.max(j)][i.min(j)].iter().sum();
-    std::array::from_fn(|i| std::array::from_fn(|j| sum(i, j)))
-}
-
-/// Adds the lower half of `c c' / o` of some cells, in lanes.
-#[inline(always)]
-fn add_told<const S: usize>(rows: &[[f64; S]; LANES], own: &Lanes, told: &mut [[Lanes; S]; S]) {
-    let (coupling, inverse) = (in_lanes(rows), positive_inverse(own));
-    for i in 0..S {
-        let mut factor = [0.0; LANES];
-        add_product(&mut factor, &coupling[i], &inverse);
-        for j in 0..=i {
-            add_product(&mut told[i][j], &factor, &coupling[j]);
-        }
-    }
+    )
 }
 
 /// The symmetric part of the entries of a state; unit diagonal beyond them.
@@ -237,7 +184,7 @@ mod tests {
     use super::*;
 
     /// How far a sum is from its definition, one cell after the other.
-    fn difference<const S: usize>(cells: usize, told: fn(&OffsetInformation) -> [[f64; S]; S]) -> f64 {
+    fn difference<const S: usize>(cells: usize) -> f64 {
         let mut rng = ChaCha8Rng::seed_from_u64(7);
         let mut information = OffsetInformation::new(S);
         information.resize(cells);
@@ -252,15 +199,15 @@ mod tests {
                 }
             }
         }
-        let found = told(&information);
+        let found = told_by_offsets::<S>(&information);
         found.iter().flatten().zip(expected.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
     #[test]
-    fn offsets_side_by_side_tell_what_they_do_one_after_the_other() {
+    fn offsets_in_registers_tell_what_they_do_one_after_the_other() {
         for cells in [0, 1, 3, 4, 5, 30] {
-            let few = difference::<6>(cells, told_side_by_side).max(difference::<8>(cells, told_side_by_side));
-            let many = difference::<12>(cells, told_row_by_row).max(difference::<16>(cells, told_row_by_row));
+            let few = difference::<6>(cells).max(difference::<8>(cells));
+            let many = difference::<12>(cells).max(difference::<16>(cells));
             assert!(few.max(many) < 1e-13, "{cells}: {few} {many}");
         }
     }

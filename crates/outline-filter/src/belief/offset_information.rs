@@ -61,6 +61,12 @@ impl OffsetInformation {
         self.coupling.resize(cells * self.size, 0.0);
     }
 
+    /// Makes room for as many cells and entries as another has; what is known of them is to be written.
+    pub(crate) fn resize_as(&mut self, other: &Self) {
+        self.size = other.size;
+        self.resize(other.len());
+    }
+
     /// Takes all of another, in the room that there is.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.size = other.size;

@@ -85,8 +85,7 @@ proptest! {
             prop_assert!(problem.belief.predict(seconds).is_some());
             let measurements = random_measurements(&mut problem.rng, k, 0..cells, 2 * cells);
             measurements.iter().for_each(|m| dense.measure(m));
-            let mut frame = Frame { measurements, ..Frame::default() };
-            frame.clear_shifts(cells);
+            let mut frame = Frame::of_measurements(measurements, cells);
             accumulate(&mut frame, &mut problem.belief.information, &StateVector::zeros());
             problem.belief.marginal = problem.belief.information.marginal();
         }
@@ -170,8 +169,7 @@ fn deviations_over_those_of_the_dense_filter(frames: usize, changes: f64) -> Vec
         };
         let measurements: Vec<_> = (0..cells).map(of_cell).collect();
         measurements.iter().for_each(|m| dense.measure(m));
-        let mut frame = Frame { measurements, ..Frame::default() };
-        frame.clear_shifts(cells);
+        let mut frame = Frame::of_measurements(measurements, cells);
         accumulate(&mut frame, &mut belief.information, &StateVector::zeros());
         belief.marginal = belief.information.marginal();
     }

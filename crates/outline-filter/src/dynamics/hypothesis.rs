@@ -1,13 +1,14 @@
 //! One hypothesis of dynamics: pose, motion and accelerations about the object's centroid, moved on and measured.
 use freeform_riccati::{MotionModel, map_point};
-use nalgebra::{Const, DimMin, Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use crate::{tuning::dynamics as tuning, vectors::vectorised};
+use crate::tuning::dynamics as tuning;
 
 use super::{
     centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carry, parts},
     course::Course,
     step::{Step, turned_along},
+    turned_chains::carry_turned_chains,
 };
 
 /// State of one hypothesis for a model of k parameters, N = 3 k. Entry `j` is the error of the reference pose, `k + j` the motion, `2 k + j`
@@ -23,8 +24,8 @@ pub(super) struct Hypothesis<const N: usize> {
 /// What a frame tells of the pose by itself, about the centroid of the reference pose.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CentredMeasurement {
-    /// Information.
-    pub(super) information: CentredMatrix,
+    /// [Root](super::correction::root_of) of the information.
+    pub(super) root: CentredMatrix,
     /// Error of the reference pose as measured.
     pub(super) deviation: CentredVector,
 }
@@ -143,7 +144,12 @@ impl<const N: usize> Hypothesis<N> {
         let relative = turn * of_rates(&error, 1.0) * step.turned;
         let Some(off) = model.motion_between(&as_map(&relative), 1.0) else { return false };
         let centre = step.centre + Vector2::new(error[k - 2], error[k - 1]) + shift;
-        let transition = self.transition(step, (&turn, &along, &v, &later));
+        if let (Course::Accelerating { .. }, MotionModel::Affine) = (self.course, model) {
+            carry_turned_chains(&mut self.covariance.data.0, &turn, dt);
+        } else {
+            let (transition, size) = (self.transition(step, (&turn, &along, &v, &later)), self.size());
+            carry(&transition, &mut self.covariance, size);
+        }
         for j in 0..rates {
             self.mean[j] = off[j];
             self.mean[k + j] += dt * acceleration[j];
@@ -153,8 +159,6 @@ impl<const N: usize> Hypothesis<N> {
         if self.course == Course::ConstantVelocity {
             self.mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(turn * turning));
         }
-        let size = self.size();
-        carry(&transition, &mut self.covariance, size);
         self.add_change_of_accelerations(step);
         true
     }
@@ -229,76 +233,6 @@ impl<const N: usize> Hypothesis<N> {
             3 => self.update_sized::<3>(measurement),
             4 => self.update_sized::<4>(measurement),
             _ => self.update_sized::<LARGEST>(measurement),
-        }
-    }
-
-    fn update_sized<const K: usize>(&mut self, measurement: &CentredMeasurement) -> Option<Innovation>
-    where
-        Const<K>: DimMin<Const<K>, Output = Const<K>>,
-    {
-        let information = measurement.information.fixed_view::<K, K>(0, 0) / self.course.shaking();
-        let predicted = self.covariance.fixed_view::<K, K>(0, 0).into_owned();
-        let off = measurement.deviation.fixed_rows::<K>(0) - self.mean.fixed_rows::<K>(0);
-        // (I + W P)^-1 W, which is (W^-1 + P)^-1, also where W is singular.
-        let factor = (SMatrix::<f64, K, K>::identity() + information * predicted).lu();
-        let weight = factor.solve(&information)?;
-        let determinant = factor.determinant();
-        let pulled = weight * off;
-        let squared = off.dot(&pulled);
-        if !(determinant > 0.0 && squared.is_finite()) {
-            return None;
-        }
-        vectorised(
-            #[inline(always)]
-            || self.correct::<K>(&pulled, &weight),
-        );
-        // The score, S^-1 off with S the covariance of the innovation, has the covariance S^-1: also where S is not finite.
-        let mut standardised = CentredVector::zeros();
-        for j in 0..K {
-            standardised[j] = if weight[(j, j)] > 0.0 { pulled[j] / weight[(j, j)].sqrt() } else { 0.0 };
-        }
-        // The density of the innovation, without the factor that all hypotheses share.
-        let log_likelihood = -0.5 * (determinant.ln() + K as f64 * self.course.shaking().ln() + squared);
-        Some(Innovation { log_likelihood, standardised })
-    }
-
-    /// Corrects mean and covariance by what pulls the pose, and the information that it comes with.
-    #[inline(always)]
-    fn correct<const K: usize>(&mut self, pulled: &SVector<f64, K>, weight: &SMatrix<f64, K, K>) {
-        // Of all entries with the pose.
-        let covariance = &mut self.covariance.data.0;
-        let mut columns = [[0.0; N]; K];
-        columns.copy_from_slice(&covariance[..K]);
-        let mut gain = [[0.0; N]; K];
-        for l in 0..K {
-            for (m, column) in columns.iter().enumerate() {
-                let weight = weight[(m, l)];
-                for i in 0..N {
-                    gain[l][i] += column[i] * weight;
-                }
-            }
-            for (mean, entry) in self.mean.iter_mut().zip(columns[l]) {
-                *mean += entry * pulled[l];
-            }
-        }
-        // The columns of what a hypothesis has no entries for are none, and stay so.
-        for (j, entries) in covariance.iter_mut().enumerate() {
-            let mut less = [0.0; N];
-            for l in 0..K {
-                let by_column = columns[l][j];
-                for i in 0..N {
-                    less[i] += gain[l][i] * by_column;
-                }
-            }
-            for i in 0..N {
-                entries[i] -= less[i];
-            }
-        }
-        // What is rounded in one half only would grow from frame to frame.
-        for j in 0..N {
-            for i in 0..j {
-                self.covariance[(j, i)] = self.covariance[(i, j)];
-            }
         }
     }
 

@@ -6,6 +6,7 @@ use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
     combination::centred,
     common_error::CommonError,
+    correction::root_of,
     course::Course,
     hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
@@ -178,7 +179,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             let variance = if own > 0.0 { (1.0 / own).min(tuning::LARGEST_VARIANCE) } else { tuning::LARGEST_VARIANCE };
             self.pose_variance[j] += tuning::VARIANCE_GAIN * (variance - self.pose_variance[j]);
         }
-        let measurement = CentredMeasurement { information, deviation };
+        let measurement = CentredMeasurement { root: root_of(&information, k), deviation };
         let mut logarithms = [f64::NEG_INFINITY; MOST];
         let mut standardised = [None; MOST];
         for (number, hypothesis) in self.hypotheses.iter_mut().enumerate() {

@@ -31,14 +31,14 @@ pub(super) fn mix<const N: usize>(
     if hypotheses.len() < 2 {
         return;
     }
-    let pooled = [Accelerations::All, Accelerations::OfVelocity]
-        .map(|accelerations| Pooled::of(hypotheses, weights, accelerations, model));
+    let with_all = Pooled::of(hypotheses, weights, model);
+    let pooled = [with_all.of_velocity(hypotheses, weights, model), with_all];
     let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
     let shares: f64 = hypotheses.iter().map(|hypothesis| arriving(hypothesis.course)).sum();
     for (hypothesis, weight) in hypotheses.iter_mut().zip(weights) {
         let of_all = match Accelerations::of(hypothesis.course) {
-            Accelerations::OfVelocity => &pooled[1],
-            Accelerations::All | Accelerations::None => &pooled[0],
+            Accelerations::OfVelocity => &pooled[0],
+            Accelerations::All | Accelerations::None => &pooled[1],
         };
         // Of what has changed, this hypothesis takes its own part back.
         let stays = *weight * (1.0 - shares * leaving(hypothesis.course));
@@ -57,14 +57,25 @@ pub(super) fn mix<const N: usize>(
         vectorised(
             #[inline(always)]
             || {
-                // What lies beyond the entries in use is none, in all of them. Columns are worked on in copies, which nothing else is in
-                // the place of.
+                // Columns are written anew, where nothing else is.
+                let of_covariance = covariance.iter_mut().zip(of_all_covariance).enumerate();
+                if shared == N {
+                    for (j, (entries, of_all)) in of_covariance {
+                        let (mut column, by_column) = ([0.0; N], changed * apart[j]);
+                        for i in 0..N {
+                            column[i] = changed * of_all[i] + own * (entries[i] + by_column * apart[i]);
+                        }
+                        *entries = column;
+                    }
+                    return;
+                }
+                // What lies beyond the entries in use is none, in all of them.
                 let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { changed } else { 0.0 });
-                for (j, (entries, of_all)) in covariance.iter_mut().zip(of_all_covariance).enumerate() {
-                    let (mut column, by_column) = (*entries, changed * apart[j]);
+                for (j, (entries, of_all)) in of_covariance {
+                    let (mut column, by_column) = ([0.0; N], changed * apart[j]);
                     let counts = if j < shared { 1.0 } else { 0.0 };
                     for i in 0..N {
-                        column[i] = of_shared[i] * counts * of_all[i] + own * (column[i] + by_column * apart[i]);
+                        column[i] = of_shared[i] * counts * of_all[i] + own * (entries[i] + by_column * apart[i]);
                     }
                     *entries = column;
                 }
@@ -98,24 +109,33 @@ fn arriving(course: Course) -> f64 {
 fn changing<'a, const N: usize>(
     hypotheses: &'a [Hypothesis<N>],
     weights: &'a [f64],
-) -> impl Iterator<Item = (&'a Hypothesis<N>, f64)> {
+) -> impl Iterator<Item = (&'a Hypothesis<N>, f64)> + Clone {
     hypotheses.iter().zip(weights).map(|(hypothesis, weight)| (hypothesis, weight * leaving(hypothesis.course)))
 }
 
+/// Those of them that count, with their shares of all that change.
+fn counting<'a, const N: usize>(
+    hypotheses: &'a [Hypothesis<N>],
+    weights: &'a [f64],
+) -> impl Iterator<Item = (&'a Hypothesis<N>, f64)> + Clone {
+    let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
+    let sources = move || changing(hypotheses, weights).filter(move |(_, weight)| *weight > tuning::LEAST_SHARE * all);
+    let sum: f64 = sources().map(|(_, weight)| weight).sum();
+    sources().map(move |(source, weight)| (source, weight / sum))
+}
+
 impl<const N: usize> Pooled<N> {
-    fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], accelerations: Accelerations, model: MotionModel) -> Self {
+    /// With all accelerations.
+    fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel) -> Self {
         let k = N / 3;
-        let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
         let mut pooled = Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), without: 0.0 };
-        let sources = || changing(hypotheses, weights).filter(|(_, weight)| *weight > tuning::LEAST_SHARE * all);
-        let sum: f64 = sources().map(|(_, weight)| weight).sum();
-        for (source, weight) in sources() {
-            pooled.mean += accelerations.mean_of(source, model) * (weight / sum);
+        let sources = counting(hypotheses, weights);
+        for (source, share) in sources.clone() {
+            pooled.mean += Accelerations::All.mean_of(source, model) * share;
         }
-        for (source, weight) in sources() {
-            let share = weight / sum;
-            let apart = accelerations.mean_of(source, model) - pooled.mean;
-            let known = if accelerations.are_part_of(source.course) { 3 * k } else { 2 * k };
+        for (source, share) in sources {
+            let apart = Accelerations::All.mean_of(source, model) - pooled.mean;
+            let known = if Accelerations::All.are_part_of(source.course) { 3 * k } else { 2 * k };
             let (covariance, of_source) = (&mut pooled.covariance.data.0, &source.covariance.data.0);
             vectorised(
                 #[inline(always)]
@@ -123,10 +143,10 @@ impl<const N: usize> Pooled<N> {
                     let apart: [f64; N] = apart.into();
                     let of_known: [f64; N] = std::array::from_fn(|i| if i < known { share } else { 0.0 });
                     for (j, (entries, own)) in covariance.iter_mut().zip(of_source).enumerate() {
-                        let (mut column, by_column) = (*entries, share * apart[j]);
+                        let (mut column, by_column) = ([0.0; N], share * apart[j]);
                         let counts = if j < known { 1.0 } else { 0.0 };
                         for i in 0..N {
-                            column[i] += of_known[i] * counts * own[i] + by_column * apart[i];
+                            column[i] = entries[i] + of_known[i] * counts * own[i] + by_column * apart[i];
                         }
                         *entries = column;
                     }
@@ -134,12 +154,38 @@ impl<const N: usize> Pooled<N> {
             );
             pooled.without += if known < 3 * k { share } else { 0.0 };
         }
-        if accelerations == Accelerations::OfVelocity {
-            for i in 2 * k..3 * k - 2 {
-                pooled.mean[i] = 0.0;
-                pooled.covariance.row_mut(i).fill(0.0);
-                pooled.covariance.column_mut(i).fill(0.0);
+        pooled
+    }
+
+    /// With the accelerations of the velocity of the centroid alone; pose and motion are those with all.
+    fn of_velocity(&self, hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel) -> Self {
+        let k = N / 3;
+        let mut pooled = Self { mean: self.mean, covariance: self.covariance, without: 0.0 };
+        for i in 2 * k..3 * k {
+            pooled.mean[i] = 0.0;
+            pooled.covariance.row_mut(i).fill(0.0);
+            pooled.covariance.column_mut(i).fill(0.0);
+        }
+        let (accelerations, sources) = (Accelerations::OfVelocity, counting(hypotheses, weights));
+        for (source, share) in sources.clone() {
+            let mean = accelerations.mean_of(source, model);
+            (3 * k - 2..3 * k).for_each(|i| pooled.mean[i] += mean[i] * share);
+        }
+        let used = |i: usize| i < 2 * k || i >= 3 * k - 2;
+        for (source, share) in sources {
+            let apart = accelerations.mean_of(source, model) - pooled.mean;
+            let is_known = accelerations.are_part_of(source.course);
+            for j in 3 * k - 2..3 * k {
+                let by_column = share * apart[j];
+                for i in (0..N).filter(|i| used(*i)) {
+                    let own = if is_known { share * source.covariance[(i, j)] } else { 0.0 };
+                    pooled.covariance[(i, j)] += own + by_column * apart[i];
+                }
             }
+            pooled.without += if is_known { 0.0 } else { share };
+        }
+        for j in 3 * k - 2..3 * k {
+            (0..3 * k - 2).for_each(|i| pooled.covariance[(j, i)] = pooled.covariance[(i, j)]);
         }
         pooled
     }

@@ -7,6 +7,7 @@ mod centred;
 mod combination;
 mod common_error;
 mod commuting;
+mod correction;
 mod course;
 mod dynamics_filter;
 mod family;
@@ -16,6 +17,7 @@ mod interacting;
 mod mixing;
 mod setting;
 mod step;
+mod turned_chains;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use combination::Purpose;

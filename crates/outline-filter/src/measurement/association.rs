@@ -2,7 +2,7 @@
 use freeform_riccati::{is_affine, map_point};
 use nalgebra::{Matrix3, Point2};
 
-use super::{Counted, Frame, Measurement, NoiseModel};
+use super::{Counted, Frame, Jacobians, Measurement, NoiseModel};
 use crate::{
     belief::Belief,
     map::{NullDirection, OutlineMap},
@@ -34,12 +34,28 @@ impl View<'_> {
     /// that its distance from the nearest cell is too large by about `curvature sigma^2 / 2`, which thousands of points add up.
     /// The mean of its neighbours along the contour has little of that noise, and its nearest cell is taken.
     pub(crate) fn measure(&self, frame: &mut Frame, pose: &Matrix3<f64>, null: &[NullDirection], pass: Pass) {
+        self.measure_by_columns(frame, pose, null, pass);
+        if frame.columns.jacobians == Jacobians::OfCells {
+            self.write_measurements(frame, null);
+        }
+    }
+
+    /// As [`measure`](Self::measure), with the Jacobians of cells in place of measurements point by point where those say all.
+    pub(crate) fn measure_by_columns(
+        &self,
+        frame: &mut Frame,
+        pose: &Matrix3<f64>,
+        null: &[NullDirection],
+        pass: Pass,
+    ) {
         let inverse = pose.try_inverse().unwrap_or_else(Matrix3::identity);
         let half_window = self.half_window_of_places(pose, frame);
         let counts_alike = frame.deviations.ratios().is_none() && self.noise.counted == Counted::Alike;
-        frame.measurements.resize(frame.points.len(), Measurement::NOTHING);
         if counts_alike && is_affine(&inverse) {
-            self.measure_side_by_side(frame, &inverse, half_window, null, pass);
+            self.measure_side_by_side(frame, &inverse, half_window, pass);
+            if !null.is_empty() {
+                self.write_measurements(frame, null);
+            }
         } else {
             self.measure_one_by_one(frame, &inverse, half_window, null, pass);
         }
@@ -56,8 +72,10 @@ impl View<'_> {
         pass: Pass,
     ) {
         let Frame { points, measurements, values, shifts, pieces, places, deviations, columns, .. } = frame;
-        if pass == Pass::First {
-            measurements.fill(Measurement::NOTHING);
+        measurements.resize(points.len(), Measurement::NOTHING);
+        match pass {
+            Pass::First => measurements.fill(Measurement::NOTHING),
+            Pass::Again => measurements.iter_mut().zip(&columns.weights).for_each(|(m, weight)| m.weight = *weight),
         }
         places.clear();
         let in_body = |p: &Point2<f64>| map_point(inverse, p);
@@ -95,6 +113,7 @@ impl View<'_> {
             self.linearise(measurement, p, &normal, null);
         }
         self.weigh(measurements, values, deviations, pass);
+        columns.take(measurements);
     }
 
     /// Points on either side whose mean says which cell a point belongs to: enough for the noise to be small against a cell, and few

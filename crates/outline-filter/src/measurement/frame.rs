@@ -109,6 +109,15 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// Of measurements alone, for so many cells.
+    #[cfg(test)]
+    pub(crate) fn of_measurements(measurements: Vec<Measurement>, cells: usize) -> Self {
+        let mut frame = Self { measurements, ..Self::default() };
+        frame.columns.take(&frame.measurements);
+        frame.clear_shifts(cells);
+        frame
+    }
+
     /// Takes the points of an outline. One that repeats the point before it is no second measurement.
     pub(crate) fn load(&mut self, outline: &Outline, reference: Reference) {
         let (origin, scale) = (reference.origin, 1.0 / reference.radius);

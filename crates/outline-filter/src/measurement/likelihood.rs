@@ -2,7 +2,7 @@
 use freeform_riccati::{is_affine, map_point_by};
 use nalgebra::{Matrix3, Point2};
 
-use super::{Frame, Measurement, Pass, View};
+use super::{Frame, Pass, PointOnCell, View};
 use crate::{
     map::median,
     tuning::{likelihood as tuning, measurement::MEDIAN_TO_DEVIATION},
@@ -34,10 +34,9 @@ impl NegativeLogLikelihood {
         self.difference_in_deviations(other) > deviations
     }
 
-    /// As [`is_worse_than`](Self::is_worse_than), by the points alone, whatever the path.
-    pub(crate) fn shows_less_than(&self, other: &Self) -> bool {
-        let [own, of_other] = [self, other].map(|likelihood| Self { of_path: 0.0, ..*likelihood });
-        own.is_worse_than(&of_other)
+    /// That of the points alone, whatever the path.
+    pub(crate) fn of_points(self) -> Self {
+        Self { of_path: 0.0, ..self }
     }
 
     fn difference_in_deviations(&self, other: &Self) -> f64 {
@@ -100,7 +99,7 @@ impl View<'_> {
         let mut scale = f64::INFINITY;
         let mut all: Vec<Vec<Option<f64>>> = Vec::with_capacity(poses.len());
         for pose in poses {
-            self.measure(frame, pose, &[], Pass::First);
+            self.measure_by_columns(frame, pose, &[], Pass::First);
             let list: Vec<_> = self.innovations(frame).collect();
             let mut sizes: Vec<f64> = list.iter().flatten().map(|innovation| innovation.abs()).collect();
             scale = scale.min(median(&mut sizes).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m));
@@ -190,15 +189,15 @@ impl View<'_> {
     }
 
     fn innovations(&self, frame: &Frame) -> impl ExactSizeIterator<Item = Option<f64>> {
-        let Frame { measurements, shifts, deviations, .. } = frame;
+        let Frame { columns, shifts, deviations, .. } = frame;
         let ratios = deviations.ratios();
         let ratio = move |i: usize| ratios.map_or(1.0, |ratios| ratios[i]);
-        measurements.iter().enumerate().map(move |(i, m)| self.innovation_of(m, ratio(i), shifts))
+        columns.points().enumerate().map(move |(i, point)| self.innovation_of(&point, ratio(i), shifts))
     }
 
     /// Distance of a point from the outline as it was known, as if that were exact and the point a good one; `None` where nothing was
     /// known. `ratio` is its deviation over that of a good point.
-    fn innovation_of(&self, m: &Measurement, ratio: f64, shifts: &[f64]) -> Option<f64> {
+    fn innovation_of(&self, m: &PointOnCell, ratio: f64, shifts: &[f64]) -> Option<f64> {
         let own = self.belief.information.cells.own().get(m.cell).copied().filter(|own| *own > 0.0)?;
         let variance = ratio * ratio + m.by_offset * m.by_offset / own;
         Some((m.residual + m.by_offset * shifts[m.cell]) / variance.sqrt())

@@ -1,5 +1,6 @@
 //! Points of one frame against the map: which cell each belongs to, its distance from it, how that changes with the pose, and how much it counts.
 mod association;
+mod columns;
 mod frame;
 mod lattice;
 #[cfg(test)]
@@ -13,10 +14,10 @@ mod side_by_side;
 mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
+pub(crate) use columns::{CellLine, CellSums, Columns, Jacobians, PointOnCell};
 pub(crate) use frame::{Frame, Piece, Reference};
 pub(crate) use lattice::{PixelLattice, PlaceOnLattice};
 pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;
 pub(crate) use noise::{Counted, NoiseModel, Rounding, Tolerance, correlation_of, spread};
 pub(crate) use point_deviations::{PointDeviations, weighted_median};
-pub(crate) use side_by_side::Columns;

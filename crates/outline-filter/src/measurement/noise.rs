@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 
-use super::{Frame, NO_CELL, PlaceOnLattice, variance_inflation::VarianceInflation};
+use super::{Columns, Frame, PlaceOnLattice, variance_inflation::VarianceInflation};
 use crate::{
     map::{median, median_about},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise as tuning, statement::ROUNDING},
+    vectors::{LANES, vectorised},
 };
 
 /// Whether a frame may show more noise than the contour of the first, none having been compared yet.
@@ -196,6 +197,15 @@ impl NoiseModel {
         self.inflation[cell].variance
     }
 
+    /// As [`inflation`](Self::inflation), of all cells.
+    #[inline(always)]
+    pub(super) fn inflations(&self) -> impl ExactSizeIterator<Item = f64> {
+        self.inflation.iter().map(
+            #[inline(always)]
+            |inflation| inflation.variance,
+        )
+    }
+
     /// Most noise that a frame may have: by comparison with what most frames have shown, once there are any.
     pub(crate) fn tolerated(&self) -> f64 {
         self.tolerated_where(self.tolerance)
@@ -232,44 +242,102 @@ impl NoiseModel {
 /// How many times the variance of the weighted mean residual over a stretch of the contour is what independent errors give, of deviation
 /// `noise` for a good point; `None` where it cannot be told. Stretches count by the information that they have.
 pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>) -> Option<f64> {
-    let Frame { measurements, deviations, .. } = frame;
-    let length = measurements.len() / tuning::STRETCHES;
+    let Frame { columns, deviations, .. } = frame;
+    let length = columns.len() / tuning::STRETCHES;
     let noise = noise.filter(|noise| *noise > 0.0 && length >= tuning::FEWEST_IN_STRETCH)?;
     let (mut sum, mut count, mut stretches) = (0.0, 0.0, 0.0);
-    for (stretch, measurements) in measurements.chunks_exact(length).enumerate() {
-        let ratios = deviations.ratios().map(|ratios| &ratios[stretch * length..]);
-        let (mut total, mut weights, mut number) = (0.0, 0.0, 0.0);
-        for (i, m) in measurements.iter().enumerate().filter(|(_, m)| m.weight > 0.0) {
-            let weight = ratios.map_or(1.0, |ratios| (ratios[i] * ratios[i]).recip());
-            total += m.residual * weight;
-            weights += weight;
-            number += 1.0;
-        }
-        if tuning::ONE_IN_COUNTS * number > length as f64 {
-            sum += total * total / number;
-            count += weights / number;
+    let all = columns.residuals.chunks_exact(length).zip(columns.weights.chunks_exact(length));
+    for (stretch, (residuals, weights)) in all.enumerate() {
+        let total = match deviations.ratios() {
+            None => alike(residuals, weights),
+            Some(ratios) => by_deviations(residuals, weights, &ratios[stretch * length..]),
+        };
+        if tuning::ONE_IN_COUNTS * total.number > length as f64 {
+            sum += total.residuals * total.residuals / total.number;
+            count += total.weights / total.number;
             stretches += 1.0;
         }
     }
     (tuning::ONE_IN_COUNTS * stretches > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
 }
 
+/// Sums over a stretch of the contour: of residuals and of weights by the deviations that points state, and the number of points that count.
+struct Total {
+    residuals: f64,
+    weights: f64,
+    number: f64,
+}
+
+/// Of points that state deviations, over that of a good one.
+fn by_deviations(residuals: &[f64], weights: &[f64], ratios: &[f64]) -> Total {
+    let mut total = Total { residuals: 0.0, weights: 0.0, number: 0.0 };
+    for ((residual, _), ratio) in residuals.iter().zip(weights).zip(ratios).filter(|((_, weight), _)| **weight > 0.0) {
+        let weight = (ratio * ratio).recip();
+        total.residuals += residual * weight;
+        total.weights += weight;
+        total.number += 1.0;
+    }
+    total
+}
+
+/// Of good points.
+fn alike(residuals: &[f64], weights: &[f64]) -> Total {
+    let (residuals, last_residuals) = residuals.as_chunks::<LANES>();
+    let (weights, last_weights) = weights.as_chunks::<LANES>();
+    let [sums, counts] = vectorised(
+        #[inline(always)]
+        || {
+            let mut sums = [[0.0; LANES]; 2];
+            for (residuals, weights) in residuals.iter().zip(weights) {
+                for lane in 0..LANES {
+                    let counts = if weights[lane] > 0.0 { 1.0 } else { 0.0 };
+                    sums[0][lane] += counts * residuals[lane];
+                    sums[1][lane] += counts;
+                }
+            }
+            sums
+        },
+    );
+    let mut total = Total { residuals: sums.iter().sum(), weights: 0.0, number: counts.iter().sum() };
+    for (residual, _) in last_residuals.iter().zip(last_weights).filter(|(_, weight)| **weight > 0.0) {
+        total.residuals += residual;
+        total.number += 1.0;
+    }
+    total.weights = total.number;
+    total
+}
+
 /// Robust deviation of all residuals, as if all points were good ones, which is expected to be `noise`; infinite where there are none.
 pub(crate) fn spread(frame: &mut Frame, noise: f64) -> f64 {
-    let Frame { measurements, values, deviations, .. } = frame;
-    values.resize(measurements.len(), 0.0);
+    let Frame { columns, values, deviations, shifts, .. } = frame;
+    let Columns { numbers, residuals, .. } = columns;
+    values.resize(numbers.len(), 0.0);
+    let (values, cells) = (values.as_mut_slice(), shifts.len() as u32);
     let mut known = 0;
     match deviations.ratios() {
         None => {
-            for m in measurements.iter() {
-                values[known] = m.residual.abs();
-                known += usize::from(m.cell != NO_CELL);
+            let is_known = vectorised(
+                #[inline(always)]
+                || {
+                    for (value, residual) in values.iter_mut().zip(residuals.iter()) {
+                        *value = residual.abs();
+                    }
+                    numbers.iter().fold(true, |all, number| all & (*number < cells))
+                },
+            );
+            if is_known {
+                known = numbers.len();
+            } else {
+                for (i, number) in numbers.iter().enumerate() {
+                    values[known] = values[i];
+                    known += usize::from(*number < cells);
+                }
             }
         }
         Some(ratios) => {
-            for (m, ratio) in measurements.iter().zip(ratios) {
-                values[known] = m.residual.abs() / ratio;
-                known += usize::from(m.cell != NO_CELL);
+            for ((residual, number), ratio) in residuals.iter().zip(numbers.iter()).zip(ratios) {
+                values[known] = residual.abs() / ratio;
+                known += usize::from(*number < cells);
             }
         }
     }

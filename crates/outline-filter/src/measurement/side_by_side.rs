@@ -4,45 +4,14 @@
 use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by};
 use nalgebra::{Matrix3, Point2, Vector2};
 
-use super::{Frame, Measurement, NO_CELL, Pass, Piece, View, association::mean_of_neighbours};
+use super::{
+    CellLine, Columns, Frame, Jacobians, Measurement, NO_CELL, Pass, Piece, View, association::mean_of_neighbours,
+};
 use crate::{
-    map::NullDirection,
+    map::{NullDirection, OutlineMap},
     tuning::measurement as tuning,
     vectors::{LANES, Lanes, vectorised},
 };
-
-/// The outline at a cell in the image of one frame.
-#[derive(Debug, Clone, Copy)]
-struct CellLine {
-    normal: Vector2<f64>,
-    /// Where it lies along the normal.
-    at: f64,
-    by_offset: f64,
-    /// Of the points of the cell, over that of the noise: the inverse deviation, and its square.
-    inverse_deviation: f64,
-    share: f64,
-}
-
-impl CellLine {
-    /// Of a point without a cell: it has no distance and does not count.
-    const NONE: Self =
-        Self { normal: Vector2::new(0.0, 0.0), at: 0.0, by_offset: 0.0, inverse_deviation: 1.0, share: 0.0 };
-}
-
-/// Numbers of the points of a frame, by columns; buffers that are reused from frame to frame.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Columns {
-    /// The points in the body frame; in the end the means of their neighbours where they count.
-    own_places: Vec<Point2<f64>>,
-    /// Coordinates in the body frame times weights, and these; a fourth number, which is none, makes it a whole vector.
-    weighted: Vec<Lanes>,
-    /// Of the cells; the number of cells for none.
-    numbers: Vec<u32>,
-    residuals: Vec<f64>,
-    weights: Vec<f64>,
-    /// Of every cell, and one for none.
-    lines: Vec<CellLine>,
-}
 
 impl View<'_> {
     /// The vectorised way of [`measure_one_by_one`](Self::measure_one_by_one), for affine poses and points that count alike; a test compares the two.
@@ -51,29 +20,25 @@ impl View<'_> {
         frame: &mut Frame,
         inverse: &Matrix3<f64>,
         half_window: usize,
-        null: &[NullDirection],
         pass: Pass,
     ) {
         let map = self.map;
-        let Frame { points, measurements, values, shifts, pieces, places, columns, .. } = frame;
-        columns.make_room(points.len(), map.cells().len());
-        places.resize(points.len(), Point2::origin());
-        let Columns { own_places, weighted, numbers, residuals, weights, lines } = columns;
-        match pass {
-            Pass::First if half_window == 0 => weights.fill(0.0),
-            // They will be found.
-            Pass::First => {}
-            Pass::Again => weights.iter_mut().zip(measurements.iter()).for_each(|(weight, m)| *weight = m.weight),
+        let Frame { points, values, shifts, pieces, places, columns, .. } = frame;
+        let count = points.len();
+        columns.make_room(count, map.cells().len());
+        places.resize(count, Point2::origin());
+        if pass == Pass::First && half_window == 0 {
+            columns.weights.fill(0.0);
         }
         // Slices are near at hand in a loop, vectors are looked up each time.
-        let (own_places, places, weighted) =
-            (own_places.as_mut_slice(), places.as_mut_slice(), weighted.as_mut_slice());
-        let (numbers, residuals, weights) = (numbers.as_mut_slice(), residuals.as_mut_slice(), weights.as_mut_slice());
-        let (points, lines) = (points.as_slice(), lines.as_mut_slice());
+        let (points, places) = (points.as_slice(), places.as_mut_slice());
+        let Columns { own_places, lines, by_offsets_of_cells, .. } = columns;
+        let (own_places, lines) = (own_places.as_mut_slice(), lines.as_mut_slice());
+        let by_offsets_of_cells = by_offsets_of_cells.as_mut_slice();
         vectorised(
             #[inline(always)]
             || {
-                write_lines(self, inverse, shifts, lines);
+                write_lines(self, inverse, shifts, (lines, by_offsets_of_cells));
                 for (place, p) in own_places.iter_mut().zip(points.iter()) {
                     *place = map_point_by::<true>(inverse, p);
                 }
@@ -81,33 +46,51 @@ impl View<'_> {
         );
         if half_window == 0 {
             places.copy_from_slice(own_places);
-            vectorised(
-                #[inline(always)]
-                || map.associate(places.iter().copied(), numbers),
-            );
+            columns.associate(map);
         } else {
             if pass == Pass::First {
                 // What the points count with in the means.
-                vectorised(
-                    #[inline(always)]
-                    || map.associate(own_places.iter().copied(), numbers),
-                );
-                self.weigh_side_by_side((points, numbers, lines), (residuals, weights), values, pass);
+                columns.associate(map);
+                self.weigh_side_by_side(points, columns, values, pass);
             }
-            vectorised(
-                #[inline(always)]
-                || {
-                    write_places((pieces, half_window), (weights, weighted), own_places, places);
-                    map.associate(own_places.iter().copied(), numbers);
-                },
-            );
+            columns.write_means_of_counted(pieces, places, half_window);
+            columns.associate(map);
         }
-        self.keep_to_sides((numbers, weights), pieces, places, half_window);
-        self.weigh_side_by_side((points, numbers, lines), (residuals, weights), values, pass);
-        let found = Found { points, numbers, residuals, weights, lines };
+        self.keep_to_sides(columns.numbers_and_weights(), pieces, places, half_window);
+        self.weigh_side_by_side(points, columns, values, pass);
+        let Columns { numbers, by_offsets, by_offsets_of_cells, .. } = columns;
+        let by_offsets_of_cells = by_offsets_of_cells.as_slice();
+        for (by_offset, number) in by_offsets.iter_mut().zip(numbers.iter()) {
+            *by_offset = by_offsets_of_cells[*number as usize];
+        }
+    }
+
+    /// Measurements of all points that have been measured side by side, with their Jacobians, null directions projected out.
+    pub(crate) fn write_measurements(&self, frame: &mut Frame, null: &[NullDirection]) {
+        let Frame { points, measurements, columns, .. } = frame;
+        columns.jacobians = Jacobians::OfPoints;
+        measurements.resize(points.len(), Measurement::NOTHING);
+        let columns = &*columns;
         vectorised(
             #[inline(always)]
-            || found.write_jacobians_of(self.belief.model, measurements),
+            || match self.belief.model {
+                MotionModel::Rigid => {
+                    write_jacobians(points, columns, measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n));
+                }
+                MotionModel::Similarity => {
+                    let velocities =
+                        |p: &Point2<f64>, n: &Vector2<f64>| MotionModel::Similarity.normal_velocities(p, n);
+                    write_jacobians(points, columns, measurements, velocities);
+                }
+                MotionModel::Affine => {
+                    write_jacobians(points, columns, measurements, |p, n| MotionModel::Affine.normal_velocities(p, n));
+                }
+                MotionModel::Projective => {
+                    let velocities =
+                        |p: &Point2<f64>, n: &Vector2<f64>| MotionModel::Projective.normal_velocities(p, n);
+                    write_jacobians(points, columns, measurements, velocities);
+                }
+            },
         );
         for direction in null {
             measurements.iter_mut().for_each(|m| direction.project_out(&mut m.jacobian));
@@ -115,63 +98,85 @@ impl View<'_> {
     }
 
     /// Residuals, and Tukey's weights.
-    fn weigh_side_by_side(
-        &self,
-        (points, numbers, lines): (&[Point2<f64>], &[u32], &[CellLine]),
-        (residuals, weights): (&mut [f64], &mut [f64]),
-        values: &mut Vec<f64>,
-        pass: Pass,
-    ) {
+    fn weigh_side_by_side(&self, points: &[Point2<f64>], columns: &mut Columns, values: &mut Vec<f64>, pass: Pass) {
         let sigma = self.noise.sigma;
         let near = vectorised(
             #[inline(always)]
-            || write_residuals_and_weights((points, numbers, lines), (residuals, weights), sigma),
+            || write_residuals_and_weights(points, columns, sigma),
         );
         if (near as f64) < tuning::NEAR_ENOUGH * points.len() as f64 {
+            let Columns { numbers, residuals, weights, lines, .. } = columns;
             values.clear();
             let none = (lines.len() - 1) as u32;
-            let known = residuals.iter().zip(numbers).filter(|(_, number)| **number != none);
+            let known = residuals.iter().zip(numbers.iter()).filter(|(_, number)| **number != none);
             values.extend(known.map(|(residual, _)| residual.abs()));
             let (scale, share) = self.scale_of_wide_frame(values, pass);
-            for ((weight, residual), number) in weights.iter_mut().zip(residuals.iter()).zip(numbers) {
-                *weight = weight_of(*residual, &lines[*number as usize], 1.0 / scale) * share;
+            for ((weight, residual), number) in weights.iter_mut().zip(residuals.iter()).zip(numbers.iter()) {
+                *weight = weight_of(*residual, lines[*number as usize].0[3], 1.0 / scale) * share;
             }
         }
     }
 }
 
-/// Weighs points in the body frame, and writes the means of their neighbours in `places`, and in their own place where they count.
-#[inline(always)]
-fn write_places(
-    (pieces, half_window): (&[Piece], usize),
-    (weights, weighted): (&[f64], &mut [Lanes]),
-    own_places: &mut [Point2<f64>],
-    places: &mut [Point2<f64>],
-) {
-    for (weighted, (q, weight)) in weighted.iter_mut().zip(own_places.iter().zip(weights)) {
-        *weighted = [weight * q.x, weight * q.y, *weight, 0.0];
-    }
-    for piece in pieces {
-        let range = piece.range();
-        let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
-        let places = &mut places[range];
-        if piece.closed {
-            write_means(weighted, half_window, own, places);
-            continue;
+impl Columns {
+    /// Makes room for so many points, measured side by side with so many cells.
+    fn make_room(&mut self, points: usize, cells: usize) {
+        let Self { own_places, weighted, rows, numbers, residuals, weights, by_offsets, along, .. } = self;
+        numbers.resize(points, 0);
+        for column in [residuals, weights, by_offsets, along] {
+            column.resize(points, 0.0);
         }
-        mean_of_neighbours(
-            weighted.len(),
+        own_places.resize(points, Point2::origin());
+        weighted.resize(points, [0.0; LANES]);
+        rows.resize(points, [0.0; LANES]);
+        self.lines.resize(cells + 1, CellLine::NONE);
+        self.by_offsets_of_cells.resize(cells + 1, 0.0);
+        self.jacobians = Jacobians::OfCells;
+    }
+
+    /// Finds the cells nearest to the places of the points in the body frame.
+    fn associate(&mut self, map: &OutlineMap) {
+        let (own_places, numbers) = (self.own_places.as_slice(), self.numbers.as_mut_slice());
+        vectorised(
             #[inline(always)]
-            |i| weighted[i],
-            false,
-            half_window,
-            #[inline(always)]
-            |i, mean| places[i] = mean.unwrap_or(own[i]),
+            || map.associate(own_places.iter().copied(), numbers),
         );
     }
-    // The means where the points count, the points where they do not.
-    for ((own, place), weight) in own_places.iter_mut().zip(places.iter()).zip(weights) {
-        *own = if *weight > 0.0 { *place } else { *own };
+
+    /// Means of neighbours of all points as places, and in the body frame those of the points that count, in place of these.
+    fn write_means_of_counted(&mut self, pieces: &[Piece], places: &mut [Point2<f64>], half_window: usize) {
+        let Self { own_places, weighted, weights, .. } = self;
+        let (own_places, weighted) = (own_places.as_mut_slice(), weighted.as_mut_slice());
+        vectorised(
+            #[inline(always)]
+            || {
+                for (weighted, (q, weight)) in weighted.iter_mut().zip(own_places.iter().zip(weights.iter())) {
+                    *weighted = [weight * q.x, weight * q.y, *weight, 0.0];
+                }
+                for piece in pieces {
+                    let range = piece.range();
+                    let (weighted, own) = (&weighted[range.clone()], &own_places[range.clone()]);
+                    let places = &mut places[range];
+                    if piece.closed {
+                        write_means(weighted, half_window, own, places);
+                        continue;
+                    }
+                    mean_of_neighbours(
+                        weighted.len(),
+                        #[inline(always)]
+                        |i| weighted[i],
+                        false,
+                        half_window,
+                        #[inline(always)]
+                        |i, mean| places[i] = mean.unwrap_or(own[i]),
+                    );
+                }
+                // The means where the points count, the points where they do not.
+                for ((own, place), weight) in own_places.iter_mut().zip(places.iter()).zip(weights.iter()) {
+                    *own = if *weight > 0.0 { *place } else { *own };
+                }
+            },
+        );
     }
 }
 
@@ -207,68 +212,61 @@ fn write_means(weighted: &[Lanes], half_window: usize, own: &[Point2<f64>], plac
 
 /// What every cell is to the points in a pose, given by its inverse, with corrections of the offsets.
 #[inline(always)]
-fn write_lines(view: &View<'_>, inverse: &Matrix3<f64>, shifts: &[f64], lines: &mut [CellLine]) {
+fn write_lines(
+    view: &View<'_>,
+    inverse: &Matrix3<f64>,
+    shifts: &[f64],
+    (lines, by_offsets): (&mut [CellLine], &mut [f64]),
+) {
     let (cells, offsets) = (view.map.cells(), &view.belief.offsets);
     let (origin, away) = (Point2::origin(), map_point_by::<true>(inverse, &Point2::origin()));
-    for (number, (line, ((cell, offset), shift))) in
-        lines.iter_mut().zip(cells.iter().zip(offsets).zip(shifts)).enumerate()
+    let inflations = view.noise.inflations();
+    for ((line, inflation), ((cell, offset), shift)) in
+        lines.iter_mut().zip(inflations).zip(cells.iter().zip(offsets).zip(shifts))
     {
-        // A unit step along the image normal moves the body point by |D' n| along n.
         let pulled = pull_back_by::<true>(inverse, &origin, &away, &cell.normal);
-        let by_offset = 1.0 / pulled.norm();
         let at = cell.normal.dot(&(cell.centre - away)) + offset + shift;
-        let share = 1.0 / view.noise.inflation(number);
-        *line = CellLine {
-            normal: pulled * by_offset,
-            at: at * by_offset,
-            by_offset,
-            inverse_deviation: share.sqrt(),
-            share,
-        };
+        *line = CellLine([pulled.x, pulled.y, at, inflation]);
+    }
+    // Roots and quotients in vectors.
+    for (CellLine([x, y, at, of_points]), by_offset) in lines.iter_mut().zip(by_offsets.iter_mut()) {
+        // A unit step along the image normal moves the body point by |D' n| along n.
+        let scale = 1.0 / (*x * *x + *y * *y).sqrt();
+        (*x, *y, *at) = (*x * scale, *y * scale, *at * scale);
+        *of_points = (1.0 / *of_points).sqrt();
+        *by_offset = scale;
     }
     lines[cells.len()] = CellLine::NONE;
+    by_offsets[cells.len()] = 0.0;
 }
 
-/// Distances of points from the lines of their cells, and Tukey's weights for a deviation; how many of the points are near.
+/// Distances of points from the lines of their cells, coordinates along these, and Tukey's weights for a deviation; how many of the points are
+/// near.
 #[inline(always)]
-fn write_residuals_and_weights(
-    (points, numbers, lines): (&[Point2<f64>], &[u32], &[CellLine]),
-    (residuals, weights): (&mut [f64], &mut [f64]),
-    sigma: f64,
-) -> usize {
+fn write_residuals_and_weights(points: &[Point2<f64>], columns: &mut Columns, sigma: f64) -> u64 {
     let (limit, scale) = (tuning::FULL_WEIGHT * sigma, 1.0 / sigma);
-    let mut near = [0.0; LANES];
-    let (residuals, last_residuals) = residuals.as_chunks_mut::<LANES>();
-    let (weights, last_weights) = weights.as_chunks_mut::<LANES>();
-    let (points, last_points) = points.as_chunks::<LANES>();
-    let (numbers, last_numbers) = numbers.as_chunks::<LANES>();
-    for ((residuals, weights), (points, numbers)) in residuals.iter_mut().zip(weights).zip(points.iter().zip(numbers)) {
-        let lines: [&CellLine; LANES] = std::array::from_fn(|lane| &lines[numbers[lane] as usize]);
-        let [x, y, at]: [Lanes; 3] =
-            [lines.map(|line| line.normal.x), lines.map(|line| line.normal.y), lines.map(|line| line.at)];
-        let [inverse, of_cell]: [Lanes; 2] = [lines.map(|line| line.inverse_deviation), lines.map(|line| line.share)];
-        for lane in 0..LANES {
-            let residual = x[lane] * points[lane].x + y[lane] * points[lane].y - at[lane];
-            residuals[lane] = residual;
-            near[lane] += if residual.abs() < limit { 1.0 } else { 0.0 };
-            weights[lane] = tukeys_weight(residual * (inverse[lane] * scale)) * of_cell[lane];
-        }
+    let Columns { numbers, residuals, weights, along, lines, rows, .. } = columns;
+    let (lines, rows) = (lines.as_slice(), rows.as_mut_slice());
+    // What lies anywhere is looked up first: the loop after that runs in vectors.
+    for (row, number) in rows.iter_mut().zip(numbers.iter()) {
+        *row = lines[*number as usize].0;
     }
-    let mut all: f64 = near.iter().sum();
-    let last = last_points.iter().zip(last_numbers);
-    for ((residual, weight), (p, number)) in last_residuals.iter_mut().zip(last_weights).zip(last) {
-        let line = &lines[*number as usize];
-        *residual = line.normal.x * p.x + line.normal.y * p.y - line.at;
-        all += if residual.abs() < limit { 1.0 } else { 0.0 };
-        *weight = weight_of(*residual, line, scale);
+    let mut near = 0;
+    let found = residuals.iter_mut().zip(along.iter_mut().zip(weights.iter_mut()));
+    for ((residual, (along, weight)), (p, [x, y, at, inverse])) in found.zip(points.iter().zip(rows.iter())) {
+        let off = x * p.x + y * p.y - at;
+        *residual = off;
+        *along = x * p.y - y * p.x;
+        near += u64::from(off.abs() < limit);
+        *weight = weight_of(off, *inverse, scale);
     }
-    all as usize
+    near
 }
 
-/// What a point with a residual counts for, by the inverse of a deviation.
+/// What a point with a residual counts for, by the inverse deviation of the points of its cell and the inverse of a deviation of all.
 #[inline(always)]
-fn weight_of(residual: f64, line: &CellLine, scale: f64) -> f64 {
-    tukeys_weight(residual * (line.inverse_deviation * scale)) * line.share
+fn weight_of(residual: f64, inverse: f64, scale: f64) -> f64 {
+    tukeys_weight(residual * (inverse * scale)) * (inverse * inverse)
 }
 
 /// Tukey's weight of a residual in deviations.
@@ -280,88 +278,27 @@ fn tukeys_weight(residual: f64) -> f64 {
     if excess < 1.0 { kept * kept } else { 0.0 }
 }
 
-/// What has been found of the points of a frame.
-struct Found<'a> {
-    points: &'a [Point2<f64>],
-    numbers: &'a [u32],
-    residuals: &'a [f64],
-    weights: &'a [f64],
-    lines: &'a [CellLine],
-}
-
-impl Found<'_> {
-    /// [`write_jacobians`](Self::write_jacobians) of a model, which is known before the loop over the points.
-    #[inline(always)]
-    fn write_jacobians_of(&self, model: MotionModel, measurements: &mut [Measurement]) {
-        match model {
-            MotionModel::Rigid => {
-                self.write_jacobians(measurements, |p, n| MotionModel::Rigid.normal_velocities(p, n));
-            }
-            MotionModel::Similarity => {
-                self.write_jacobians(measurements, |p, n| MotionModel::Similarity.normal_velocities(p, n));
-            }
-            MotionModel::Affine => {
-                self.write_jacobians(measurements, |p, n| MotionModel::Affine.normal_velocities(p, n));
-            }
-            MotionModel::Projective => {
-                self.write_jacobians(measurements, |p, n| MotionModel::Projective.normal_velocities(p, n));
-            }
-        }
-    }
-
-    /// The Jacobians of all points, and measurements of all that was found: the normal velocities that each parameter of the pose error gives the
-    /// feet of the points.
-    #[inline(always)]
-    fn write_jacobians(
-        &self,
-        measurements: &mut [Measurement],
-        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
-    ) {
-        let none = (self.lines.len() - 1) as u32;
-        let of_points = self.points.iter().zip(self.numbers).zip(self.residuals.iter().zip(self.weights));
-        for (measurement, ((p, number), (residual, weight))) in measurements.iter_mut().zip(of_points) {
-            let line = &self.lines[*number as usize];
-            let foot = p - *residual * line.normal;
-            *measurement = Measurement {
-                cell: if *number == none { NO_CELL } else { *number as usize },
-                residual: *residual,
-                by_offset: line.by_offset,
-                jacobian: velocities(&foot, &line.normal),
-                weight: *weight,
-            };
-        }
-    }
-}
-
-impl Columns {
-    /// Room for so many points and cells.
-    fn make_room(&mut self, points: usize, cells: usize) {
-        self.own_places.resize(points, Point2::origin());
-        self.weighted.resize(points, [0.0; LANES]);
-        self.numbers.resize(points, 0);
-        self.residuals.resize(points, 0.0);
-        self.weights.resize(points, 0.0);
-        self.lines.resize(cells + 1, CellLine::NONE);
-    }
-
-    /// Sets the cells to those of measurements, with their weights.
-    pub(super) fn set_cells(&mut self, measurements: &[Measurement]) {
-        self.numbers.clear();
-        self.numbers.extend(measurements.iter().map(|m| if m.cell == NO_CELL { u32::MAX } else { m.cell as u32 }));
-        self.weights.clear();
-        self.weights.extend(measurements.iter().map(|m| m.weight));
-    }
-
-    /// The numbers of the cells, to be changed, and the weights.
-    pub(super) fn numbers_and_weights(&mut self) -> (&mut [u32], &[f64]) {
-        (&mut self.numbers, &self.weights)
-    }
-
-    /// Gives measurements their cells back.
-    pub(super) fn hand_cells_back(&self, measurements: &mut [Measurement]) {
-        for (measurement, number) in measurements.iter_mut().zip(&self.numbers).filter(|(m, _)| m.cell != NO_CELL) {
-            measurement.cell = *number as usize;
-        }
+/// The Jacobians of all points, and measurements of all that was found: the normal velocities that each parameter of the pose error gives the
+/// feet of the points.
+#[inline(always)]
+fn write_jacobians(
+    points: &[Point2<f64>],
+    columns: &Columns,
+    measurements: &mut [Measurement],
+    velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
+) {
+    let lines = columns.lines.as_slice();
+    let none = lines.len() - 1;
+    for (measurement, (p, found)) in measurements.iter_mut().zip(points.iter().zip(columns.points())) {
+        let line = &lines[found.cell];
+        let (normal, foot) = (line.normal(), p - found.residual * line.normal());
+        *measurement = Measurement {
+            cell: if found.cell == none { NO_CELL } else { found.cell },
+            residual: found.residual,
+            by_offset: found.by_offset,
+            jacobian: velocities(&foot, &normal),
+            weight: found.weight,
+        };
     }
 }
 

@@ -22,7 +22,9 @@ impl VarianceInflation {
         let of_all = 1.0 / self.points;
         self.mean_square += (square - self.mean_square) * (share * of_all);
         let uncertainty = (2.0 * of_all).sqrt();
-        self.variance = (self.mean_square / (1.0 + tuning::INFLATION_SIGNIFICANT * uncertainty)).max(1.0);
+        let expected = 1.0 + tuning::INFLATION_SIGNIFICANT * uncertainty;
+        // Of few cells: a quotient takes long.
+        self.variance = if self.mean_square > expected { self.mean_square / expected } else { 1.0 };
     }
 }
 

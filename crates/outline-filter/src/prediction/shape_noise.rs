@@ -3,6 +3,7 @@ use crate::{
     belief::{Arrowhead, Belief, OffsetInformation},
     measurement::{Counted, NoiseModel},
     tuning::shape_noise as tuning,
+    vectors::vectorised,
 };
 
 /// How fast the offsets change, from the correlation of their innovations in successive frames (R. Mehra, 1970); none until the
@@ -46,33 +47,43 @@ impl ShapeNoise {
 
     /// Compares the innovations of the offsets with those of the frame before. `before` is the information that the cells had, now
     /// held by the belief with the frame added; `shifts` are the corrections made. Where points count by deviations of their own, what less
-    /// than one good point tells of a cell is taken in its own deviations.
+    /// than one good point tells of a cell is taken in its own deviations. `innovations` is room for a number for each cell.
     pub(crate) fn compare_innovations(
         &mut self,
         belief: &Belief,
         shifts: &[f64],
         before: &OffsetInformation,
         noise: &NoiseModel,
+        innovations: &mut Vec<f64>,
     ) {
         let scale = belief.scale() / noise.sigma;
         let counts_alike = noise.counted == Counted::Alike;
+        innovations.resize(shifts.len(), 0.0);
+        let innovations = innovations.as_mut_slice();
+        vectorised(
+            #[inline(always)]
+            || {
+                let known = before.own().iter().zip(belief.information.cells.own());
+                for (innovation, ((before, after), shift)) in innovations.iter_mut().zip(known.zip(shifts)) {
+                    let gain = 1.0 - before / after;
+                    // Also false where a cell has no information yet.
+                    let is_told = (gain > tuning::SMALLEST_GAIN) & (*before > 0.0);
+                    let size = scale * shift / gain;
+                    let share = if counts_alike { 1.0 } else { (after - before).clamp(0.0, 1.0).sqrt() };
+                    let size = if is_told { share * size } else { 0.0 };
+                    let size = if size < -tuning::CLIPPED { -tuning::CLIPPED } else { size };
+                    *innovation = if size > tuning::CLIPPED { tuning::CLIPPED } else { size };
+                }
+            },
+        );
         let (mut products, mut squares, mut count) = (0.0, 0.0, 0.0);
-        let known = before.own().iter().zip(belief.information.cells.own());
-        for ((last, (before, after)), shift) in self.last.iter_mut().zip(known).zip(shifts) {
-            let gain = 1.0 - before / after;
-            // Also false where a cell has no information yet.
-            let is_told = gain > tuning::SMALLEST_GAIN && *before > 0.0;
-            let innovation = if is_told { scale * shift / gain } else { 0.0 };
-            let share = if counts_alike { 1.0 } else { (after - before).clamp(0.0, 1.0).sqrt() };
-            let innovation = share * innovation;
-            let innovation = innovation.clamp(-tuning::CLIPPED, tuning::CLIPPED);
-            if innovation != 0.0 && *last != 0.0 {
-                let product = innovation * *last;
-                products += product;
-                squares += product * product;
-                count += 1.0;
-            }
-            *last = innovation;
+        for (last, innovation) in self.last.iter_mut().zip(innovations.iter()) {
+            // None where either was not seen.
+            let product = innovation * *last;
+            products += product;
+            squares += product * product;
+            count += if product != 0.0 { 1.0 } else { 0.0 };
+            *last = *innovation;
         }
         if count > 0.0 {
             self.update(products, squares, count);

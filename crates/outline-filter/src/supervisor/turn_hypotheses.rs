@@ -90,7 +90,7 @@ impl TurnHypotheses {
                     others.as_slice().iter().find(|candidate| wrapped(candidate.turn - turn).abs() < different_turn);
                 let likelihood = found.map_or_else(NegativeLogLikelihood::default, |candidate| candidate.likelihood);
                 let track = found.map(|candidate| candidate.track.clone());
-                all.rivals.push(TurnHypothesis { likelihood, track, reason: Reason::Symmetry });
+                all.rivals.push(TurnHypothesis::new(track, likelihood, Reason::Symmetry));
             }
         }
         let others: Vec<Candidate> =
@@ -98,7 +98,7 @@ impl TurnHypotheses {
         for candidate in others {
             all.rival_turns.push(candidate.turn);
             let (likelihood, track) = (candidate.likelihood, Some(candidate.track));
-            all.rivals.push(TurnHypothesis { likelihood, track, reason: Reason::Likeness });
+            all.rivals.push(TurnHypothesis::new(track, likelihood, Reason::Likeness));
         }
         (taken, all)
     }
@@ -128,7 +128,7 @@ impl TurnHypotheses {
         self.symmetry_angle = if self.symmetry_angle > 0.0 { self.symmetry_angle } else { TAU };
         self.rival_turns.push(turn - TAU.copysign(turn));
         let likelihood = NegativeLogLikelihood::default();
-        self.rivals.push(TurnHypothesis { likelihood, track: None, reason: Reason::Symmetry });
+        self.rivals.push(TurnHypothesis::new(None, likelihood, Reason::Symmetry));
     }
 
     /// After an exchange, names the turns that look like the one taken now in place of those that look like the one before.
@@ -149,7 +149,7 @@ impl TurnHypotheses {
             if self.rival_turns.iter().all(|other| (other - turn).abs() > different_turn) {
                 self.rival_turns.push(turn);
                 let likelihood = NegativeLogLikelihood::default();
-                self.rivals.push(TurnHypothesis { likelihood, track: None, reason: Reason::Symmetry });
+                self.rivals.push(TurnHypothesis::new(None, likelihood, Reason::Symmetry));
             }
         }
     }
@@ -178,7 +178,7 @@ impl TurnHypotheses {
     }
 
     fn is_doubtful(&self, index: usize) -> bool {
-        is_doubtful(self.rival_turns[index], self.present_turn)
+        self.rivals[index].is_shown || is_doubtful(self.rival_turns[index], self.present_turn)
     }
 
     /// The parameters in which the motion of a doubtful hypothesis differs from an estimate.
@@ -236,13 +236,15 @@ impl TurnHypotheses {
                 let again = track.update(frame, &gate, Comparison::NotAsked);
                 outcome = if again.is_accepted() { again } else { outcome };
             }
-            // Of what looked the same but does not, the path decides nothing.
-            let is_better = if is_alike {
-                self.likelihood.is_worse_than(&of_rival) || have_met && of_rival.all() < self.likelihood.all()
-            } else {
-                self.likelihood.shows_less_than(&of_rival)
-            };
-            let are_told_apart = !is_alike && is_better && found.is_accepted();
+            // Of what looks the same the path decides nothing.
+            let [of_present, of_points] = [self.likelihood, of_rival].map(NegativeLogLikelihood::of_points);
+            rival.is_shown = !is_alike && of_present.is_worse_than(&of_points);
+            let are_told_apart = rival.is_shown
+                && self.frames >= tuning::FOLLOWED
+                && of_present.is_worse_by(tuning::NOT_THE_SAME, &of_points);
+            let is_better = are_told_apart
+                || is_alike
+                    && (self.likelihood.is_worse_than(&of_rival) || have_met && of_rival.all() < self.likelihood.all());
             if found.is_accepted() && (!outcome.is_accepted() || is_better) {
                 self.exchange(index, track);
                 if are_told_apart {
@@ -282,7 +284,7 @@ impl TurnHypotheses {
     fn deny_symmetry(&mut self) {
         self.symmetry_angle = TAU;
         for hypothesis in self.rivals.iter_mut().filter(|hypothesis| hypothesis.track.is_some()) {
-            hypothesis.reason = Reason::Likeness;
+            (hypothesis.reason, hypothesis.is_shown) = (Reason::Likeness, false);
         }
     }
 

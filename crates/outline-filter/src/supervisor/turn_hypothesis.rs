@@ -17,6 +17,8 @@ pub(super) struct TurnHypothesis {
     pub(super) track: Option<Track>,
     pub(super) likelihood: NegativeLogLikelihood,
     pub(super) reason: Reason,
+    /// Whether it looks the same as the one taken, and yet points are significantly better for it.
+    pub(super) is_shown: bool,
 }
 
 /// Why a turn may have been another.
@@ -56,6 +58,11 @@ impl TurnHypothesis {
         track.record_spread(&found.measurement);
         self.likelihood.add(&found.likelihood);
         Some(found)
+    }
+
+    /// One that is followed if it has a track.
+    pub(super) fn new(track: Option<Track>, likelihood: NegativeLogLikelihood, reason: Reason) -> Self {
+        Self { track, likelihood, reason, is_shown: false }
     }
 
     pub(super) fn has_met(&self, present: &Track, different_turn: f64) -> bool {

@@ -52,17 +52,18 @@ impl Track {
         let EarlyShape { offsets: early, information: early_information, .. } = &self.early_shape;
         let (known, offsets) = (self.belief.information.cells.own(), &self.belief.offsets);
         // Cells that are newer than the early shape have no weight.
-        let moved = (0..known.len()).map(|number| match (known[number], early_information.get(number)) {
+        let moved_of = |number: usize| match (known[number], early_information.get(number)) {
             (now, Some(&then)) if now > 0.0 && then > 0.0 => {
                 ((1.0 / now + 1.0 / then).recip(), offsets[number] - early[number])
             }
             _ => (0.0, 0.0),
-        });
+        };
+        let moved = (0..known.len()).map(moved_of);
         let compared = moved.clone().filter(|(weight, _)| *weight > 0.0).count();
         if compared < tuning::FEWEST_CELLS || (compared as f64) < tuning::LEAST_SHARE * known.len() as f64 {
             return None;
         }
-        let motion = self.motion_of_outline(&moved);
+        let motion = self.motion_of_outline(moved_of);
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let scale = self.belief.scale();
         let left = self.map.cells().iter().zip(moved).filter(|(_, (weight, _))| *weight > 0.0);

@@ -59,11 +59,8 @@ fn points_measured_side_by_side_are_measured_as_one_by_one() {
             let null = track.null_directions();
             let inverse: Matrix3<f64> = pose.try_inverse().expect("a pose");
             let half_window = view.half_window_of_places(&pose, &frame);
-            for buffers in [&mut frame, &mut other] {
-                let count = buffers.points.len();
-                buffers.measurements.resize(count, crate::measurement::Measurement::NOTHING);
-            }
-            view.measure_side_by_side(&mut frame, &inverse, half_window, &null, pass);
+            view.measure_side_by_side(&mut frame, &inverse, half_window, pass);
+            view.write_measurements(&mut frame, &null);
             view.measure_one_by_one(&mut other, &inverse, half_window, &null, pass);
             for (i, (found, expected)) in frame.measurements.iter().zip(&other.measurements).enumerate() {
                 assert_eq!(found.cell, expected.cell, "{model:?} {closed} {pass:?} {i}");

@@ -21,7 +21,7 @@ use crate::{
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
 ///
 /// A frame goes one way: loaded into a [`Frame`], then [`Track::update`]: solved for a proposal ([`View::solve`], which associates and linearises,
-/// [`View::measure`], until the pose settles), judged ([`Track::verdict`]), committed ([`commit`]); then the map grows by what is new.
+/// [`View::measure_by_columns`], until the pose settles), judged ([`Track::verdict`]), committed ([`commit`]); then the map grows by what is new.
 /// Copies share the map until one of them changes it.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -95,6 +95,8 @@ pub(crate) mod dynamics {
     pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
     /// What makes a measurement of the pose solvable along what it says nothing of.
     pub(crate) const SINGULAR: f64 = 1e-9;
+    /// Share of the information on a parameter, all others known, that rounding leaves where there is none with the others unknown.
+    pub(crate) const ROUNDED: f64 = 1e-14;
     /// Share by which a frame corrects the variance of a pose.
     pub(crate) const VARIANCE_GAIN: f64 = 0.1;
     /// While a constant generator is more probable than this, which is that of what lies outside of an interval of 95 %, its own estimate is stated, and

@@ -124,6 +124,9 @@ pub(crate) mod turn_hypotheses {
     pub(crate) const SURELY_SMALLER: f64 = 2.0;
     /// Frames after which hypotheses that are surely larger turns are no longer followed: a symmetric outline will not tell them apart.
     pub(crate) const FOLLOWED: usize = 8;
+    /// Deviations by which the points of so many frames must be better for another of the turns that had looked the same: cells err alike in all of the
+    /// first frames, so that those of a square differ by up to six.
+    pub(crate) const NOT_THE_SAME: f64 = 10.0;
     /// Deviations by which poses or motions of hypotheses must differ to be in doubt.
     pub(crate) const DIFFERENT: f64 = 2.0;
 }

@@ -2,7 +2,7 @@
 use super::{gate::without_leverage, solve::Proposal};
 use crate::{
     belief::Belief,
-    measurement::{Frame, Measurement, NoiseModel},
+    measurement::{Frame, NoiseModel, PointOnCell},
     prediction::ShapeNoise,
     vectors::vectorised,
 };
@@ -22,24 +22,24 @@ pub(crate) fn commit(
     belief.pose = proposal.pose;
     (0..k).for_each(|i| belief.motion[i] += proposal.state[k + i]);
     belief.offsets.iter_mut().zip(&frame.shifts).for_each(|(offset, shift)| *offset += shift);
-    shape.compare_innovations(belief, &frame.shifts, &cells_before, noise);
+    shape.compare_innovations(belief, &frame.shifts, &cells_before, noise, &mut frame.values);
     // Room for the next frame.
     frame.cells_with_frame = cells_before;
     let units = 1.0 / (noise.sigma * noise.sigma);
     let own = belief.information.cells.own();
-    let measurements = &frame.measurements;
+    let points = frame.columns.points();
     match frame.deviations.ratios() {
         None => vectorised(
             #[inline(always)]
             || {
-                for m in measurements {
-                    add_residual(m, own, (units, 1.0), noise);
+                for point in points.clone() {
+                    add_residual(&point, own, (units, 1.0), noise);
                 }
             },
         ),
         Some(ratios) => {
-            for (m, ratio) in measurements.iter().zip(ratios) {
-                add_residual(m, own, (units, (ratio * ratio).recip()), noise);
+            for (point, ratio) in points.zip(ratios) {
+                add_residual(&point, own, (units, (ratio * ratio).recip()), noise);
             }
         }
     }
@@ -47,7 +47,7 @@ pub(crate) fn commit(
 
 /// Adds what a point says of the noise of its cell, in units of the variance of good points; it counts for a share of one.
 #[inline(always)]
-fn add_residual(m: &Measurement, own: &[f64], (units, share): (f64, f64), noise: &mut NoiseModel) {
+fn add_residual(m: &PointOnCell, own: &[f64], (units, share): (f64, f64), noise: &mut NoiseModel) {
     if m.weight > 0.0
         && let Some(factor) = without_leverage(m, own[m.cell])
     {

@@ -4,7 +4,7 @@ use std::fmt;
 use super::solve::Proposal;
 use crate::{
     map::median_about,
-    measurement::{Frame, Measurement, NO_CELL, View, spread, weighted_median},
+    measurement::{Columns, Frame, PointOnCell, View, spread, weighted_median},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, update as tuning},
     vectors::vectorised,
 };
@@ -142,20 +142,20 @@ impl View<'_> {
         radius: f64,
     ) -> FrameMeasurement {
         let spread = spread(frame, self.noise.sigma);
-        let Frame { measurements, values, weighted, cells_with_frame: cells, deviations, .. } = frame;
+        let Frame { columns, values, weighted, cells_with_frame: cells, deviations, .. } = frame;
         let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
         let widest = deviations.widest();
         let limit = |ratio: f64| (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());
-        values.resize(measurements.len(), 0.0);
+        values.resize(columns.len(), 0.0);
         weighted.clear();
         let Told { known, agreeing, new, new_points, told } = match deviations.ratios() {
             None => vectorised(
                 #[inline(always)]
-                || told_alike(measurements, cells.own(), limit(1.0), values),
+                || told_alike(columns, cells.own(), limit(1.0), values),
             ),
-            Some(ratios) => told_by_deviations((measurements.as_slice(), ratios), cells.own(), limit, weighted),
+            Some(ratios) => told_by_deviations((columns, ratios), cells.own(), limit, weighted),
         };
-        let enough = told * tuning::ONE_IN_TELLS > measurements.len();
+        let enough = told * tuning::ONE_IN_TELLS > columns.len();
         // Points count by their weights: what those that count most scatter by must not hide behind others that say too much of theirs.
         let guess = self.noise.sigma / MEDIAN_TO_DEVIATION;
         let middle =
@@ -184,23 +184,23 @@ struct Told {
 
 /// Of points that count by their deviations, over that of a good one, with what each may be off by; those that tell of the noise are listed.
 fn told_by_deviations(
-    (measurements, ratios): (&[Measurement], &[f64]),
+    (columns, ratios): (&Columns, &[f64]),
     own: &[f64],
     limit: impl Fn(f64) -> f64,
     weighted: &mut Vec<(f64, f64)>,
 ) -> Told {
     let mut all = Told { known: 0.0, agreeing: 0.0, new: 0.0, new_points: 0, told: 0 };
-    for (m, ratio) in measurements.iter().zip(ratios) {
+    for (m, ratio) in columns.points().zip(ratios) {
         // Points that count for next to nothing need not agree.
         let share = (ratio * ratio).recip();
-        if m.cell == NO_CELL {
+        let Some(own) = own.get(m.cell) else {
             all.new_points += 1;
             all.new += share;
             continue;
-        }
+        };
         all.known += share;
         all.agreeing += if m.residual.abs() < limit(*ratio) { share } else { 0.0 };
-        if let Some(factor) = without_leverage(m, own[m.cell]).filter(|_| m.weight > 0.0) {
+        if let Some(factor) = without_leverage(&m, *own).filter(|_| m.weight > 0.0) {
             weighted.push((m.residual.abs() * factor.sqrt() / ratio, share));
         }
     }
@@ -211,28 +211,43 @@ fn told_by_deviations(
 /// As [`told_by_deviations`], which a test compares it with, of points that are all good ones; sizes of those that tell of the noise come
 /// first among the values.
 #[inline(always)]
-fn told_alike(measurements: &[Measurement], own: &[f64], limit: f64, values: &mut [f64]) -> Told {
-    let (mut agreeing, mut new_points, mut told) = (0, 0, 0);
-    for m in measurements {
-        // None has a number beyond all cells.
-        let Some(own) = own.get(m.cell) else {
-            new_points += 1;
-            continue;
-        };
-        let size = m.residual.abs();
-        agreeing += usize::from(size < limit);
-        let of_point = m.weight * m.by_offset * m.by_offset;
-        values[told] = size * (own / (own - of_point)).sqrt();
-        told += usize::from((of_point < tuning::LARGEST_LEVERAGE * own) & (m.weight > 0.0));
+fn told_alike(columns: &Columns, own: &[f64], limit: f64, values: &mut [f64]) -> Told {
+    let Columns { numbers, residuals, weights, by_offsets, .. } = columns;
+    // What lies anywhere is looked up first: the loop after that runs in vectors. None has a number beyond all cells.
+    for (value, number) in values.iter_mut().zip(numbers) {
+        *value = own.get(*number as usize).copied().unwrap_or(NONE);
     }
-    let known = (measurements.len() - new_points) as f64;
-    Told { known, agreeing: agreeing as f64, new: new_points as f64, new_points, told }
+    let (mut known, mut agreeing, mut told) = (0_u64, 0_u64, 0_u64);
+    let of_points = values.iter_mut().zip(residuals).zip(weights.iter().zip(by_offsets));
+    for ((value, residual), (weight, by_offset)) in of_points {
+        let (own, size) = (*value, residual.abs());
+        let of_point = weight * by_offset * by_offset;
+        let is_told = (of_point < tuning::LARGEST_LEVERAGE * own) & (*weight > 0.0);
+        known += u64::from(own != NONE);
+        agreeing += u64::from((own != NONE) & (size < limit));
+        told += u64::from(is_told);
+        let value_told = size * (own / (own - of_point)).sqrt();
+        *value = if is_told { value_told } else { NONE };
+    }
+    let (told, new_points) = (told as usize, numbers.len() - known as usize);
+    if told < numbers.len() {
+        let mut kept = 0;
+        for i in 0..values.len() {
+            let value = values[i];
+            values[kept] = value;
+            kept += usize::from(value != NONE);
+        }
+    }
+    Told { known: known as f64, agreeing: agreeing as f64, new: new_points as f64, new_points, told }
 }
+
+/// In place of the information of no cell, and of the size of a point that tells nothing: no number that either may be.
+const NONE: f64 = -1.0;
 
 /// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is;
 /// `None` where that share is too large to tell.
 #[inline(always)]
-pub(super) fn without_leverage(measurement: &Measurement, own: f64) -> Option<f64> {
+pub(super) fn without_leverage(measurement: &PointOnCell, own: f64) -> Option<f64> {
     let of_point = measurement.weight * measurement.by_offset * measurement.by_offset;
     (of_point < tuning::LARGEST_LEVERAGE * own).then(|| own / (own - of_point))
 }
@@ -265,12 +280,13 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
+    use crate::measurement::{Measurement, NO_CELL};
 
     #[test]
     fn good_points_tell_what_points_of_deviations_that_are_all_one_do() {
         let mut rng = ChaCha8Rng::seed_from_u64(9);
         let own: Vec<f64> = (0..40).map(|_| rng.random_range(0.0..5.0)).collect();
-        let measurements: Vec<_> = (0..200)
+        let measurements: Vec<_> = (0..203)
             .map(|i| Measurement {
                 cell: if i % 13 == 0 { NO_CELL } else { rng.random_range(0..own.len()) },
                 residual: rng.random_range(-1.0..1.0),
@@ -279,11 +295,13 @@ mod tests {
                 ..Measurement::NOTHING
             })
             .collect();
+        let mut columns = Columns::default();
+        columns.take(&measurements);
         let mut weighted = Vec::new();
         let ratios = vec![1.0; measurements.len()];
-        let expected = told_by_deviations((&measurements, &ratios), &own, |_| 0.4, &mut weighted);
+        let expected = told_by_deviations((&columns, &ratios), &own, |_| 0.4, &mut weighted);
         let mut values = vec![0.0; measurements.len()];
-        let found = told_alike(&measurements, &own, 0.4, &mut values);
+        let found = told_alike(&columns, &own, 0.4, &mut values);
         assert_eq!(found, expected);
         assert!(found.told > 50 && found.told < measurements.len());
         assert!(values.iter().zip(&weighted).all(|(value, (size, _))| value == size));

@@ -128,8 +128,7 @@ mod tests {
             measurements.iter().for_each(|m| dense.measure(m));
             let gained = &before - of_pose(&dense);
             let step = dense.mean.rows(0, k).clone_owned();
-            let mut frame = Frame { measurements, ..Frame::default() };
-            frame.clear_shifts(cells);
+            let mut frame = Frame::of_measurements(measurements, cells);
             let mut work = belief.information.clone();
             accumulate(&mut frame, &mut work, &StateVector::zeros());
             let state = StateVector::from_fn(|i, _| if i < 2 * k { dense.mean[i] } else { 0.0 });

@@ -1,4 +1,5 @@
 //! One frame taken into what is believed: solve for a proposal, judge it at a gate, commit it.
+mod cells;
 mod commit;
 mod gate;
 mod hold;

@@ -2,8 +2,8 @@
 use freeform_riccati::{MAX_PARAMETERS, ParameterMatrix};
 
 use crate::{
-    belief::{Arrowhead, StateVector},
-    measurement::{Frame, Measurement},
+    belief::{Arrowhead, STATE, StateVector},
+    measurement::{Frame, Jacobians, Measurement},
     vectors::vectorised,
 };
 
@@ -14,6 +14,20 @@ pub(crate) struct Added {
     pub(super) information: ParameterMatrix,
     /// Right-hand side of pose and motion.
     pub(super) right: StateVector,
+}
+
+impl Frame {
+    /// Sets the information to what was known of pose, motion and offsets, and adds the measured points to it; as [`accumulate`].
+    pub(super) fn accumulate_onto(&mut self, known: &Arrowhead, work: &mut Arrowhead, state: &StateVector) -> Added {
+        work.dense = known.dense;
+        match self.columns.jacobians {
+            Jacobians::OfPoints => {
+                work.cells.copy_from(&known.cells);
+                accumulate(self, work, state)
+            }
+            Jacobians::OfCells => self.accumulate_cells(&known.cells, work, state),
+        }
+    }
 }
 
 /// Adds the measurements to the information; returns what they add to pose and motion, and leaves the right-hand sides of the offsets in the
@@ -42,13 +56,24 @@ fn accumulate_sized<const K: usize, const S: usize>(
         #[inline(always)]
         || add_points::<K, S>(of_points, &step, (&mut *own, &mut *coupling), right),
     );
-    let mut added = Added { information: [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS], right: StateVector::zeros() };
-    for i in 0..K {
-        added.information[i][..K].copy_from_slice(&dense[i]);
-        added.right[i] = of_state[i];
-        work.dense[i].iter_mut().zip(&dense[i]).for_each(|(sum, entry)| *sum += entry);
+    Added::to(&mut work.dense, &dense, &of_state)
+}
+
+impl Added {
+    /// Added to what is known of pose and motion.
+    pub(super) fn to<const K: usize>(
+        known: &mut [[f64; STATE]; STATE],
+        information: &[[f64; K]; K],
+        right: &[f64; K],
+    ) -> Self {
+        let mut added = Self { information: [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS], right: StateVector::zeros() };
+        for i in 0..K {
+            added.information[i][..K].copy_from_slice(&information[i]);
+            added.right[i] = right[i];
+            known[i].iter_mut().zip(&information[i]).for_each(|(sum, entry)| *sum += entry);
+        }
+        added
     }
-    added
 }
 
 /// Adds points to the information on their cells and to its right-hand sides; returns what they add to pose and motion.

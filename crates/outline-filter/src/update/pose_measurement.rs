@@ -4,10 +4,10 @@ use nalgebra::{SMatrix, SVector};
 
 use super::solve::Proposal;
 use crate::{
-    belief::{Belief, OffsetInformation},
+    belief::{Belief, OffsetInformation, sum_of_outer_products},
     measurement::Frame,
     tuning::dynamics::LARGEST_VARIANCE,
-    vectors::{LANES, Lanes, add_product, in_lanes, vectorised},
+    vectors::vectorised,
 };
 
 /// In normalised coordinates, of the error of the predicted pose, on the left; the outline taken as known before the frame.
@@ -41,24 +41,11 @@ impl PoseMeasurement {
             pulled[i] = proposal.right[i];
             information[i].copy_from_slice(&proposal.added[i][..K]);
         }
-        let [own, own_before] = [&frame.cells_with_frame, &before.cells].map(OffsetInformation::own);
-        let [coupling, coupling_before] = [&frame.cells_with_frame, &before.cells].map(OffsetInformation::rows::<S>);
-        let (taken, taken_pull) = vectorised(
-            #[inline(always)]
-            || {
-                let mut taken = ([[[0.0; LANES]; K]; K], [[0.0; LANES]; K]);
-                for start in (0..own.len()).step_by(LANES) {
-                    add_eliminated(start, (own, own_before), (coupling, coupling_before), &frame.right, &mut taken);
-                }
-                taken
-            },
-        );
+        let taken = taken_by_offsets::<K, S>([&frame.cells_with_frame, &before.cells], &frame.right);
         for i in 0..K {
-            pulled[i] -= taken_pull[i].iter().sum::<f64>();
-            for j in 0..=i {
-                let sum: f64 = taken[i][j].iter().sum();
-                information[i][j] -= sum;
-                information[j][i] -= if i == j { 0.0 } else { sum };
+            pulled[i] -= taken.pull[i];
+            for j in 0..K {
+                information[i][j] -= taken.information[i][j];
             }
         }
         Self {
@@ -81,32 +68,53 @@ impl PoseMeasurement {
     }
 }
 
-/// Adds, in lanes, what the offsets of the cells from `start` on take off the information of a frame on the pose, its lower half, and off its
-/// pull: of each cell its part of the coupling that the frame has added.
-#[inline(always)]
-fn add_eliminated<const K: usize, const S: usize>(
-    start: usize,
-    (own, own_before): (&[f64], &[f64]),
-    (coupling, coupling_before): (&[[f64; S]], &[[f64; S]]),
+/// What the offsets take off the information of a frame on the pose and off its pull.
+struct Taken<const K: usize> {
+    information: [[f64; K]; K],
+    pull: [f64; K],
+}
+
+/// Of each cell, with the information that a frame has on it and that before, its part of the coupling that the frame has added.
+fn taken_by_offsets<const K: usize, const S: usize>(
+    [with, before]: [&OffsetInformation; 2],
     right: &[f64],
-    (taken, taken_pull): &mut ([[Lanes; K]; K], [Lanes; K]),
-) {
-    let count = LANES.min(own.len() - start);
-    let (mut added, mut inverse, mut of_offset) = ([[0.0; K]; LANES], [0.0; LANES], [0.0; LANES]);
-    for lane in 0..count {
-        let at = start + lane;
-        let (with, before) = (&coupling[at], &coupling_before[at]);
-        (0..K).for_each(|i| added[lane][i] = with[i] - before[i]);
-        inverse[lane] = if own[at] > own_before[at] { 1.0 / own[at] } else { 0.0 };
-        of_offset[lane] = right[at];
+) -> Taken<K> {
+    // The pull is a column beside those of the coupling; what is left of a vector stays empty.
+    match K {
+        3 => padded::<K, S, 4>([with, before], right),
+        4 | 6 => padded::<K, S, 8>([with, before], right),
+        _ => padded::<K, S, 12>([with, before], right),
     }
-    let added = in_lanes(&added);
-    for i in 0..K {
-        let mut factor = [0.0; LANES];
-        add_product(&mut factor, &added[i], &inverse);
-        add_product(&mut taken_pull[i], &factor, &of_offset);
-        for j in 0..=i {
-            add_product(&mut taken[i][j], &factor, &added[j]);
-        }
+}
+
+fn padded<const K: usize, const S: usize, const P: usize>(
+    [with, before]: [&OffsetInformation; 2],
+    right: &[f64],
+) -> Taken<K> {
+    let count = right.len();
+    let (own, own_before, right) = (&with.own()[..count], &before.own()[..count], &right[..count]);
+    let (coupling, coupling_before) = (&with.rows::<S>()[..count], &before.rows::<S>()[..count]);
+    let sum = vectorised(
+        #[inline(always)]
+        || {
+            sum_of_outer_products::<_, P>(
+                count,
+                #[inline(always)]
+                |number| {
+                    let (coupling, before) = (&coupling[number], &coupling_before[number]);
+                    let mut added = [0.0; P];
+                    for i in 0..K {
+                        added[i] = coupling[i] - before[i];
+                    }
+                    added[K] = right[number];
+                    let own = own[number];
+                    (added, if own > own_before[number] { 1.0 / own } else { 0.0 })
+                },
+            )
+        },
+    );
+    Taken {
+        information: std::array::from_fn(|i| std::array::from_fn(|j| sum[i][j])),
+        pull: std::array::from_fn(|i| sum[i][K]),
     }
 }

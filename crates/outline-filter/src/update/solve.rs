@@ -4,14 +4,14 @@ use nalgebra::Matrix3;
 
 use super::{
     hold::with_hold,
-    normal_equations::{Added, accumulate, reduce},
+    normal_equations::{Added, reduce},
 };
 use crate::{
     belief::{Arrowhead, OffsetInformation, StateMatrix, StateVector, scaled_solution},
     map::NullDirection,
-    measurement::{Frame, NO_CELL, Pass, View},
+    measurement::{Frame, Jacobians, NO_CELL, Pass, View},
     tuning::update as tuning,
-    vectors::vectorised,
+    vectors::{LANES, vectorised},
 };
 
 /// What a frame asks for: a step of pose and motion, and the information with the frame. That of the offsets is
@@ -61,12 +61,11 @@ impl View<'_> {
                 null = self.map.null_directions(model, &proposal.pose);
             }
             let pass = if proposal.iterations == 0 { Pass::First } else { Pass::Again };
-            self.measure(frame, &proposal.pose, &null, pass);
+            self.measure_by_columns(frame, &proposal.pose, &null, pass);
             // The room that the frame has for them is used while its equations are set up.
             work.cells = std::mem::take(&mut frame.cells_with_frame);
-            work.cells.copy_from(&belief.information.cells);
-            work.dense = belief.information.dense;
-            let Added { information: added, right } = accumulate(frame, &mut work, &proposal.state);
+            let Added { information: added, right } =
+                frame.accumulate_onto(&belief.information, &mut work, &proposal.state);
             let marginal = work.marginal();
             let reduced = reduce(&work, &frame.right, right);
             let solution = scaled_solution(&with_hold(&marginal, hold), &reduced, k);
@@ -108,30 +107,47 @@ impl Frame {
     ) {
         let step: [f64; K] = std::array::from_fn(|i| step[i]);
         let state: [f64; S] = std::array::from_fn(|i| state[i]);
-        let Self { measurements, shifts, right, values, .. } = self;
-        values.resize(shifts.len(), 0.0);
-        let values = values.as_mut_slice();
+        let mut by_cell = std::mem::take(&mut self.values);
+        by_cell.resize(self.shifts.len(), 0.0);
+        let (shifts, right, values) = (self.shifts.as_mut_slice(), self.right.as_slice(), by_cell.as_mut_slice());
         vectorised(
             #[inline(always)]
             || {
-                let of_cells = cells.own().iter().zip(cells.rows::<S>()).zip(right.iter());
+                let of_cells = cells.own().iter().zip(cells.rows::<S>()).zip(right);
                 for ((shift, value), ((own, coupling), right)) in shifts.iter_mut().zip(values.iter_mut()).zip(of_cells)
                 {
-                    let mut along = 0.0;
+                    let mut along = [0.0; LANES];
                     for i in 0..S {
-                        along += coupling[i] * state[i];
+                        along[i % LANES] += coupling[i] * state[i];
                     }
+                    let along = (along[0] + along[1]) + (along[2] + along[3]);
                     let moved = if *own > 0.0 { (right - along) / own } else { *shift };
                     *value = moved - *shift;
                     *shift = moved;
                 }
-                for measurement in measurements.iter_mut() {
+            },
+        );
+        match self.columns.jacobians {
+            Jacobians::OfPoints => self.move_residuals_of_points(&step, &by_cell),
+            Jacobians::OfCells => self.move_residuals_of_cells(&step, &by_cell),
+        }
+        self.values = by_cell;
+    }
+
+    /// Moves the residuals by a step of the pose and one of the offset of each cell.
+    pub(super) fn move_residuals_of_points<const K: usize>(&mut self, step: &[f64; K], by_cell: &[f64]) {
+        let Self { measurements, columns, .. } = self;
+        vectorised(
+            #[inline(always)]
+            || {
+                for (measurement, residual) in measurements.iter_mut().zip(&mut columns.residuals) {
                     if measurement.cell != NO_CELL {
-                        let mut along = measurement.by_offset * values[measurement.cell];
+                        let mut along = measurement.by_offset * by_cell[measurement.cell];
                         for (slope, step) in measurement.jacobian.iter().zip(step) {
                             along += slope * step;
                         }
                         measurement.residual -= along;
+                        *residual = measurement.residual;
                     }
                 }
             },
@@ -148,7 +164,7 @@ mod tests {
         dense_filter::{AGREES, DenseFilter, Problem, random_measurements},
         measurement::NoiseModel,
         prediction::ShapeNoise,
-        update::commit,
+        update::{accumulate, commit},
     };
 
     proptest! {
@@ -162,8 +178,7 @@ mod tests {
             let measurements = random_measurements(&mut problem.rng, k, 0..cells, 3 * cells);
             measurements.iter().for_each(|m| dense.measure(m));
 
-            let mut frame = Frame { measurements, ..Frame::default() };
-            frame.clear_shifts(cells);
+            let mut frame = Frame::of_measurements(measurements, cells);
             let mut work = belief.information.clone();
             let Added { information: added, right } = accumulate(&mut frame, &mut work, &StateVector::zeros());
             let reduced = reduce(&work, &frame.right, right);
@@ -203,8 +218,7 @@ mod tests {
         fn a_second_linearisation_at_the_same_place_changes_nothing(mut problem in Problem::any()) {
             let (k, cells) = (problem.belief.parameter_count(), problem.belief.offsets.len());
             let measurements = random_measurements(&mut problem.rng, k, 0..cells, 3 * cells);
-            let mut frame = Frame { measurements, ..Frame::default() };
-            frame.clear_shifts(cells);
+            let mut frame = Frame::of_measurements(measurements, cells);
             let mut state = StateVector::zeros();
             let mut steps = Vec::new();
             for _ in 0..2 {

@@ -1,0 +1,231 @@
+//! Mean and covariance of a hypothesis corrected by what a frame tells of the pose.
+//!
+//! With the root L of the information of the frame, `W = L L'`, and the covariance P of the predicted pose, the weight of the innovation is
+//! `(W^-1 + P)^-1 = (I + W P)^-1 W = T T'`, where `T = L C^-T` and `C C' = I + L' P L`. That is never singular, also where W is, and has the
+//! determinant of `I + W P`. The covariance loses `H H'`, where H are its columns of the pose times T: it stays symmetric bit by bit.
+use super::{
+    centred::{CentredMatrix, CentredVector},
+    hypothesis::{CentredMeasurement, Hypothesis, Innovation},
+};
+use crate::{tuning::dynamics as tuning, vectors::vectorised};
+
+/// Root L of the information W on a pose of k parameters, `W = L L'`, a lower triangle. What W says next to nothing of has none.
+pub(super) fn root_of(information: &CentredMatrix, k: usize) -> CentredMatrix {
+    let mut root = CentredMatrix::zeros();
+    for j in 0..k {
+        let own = information[(j, j)];
+        let left = own - (0..j).map(|l| root[(j, l)] * root[(j, l)]).sum::<f64>();
+        // Not a number is no information either.
+        if !(left > tuning::ROUNDED * own) {
+            continue;
+        }
+        let pivot = left.sqrt();
+        root[(j, j)] = pivot;
+        for i in j + 1..k {
+            let left = information[(i, j)] - (0..j).map(|l| root[(i, l)] * root[(j, l)]).sum::<f64>();
+            root[(i, j)] = left / pivot;
+        }
+    }
+    root
+}
+
+/// What a correction is made of.
+struct Weight<const K: usize> {
+    /// T, by columns.
+    root: [[f64; K]; K],
+    /// Of `I + W P`.
+    determinant: f64,
+}
+
+impl<const K: usize> Weight<K> {
+    /// By the root of the information and the covariance of the pose, both by columns.
+    #[inline(always)]
+    fn of(root: &[[f64; K]; K], pose: &[[f64; K]; K]) -> Self {
+        // Long columns are worked on as whole vectors, with zeros and with what is not needed of them.
+        let first = |j: usize| if K < 6 { j } else { 0 };
+        let mut rows = [[0.0; K]; K];
+        for i in 0..K {
+            for j in 0..K {
+                rows[i][j] = root[j][i];
+            }
+        }
+        // P L and I + L' P L by columns.
+        let mut sum = [[0.0; K]; K];
+        for j in 0..K {
+            let (mut column, mut of_sum) = ([0.0; K], [0.0; K]);
+            for l in first(j)..K {
+                for i in 0..K {
+                    column[i] += pose[l][i] * root[j][l];
+                }
+            }
+            of_sum[j] = 1.0;
+            for l in 0..K {
+                for i in first(j)..K {
+                    of_sum[i] += rows[l][i] * column[l];
+                }
+            }
+            sum[j] = of_sum;
+        }
+        // The columns of its root C from the diagonal on, and with them the columns of T, which L is.
+        let (mut columns, mut determinant) = (*root, 1.0);
+        for j in 0..K {
+            determinant *= sum[j][j];
+            let inverse = 1.0 / sum[j][j].sqrt();
+            let (mut pivot, mut column) = (sum[j], columns[j]);
+            for i in 0..K {
+                pivot[i] *= inverse;
+                column[i] *= inverse;
+            }
+            columns[j] = column;
+            for l in j + 1..K {
+                let factor = pivot[l];
+                for i in first(l)..K {
+                    sum[l][i] -= factor * pivot[i];
+                }
+                for i in 0..K {
+                    columns[l][i] -= factor * column[i];
+                }
+            }
+        }
+        Self { root: columns, determinant }
+    }
+}
+
+impl<const N: usize> Hypothesis<N> {
+    /// As [`update`](Self::update), for K parameters.
+    pub(super) fn update_sized<const K: usize>(&mut self, measurement: &CentredMeasurement) -> Option<Innovation> {
+        let shaking = self.course.shaking();
+        let by_shaking = 1.0 / shaking.sqrt();
+        let root: [[f64; K]; K] =
+            std::array::from_fn(|j| std::array::from_fn(|i| measurement.root[(i, j)] * by_shaking));
+        let off: [f64; K] = std::array::from_fn(|i| measurement.deviation[i] - self.mean[i]);
+        let (covariance, mean) = (&mut self.covariance.data.0, &mut self.mean.data.0[0]);
+        let (weight, pulled, squared) = vectorised(
+            #[inline(always)]
+            || {
+                let pose: [[f64; K]; K] = std::array::from_fn(|j| std::array::from_fn(|i| covariance[j][i]));
+                let weight = Weight::of(&root, &pose);
+                let along: [f64; K] = std::array::from_fn(|l| (0..K).map(|i| weight.root[l][i] * off[i]).sum());
+                let squared: f64 = along.iter().map(|along| along * along).sum();
+                if weight.determinant > 0.0 && squared.is_finite() {
+                    correct(&weight, &along, (mean, covariance));
+                }
+                let mut pulled = [0.0; K];
+                for l in 0..K {
+                    for i in 0..K {
+                        pulled[i] += weight.root[l][i] * along[l];
+                    }
+                }
+                (weight, pulled, squared)
+            },
+        );
+        if !(weight.determinant > 0.0 && squared.is_finite()) {
+            return None;
+        }
+        // The score, S^-1 off with S the covariance of the innovation, has the covariance S^-1: also where S is not finite.
+        let mut standardised = CentredVector::zeros();
+        for j in 0..K {
+            let own: f64 = weight.root.iter().map(|column| column[j] * column[j]).sum();
+            standardised[j] = if own > 0.0 { pulled[j] / own.sqrt() } else { 0.0 };
+        }
+        // The density of the innovation, without the factor that all hypotheses share.
+        let log_likelihood = -0.5 * (weight.determinant.ln() + K as f64 * shaking.ln() + squared);
+        Some(Innovation { log_likelihood, standardised })
+    }
+}
+
+/// Corrects mean and covariance, given by its columns: by H times `along`, T' times the innovation, and by H H'.
+#[inline(always)]
+fn correct<const K: usize, const N: usize>(
+    weight: &Weight<K>,
+    along: &[f64; K],
+    (mean, covariance): (&mut [f64; N], &mut [[f64; N]; N]),
+) {
+    let mut gain = [[0.0; N]; K];
+    for (gain, root) in gain.iter_mut().zip(&weight.root) {
+        let mut column = [0.0; N];
+        for m in 0..K {
+            for i in 0..N {
+                column[i] += covariance[m][i] * root[m];
+            }
+        }
+        *gain = column;
+    }
+    let mut moved = *mean;
+    for l in 0..K {
+        for i in 0..N {
+            moved[i] += gain[l][i] * along[l];
+        }
+    }
+    *mean = moved;
+    // The columns of what a hypothesis has no entries for are none, and stay so.
+    for (j, entries) in covariance.iter_mut().enumerate() {
+        let mut column = *entries;
+        for gain in &gain {
+            let factor = gain[j];
+            for i in 0..N {
+                column[i] -= gain[i] * factor;
+            }
+        }
+        *entries = column;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{SMatrix, SVector};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::dynamics::course::Course;
+
+    /// Largest difference from the plain way, in units of what is there: `(I + W P)^-1 W` by elimination, for information of a rank on a pose of K
+    /// parameters.
+    fn difference<const K: usize, const N: usize>(numbers: &[f64], rank: usize, course: Course) -> f64 {
+        let number = |i: usize| (7.0 * numbers[i % numbers.len()] + i as f64).sin();
+        let factor = SMatrix::<f64, K, K>::from_fn(|i, j| if j < rank { 3.0 * number(i + K * j) } else { 0.0 });
+        let information = factor * factor.transpose();
+        let whole = CentredMatrix::from_fn(|i, j| if i < K && j < K { information[(i, j)] } else { 0.0 });
+        let spread = SMatrix::<f64, N, N>::from_fn(|i, j| number(100 + i + N * j));
+        let (mean, covariance) = (SVector::<f64, N>::from_fn(|i, _| number(1000 + i)), spread * spread.transpose());
+        let deviation = CentredVector::from_fn(|i, _| number(2000 + i));
+        let mut corrected = Hypothesis::<N> { course, mean, covariance };
+        let measurement = CentredMeasurement { root: root_of(&whole, K), deviation };
+        let found = corrected.update_sized::<K>(&measurement).expect("a correction");
+
+        let information = information / course.shaking();
+        let predicted = covariance.fixed_view::<K, K>(0, 0).into_owned();
+        let off = deviation.fixed_rows::<K>(0) - mean.fixed_rows::<K>(0);
+        let both = SMatrix::<f64, K, K>::identity() + information * predicted;
+        let inverse = nalgebra::DMatrix::from_fn(K, K, |i, j| both[(i, j)]).try_inverse().expect("not singular");
+        let weight = SMatrix::<f64, K, K>::from_fn(|i, j| inverse[(i, j)]) * information;
+        let columns = covariance.fixed_view::<N, K>(0, 0).into_owned();
+        let expected_mean = mean + columns * weight * off;
+        let expected = covariance - columns * weight * columns.transpose();
+        let determinant = nalgebra::DMatrix::from_fn(K, K, |i, j| both[(i, j)]).determinant();
+        let squared = (off.transpose() * weight * off).x;
+        let log_likelihood = -0.5 * (determinant.ln() + K as f64 * course.shaking().ln() + squared);
+        let pulled = weight * off;
+        let standardised = (0..K).map(|j| {
+            let expected = if rank > 0 { pulled[j] / weight[(j, j)].sqrt() } else { 0.0 };
+            (found.standardised[j] - expected).abs()
+        });
+        assert_eq!(corrected.covariance, corrected.covariance.transpose());
+        let of_covariance = (corrected.covariance - expected).amax() / covariance.amax();
+        let of_mean = (corrected.mean - expected_mean).amax() / (mean.amax() + covariance.amax().sqrt());
+        let of_likelihood = (found.log_likelihood - log_likelihood).abs() / (1.0 + log_likelihood.abs());
+        standardised.fold(of_covariance.max(of_mean).max(of_likelihood), f64::max)
+    }
+
+    proptest! {
+        #[test]
+        fn hypotheses_are_corrected_by_roots_as_by_elimination_also_where_the_information_is_singular(
+            numbers in prop::collection::vec(-1.0_f64..1.0, 40), rank in 0_usize..=6, shaken in any::<bool>(),
+        ) {
+            let course = if shaken { Course::Shaken { deviations: 3.0 } } else { Course::Accelerating { level: 0.1, rates: true } };
+            let rigid = difference::<3, 9>(&numbers, rank.min(3), course);
+            let affine = difference::<6, 18>(&numbers, rank, course);
+            prop_assert!(rigid.max(affine) < 1e-7, "{rank}: {rigid} {affine}");
+        }
+    }
+}
