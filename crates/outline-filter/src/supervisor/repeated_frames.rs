@@ -9,8 +9,10 @@ use super::{
 };
 use crate::{track::Track, tuning::supervisor::MOST_REPEATED};
 
-/// The points of the last frame, when it was seen first, and how often it has been repeated. A camera or a converter that stores pictures twice gives outlines that are the same
-/// to the last digit. They are no measurements of the times that they are given with: their noise is that of the frame before.
+/// The points of the last frame, when it was seen first, and how often it has been repeated.
+///
+/// A camera or a converter that stores pictures twice gives outlines that are the same to the last digit. They are no measurements of the times that
+/// they are given with: their noise is that of the frame before.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RepeatedFrames {
