@@ -46,12 +46,8 @@ pub(crate) fn sum_of_outer_products<R: Borrow<[f64; S]>, const S: usize>(
             add_rows::<S, 2, 4>(length, &block, 14, &mut sum);
         }
     }
-    for i in 0..S {
-        for j in 0..i {
-            sum[j][i] = sum[i][j];
-        }
-    }
-    sum
+    // What is beyond the diagonal is in the other half.
+    std::array::from_fn(|i| std::array::from_fn(|j| sum[i.max(j)][i.min(j)]))
 }
 
 /// Rows with their scales.

@@ -16,7 +16,7 @@ pub(super) fn root_of(information: &CentredMatrix, k: usize) -> CentredMatrix {
         let own = information[(j, j)];
         let left = own - (0..j).map(|l| root[(j, l)] * root[(j, l)]).sum::<f64>();
         // Not a number is no information either.
-        if !(left > tuning::ROUNDED * own) {
+        if left.is_nan() || left <= tuning::ROUNDED * own {
             continue;
         }
         let pivot = left.sqrt();
@@ -111,9 +111,9 @@ impl<const N: usize> Hypothesis<N> {
                     correct(&weight, &along, (mean, covariance));
                 }
                 let mut pulled = [0.0; K];
-                for l in 0..K {
-                    for i in 0..K {
-                        pulled[i] += weight.root[l][i] * along[l];
+                for (column, along) in weight.root.iter().zip(&along) {
+                    for (pulled, entry) in pulled.iter_mut().zip(column) {
+                        *pulled += entry * along;
                     }
                 }
                 (weight, pulled, squared)

@@ -44,9 +44,7 @@ impl PoseMeasurement {
         let taken = taken_by_offsets::<K, S>([&frame.cells_with_frame, &before.cells], &frame.right);
         for i in 0..K {
             pulled[i] -= taken.pull[i];
-            for j in 0..K {
-                information[i][j] -= taken.information[i][j];
-            }
+            information[i].iter_mut().zip(&taken.information[i]).for_each(|(entry, taken)| *entry -= taken);
         }
         Self {
             information: SMatrix::from_fn(|i, j| {
