@@ -169,6 +169,12 @@ fn correct<const K: usize, const N: usize>(
         }
         *entries = column;
     }
+    // What is rounded in one half only would grow from frame to frame.
+    for j in 0..N {
+        for i in 0..j {
+            covariance[i][j] = covariance[j][i];
+        }
+    }
 }
 
 #[cfg(test)]

@@ -76,6 +76,7 @@ where
     let mut rows: Vec<Row<K>> = vec![(0.0, [0.0; K]); points.len()];
     let mut sizes = Vec::with_capacity(points.len());
     let (mut widest, mut spread) = (steps.widest, f64::INFINITY);
+    let mut shows_outline = true;
     for _ in 0..steps.most {
         let Some(inverse) = pose.try_inverse() else { break };
         let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
@@ -85,6 +86,7 @@ where
         }
         sizes.clear();
         sizes.extend(rows.iter().map(|(residual, _)| residual.abs()).filter(|size| size.is_finite()));
+        shows_outline = sizes.len() as f64 >= tuning::FEWEST_ON_OUTLINE * rows.len() as f64;
         spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
         let scale = tuning::TUKEY * spread.max(widest);
         let is_narrow = widest <= spread;
@@ -99,7 +101,9 @@ where
             break;
         }
     }
-    let score = mean_distance(track, points, &pose, &mut numbers);
+    // Points that all lie beyond ends would fit anywhere.
+    let score = if shows_outline { mean_distance(track, points, &pose, &mut numbers) } else { f64::INFINITY };
+    let spread = if shows_outline { spread } else { f64::INFINITY };
     let turn = turn_of(&pose, track.body_pose());
     RegisteredPose { pose, score, spread, turn }
 }

@@ -10,7 +10,7 @@ use super::{
     window::{Draft, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
-    map::TurnEvent,
+    map::{TurnEvent, TurnEvidence},
     measurement::Frame,
     search::Landmarks,
     track::{PlacedFrame, Track},
@@ -23,6 +23,11 @@ impl MotionFilter {
     /// frames kept for one hypothesis.
     pub(super) fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
         let Some(track) = &mut self.track else { return };
+        if track.turn_evidence() == TurnEvidence::Refuted {
+            // The map is not cut anew: it would seem to show the turn again.
+            self.window.end();
+            return;
+        }
         if self.phase != Phase::Tracking {
             // Found again somewhere: what was seen before has come there by what nobody knows.
             self.window.begin_anew(time, outline, track);

@@ -1,4 +1,4 @@
-use std::{f64::consts::PI, sync::OnceLock};
+use std::sync::OnceLock;
 
 use freeform_curve_fit::Outline;
 use freeform_estimate::TimeNotIncreasing;
@@ -200,15 +200,15 @@ impl MotionFilter {
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
         TimeNotIncreasing::check(self.last_time * self.seconds_per_unit(), time)?;
         self.stated.take();
-        let is_repeated = self.repeated.is_repeated(time, outline);
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
             self.start(time, outline)?;
+            self.repeated.is_repeated(seconds, outline);
             self.counts.accepted_in_recording += 1;
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
-        if is_repeated && self.may_have_moved() {
+        if self.repeated.is_repeated(seconds, outline) && self.may_have_moved() {
             self.pass_over(time);
             let rejection = Some(Rejection::Repeated);
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection });
@@ -240,7 +240,7 @@ impl MotionFilter {
             self.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
-            self.doubt_turns_beyond_half_a_circle();
+            self.doubt_large_turns();
             if self.track.as_ref().is_some_and(Track::may_show_turn) {
                 self.begin_with_turn(outline);
             }
@@ -251,14 +251,12 @@ impl MotionFilter {
         (outcome.map(|outcome| outcome.measurement), rejection)
     }
 
-    /// Of two turns that look alike the smaller is taken, so that no frames tell one of more than half a circle between them.
-    fn doubt_turns_beyond_half_a_circle(&mut self) {
+    /// Of two turns that look alike the smaller is taken, so that no frames tell one of more than half a circle between them, or of half the angle of a
+    /// symmetry.
+    fn doubt_large_turns(&mut self) {
         let Some(track) = self.track.as_ref().filter(|track| !track.turn_is_unseen()) else { return };
         let Some(shortest) = self.repeated.shortest_step().map(|step| step / self.seconds_per_unit()) else { return };
-        let turn = track.turn_in(shortest);
-        if turn.abs() > PI {
-            self.turn_hypotheses.doubt_more_than_half_a_circle(turn, shortest);
-        }
+        self.turn_hypotheses.doubt_more_than_half(track.turn_in(shortest), shortest);
     }
 
     /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
@@ -316,6 +314,7 @@ impl MotionFilter {
         self.track_time = time;
         self.phase = phase;
         self.history.begin_anew();
+        self.repeated.forget_steps();
     }
 
     /// The settings.

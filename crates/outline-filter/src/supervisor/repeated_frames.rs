@@ -43,6 +43,11 @@ impl RepeatedFrames {
         (1..=MOST_REPEATED).contains(&self.times)
     }
 
+    /// Forgets the times between frames, of which a motion was not known.
+    pub(super) fn forget_steps(&mut self) {
+        self.shortest_step = None;
+    }
+
     /// Shortest time between frames one after the other that differ, s; none before the second.
     pub(super) fn shortest_step(&self) -> Option<f64> {
         self.shortest_step

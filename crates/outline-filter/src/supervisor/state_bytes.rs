@@ -67,9 +67,9 @@ impl MotionFilter {
         if !self.track.as_mut().is_none_or(restored) {
             return inconsistent("track");
         }
-        let settings = &self.settings;
+        let (settings, track_time, is_tracking) = (&self.settings, self.track_time, self.phase == Phase::Tracking);
         let is_valid = |before: &mut Box<BeforeRepeated>| {
-            restored(&mut before.track) && before.history.is_valid(settings) && before.time.is_finite()
+            restored(&mut before.track) && before.history.is_valid(settings) && before.time <= track_time && is_tracking
         };
         if !self.before_repeated.as_mut().is_none_or(is_valid) {
             return inconsistent("repeated frames");

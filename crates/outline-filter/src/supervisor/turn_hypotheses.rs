@@ -56,6 +56,8 @@ pub(super) struct TurnHypotheses {
     symmetry_angle: f64,
     /// Time that the turns were made in, in units of the filter.
     acquired_over: f64,
+    /// Whether frames at uneven intervals have told turns apart that look the same.
+    are_told_by_intervals: bool,
 }
 
 impl TurnHypotheses {
@@ -119,16 +121,22 @@ impl TurnHypotheses {
         turns
     }
 
-    /// Puts a turn in doubt that is more than half a circle over so short a time that no frames have told it from one in the other direction.
-    pub(super) fn doubt_more_than_half_a_circle(&mut self, turn: f64, seconds: f64) {
-        if self.rivals.iter().any(|hypothesis| hypothesis.reason == Reason::Symmetry) {
+    /// Puts a turn in doubt that is more than half of what the outline looks the same by, over so short a time that no frames have told it from one in
+    /// the other direction.
+    pub(super) fn doubt_more_than_half(&mut self, turn: f64, seconds: f64) {
+        let angle = if self.symmetry_angle > 0.0 { self.symmetry_angle } else { TAU };
+        let is_in_doubt = |i: usize| self.rivals[i].reason == Reason::Symmetry && self.is_doubtful(i);
+        if turn.abs() <= 0.5 * angle || self.are_told_by_intervals || (0..self.rivals.len()).any(is_in_doubt) {
             return;
         }
-        (self.present_turn, self.acquired_over) = (turn, seconds);
-        self.symmetry_angle = if self.symmetry_angle > 0.0 { self.symmetry_angle } else { TAU };
-        self.rival_turns.push(turn - TAU.copysign(turn));
-        let likelihood = NegativeLogLikelihood::default();
-        self.rivals.push(TurnHypothesis::new(None, likelihood, Reason::Symmetry));
+        // Over the same time as this turn.
+        for rival in &mut self.rival_turns {
+            let apart = *rival - self.present_turn;
+            *rival = turn + if self.acquired_over > 0.0 { apart * seconds / self.acquired_over } else { 0.0 };
+        }
+        (self.present_turn, self.acquired_over, self.symmetry_angle) = (turn, seconds, angle);
+        self.rival_turns.push(turn - angle.copysign(turn));
+        self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
     }
 
     /// After an exchange, names the turns that look like the one taken now in place of those that look like the one before.
@@ -242,6 +250,8 @@ impl TurnHypotheses {
             let are_told_apart = rival.is_shown
                 && self.frames >= tuning::FOLLOWED
                 && of_present.is_worse_by(tuning::NOT_THE_SAME, &of_points);
+            let is_worse =
+                if is_alike { of_rival.is_worse_than(&self.likelihood) } else { of_points.is_worse_than(&of_present) };
             let is_better = are_told_apart
                 || is_alike
                     && (self.likelihood.is_worse_than(&of_rival) || have_met && of_rival.all() < self.likelihood.all());
@@ -256,9 +266,7 @@ impl TurnHypotheses {
                     self.rule_out(index);
                 }
                 outcome = found;
-            } else if outcome.is_accepted()
-                && (have_met || !found.is_accepted() || of_rival.is_worse_than(&self.likelihood))
-            {
+            } else if outcome.is_accepted() && (have_met || !found.is_accepted() || is_worse) {
                 self.rule_out(index);
             }
         }
@@ -278,13 +286,17 @@ impl TurnHypotheses {
         }
         std::mem::swap(&mut self.likelihood, &mut rival.likelihood);
         std::mem::swap(&mut self.present_turn, &mut self.rival_turns[index]);
+        self.rivals[index].is_shown = false;
     }
 
     /// After frames that tell turns apart which had looked the same: an outline with a mark that was hidden, or smaller than what one frame shows.
     fn deny_symmetry(&mut self) {
         self.symmetry_angle = TAU;
+        // Their paths have not counted so far.
+        self.likelihood = self.likelihood.of_points();
         for hypothesis in self.rivals.iter_mut().filter(|hypothesis| hypothesis.track.is_some()) {
             (hypothesis.reason, hypothesis.is_shown) = (Reason::Likeness, false);
+            hypothesis.likelihood = hypothesis.likelihood.of_points();
         }
     }
 
@@ -293,7 +305,7 @@ impl TurnHypotheses {
         match self.rivals[index].reason {
             Reason::Likeness => self.remove(index),
             // Its path is no evidence.
-            Reason::Symmetry => self.rivals[index].track = None,
+            Reason::Symmetry => (self.rivals[index].track, self.rivals[index].is_shown) = (None, false),
         }
     }
 
@@ -316,6 +328,7 @@ impl TurnHypotheses {
                 let apart = (self.rival_turns[index] - self.present_turn) * seconds
                     / (self.acquired_over * self.symmetry_angle);
                 if (apart - apart.round()).abs() > OFF_MULTIPLE {
+                    self.are_told_by_intervals = true;
                     self.remove(index);
                 }
             }

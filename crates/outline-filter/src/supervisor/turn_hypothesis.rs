@@ -47,8 +47,10 @@ impl TurnHypothesis {
         let gate = gate_of_motion(settings, track);
         let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
         let mut found = track.update(frame, &gate, Comparison::Asked);
-        // It has no hypotheses of dynamics of its own, so that what is not constant in its motion is no evidence against its turn.
+        // It has no hypotheses of dynamics of its own, so that what is not constant in its motion is no evidence against its turn. Where the present
+        // track has not been found either, both wait for another frame.
         if settings.finds_changes()
+            && outcome.is_accepted()
             && matches!(found.verdict, Err(Rejection::InnovationTooLarge { .. }))
             && let Some((changed, outcome)) =
                 after_sudden_change(track, frame, &found, &gate.anywhere(), Comparison::Asked)

@@ -68,10 +68,12 @@ impl Track {
         let about_centroid = SVector::from(model.parameters_of(&clockwise));
         let direction: SVector<f64, MAX_PARAMETERS> = self.centred_pose().about_origin(model)? * about_centroid;
         let of_turn = direction.dot(&(outcome.pose?.information * direction));
-        let points = points.min(ENOUGH_POINTS) as f64;
+        // Of more points only so many are compared.
+        let kept = points as f64 / points.div_ceil(ENOUGH_POINTS).max(1) as f64;
+        let of_turn = of_turn * kept / points.max(1) as f64;
         // Of squares, as they are compared.
         let correlation = self.noise.correlation();
-        let needed = NegativeLogLikelihood::significant(points * correlation / tuning::MEMORY as f64);
+        let needed = NegativeLogLikelihood::significant(kept * correlation / tuning::MEMORY as f64);
         let turn = (tuning::PROMISED * needed / (of_turn * correlation)).sqrt();
         (turn <= tuning::LARGEST).then_some(turn)
     }

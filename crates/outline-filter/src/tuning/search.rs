@@ -38,6 +38,8 @@ pub(crate) mod registration {
     pub(crate) const BEYOND_END: f64 = 1.5;
     /// As that, of any other point where the outline has gaps: in the middle of one it lies nearest to what is across.
     pub(crate) const IN_GAP: f64 = 4.0;
+    /// Share of the points that must not lie beyond ends: with fewer the gate would not find the outline in the frame.
+    pub(crate) const FEWEST_ON_OUTLINE: f64 = 0.25;
     /// Mean distance of a point on the outline from the middle of its cell, in spacings.
     pub(crate) const FROM_CENTRE: f64 = 0.25;
     /// Deviation of the residuals that the first step of a search allows for, in radii: starts lie up to 7.5 degrees off, which is 0.13 at the
