@@ -170,9 +170,10 @@ fn correct<const K: usize, const N: usize>(
         *entries = column;
     }
     // What is rounded in one half only would grow from frame to frame.
-    for j in 0..N {
-        for i in 0..j {
-            covariance[i][j] = covariance[j][i];
+    for j in 1..N {
+        let (before, from) = covariance.split_at_mut(j);
+        for (column, entry) in before.iter_mut().zip(from[0]) {
+            column[j] = entry;
         }
     }
 }
