@@ -171,8 +171,9 @@ def test_nothing_is_stated_of_an_object_that_is_lost(bird):
     motion_filter = followed(bird)
     assert motion_filter.unstated is None
     # A frame that repeats the one before it would be passed over.
-    for number, frame in enumerate(ff.simulate("square", seconds=0.2)[:3]):
-        motion_filter.step(1.1 + number / 30, frame.outline)
+    squares = ff.simulate("square", seconds=0.2)
+    for number in range(3):
+        motion_filter.step(1.1 + number / 30, squares[number].outline)
     assert motion_filter.phase == "lost" and motion_filter.unstated == "lost"
     assert np.isnan(motion_filter.estimate.values).all() and motion_filter.velocity is None
 
