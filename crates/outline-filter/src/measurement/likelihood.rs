@@ -31,7 +31,8 @@ impl NegativeLogLikelihood {
 
     /// Whether the difference is more than so many of its deviations: see [`is_worse_than`](Self::is_worse_than).
     pub(crate) fn is_worse_by(&self, deviations: f64, other: &Self) -> bool {
-        self.difference_in_deviations(other) > deviations
+        let unit = (other.squares / other.points).max(1.0);
+        self.all() - other.all() > deviations * unit * Self::deviation(other.weighted)
     }
 
     /// That of the points alone, whatever the path.
@@ -39,9 +40,9 @@ impl NegativeLogLikelihood {
         Self { of_path: 0.0, ..self }
     }
 
-    fn difference_in_deviations(&self, other: &Self) -> f64 {
-        let unit = (other.squares / other.points).max(1.0);
-        (self.all() - other.all()) / (unit * (tuning::VARIANCE * other.weighted).sqrt())
+    /// Of the difference of squares between two poses, for so many points that count for one each.
+    fn deviation(weighted: f64) -> f64 {
+        (tuning::VARIANCE * weighted).sqrt()
     }
 
     /// Of points and path.
@@ -57,7 +58,7 @@ impl NegativeLogLikelihood {
     /// The difference of squares that is significant between two poses, for so many points that count for one each: see
     /// [`is_worse_than`](Self::is_worse_than).
     pub(crate) fn significant(weighted: f64) -> f64 {
-        tuning::SIGNIFICANT * (tuning::VARIANCE * weighted).sqrt()
+        tuning::SIGNIFICANT * Self::deviation(weighted)
     }
 
     /// Keeps a share of what has been added, and adds another.

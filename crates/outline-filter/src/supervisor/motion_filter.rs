@@ -204,11 +204,11 @@ impl MotionFilter {
         let (seconds, time) = (time, time / self.seconds_per_unit());
         if self.track.is_none() {
             self.start(time, outline)?;
-            self.repeated.is_repeated(seconds, outline);
+            self.repeated.take(seconds, outline);
             self.counts.accepted_in_recording += 1;
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection: None });
         }
-        if self.repeated.is_repeated(seconds, outline) && self.may_have_moved() {
+        if self.repeated.take(seconds, outline) && self.may_have_moved() {
             self.pass_over(time);
             let rejection = Some(Rejection::Repeated);
             return Ok(FilterStep { time: seconds, phase: self.phase, measurement: None, rejection });
@@ -295,7 +295,7 @@ impl MotionFilter {
         if self.turn_hypotheses.present_turn() != turn || outcome.is_accepted() != was_accepted {
             self.history.begin_anew();
         }
-        if outcome.is_accepted() && track.turn_is_less_known_than_said(outline, &outcome, frame) {
+        if outcome.is_accepted() && track.add_to_turn_profile(outline, &outcome, frame) {
             track.refute_turn();
             self.turn_hypotheses = TurnHypotheses::default();
         }

@@ -26,7 +26,7 @@ pub(super) struct RepeatedFrames {
 
 impl RepeatedFrames {
     /// Takes the outline of a frame at a time in seconds; whether it repeats the one before it, and not so often that the object must be at rest.
-    pub(super) fn is_repeated(&mut self, time: f64, outline: &Outline) -> bool {
+    pub(super) fn take(&mut self, time: f64, outline: &Outline) -> bool {
         let points = || outline.pieces().flat_map(|piece| piece.points);
         if points().eq(&self.points) {
             self.times = (self.times + 1).min(MOST_REPEATED + 1);
@@ -106,7 +106,7 @@ mod tests {
         let mut frames = RepeatedFrames::default();
         let shifts = [0.0, 0.0, 1e-15, 1e-15, 1e-15, 1e-15, 1e-15, 1e-15, 0.0, 0.0];
         let found: Vec<_> =
-            (0_u32..).zip(shifts).map(|(i, shift)| frames.is_repeated(f64::from(i), &outline(shift))).collect();
+            (0_u32..).zip(shifts).map(|(i, shift)| frames.take(f64::from(i), &outline(shift))).collect();
         assert_eq!(found, [false, true, false, true, true, true, false, false, false, true]);
         assert_eq!(frames.shortest_step(), Some(2.0));
     }

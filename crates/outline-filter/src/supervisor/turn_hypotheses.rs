@@ -261,8 +261,9 @@ impl TurnHypotheses {
                     self.deny_symmetry();
                 }
                 is_another |= is_alike || are_told_apart;
-                let is_worse = !outcome.is_accepted() || self.rivals[index].likelihood.is_worse_than(&self.likelihood);
-                if is_worse || have_met {
+                let is_ruled_out =
+                    !outcome.is_accepted() || self.rivals[index].likelihood.is_worse_than(&self.likelihood);
+                if is_ruled_out || have_met {
                     self.rule_out(index);
                 }
                 outcome = found;

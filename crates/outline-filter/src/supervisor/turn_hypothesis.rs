@@ -32,6 +32,11 @@ pub(super) enum Reason {
 }
 
 impl TurnHypothesis {
+    /// One that is followed if it has a track.
+    pub(super) fn new(track: Option<Track>, likelihood: NegativeLogLikelihood, reason: Reason) -> Self {
+        Self { track, likelihood, reason, is_shown: false }
+    }
+
     /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed.
     pub(super) fn follow(
         &mut self,
@@ -44,27 +49,22 @@ impl TurnHypothesis {
         track.predict(seconds);
         track.add_process_noise(&settings.process_noise, seconds);
         track.adopt_noise_of(present);
-        let gate = gate_of_motion(settings, track);
-        let gate = if outcome.is_accepted() { gate.without_noise() } else { gate };
-        let mut found = track.update(frame, &gate, Comparison::Asked);
+        let of_motion = gate_of_motion(settings, track);
+        let of_motion = if outcome.is_accepted() { of_motion.without_noise() } else { of_motion };
+        let mut found = track.update(frame, &of_motion, Comparison::Asked);
         // It has no hypotheses of dynamics of its own, so that what is not constant in its motion is no evidence against its turn. Where the present
         // track has not been found either, both wait for another frame.
         if settings.finds_changes()
             && outcome.is_accepted()
             && matches!(found.verdict, Err(Rejection::InnovationTooLarge { .. }))
             && let Some((changed, outcome)) =
-                after_sudden_change(track, frame, &found, &gate.anywhere(), Comparison::Asked)
+                after_sudden_change(track, frame, &found, &gate(settings, track).without_noise(), Comparison::Asked)
         {
             (*track, found) = (changed, outcome);
         }
         track.record_spread(&found.measurement);
         self.likelihood.add(&found.likelihood);
         Some(found)
-    }
-
-    /// One that is followed if it has a track.
-    pub(super) fn new(track: Option<Track>, likelihood: NegativeLogLikelihood, reason: Reason) -> Self {
-        Self { track, likelihood, reason, is_shown: false }
     }
 
     pub(super) fn has_met(&self, present: &Track, different_turn: f64) -> bool {

@@ -43,12 +43,7 @@ impl TurnProfile {
 impl Track {
     /// Compares the pose of an accepted frame with turned ones, where the outline hardly shows its turn; whether the last frames do not tell it as
     /// well as is said.
-    pub(crate) fn turn_is_less_known_than_said(
-        &mut self,
-        outline: &Outline,
-        outcome: &Outcome,
-        frame: &mut Frame,
-    ) -> bool {
+    pub(crate) fn add_to_turn_profile(&mut self, outline: &Outline, outcome: &Outcome, frame: &mut Frame) -> bool {
         if !self.map.shows_turn_weakly() || self.turn_is_unseen() {
             return false;
         }

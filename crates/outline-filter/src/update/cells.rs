@@ -26,30 +26,19 @@ impl Frame {
         self.right.resize(known.len(), 0.0);
         self.columns.sum_up();
         match work.k {
-            3 => self.accumulate_sized::<3, 6>(known, work, state, |p, n| MotionModel::Rigid.normal_velocities(p, n)),
+            3 => {
+                self.accumulate_padded::<3, 6, 4>(known, work, state, |p, n| MotionModel::Rigid.normal_velocities(p, n))
+            }
             4 => {
                 let velocities = |p: &Point2<f64>, n: &Vector2<f64>| MotionModel::Similarity.normal_velocities(p, n);
-                self.accumulate_sized::<4, 8>(known, work, state, velocities)
+                self.accumulate_padded::<4, 8, 8>(known, work, state, velocities)
             }
-            6 => self.accumulate_sized::<6, 12>(known, work, state, |p, n| MotionModel::Affine.normal_velocities(p, n)),
+            6 => self
+                .accumulate_padded::<6, 12, 8>(known, work, state, |p, n| MotionModel::Affine.normal_velocities(p, n)),
             _ => {
                 let velocities = |p: &Point2<f64>, n: &Vector2<f64>| MotionModel::Projective.normal_velocities(p, n);
-                self.accumulate_sized::<8, 16>(known, work, state, velocities)
+                self.accumulate_padded::<8, 16, 12>(known, work, state, velocities)
             }
-        }
-    }
-
-    fn accumulate_sized<const K: usize, const S: usize>(
-        &mut self,
-        known: &OffsetInformation,
-        work: &mut Arrowhead,
-        state: &StateVector,
-        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector + Copy,
-    ) -> Added {
-        match K {
-            3 => self.accumulate_padded::<K, S, 4>(known, work, state, velocities),
-            4 | 6 => self.accumulate_padded::<K, S, 8>(known, work, state, velocities),
-            _ => self.accumulate_padded::<K, S, 12>(known, work, state, velocities),
         }
     }
 

@@ -78,11 +78,6 @@ impl Gate {
         Self { largest_noise: None, ..self }
     }
 
-    /// This gate for a frame that shows the object wherever its motion has led.
-    pub(crate) fn anywhere(self) -> Self {
-        Self { largest_innovation: None, ..self }
-    }
-
     /// Tests the measurement of a frame.
     ///
     /// # Errors
