@@ -11,6 +11,7 @@ mod null_space;
 mod outline_map;
 mod plain_regression;
 mod redrawing;
+mod rest;
 mod turn_evidence;
 
 pub(crate) use chains::{CellPoint, has_common_places};

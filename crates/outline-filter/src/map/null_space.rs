@@ -6,6 +6,7 @@ use super::{
     OutlineMap,
     centring::{Centring, NormalByNeighbours},
     local_fit::direction_variance,
+    rest::Rest,
     turn_evidence::{TurnEvent, TurnEvidence},
 };
 use crate::tuning::{
@@ -45,6 +46,10 @@ pub(super) struct NullSpace {
     pub(super) turn: TurnEvidence,
     /// Smallest eigenvalue of the levers of a turn that may be shown, less what errors of the normals make of it.
     pub(super) weakest_turn: f64,
+    /// As that, of the cells that are left where a frame disagrees with those that tell most of the turn.
+    pub(super) turn_without_most: f64,
+    /// The turn that these cells show least, in the body frame, and its centre.
+    pub(super) turn_of_rest: Option<(ParameterVector, Point2<f64>)>,
 }
 
 impl Default for NullSpace {
@@ -55,6 +60,8 @@ impl Default for NullSpace {
             centroid: Point2::origin(),
             turn: TurnEvidence::default(),
             weakest_turn: f64::INFINITY,
+            turn_without_most: f64::INFINITY,
+            turn_of_rest: None,
         }
     }
 }
@@ -168,6 +175,14 @@ impl OutlineMap {
         let Some(inverse) = space.frame.try_inverse() else { return };
         if !space.holds_turn(model) {
             space.turn = space.turn.after(TurnEvent::NotSeen);
+            // What tells the turn is not to be trusted: the rest of the outline says what it cannot be told from. Its centre is what moves as is seen.
+            if let Some((turn, centre)) =
+                space.turn_of_rest.filter(|_| space.turn == TurnEvidence::Refuted && space.in_body.is_empty())
+            {
+                space.in_body.push(turn);
+                space.centroid = centre;
+                return;
+            }
             space.in_body.push(model.parameters_of(&(space.frame * turn / size * inverse)));
         }
     }
@@ -195,6 +210,7 @@ impl OutlineMap {
         levers.view_mut((0, 0), (k, k)).fill(0.0);
         // What errors of the normals alone would make of the levers.
         let mut levers_of_noise = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
+        let mut of_cells = Vec::with_capacity(self.cells.len());
         for (number, cell) in self.cells.iter().enumerate() {
             let normal = self.normal_by_neighbours(number, sigma);
             // A cell counts for the length of the outline that it stands for.
@@ -204,6 +220,7 @@ impl OutlineMap {
             let velocities = |along| SVector::from(model.normal_velocities(&p, along));
             let (across, along) = (velocities(&normal), velocities(&Vector2::new(-normal.y, normal.x)));
             levers += across * across.transpose() / count;
+            of_cells.push((across, count));
             levers_of_noise += variance / count * along * along.transpose();
         }
         let contours = self.closed_contours();
@@ -211,13 +228,13 @@ impl OutlineMap {
         let of_places = self.levers_of_places(&contours, centring.spread());
         let noise = sigma / centring.spread();
         let places_show_turn = of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
-        let of_cells = direction_variance(sigma / self.step, self.half_window);
-        let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_cells);
+        let of_normals = direction_variance(sigma / self.step, self.half_window);
+        let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_normals);
         let eigen = levers.symmetric_eigen();
         let to_body = centring.to_body();
         let space = &mut self.null_space;
         space.in_body.clear();
-        space.weakest_turn = f64::INFINITY;
+        (space.weakest_turn, space.turn_without_most, space.turn_of_rest) = (f64::INFINITY, f64::INFINITY, None);
         let mut unseen: Vec<ParameterVector> = Vec::new();
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
             let of_noise = (vector.transpose() * levers_of_noise * vector)[(0, 0)];
@@ -231,6 +248,11 @@ impl OutlineMap {
                 is_shown = true;
             } else if is_shown && is_turn {
                 space.weakest_turn = space.weakest_turn.min(told);
+                let rest = Rest::of(&of_cells, &vector.into_owned(), k);
+                if rest.lever - of_noise < space.turn_without_most {
+                    space.turn_without_most = rest.lever - of_noise;
+                    space.turn_of_rest = rest.turn(model, &to_body);
+                }
                 is_shown = told >= needed;
             }
             if !is_shown {
@@ -254,6 +276,17 @@ impl OutlineMap {
     /// Whether a turn is shown, but hardly.
     pub(crate) fn shows_turn_weakly(&self) -> bool {
         self.null_space.weakest_turn < tuning::WEAKLY_SHOWN
+    }
+
+    /// Whether few of the cells tell nearly all of the turn, so that a pose that misses them passes for one that shows it.
+    pub(crate) fn turn_hangs_on_few(&self) -> bool {
+        self.null_space.turn_without_most < tuning::TOLD_BY_REST * self.null_space.weakest_turn
+    }
+
+    /// The turn that the outline shows least without the cells that tell most of it, and its centre, both in the body frame.
+    #[cfg(test)]
+    pub(super) fn turn_of_rest(&self) -> Option<(ParameterVector, Point2<f64>)> {
+        self.null_space.turn_of_rest
     }
 
     /// Deviation that directions of normals may have at most, in rad. Points slide along an outline that errs in its normals, and the

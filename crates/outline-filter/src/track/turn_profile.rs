@@ -44,7 +44,7 @@ impl Track {
     /// Compares the pose of an accepted frame with turned ones, where the outline hardly shows its turn; whether the last frames do not tell it as
     /// well as is said.
     pub(crate) fn add_to_turn_profile(&mut self, outline: &Outline, outcome: &Outcome, frame: &mut Frame) -> bool {
-        if !self.map.shows_turn_weakly() || self.turn_is_unseen() {
+        if !(self.map.shows_turn_weakly() || self.map.turn_hangs_on_few()) || self.turn_is_unseen() {
             return false;
         }
         let Some(turn) = self.turn_to_be_told(outcome, outline.point_count()) else { return false };

@@ -1,0 +1,96 @@
+//! Outlines without the cells that tell most of a turn, which a frame may disagree with.
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, turn_rate};
+use nalgebra::{Matrix3, Point2, SMatrix, SVector};
+
+use crate::tuning::null_space as tuning;
+
+/// What is left of an outline where a frame disagrees with the cells that tell most of a direction of the pose.
+pub(super) struct Rest {
+    /// Mean square of the levers that it has in the direction that it shows least, over all cells.
+    pub(super) lever: f64,
+    /// That direction, in centred coordinates.
+    direction: SVector<f64, MAX_PARAMETERS>,
+}
+
+impl Rest {
+    /// Of cells by their levers and the numbers that each is a part of; a direction has so many entries.
+    pub(super) fn of(
+        of_cells: &[(SVector<f64, MAX_PARAMETERS>, f64)],
+        direction: &SVector<f64, MAX_PARAMETERS>,
+        entries: usize,
+    ) -> Self {
+        let mut rest = Self { lever: 0.0, direction: *direction };
+        let mut cells: Vec<_> = of_cells.iter().collect();
+        let kept = ((1.0 - tuning::MISSED) * cells.len() as f64).ceil() as usize;
+        for _ in 0..tuning::ROUNDS_OF_REST {
+            let lever =
+                |(across, count): &(SVector<f64, MAX_PARAMETERS>, f64)| across.dot(&rest.direction).powi(2) / count;
+            cells.sort_by(|a, b| lever(a).total_cmp(&lever(b)));
+            let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
+            levers.view_mut((0, 0), (entries, entries)).fill(0.0);
+            for (across, count) in &cells[..kept.min(cells.len())] {
+                levers += across * across.transpose() / *count;
+            }
+            let eigen = levers.symmetric_eigen();
+            let least = eigen.eigenvalues.imin();
+            (rest.lever, rest.direction) = (eigen.eigenvalues[least], eigen.eigenvectors.column(least).into_owned());
+        }
+        rest
+    }
+
+    /// The direction in the body frame, and its centre there, if it is a turn.
+    pub(super) fn turn(&self, model: MotionModel, to_body: &Matrix3<f64>) -> Option<(ParameterVector, Point2<f64>)> {
+        let generator = model.generator(&self.direction.as_slice()[..model.parameter_count()]);
+        if turn_rate(&generator).abs() <= tuning::HOLDS_TURN {
+            return None;
+        }
+        let linear = generator.fixed_view::<2, 2>(0, 0).into_owned();
+        let centre = -(linear.try_inverse()? * generator.fixed_view::<2, 1>(0, 2));
+        let in_body = model.parameters_of(&(to_body * generator * to_body.try_inverse()?));
+        Some((in_body, Point2::from_homogeneous(to_body * Point2::from(centre).to_homogeneous())?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::Outline;
+    use freeform_riccati::MotionModel;
+    use nalgebra::Point2;
+
+    use crate::{
+        drawn_curves::{lobed, polar},
+        measurement::Frame,
+        track::Track,
+    };
+
+    /// A flat ring of radii 1 and 3/4 about (0.5, 0.2), with a gap of half a radian.
+    fn ring() -> Outline {
+        let arc = |radius: f64, i: u32| polar(radius, 0.25 + (std::f64::consts::TAU - 0.5) * f64::from(i) / 200.0);
+        let end = |angle: f64, i: u32| polar(1.0 - 0.25 * f64::from(i) / 9.0, angle);
+        let there = (0..200).map(|i| arc(1.0, i)).chain((0..9).map(|i| end(-0.25, i)));
+        let back = (0..200).rev().map(|i| arc(0.75, i + 1)).chain((0..9).rev().map(|i| end(0.25, i + 1)));
+        let points = there.chain(back).map(|p| Point2::new(p.x + 0.5, p.y + 0.2));
+        Outline::closed(points.collect()).expect("an outline")
+    }
+
+    #[test]
+    fn what_a_ring_with_a_gap_does_not_show_without_its_ends_is_a_turn_about_the_centre_of_its_circles() {
+        let mut frame = Frame::default();
+        let track = Track::begin(MotionModel::Rigid, &ring(), 0.0, &mut frame).expect("a track");
+        let map = track.map();
+        assert!(!track.turn_is_unseen() && map.turn_hangs_on_few());
+        let (reference, (turn, centre)) = (track.reference(), map.turn_of_rest().expect("a turn"));
+        let centre = reference.origin + reference.radius * centre.coords;
+        assert!((centre - Point2::new(0.5, 0.2)).norm() < 0.003, "{centre}");
+        // The centroid lies away from the gap.
+        let centroid = reference.origin + reference.radius * map.centroid().coords;
+        assert!(centroid.x < 0.48, "{centroid}");
+        assert!(turn.iter().all(|entry| entry.is_finite()) && turn[0].abs() > 0.3, "{turn:?}");
+        // Of waves all around no part tells nearly all.
+        for waves in [[(2.0, [0.14, 0.0]), (3.0, [0.0, 0.1])], [(2.0, [0.1, 0.0]), (5.0, [0.0, 0.0])]] {
+            let waves = crate::drawn_curves::outline(300, |t| polar(lobed(t, &waves), t));
+            let track = Track::begin(MotionModel::Rigid, &waves, 0.0, &mut frame).expect("a track");
+            assert!(!track.turn_is_unseen() && !track.map().turn_hangs_on_few());
+        }
+    }
+}
