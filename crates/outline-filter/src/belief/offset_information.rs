@@ -44,6 +44,15 @@ impl OffsetInformation {
         self.coupling.as_chunks().0
     }
 
+    /// Where each offset is expected, from where it was, if pose and motion are so far from where they were; 0 of those of which nothing is known.
+    pub(crate) fn expected_with(&self, state: &[f64]) -> impl ExactSizeIterator<Item = f64> {
+        let of_cells = self.own.iter().zip(self.coupling.chunks_exact(self.size));
+        of_cells.map(move |(own, coupling)| {
+            let along: f64 = coupling.iter().zip(state).map(|(c, x)| c * x).sum();
+            if *own > 0.0 { -along / own } else { 0.0 }
+        })
+    }
+
     /// [`own`](Self::own) and [`rows`](Self::rows), to be changed.
     pub(crate) fn all_mut<const S: usize>(&mut self) -> (&mut [f64], &mut [[f64; S]]) {
         debug_assert_eq!(S, self.size);
@@ -88,5 +97,29 @@ impl OffsetInformation {
             && self.own.len() == cells
             && self.coupling.len() == cells * size
             && self.own.iter().chain(&self.coupling).all(|number| number.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MotionModel;
+
+    use crate::dense_filter::{DenseFilter, Problem};
+
+    #[test]
+    fn cells_first_seen_from_a_pose_that_was_off_do_not_speak_against_the_one_that_corrects_it() {
+        // An offset is expected at its mean given pose and motion, by the covariance of all.
+        for seed in 0..8 {
+            let information = Problem::of(MotionModel::Rigid, 6, seed).belief.information;
+            let (dense, size) = (DenseFilter::of(&information), 2 * information.k);
+            let state: Vec<f64> = (0..size).map(|i| 0.3 - 0.1 * i as f64).collect();
+            let of_state = dense.covariance.view((0, 0), (size, size)).clone_owned();
+            let solved = of_state.cholesky().expect("positive").solve(&nalgebra::DVector::from_column_slice(&state));
+            let expected: Vec<f64> = information.cells.expected_with(&state).collect();
+            for (number, expected) in expected.iter().enumerate() {
+                let given = dense.covariance.view((size + number, 0), (1, size)).clone_owned() * &solved;
+                assert!((given[0] - expected).abs() < 1e-9 && expected.abs() > 1e-6, "{seed}: {given} {expected}");
+            }
+        }
     }
 }

@@ -83,10 +83,18 @@ impl View<'_> {
         self.noise.sigma.max(tuning::CELL_ERROR * self.map.spacing())
     }
 
-    /// Of the points as they have been measured, before the information of their frame has been taken.
-    pub(crate) fn negative_log_likelihood(&self, frame: &Frame) -> NegativeLogLikelihood {
-        let scale = self.comparable_noise();
-        of_innovations(self.innovations(frame), scale, self.noise.correlation())
+    /// Of the points as they have been measured, before the information of their frame has been taken; in the pose and motion found, which are so far from
+    /// where they were expected. What was known of the outline is what was known of it in that pose: an offset that was seen from a pose which is
+    /// corrected now moves with it.
+    pub(crate) fn negative_log_likelihood(&self, frame: &mut Frame, state: &[f64]) -> NegativeLogLikelihood {
+        let mut shifts = std::mem::take(&mut frame.values);
+        let expected = self.belief.information.cells.expected_with(state);
+        shifts.clear();
+        shifts.extend(frame.shifts.iter().zip(expected).map(|(shift, expected)| shift - expected));
+        let innovations = self.innovations(frame, &shifts);
+        let likelihood = of_innovations(innovations, self.comparable_noise(), self.noise.correlation());
+        frame.values = shifts;
+        likelihood
     }
 
     /// Of the loaded points in several poses. Where the map leaves more than the noise in the best of them, as one of few points does,
@@ -101,7 +109,7 @@ impl View<'_> {
         let mut all: Vec<Vec<Option<f64>>> = Vec::with_capacity(poses.len());
         for pose in poses {
             self.measure_by_columns(frame, pose, &[], Pass::First);
-            let list: Vec<_> = self.innovations(frame).collect();
+            let list: Vec<_> = self.innovations(frame, &frame.shifts).collect();
             let mut sizes: Vec<f64> = list.iter().flatten().map(|innovation| innovation.abs()).collect();
             scale = scale.min(median(&mut sizes).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m));
             all.push(list);
@@ -172,10 +180,10 @@ impl View<'_> {
             numbers,
         );
         let (cells, spacing) = (map.cells(), map.spacing());
-        let mut sum = 0.0;
+        let (mut sum, mut unknown) = (0.0, 0.0);
         for ((p, ratio), number) in points.iter().zip(ratios).zip(numbers) {
             let Some(cell) = cells.get(*number as usize) else {
-                sum += tuning::UNKNOWN;
+                unknown += 1.0;
                 continue;
             };
             let q = map_point_by::<AFFINE>(inverse, p);
@@ -186,11 +194,13 @@ impl View<'_> {
             let size = scale * distance / ratio;
             sum += (size * size).min(tuning::LARGEST * tuning::LARGEST);
         }
-        sum / points.len() as f64
+        let count = points.len() as f64;
+        (sum + of_unknown(unknown, count * self.noise.correlation())) / count
     }
 
-    fn innovations(&self, frame: &Frame) -> impl ExactSizeIterator<Item = Option<f64>> {
-        let Frame { columns, shifts, deviations, .. } = frame;
+    /// With offsets moved by these from where they were known.
+    fn innovations<'a>(&'a self, frame: &'a Frame, shifts: &'a [f64]) -> impl ExactSizeIterator<Item = Option<f64>> {
+        let Frame { columns, deviations, .. } = frame;
         let ratios = deviations.ratios();
         let ratio = move |i: usize| ratios.map_or(1.0, |ratios| ratios[i]);
         columns.points().enumerate().map(move |(i, point)| self.innovation_of(&point, ratio(i), shifts))
@@ -229,9 +239,25 @@ fn of_innovations(
     correlation: f64,
 ) -> NegativeLogLikelihood {
     let points = innovations.len() as f64;
+    let weighted = points * correlation;
     let square = |innovation: f64| (innovation / scale).powi(2).min(tuning::LARGEST * tuning::LARGEST);
-    let squares = innovations.map(|innovation| innovation.map_or(tuning::UNKNOWN, square)).sum();
-    NegativeLogLikelihood { squares, of_path: 0.0, points, weighted: points * correlation }
+    let (mut known, mut unknown) = (0.0, 0.0);
+    for innovation in innovations {
+        match innovation {
+            Some(innovation) => known += square(innovation),
+            None => unknown += 1.0,
+        }
+    }
+    let squares = known + of_unknown(unknown, weighted);
+    NegativeLogLikelihood { squares, of_path: 0.0, points, weighted }
+}
+
+/// Squares that stand for so many points where nothing is known, of points that count for so many. Each counts as one on the outline does, and for as much
+/// again because it need not have been hidden; but what is hidden is hidden in one piece, so that all together speak no more against a pose
+/// than half of what rules it out.
+fn of_unknown(unknown: f64, weighted: f64) -> f64 {
+    let against = unknown * (tuning::UNKNOWN - 1.0);
+    unknown + against.min(tuning::MOST_AGAINST * NegativeLogLikelihood::significant(weighted))
 }
 
 #[cfg(test)]
@@ -257,6 +283,26 @@ mod tests {
     use rand_distr::{Distribution as _, StandardNormal};
 
     use super::*;
+
+    #[test]
+    fn points_where_nothing_is_known_speak_against_a_pose_but_never_rule_it_out() {
+        for points in [40_u32, 400, 4000] {
+            let with_unknown = |unknown: u32| {
+                let innovations = (0..points).map(|i| (i >= unknown).then_some(1.0));
+                of_innovations(innovations.collect::<Vec<_>>().into_iter(), 1.0, 1.0)
+            };
+            let [none, few, most, all] = [0, 1, points / 2, points].map(with_unknown);
+            assert!(none.all() < few.all() && few.all() < most.all() && most.all() <= all.all(), "{points}");
+            assert!(
+                !all.is_worse_than(&none) && all.is_worse_by(0.45 * tuning::SIGNIFICANT.min(4.0), &none),
+                "{points}"
+            );
+            // Outliers in their place do.
+            let off = (0..points).map(|i| Some(if i < points / 2 { 9.0 } else { 1.0 }));
+            let off = of_innovations(off.collect::<Vec<_>>().into_iter(), 1.0, 1.0);
+            assert!(off.is_worse_than(&none), "{points}");
+        }
+    }
 
     #[test]
     fn the_variance_of_a_difference_of_squares_is_that_of_points_that_share_half_their_noise() {

@@ -2,6 +2,7 @@
 mod association;
 mod columns;
 mod frame;
+mod hidden;
 mod lattice;
 #[cfg(test)]
 mod lattice_tests;
@@ -16,6 +17,7 @@ mod variance_inflation;
 pub(crate) use association::{NO_CELL, Pass, View};
 pub(crate) use columns::{CellLine, CellSums, Columns, Jacobians, PointOnCell};
 pub(crate) use frame::{Frame, Piece, Reference};
+pub(crate) use hidden::{Lies, hide_points};
 pub(crate) use lattice::{PixelLattice, PlaceOnLattice};
 pub(crate) use likelihood::NegativeLogLikelihood;
 pub(crate) use linearisation::Measurement;

@@ -5,7 +5,8 @@ use freeform_riccati::{MotionModel, ParameterVector, map_point_by, pull_back_by}
 use nalgebra::{Matrix3, Point2, Vector2};
 
 use super::{
-    CellLine, Columns, Frame, Jacobians, Measurement, NO_CELL, Pass, Piece, View, association::mean_of_neighbours,
+    CellLine, Columns, Frame, Jacobians, Lies, Measurement, NO_CELL, Pass, Piece, View,
+    association::mean_of_neighbours, hidden::hide_points,
 };
 use crate::{
     map::{NullDirection, OutlineMap},
@@ -58,6 +59,9 @@ impl View<'_> {
         }
         self.keep_to_sides(columns.numbers_and_weights(), pieces, places, half_window);
         self.weigh_side_by_side(points, columns, values, pass);
+        if map.has_ends() {
+            columns.leave_out_hidden(pieces);
+        }
         let Columns { numbers, by_offsets, by_offsets_of_cells, .. } = columns;
         let by_offsets_of_cells = by_offsets_of_cells.as_slice();
         for (by_offset, number) in by_offsets.iter_mut().zip(numbers.iter()) {
@@ -132,6 +136,21 @@ impl Columns {
         self.lines.resize(cells + 1, CellLine::NONE);
         self.by_offsets_of_cells.resize(cells + 1, 0.0);
         self.jacobians = Jacobians::OfCells;
+    }
+
+    /// Takes the cells off points that are parts of hidden arcs, which are those of the pieces.
+    fn leave_out_hidden(&mut self, pieces: &[Piece]) {
+        let none = (self.lines.len() - 1) as u32;
+        for piece in pieces {
+            let range = piece.range();
+            let start = range.start;
+            let lies = |columns: &Self, i: usize| {
+                Lies::of(columns.numbers[start + i] == none, columns.weights[start + i] > 0.0)
+            };
+            hide_points(self, (range.len(), piece.closed), lies, |columns, i| {
+                (columns.numbers[start + i], columns.residuals[start + i]) = (none, 0.0);
+            });
+        }
     }
 
     /// Finds the cells nearest to the places of the points in the body frame.

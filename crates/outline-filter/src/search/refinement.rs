@@ -4,7 +4,7 @@ use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use crate::{
     map::{NullDirection, OutlineMap, median},
-    measurement::View,
+    measurement::{Lies, View, hide_points},
     track::Track,
     tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning},
     vectors::vectorised,
@@ -158,12 +158,37 @@ impl Seen<'_> {
         map.associate_all(places.clone(), numbers);
         let cells = map.cells();
         let mut sum = 0.0;
+        if !map.has_ends() {
+            for (q, number) in places.zip(numbers) {
+                let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
+                sum += (q - (cell.centre + offset * cell.normal)).norm().min(most.elsewhere);
+            }
+            return sum / points.len() as f64;
+        }
+        let (mut unknown, mut lies) = (0, Vec::with_capacity(points.len()));
         for (q, number) in places.zip(numbers) {
             let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
-            let most = if map.lies_beyond_end(*number as usize, &q) { most.beyond_end } else { most.elsewhere };
-            sum += (q - (cell.centre + offset * cell.normal)).norm().min(most);
+            let distance = (q - (cell.centre + offset * cell.normal)).norm();
+            let is_beyond_end = map.lies_beyond_end(*number as usize, &q);
+            sum += distance.min(if is_beyond_end { most.beyond_end } else { most.elsewhere });
+            unknown += usize::from(is_beyond_end);
+            lies.push(Lies::of(is_beyond_end, distance < most.elsewhere));
         }
-        sum / points.len() as f64
+        // Where one piece ends and the next begins hardly matters: points there border on others that are as near as any.
+        let count = lies.len();
+        hide_points(
+            &mut lies[..],
+            (count, false),
+            |lies, i| lies[i],
+            |lies, i| {
+                lies[i] = Lies::BeyondEnd;
+                sum -= most.elsewhere - most.beyond_end;
+                unknown += 1;
+            },
+        );
+        // Points that all lie beyond ends would fit anywhere.
+        let are_enough = (points.len() - unknown) as f64 >= tuning::FEWEST_ON_OUTLINE * points.len() as f64;
+        if are_enough { sum / points.len() as f64 } else { f64::INFINITY }
     }
 
     /// Residuals of all points and their derivatives for a model.

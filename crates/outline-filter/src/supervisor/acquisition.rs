@@ -223,20 +223,21 @@ impl MotionFilter {
         candidates
     }
 
-    /// Accepts candidates too that scatter too much, if one that is accepted explains it no better: the frame shows the
-    /// object then, and the noise of its points, which few of them hardly tell, says nothing against their poses.
+    /// Accepts candidates too that scatter too much, or have too much beyond known ends, if one that is accepted explains it no better: the frame shows the
+    /// object then, and the noise of its points, which few of them hardly tell, and parts that were never seen say nothing against their poses.
     fn accept_vouched_for(&mut self, outline: &Outline, tolerance: Tolerance, candidates: &mut [Candidate]) {
         let accepted = candidates.iter().filter(|candidate| candidate.outcome.is_accepted()).map(|c| c.likelihood);
         let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
         for candidate in candidates.iter_mut() {
             let Candidate { track, outcome, likelihood, verdict_of, .. } = candidate;
-            if !outcome.is_noisy() || likelihood.is_worse_than(&best) {
+            if likelihood.is_worse_than(&best) {
                 continue;
             }
             self.frame.load(outline, track.reference());
+            let gate = gate(&self.settings, track);
+            let Some(gate) = outcome.gate_if_vouched_for(gate, self.frame.points.len()) else { continue };
             track.set_tolerance(tolerance);
             *verdict_of = VerdictOf::Others;
-            let gate = gate(&self.settings, track).without_noise();
             *outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
             track.set_tolerance(Tolerance::Known);
         }

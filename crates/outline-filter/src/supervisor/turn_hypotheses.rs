@@ -234,13 +234,17 @@ impl TurnHypotheses {
             let rival = &mut self.rivals[index];
             let Some(found) = rival.follow(settings, (track, frame), &outcome, seconds) else { continue };
             let of_rival = rival.likelihood;
+            let is_vouched_for = outcome.is_accepted() && !of_rival.is_worse_than(&self.likelihood);
+            let found = if is_vouched_for { rival.again_if_vouched_for(settings, frame, found) } else { found };
             let is_alike = rival.reason == Reason::Likeness;
             // Searches that began apart may find the same motion in the end.
             let are_compared = is_alike && outcome.is_accepted() && found.is_accepted();
             let have_met = are_compared && rival.has_met(track, different_turn(self.symmetry_angle));
-            if found.is_accepted() && !self.likelihood.is_worse_than(&of_rival) && outcome.is_noisy() {
+            if found.is_accepted()
+                && !self.likelihood.is_worse_than(&of_rival)
+                && let Some(gate) = outcome.gate_if_vouched_for(gate_of_motion(settings, track), frame.points.len())
+            {
                 // The other has shown that the frame shows the object.
-                let gate = gate_of_motion(settings, track).without_noise();
                 let again = track.update(frame, &gate, Comparison::NotAsked);
                 outcome = if again.is_accepted() { again } else { outcome };
             }

@@ -88,9 +88,14 @@ impl Outcome {
         self.verdict.is_ok()
     }
 
-    /// Whether the frame was rejected for nothing but its noise.
-    pub(crate) fn is_noisy(&self) -> bool {
-        matches!(self.verdict, Err(Rejection::NoiseTooLarge { .. }))
+    /// The gate by which the frame, of so many points, is judged where another pose shows that it is one of the object; `None` where it was rejected for
+    /// something that this says nothing of.
+    pub(crate) fn gate_if_vouched_for(&self, gate: Gate, points: usize) -> Option<Gate> {
+        match self.verdict {
+            Err(Rejection::NoiseTooLarge { .. }) => Some(gate.without_noise()),
+            Err(Rejection::AgreementTooSmall { .. }) => gate.vouched_for(&self.measurement, points),
+            _ => None,
+        }
     }
 }
 
@@ -167,7 +172,7 @@ impl Track {
         let innovation = self.innovation_of(&proposal, hold.as_ref(), variance);
         let mut likelihood = NegativeLogLikelihood::default();
         if comparison == Comparison::Asked {
-            likelihood = view.negative_log_likelihood(frame);
+            likelihood = view.negative_log_likelihood(frame, proposal.state.as_slice());
             // No more than a motion has that goes on as it was: another says nothing of the turn.
             likelihood.of_path = innovation.squared.min(tuning::SUDDEN * self.model().parameter_count() as f64);
         }

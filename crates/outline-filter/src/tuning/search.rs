@@ -32,10 +32,12 @@ pub(crate) mod registration {
     /// Distance beyond which points count alike in the score of a pose, in radii: they may be hidden in the map or wrong. Trimming a share of
     /// the points instead would leave out the pin of a disc, which alone tells its turn.
     pub(crate) const FARTHEST: f64 = 0.1;
-    /// Most that a point beyond the known ends of an outline counts for in that score, in what points on it do: nothing says where it should lie. With
-    /// as much as points that are far off, poses were taken that put the most points on what was known, though others put all of those there
-    /// where the outline is: a square with a chamfer turned by a right angle too much.
-    pub(crate) const BEYOND_END: f64 = 1.5;
+    /// Most that a point beyond the known ends of an outline counts for in that score, in the root mean square of points on it: nothing says where it
+    /// should lie. So a pose that leaves all of the points there which it can, and has the others on the outline, is a tie with the best
+    /// ([`TIE`]), as the mean of their distances is four fifths of that root. With as much as points that are far off, or 1.5 times that of points on
+    /// the outline, poses were taken that put the most points on what was known, though others put all of those there where the outline is: a square
+    /// with a chamfer turned by a right angle too much.
+    pub(crate) const BEYOND_END: f64 = 1.0;
     /// As that, of any other point where the outline has gaps: in the middle of one it lies nearest to what is across.
     pub(crate) const IN_GAP: f64 = 4.0;
     /// Share of the points that must not lie beyond ends: with fewer the gate would not find the outline in the frame.

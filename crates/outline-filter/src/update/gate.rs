@@ -5,7 +5,9 @@ use super::solve::Proposal;
 use crate::{
     map::median_about,
     measurement::{Columns, Frame, PointOnCell, View, spread, weighted_median},
-    tuning::{measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, update as tuning},
+    tuning::{
+        measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, registration::FEWEST_ON_OUTLINE, update as tuning,
+    },
     vectors::vectorised,
 };
 
@@ -76,6 +78,18 @@ impl Gate {
     /// This gate without the limit on the noise, for a frame that is known to show the object.
     pub(crate) fn without_noise(self) -> Self {
         Self { largest_noise: None, ..self }
+    }
+
+    /// This gate for a frame of so many points that another pose shows to be one of the object, where this pose has too few of them on the outline only
+    /// because others lie beyond its ends: they may be anything, but are not another object. `None` where that is not so.
+    pub(crate) fn vouched_for(self, measurement: &FrameMeasurement, points: usize) -> Option<Self> {
+        let new = measurement.new_points as f64;
+        let known = points as f64 - new;
+        let of_known = known / (known + new / tuning::NEW_POINTS_PER_POINT);
+        let is_shown = known >= FEWEST_ON_OUTLINE * points as f64
+            && measurement.agreement >= self.smallest_agreement * of_known
+            && measurement.agreement < self.smallest_agreement;
+        is_shown.then(|| Self { smallest_agreement: self.smallest_agreement * of_known, ..self.without_noise() })
     }
 
     /// Tests the measurement of a frame.
@@ -276,6 +290,28 @@ mod tests {
 
     use super::*;
     use crate::measurement::{Measurement, NO_CELL};
+
+    #[test]
+    fn a_frame_that_another_pose_vouches_for_is_judged_by_the_points_that_are_known() {
+        const POINTS: usize = 100;
+        let gate = Gate { smallest_agreement: 0.7, largest_innovation: Some(75.0), largest_noise: Some(0.1) };
+        // Of so many points that lie beyond ends, and so many others that do not agree.
+        let measured = |new_points: usize, off: usize| {
+            let (new, known) = (new_points as f64, (POINTS - new_points) as f64);
+            let agreement = (known - off as f64) / (known + new / tuning::NEW_POINTS_PER_POINT);
+            FrameMeasurement { agreement, new_points, innovation: 1.0, ..FrameMeasurement::unsolved(1) }
+        };
+        let judged = |measurement: &FrameMeasurement| Some(gate.vouched_for(measurement, POINTS)?.verdict(measurement));
+        for (new, off) in [(60, 0), (70, 5), (60, 10)] {
+            let measurement = measured(new, off);
+            assert!(gate.verdict(&measurement).is_err(), "{new} {off}");
+            assert_eq!(judged(&measurement), Some(Ok(())), "{new} {off}");
+        }
+        // Too few are known, or those that are do not agree, or nothing was wrong.
+        for (new, off) in [(80, 0), (60, 15), (0, 40), (30, 0)] {
+            assert_eq!(judged(&measured(new, off)), None, "{new} {off}");
+        }
+    }
 
     #[test]
     fn good_points_tell_what_points_of_deviations_that_are_all_one_do() {
