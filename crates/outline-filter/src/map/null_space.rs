@@ -175,7 +175,8 @@ impl OutlineMap {
         let Some(inverse) = space.frame.try_inverse() else { return };
         if !space.holds_turn(model) {
             space.turn = space.turn.after(TurnEvent::NotSeen);
-            // What tells the turn is not to be trusted: the rest of the outline says what it cannot be told from. Its centre is what moves as is seen.
+            // What tells the turn is not to be trusted: the rest of the outline says what it cannot be told from. Its centre is what moves as is
+            // seen.
             if let Some((turn, centre)) =
                 space.turn_of_rest.filter(|_| space.turn == TurnEvidence::Refuted && space.in_body.is_empty())
             {

@@ -1,8 +1,8 @@
 //! Points where no outline is known: beyond a known end of it, and on from there along the contour.
 //!
 //! Of an arc that was hidden so far the points next to a known end lie beyond it. Further on they may lie anywhere, nearest to what is across or to
-//! another end, and look like outliers. What tells them from outliers is that the contour leaves the outline where that ends: in a wrong pose it leaves
-//! it anywhere.
+//! another end, and look like outliers. What tells them from outliers is that the contour leaves the outline where that ends: in a wrong pose it
+//! leaves it anywhere.
 
 /// Where a point of a contour lies in a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,9 +24,9 @@ impl Lies {
     }
 }
 
-/// Calls `hide` with the points off the outline that are parts of hidden arcs: of a piece of so many points, runs of points that do not lie on the outline,
-/// and lie beyond an end of it wherever they border on points that do. The piece begins and ends anywhere if it is open. What `lies` tells of a point comes
-/// from `of_points`, in which `hide` may change what it is called with.
+/// Calls `hide` with the points off the outline that are parts of hidden arcs: of a piece of so many points, runs of points that do not lie on the
+/// outline, and lie beyond an end of it wherever they border on points that do. The piece begins and ends anywhere if it is open. What `lies` tells
+/// of a point comes from `of_points`, in which `hide` may change what it is called with.
 pub(crate) fn hide_points<S: ?Sized>(
     of_points: &mut S,
     (count, closed): (usize, bool),

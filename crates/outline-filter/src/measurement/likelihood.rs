@@ -83,9 +83,9 @@ impl View<'_> {
         self.noise.sigma.max(tuning::CELL_ERROR * self.map.spacing())
     }
 
-    /// Of the points as they have been measured, before the information of their frame has been taken; in the pose and motion found, which are so far from
-    /// where they were expected. What was known of the outline is what was known of it in that pose: an offset that was seen from a pose which is
-    /// corrected now moves with it.
+    /// Of the points as they have been measured, before the information of their frame has been taken; in the pose and motion found, which are so
+    /// far from where they were expected. What was known of the outline is what was known of it in that pose: an offset that was seen from a pose
+    /// which is corrected now moves with it.
     pub(crate) fn negative_log_likelihood(&self, frame: &mut Frame, state: &[f64]) -> NegativeLogLikelihood {
         let mut shifts = std::mem::take(&mut frame.values);
         let expected = self.belief.information.cells.expected_with(state);
@@ -252,8 +252,8 @@ fn of_innovations(
     NegativeLogLikelihood { squares, of_path: 0.0, points, weighted }
 }
 
-/// Squares that stand for so many points where nothing is known, of points that count for so many. Each counts as one on the outline does, and for as much
-/// again because it need not have been hidden; but what is hidden is hidden in one piece, so that all together speak no more against a pose
+/// Squares that stand for so many points where nothing is known, of points that count for so many. Each counts as one on the outline does, and for
+/// as much again because it need not have been hidden; but what is hidden is hidden in one piece, so that all together speak no more against a pose
 /// than half of what rules it out.
 fn of_unknown(unknown: f64, weighted: f64) -> f64 {
     let against = unknown * (tuning::UNKNOWN - 1.0);

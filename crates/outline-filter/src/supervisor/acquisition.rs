@@ -223,8 +223,9 @@ impl MotionFilter {
         candidates
     }
 
-    /// Accepts candidates too that scatter too much, or have too much beyond known ends, if one that is accepted explains it no better: the frame shows the
-    /// object then, and the noise of its points, which few of them hardly tell, and parts that were never seen say nothing against their poses.
+    /// Accepts candidates too that scatter too much, or have too much beyond known ends, if one that is accepted explains it no better: the frame
+    /// shows the object then, and the noise of its points, which few of them hardly tell, and parts that were never seen say nothing against their
+    /// poses.
     fn accept_vouched_for(&mut self, outline: &Outline, tolerance: Tolerance, candidates: &mut [Candidate]) {
         let accepted = candidates.iter().filter(|candidate| candidate.outcome.is_accepted()).map(|c| c.likelihood);
         let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };

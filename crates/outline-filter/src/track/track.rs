@@ -88,8 +88,8 @@ impl Outcome {
         self.verdict.is_ok()
     }
 
-    /// The gate by which the frame, of so many points, is judged where another pose shows that it is one of the object; `None` where it was rejected for
-    /// something that this says nothing of.
+    /// The gate by which the frame, of so many points, is judged where another pose shows that it is one of the object; `None` where it was
+    /// rejected for something that this says nothing of.
     pub(crate) fn gate_if_vouched_for(&self, gate: Gate, points: usize) -> Option<Gate> {
         match self.verdict {
             Err(Rejection::NoiseTooLarge { .. }) => Some(gate.without_noise()),

@@ -122,8 +122,8 @@ pub(crate) mod likelihood {
     pub(crate) const LARGEST: f64 = 4.0;
     /// Square that stands for a point beyond the known ends of the outline.
     pub(crate) const UNKNOWN: f64 = 2.0;
-    /// Most that all such points of a frame speak against a pose beyond what points on the outline do, in what is significant. They come in runs, and how
-    /// many there are says how long an arc was hidden: of a thousand points a hidden fifth would else rule out the true pose.
+    /// Most that all such points of a frame speak against a pose beyond what points on the outline do, in what is significant. They come in runs,
+    /// and how many there are says how long an arc was hidden: of a thousand points a hidden fifth would else rule out the true pose.
     pub(crate) const MOST_AGAINST: f64 = 0.5;
     /// Variance of the difference of a point's squared residuals from two parts of an outline: the noise of the point is in both, that
     /// of the map is not (2 + 2 - 2 / 2).

@@ -111,8 +111,8 @@ pub(crate) mod null_space {
     pub(crate) const WEAKLY_SHOWN: f64 = 0.02;
     /// Share of the cells that a frame may disagree with: as many points need not lie on the outline for the gate.
     pub(crate) const MISSED: f64 = 0.3;
-    /// Share of the levers of a turn that the others have at most where it hangs on these: those of a wave along the outline have two fifths, the sides
-    /// of a square a third.
+    /// Share of the levers of a turn that the others have at most where it hangs on these: those of a wave along the outline have two fifths, the
+    /// sides of a square a third.
     pub(crate) const TOLD_BY_REST: f64 = 0.1;
     /// Rounds in which the turn that the others show least is found, and those that tell most of it.
     pub(crate) const ROUNDS_OF_REST: usize = 3;

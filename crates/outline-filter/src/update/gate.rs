@@ -80,8 +80,8 @@ impl Gate {
         Self { largest_noise: None, ..self }
     }
 
-    /// This gate for a frame of so many points that another pose shows to be one of the object, where this pose has too few of them on the outline only
-    /// because others lie beyond its ends: they may be anything, but are not another object. `None` where that is not so.
+    /// This gate for a frame of so many points that another pose shows to be one of the object, where this pose has too few of them on the outline
+    /// only because others lie beyond its ends: they may be anything, but are not another object. `None` where that is not so.
     pub(crate) fn vouched_for(self, measurement: &FrameMeasurement, points: usize) -> Option<Self> {
         let new = measurement.new_points as f64;
         let known = points as f64 - new;

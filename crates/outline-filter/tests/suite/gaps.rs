@@ -87,8 +87,8 @@ fn rings_told(points: u32) -> (u32, u32) {
 
 #[test]
 fn rings_with_a_gap_that_few_points_show_leave_their_turn_unknown_and_others_tell_it() {
-    // A pose that misses the ends of the ring makes outliers of three or four points of fifty. Before it was asked whether poses turned a little are worse,
-    // four of eight that told their turn here told it wrong.
+    // A pose that misses the ends of the ring makes outliers of three or four points of fifty. Before it was asked whether poses turned a little
+    // are worse, four of eight that told their turn here told it wrong.
     let few = [50, 60, 80].map(rings_told);
     assert_eq!(few.map(|(_, wrong)| wrong), [0; 3], "{few:?}");
     let (right, wrong) = rings_told(300);
