@@ -55,7 +55,9 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_enum)]
     pub(crate) motion: Option<MotionChoice>,
 
-    /// Lengths of the sequences in frames, at least 2 [default: 3,8,30,120]
+    /// Lengths of the sequences in frames, at least 2 [default: 3,8,30,120; --suite stress: whole sequences]
+    ///
+    /// With --suite stress one number: what is stated after so many frames is judged.
     #[arg(long, value_name = "N,...", value_parser = frame_count, value_delimiter = ',')]
     pub(crate) frames: Vec<usize>,
 
@@ -109,7 +111,7 @@ pub(crate) struct EvaluateArgs {
     /// expects, in the classes plain, noise, family, dynamics, round and symmetry. A table tells how often a stated value was more
     /// than four standard deviations off without a word, how often nothing was stated, and how often the 95 % intervals held.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "",
-          conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "motion", "frames", "seconds", "fps", "points", "sampling",
+          conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "motion", "seconds", "fps", "points", "sampling",
                                 "noise", "occlusion", "outliers", "wrong_frames", "acquisition"])]
     pub(crate) suite: Option<String>,
 

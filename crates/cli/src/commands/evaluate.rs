@@ -26,6 +26,11 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     if args.suite.as_deref() == Some(super::stress::NAME) {
         return super::stress::run(args);
     }
+    if args.suite.is_some() && !args.frames.is_empty() {
+        return Err(Failure::unusable(
+            "--frames is for --suite stress: the settings of docs/accuracy.md have their own lengths",
+        ));
+    }
     let misplaced = [("--kinds", args.kinds.is_some()), ("--list", args.list)];
     if let Some((option, _)) = misplaced.into_iter().find(|(_, is_given)| *is_given) {
         return Err(Failure::unusable(format_args!("{option} is for --suite stress")));

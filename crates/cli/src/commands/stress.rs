@@ -26,6 +26,11 @@ pub(super) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
     if !matches!(args.method[..], [] | [Method::Filter]) {
         return Err(Failure::unusable("--suite stress judges the motion filter alone: --method has no meaning there"));
     }
+    let frames = match args.frames[..] {
+        [] => None,
+        [frames] => Some(frames),
+        _ => return Err(Failure::unusable("--suite stress takes one number of frames")),
+    };
     let format = args.format.unwrap_or(EvaluateFormat::Table);
     if format == EvaluateFormat::Csv {
         return Err(Failure::unusable("--suite stress has the formats table, markdown and json"));
@@ -38,7 +43,7 @@ pub(super) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
             EvaluateFormat::Table | EvaluateFormat::Csv => write_kinds(sink, &kinds),
         });
     }
-    let study = StressStudy { kinds, runs: args.runs.unwrap_or(RUNS), seed: args.seed };
+    let study = StressStudy { kinds, runs: args.runs.unwrap_or(RUNS), frames, seed: args.seed };
     // The output is refused before the work, not after it.
     let sink = Sink::open(&args.output)?;
     let pool = super::evaluate::thread_pool(args)?;

@@ -8,7 +8,7 @@
 //! ```
 //! use freeform_experiments::stress::{StressStudy, kinds_containing};
 //!
-//! let study = StressStudy { kinds: kinds_containing("plain/white noise of 0.5 %")?, runs: 2, seed: 1 };
+//! let study = StressStudy { kinds: kinds_containing("plain/white noise of 0.5 %")?, runs: 2, frames: None, seed: 1 };
 //! let report = study.run(&|| ())?;
 //! assert_eq!(report.overall.runs, 2);
 //! # Ok::<(), freeform_experiments::ExperimentError>(())

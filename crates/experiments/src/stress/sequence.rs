@@ -83,10 +83,10 @@ impl<'a> Sequence<'a> {
         }
     }
 
-    /// The frames in order.
-    pub(super) fn frames(mut self, rng: &mut impl Rng) -> Vec<SeenFrame> {
-        let mut frames = Vec::with_capacity(self.recipe.frames);
-        for index in 0..self.recipe.frames {
+    /// The first so many frames in order.
+    pub(super) fn frames(mut self, count: usize, rng: &mut impl Rng) -> Vec<SeenFrame> {
+        let mut frames = Vec::with_capacity(count);
+        for index in 0..count {
             if index > 0 {
                 self.faults.iter_mut().for_each(|fault| fault.advance(rng));
             }
@@ -95,7 +95,7 @@ impl<'a> Sequence<'a> {
                 _ => 0.0,
             });
             // The truth is that at the last frame, which is always there.
-            if is_dropped && index + 1 < self.recipe.frames {
+            if is_dropped && index + 1 < count {
                 continue;
             }
             let time = self.recipe.time(index);
@@ -231,7 +231,7 @@ mod tests {
     fn frames(recipe: &Recipe, seed: u64) -> (Truth, Vec<SeenFrame>) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let sequence = Sequence::new(recipe, &mut rng).expect("a sequence");
-        (sequence.truth(recipe.frames - 1), sequence.frames(&mut rng))
+        (sequence.truth(recipe.frames - 1), sequence.frames(recipe.frames, &mut rng))
     }
 
     fn kind(path: &str) -> Kind {

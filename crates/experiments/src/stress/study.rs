@@ -18,6 +18,8 @@ pub struct StressStudy {
     pub kinds: Vec<Kind>,
     /// Sequences of each kind, at least 1.
     pub runs: usize,
+    /// Frames after which what is stated is judged, at least 2; `None` for whole sequences.
+    pub frames: Option<usize>,
     /// Everything random follows from it.
     pub seed: u64,
 }
@@ -62,7 +64,7 @@ impl StressStudy {
     /// What the simulator or the tracker refuses.
     pub fn run(&self, progress: &(dyn Fn() + Sync)) -> Result<StressReport, ExperimentError> {
         let outcomes = (0..self.run_count()).into_par_iter().map(|job| {
-            let outcome = run(&self.kinds[job / self.runs], self.seed, job % self.runs);
+            let outcome = self.one(&self.kinds[job / self.runs], job % self.runs);
             progress();
             outcome
         });
@@ -85,26 +87,27 @@ impl StressStudy {
             overall: Summary::of(outcomes.iter()),
         })
     }
-}
 
-/// One sequence, followed by a tracker with default settings.
-fn run(kind: &Kind, seed: u64, number: usize) -> Result<Outcome, ExperimentError> {
-    let recipe = &kind.recipe;
-    let mut rng = ChaCha8Rng::seed_from_u64(seed ^ hash(&kind.path()));
-    rng.set_stream(number as u64);
-    let sequence = Sequence::new(recipe, &mut rng)?;
-    let truth = sequence.truth(recipe.frames - 1);
-    let mut tracker = Tracker::new(TrackerSettings::default())?;
-    for seen in sequence.frames(&mut rng) {
-        let frame = seen.index as u64;
-        let object = DEFAULT_OBJECT.to_owned();
-        match seen.outline {
-            Some(outline) => drop(tracker.push(&OutlineFrame { frame, time: seen.time, object, outline })),
-            None => drop(tracker.reject(&object, frame, format!("frame {frame} has no outline"))),
+    /// One sequence, followed by a tracker with default settings.
+    fn one(&self, kind: &Kind, number: usize) -> Result<Outcome, ExperimentError> {
+        let recipe = &kind.recipe;
+        let count = self.frames.map_or(recipe.frames, |frames| frames.min(recipe.frames));
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ hash(&kind.path()));
+        rng.set_stream(number as u64);
+        let sequence = Sequence::new(recipe, &mut rng)?;
+        let truth = sequence.truth(count - 1);
+        let mut tracker = Tracker::new(TrackerSettings::default())?;
+        for seen in sequence.frames(count, &mut rng) {
+            let frame = seen.index as u64;
+            let object = DEFAULT_OBJECT.to_owned();
+            match seen.outline {
+                Some(outline) => drop(tracker.push(&OutlineFrame { frame, time: seen.time, object, outline })),
+                None => drop(tracker.reject(&object, frame, format!("frame {frame} has no outline"))),
+            }
         }
+        let frame_rate = recipe.fps / recipe.time_unit;
+        Ok(Outcome::of(tracker.results().first(), &truth, frame_rate, kind.judges_middle()))
     }
-    let frame_rate = recipe.fps / recipe.time_unit;
-    Ok(Outcome::of(tracker.results().first(), &truth, frame_rate, kind.judges_middle()))
 }
 
 /// A number that stands for a text, the same on every machine (FNV-1a, 64 bits).
@@ -119,7 +122,7 @@ mod tests {
 
     fn report(text: &str, seed: u64) -> StressReport {
         let kinds = kinds_containing(text).expect("some");
-        StressStudy { kinds, runs: 2, seed }.run(&|| ()).expect("a report")
+        StressStudy { kinds, runs: 2, frames: None, seed }.run(&|| ()).expect("a report")
     }
 
     #[test]

@@ -7,6 +7,7 @@ use super::{
     course::Course,
     hypothesis::Hypothesis,
     interacting::{InteractingHypotheses, MOST},
+    steady_change::PossibleChange,
 };
 use crate::{
     belief::StateMatrix,
@@ -73,8 +74,8 @@ impl<const N: usize> InteractingHypotheses<N> {
         mean
     }
 
-    /// Covariance of that mean.
-    fn covariance_of(&self, hypothesis: &Hypothesis<N>) -> SMatrix<f64, N, N> {
+    /// Errors of that mean by those of a hypothesis.
+    fn place_of(&self, hypothesis: &Hypothesis<N>) -> SMatrix<f64, N, N> {
         let (model, k) = (self.model, self.model.parameter_count());
         let apart = hypothesis.mean.fixed_rows::<2>(k - 2).into_owned();
         let mut change = SMatrix::<f64, N, N>::identity();
@@ -82,7 +83,32 @@ impl<const N: usize> InteractingHypotheses<N> {
         for (j, basis) in model.basis().iter().enumerate().take(k - 2) {
             change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&-(parts(basis).0 * apart));
         }
-        carried(&change, &hypothesis.covariance, 2 * k)
+        change
+    }
+
+    /// Covariance of that mean.
+    fn covariance_of(&self, hypothesis: &Hypothesis<N>) -> SMatrix<f64, N, N> {
+        carried(&self.place_of(hypothesis), &hypothesis.covariance, 2 * self.model.parameter_count())
+    }
+
+    /// What a motion that changes at a steady rate adds to hypotheses of constant ones, weighted with them.
+    fn possible_change(&self) -> Option<PossibleChange<N>> {
+        let (change, factors) = (self.steady_change.as_ref()?, self.factors());
+        let mut sum = PossibleChange { probability: 0.0, apart: SMatrix::zeros(), beside: SMatrix::zeros() };
+        for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
+            let turns = match hypothesis.course {
+                Course::ConstantGenerator => true,
+                Course::ConstantVelocity => false,
+                Course::Shaken { .. } | Course::Accelerating { .. } | Course::SteadyChange { .. } => continue,
+            };
+            if *weight > tuning::OUTSIDE_THREE_DEVIATIONS {
+                let possible = change.possible(turns, &factors, &self.place_of(hypothesis))?;
+                sum.probability += weight * possible.probability;
+                sum.apart += possible.apart * *weight;
+                sum.beside += possible.beside * *weight;
+            }
+        }
+        Some(sum)
     }
 
     /// The states of all hypotheses taken together, that of a constant generator replaced by what is `given` for it, which knows the
@@ -101,7 +127,8 @@ impl<const N: usize> InteractingHypotheses<N> {
             Some((mean, _)) => mean,
             _ => all().fold(SVector::zeros(), |mean, part| mean + part.mean * (part.weight / sum)),
         };
-        let reach = if of_generator.is_some() { self.reach(sum) } else { 1.0 };
+        let change = if purpose == Purpose::Statement { self.possible_change() } else { None };
+        let reach = if of_generator.is_some() { reach_of(1.0 - self.weights().generator / sum) } else { 1.0 };
         let mut covariance = SMatrix::<f64, N, N>::zeros();
         let (mut measured, mut accelerated) = (0.0, 0.0);
         for part in all() {
@@ -114,6 +141,9 @@ impl<const N: usize> InteractingHypotheses<N> {
                     covariance[(i, j)] += weight * (own + reach * (x[i] - mean[i]) * (x[j] - mean[j]));
                 }
             }
+        }
+        if let Some(PossibleChange { probability, apart, beside }) = change {
+            covariance += apart * reach_of(probability) + beside;
         }
         if purpose == Purpose::Statement {
             let rates = parts(&self.model.generator(&mean.as_slice()[k..2 * k])).0;
@@ -151,13 +181,6 @@ impl<const N: usize> InteractingHypotheses<N> {
         })
     }
 
-    /// What squared distances from the constant generator, which is stated, count more than by the weights, of which `sum` is taken: its
-    /// interval of 95 % reaches others that have as much as lies outside.
-    fn reach(&self, sum: f64) -> f64 {
-        let others = 1.0 - self.weights().generator / sum;
-        if others > 0.0 { (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0) } else { 1.0 }
-    }
-
     /// Mean and covariance about the centroid, as pose and motion about the origin; `None` where they are not finite.
     fn about_origin(&self, mean: &SVector<f64, N>, covariance: &SMatrix<f64, N, N>) -> Option<Summary> {
         let (model, k) = (self.model, self.model.parameter_count());
@@ -170,6 +193,12 @@ impl<const N: usize> InteractingHypotheses<N> {
         let covariance = carried(&of_both(&to, k), &both, 2 * k);
         pose.iter().all(|e| e.is_finite()).then_some(Summary { pose, motion: motion.into(), covariance })
     }
+}
+
+/// What squared distances from what is stated count more than by the probability of `others`: an interval of 95 % reaches those that have as
+/// much as lies outside.
+fn reach_of(others: f64) -> f64 {
+    (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0)
 }
 
 /// Motion and covariance of a summary about the centroid.

@@ -5,7 +5,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Vector2};
 
 use super::{
-    centred::{carried, parts},
+    centred::{CentredVector, carried, parts},
     course::Course,
     hypothesis::Hypothesis,
     step::{Step, turned_along},
@@ -17,7 +17,7 @@ impl<const N: usize> Hypothesis<N> {
     pub(super) fn predict_commuting(&mut self, step: &Step<'_>) {
         let (model, k, dt) = (step.model, Self::K, step.seconds);
         debug_assert!(model <= MotionModel::Similarity);
-        if let Course::Accelerating { .. } = self.course {
+        if self.course.accelerates() {
             let covariance = &mut self.covariance.data.0;
             vectorised(
                 #[inline(always)]
@@ -32,7 +32,14 @@ impl<const N: usize> Hypothesis<N> {
         } else {
             let motion = &self.mean.as_slice()[k..2 * k];
             let v = parts(&model.generator(motion)).1;
-            let (turn, along) = model.linear_flow_with_integral(motion, dt);
+            // What a constant velocity has there is no rate.
+            let half_way =
+                CentredVector::from_fn(
+                    |j, _| {
+                        if j < k - 2 { motion[j] + 0.5 * dt * self.mean[2 * k + j] } else { 0.0 }
+                    },
+                );
+            let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
             let (shift, later) = if self.course == Course::ConstantVelocity {
                 (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning)
@@ -45,6 +52,9 @@ impl<const N: usize> Hypothesis<N> {
             for j in 0..k - 2 {
                 self.mean[j] += dt * self.mean[k + j];
             }
+            if let Course::SteadyChange { .. } = self.course {
+                self.add_steady_change(dt);
+            }
         }
         for j in 0..k - 2 {
             self.mean[j] += step.turned_by[j];
@@ -54,6 +64,16 @@ impl<const N: usize> Hypothesis<N> {
         // Turns that differ by a round are the same.
         let turn = &mut self.mean[k - 3];
         *turn -= TAU * (*turn / TAU).round();
+    }
+
+    /// Adds what a steady change does in a step, to what a constant generator does.
+    fn add_steady_change(&mut self, dt: f64) {
+        let k = Self::K;
+        for j in 0..k {
+            let change = self.mean[2 * k + j];
+            self.mean[j] += 0.5 * dt * dt * change;
+            self.mean[k + j] += dt * change;
+        }
     }
 
     /// Adds the way that the centroid has gone in a step, and sets the velocity after it.
@@ -99,12 +119,14 @@ mod tests {
     use super::*;
     use crate::dynamics::{CentredPose, centred::CentredVector};
 
-    const COURSES: [Course; 5] = [
+    const COURSES: [Course; 7] = [
         Course::ConstantGenerator,
         Course::ConstantVelocity,
         Course::Shaken { deviations: 4.0 },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },
+        Course::SteadyChange { turns: true },
+        Course::SteadyChange { turns: false },
     ];
 
     /// Largest difference between the two ways, for a model of N / 3 parameters.

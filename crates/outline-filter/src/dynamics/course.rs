@@ -1,6 +1,6 @@
 //! What a hypothesis says that the motion does between frames.
 use super::{centred::CentredVector, setting::Dynamics};
-use crate::tuning::dynamics as tuning;
+use crate::tuning::{dynamics as tuning, steady_change};
 
 /// What the motion does between frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +22,11 @@ pub(super) enum Course {
         level: f64,
         /// Whether the rates do as well, or the velocity of the centroid alone, as of an object that spins while it falls.
         rates: bool,
+    },
+    /// The motion changes at a steady rate, which its state has in place of accelerations.
+    SteadyChange {
+        /// Whether the velocity of the centroid turns with the object, but for that.
+        turns: bool,
     },
 }
 
@@ -46,20 +51,26 @@ impl Course {
     /// Variances of accelerations of which nothing is known yet: such that they move the object by some deviations of a pose over the steps
     /// that the level remembers. Larger ones are those of higher levels.
     pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
-        let Self::Accelerating { level, rates } = self else { return CentredVector::zeros() };
-        let first = if rates { 0 } else { k - 2 };
-        let span = seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0);
-        let unit = (tuning::FIRST_ACCELERATION / (span * span)).powi(2);
+        let (first, span, size) = match self {
+            Self::Accelerating { level, rates } => {
+                let first = if rates { 0 } else { k - 2 };
+                (first, seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0), tuning::FIRST_ACCELERATION)
+            }
+            Self::SteadyChange { .. } => (0, seconds, steady_change::ANY),
+            Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity => return CentredVector::zeros(),
+        };
+        let unit = (size / (span * span)).powi(2);
         CentredVector::from_fn(|j, _| if (first..k).contains(&j) { pose_variance[j] * unit } else { 0.0 })
     }
 
-    /// Probability before the third frame.
+    /// Probability before the third frame, among those that say where the object is expected.
     pub(super) fn prior(self) -> f64 {
         match self {
             Self::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
             Self::Shaken { .. } => tuning::PRIOR_OF_SHAKEN,
             Self::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
             Self::Accelerating { .. } => tuning::PRIOR_OF_EACH_LEVEL,
+            Self::SteadyChange { .. } => 0.0,
         }
     }
 
@@ -71,8 +82,13 @@ impl Course {
         }
     }
 
+    /// Whether no part of the velocity of the centroid turns with the object, and the motion changes.
+    pub(super) fn accelerates(self) -> bool {
+        matches!(self, Self::Accelerating { .. } | Self::SteadyChange { turns: false })
+    }
+
     /// Whether the state has entries behind the motion.
     pub(super) fn has_more_than_motion(self) -> bool {
-        matches!(self, Self::Accelerating { .. } | Self::ConstantVelocity)
+        matches!(self, Self::Accelerating { .. } | Self::ConstantVelocity | Self::SteadyChange { .. })
     }
 }

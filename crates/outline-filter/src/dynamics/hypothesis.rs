@@ -52,7 +52,7 @@ impl<const N: usize> Hypothesis<N> {
         if course.has_more_than_motion() {
             hypothesis.add_unknown(model, (pose_variance, seconds), 1.0);
         }
-        if let Course::Accelerating { .. } = course {
+        if let Course::Accelerating { .. } | Course::SteadyChange { .. } = course {
             let k = Self::K;
             // The motion known so far is the mean over the step: half of it ago.
             for j in 0..k {
@@ -130,12 +130,17 @@ impl<const N: usize> Hypothesis<N> {
                 let (turn, along) = of_motion();
                 (turn, along, along * v, turn * v)
             }
+            Course::SteadyChange { turns: true } => {
+                let half_way = motion + 0.5 * dt * acceleration;
+                let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
+                (turn, along, along * v + 0.5 * dt * dt * w, turn * v + dt * w)
+            }
             Course::ConstantVelocity => {
                 let (turn, along) = of_motion();
                 let beyond = turned_along(&along, dt) * turning;
                 (turn, along, v * dt + beyond, v + turn * turning - turning)
             }
-            Course::Accelerating { .. } => {
+            Course::Accelerating { .. } | Course::SteadyChange { turns: false } => {
                 // No part of the velocity turns with the object.
                 let along = Matrix2::identity() * dt;
                 (of_rates(&(motion + 0.5 * dt * acceleration), dt), along, v * dt + 0.5 * dt * dt * w, v + dt * w)
@@ -144,7 +149,7 @@ impl<const N: usize> Hypothesis<N> {
         let relative = turn * of_rates(&error, 1.0) * step.turned;
         let Some(off) = model.motion_between(&as_map(&relative), 1.0) else { return false };
         let centre = step.centre + Vector2::new(error[k - 2], error[k - 1]) + shift;
-        if let (Course::Accelerating { .. }, MotionModel::Affine) = (self.course, model) {
+        if self.course.accelerates() && model == MotionModel::Affine {
             carry_turned_chains(&mut self.covariance.data.0, &turn, dt);
         } else {
             let (transition, size) = (self.transition(step, (&turn, &along, &v, &later)), self.size());
@@ -192,7 +197,7 @@ impl<const N: usize> Hypothesis<N> {
         let rates = k - 2;
         let mut f = step.pose_transition(turn);
         match self.course {
-            Course::ConstantGenerator | Course::Shaken { .. } => {
+            Course::ConstantGenerator | Course::Shaken { .. } | Course::SteadyChange { turns: true } => {
                 let mean_velocity = 0.5 * (v + later);
                 for i in 0..2 {
                     for j in 0..2 {
@@ -217,11 +222,12 @@ impl<const N: usize> Hypothesis<N> {
                     f[(2 * k + row, column)] = turn[(i, j)];
                 }
             }
-            Course::Accelerating { .. } => {
-                for j in 0..k {
-                    f[(j, 2 * k + j)] = 0.5 * dt * dt;
-                    f[(k + j, 2 * k + j)] = dt;
-                }
+            Course::Accelerating { .. } | Course::SteadyChange { turns: false } => {}
+        }
+        if let Course::Accelerating { .. } | Course::SteadyChange { .. } = self.course {
+            for j in 0..k {
+                f[(j, 2 * k + j)] = 0.5 * dt * dt;
+                f[(k + j, 2 * k + j)] = dt;
             }
         }
         f

@@ -12,6 +12,7 @@ use super::{
     innovations::InnovationSeries,
     mixing::mix,
     setting::{Dynamics, DynamicsWeights},
+    steady_change::SteadyChange,
     step::Step,
 };
 #[cfg(feature = "serde")]
@@ -31,6 +32,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) model: MotionModel,
     setting: Dynamics,
     pub(super) hypotheses: Vec<Hypothesis<N>>,
+    /// None while the motion is seen to change, and where a setting says how it goes on.
+    pub(super) steady_change: Option<SteadyChange<N>>,
     /// In the same order; zeros behind them.
     pub(super) weights: Weights,
     /// What the errors of all poses are taken from.
@@ -78,6 +81,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             model,
             setting,
             hypotheses: Vec::with_capacity(MOST),
+            steady_change: None,
             weights: [0.0; MOST],
             reference,
             pose_variance,
@@ -94,6 +98,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             filter.hypotheses.push(hypothesis);
         }
         filter.normalise();
+        filter.reckon_with_change(seconds);
         if setting == Dynamics::Generator && model <= MotionModel::Similarity && !null.is_empty() {
             filter.add_turn_of_path(null, seconds);
         }
@@ -119,6 +124,18 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
     }
 
+    /// Begins to reckon with a steady change where the motion is constant: from the beginning, and after it has been seen to change.
+    fn reckon_with_change(&mut self, seconds: f64) {
+        let DynamicsWeights { generator, velocity, .. } = self.weights();
+        if self.setting == Dynamics::Auto && self.steady_change.is_none() && generator + velocity >= tuning::LEADS_UNTIL
+        {
+            let constant = self.hypotheses.iter().find(|hypothesis| hypothesis.course == Course::ConstantGenerator);
+            let units = (&self.pose_variance, seconds);
+            self.steady_change =
+                constant.map(|constant| SteadyChange::begin(self.model, (constant.mean, constant.covariance), units));
+        }
+    }
+
     fn normalise(&mut self) {
         let sum: f64 = self.weights.iter().sum();
         if sum > 0.0 && sum.is_finite() {
@@ -132,14 +149,17 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Moves all hypotheses on by a step, after mixing their states; `pose` is where the object is predicted otherwise.
     /// Whether the numbers allow it.
     pub(crate) fn predict(&mut self, pose: &CentredPose, seconds: f64, null: &[NullDirection]) -> bool {
+        self.reckon_with_change(seconds);
         let moved = CentredPose { pose: self.reference.pose, centroid: pose.centroid };
-        for hypothesis in &mut self.hypotheses {
-            hypothesis.move_centroid(self.model, &self.reference, &moved);
-        }
+        let (model, reference) = (self.model, self.reference);
+        self.all().for_each(|hypothesis| hypothesis.move_centroid(model, &reference, &moved));
         self.reference = moved;
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
         let step = Step::new((self.model, seconds), [&self.reference, pose], &self.pose_variance);
-        let possible = step.is_some_and(|step| self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step)));
+        let possible = step.is_some_and(|step| {
+            let steady = self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses);
+            self.hypotheses.iter_mut().chain(steady).all(|hypothesis| hypothesis.predict(&step))
+        });
         self.reference = *pose;
         if !self.turn_is_of_path {
             self.hold(null);
@@ -156,10 +176,13 @@ impl<const N: usize> InteractingHypotheses<N> {
             let dual = to.transpose() * SVector::<f64, MAX_PARAMETERS>::from(*dual);
             let short =
                 |v: &SVector<f64, MAX_PARAMETERS>| CentredVector::from_fn(|i, _| if i < k { v[i] } else { 0.0 });
-            for hypothesis in &mut self.hypotheses {
-                hypothesis.hold(&short(&direction), &short(&dual));
-            }
+            self.all().for_each(|hypothesis| hypothesis.hold(&short(&direction), &short(&dual)));
         }
+    }
+
+    /// All that are moved on, those without a weight too.
+    fn all(&mut self) -> impl Iterator<Item = &mut Hypothesis<N>> {
+        self.hypotheses.iter_mut().chain(self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses))
     }
 
     /// Updates by what an accepted frame tells of the pose: the error of the reference pose. `off` are standard deviations of that pose about the
@@ -187,6 +210,9 @@ impl<const N: usize> InteractingHypotheses<N> {
             logarithms[number] = innovation.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
             standardised[number] = innovation.map(|i| i.standardised);
         }
+        if let Some(change) = &mut self.steady_change {
+            change.update(&measurement);
+        }
         let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if !largest.is_finite() {
             return;
@@ -204,12 +230,16 @@ impl<const N: usize> InteractingHypotheses<N> {
         if self.setting == Dynamics::Auto {
             self.leads = if self.leads { weight < tuning::LEADS_UNTIL } else { weight < tuning::LEADS_FROM };
             self.outline_has_moved |= self.leads;
+            if self.weights().accelerating > 1.0 - tuning::OUTSIDE_INTERVAL {
+                self.steady_change = None;
+            }
         }
     }
 
     /// Records that the motion has changed in a way that no hypothesis models.
     pub(crate) fn record_change(&mut self) {
         self.outline_has_moved = true;
+        self.steady_change = None;
     }
 
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
@@ -224,7 +254,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             match hypothesis.course {
                 Course::ConstantGenerator | Course::Shaken { .. } => weights.generator += weight,
                 Course::ConstantVelocity => weights.velocity += weight,
-                Course::Accelerating { .. } => weights.accelerating += weight,
+                Course::Accelerating { .. } | Course::SteadyChange { .. } => weights.accelerating += weight,
             }
         }
         weights
@@ -272,7 +302,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         let Some(moved) = model.motion_between(&(pose * inverse), 1.0) else { return false };
         let moved = self.reference.about_centroid(model) * SVector::<f64, MAX_PARAMETERS>::from(moved);
         let apart = to.centre() - self.reference.centre();
-        for hypothesis in &mut self.hypotheses {
+        for hypothesis in self.all() {
             for j in 0..k - 2 {
                 hypothesis.mean[j] -= moved[j];
             }

@@ -92,7 +92,7 @@ pub(super) fn mix<const N: usize>(
 /// Probability, in a step, that a course is left for a certain other one.
 fn leaving(course: Course) -> f64 {
     match course {
-        Course::ConstantGenerator | Course::ConstantVelocity => tuning::LEAVES_CONSTANT,
+        Course::ConstantGenerator | Course::ConstantVelocity | Course::SteadyChange { .. } => tuning::LEAVES_CONSTANT,
         Course::Accelerating { .. } | Course::Shaken { .. } => tuning::LEAVES_CHANGING,
     }
 }
@@ -101,7 +101,10 @@ fn leaving(course: Course) -> f64 {
 fn arriving(course: Course) -> f64 {
     match course {
         Course::Shaken { .. } => tuning::BEGINS_TO_SHAKE,
-        Course::ConstantGenerator | Course::ConstantVelocity | Course::Accelerating { .. } => 1.0,
+        Course::ConstantGenerator
+        | Course::ConstantVelocity
+        | Course::Accelerating { .. }
+        | Course::SteadyChange { .. } => 1.0,
     }
 }
 
@@ -203,7 +206,7 @@ enum Accelerations {
 impl Accelerations {
     fn of(course: Course) -> Self {
         match course {
-            Course::Accelerating { rates: true, .. } => Self::All,
+            Course::Accelerating { rates: true, .. } | Course::SteadyChange { .. } => Self::All,
             Course::Accelerating { rates: false, .. } => Self::OfVelocity,
             Course::ConstantGenerator | Course::Shaken { .. } | Course::ConstantVelocity => Self::None,
         }
@@ -232,7 +235,7 @@ impl Accelerations {
                 let turning = source.mean.fixed_rows::<2>(3 * k - 2).into_owned();
                 mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(source.rates(model) * turning));
             }
-            Course::Accelerating { .. } => {}
+            Course::Accelerating { .. } | Course::SteadyChange { .. } => {}
         }
         mean
     }

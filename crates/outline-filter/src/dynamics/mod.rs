@@ -16,6 +16,7 @@ mod innovations;
 mod interacting;
 mod mixing;
 mod setting;
+mod steady_change;
 mod step;
 mod turned_chains;
 

@@ -10,6 +10,6 @@ mod search;
 pub(crate) use frame::{deviations, lattice, likelihood, measurement, noise, update};
 #[cfg(feature = "serde")]
 pub(crate) use motion::saved_state;
-pub(crate) use motion::{batch, dynamics, family, innovations, motion_change, statement, supervisor};
+pub(crate) use motion::{batch, dynamics, family, innovations, motion_change, statement, steady_change, supervisor};
 pub(crate) use outline::{contour, map, null_space, redrawing, shape_change, shape_noise, symmetry, usual_agreement};
 pub(crate) use search::{registration, remapping, turn_hypotheses, turn_profile};

@@ -62,11 +62,11 @@ pub(crate) mod dynamics {
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.01;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate. Where frames
     /// do not tell a constant velocity from a constant generator, as where an object turns slowly, chance must not leave it out.
-    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.886;
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.814;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.09;
     /// Of each of [`SHAKEN`].
     pub(crate) const PRIOR_OF_SHAKEN: f64 = 0.002;
-    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.01;
     /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
     pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some forty
@@ -104,6 +104,24 @@ pub(crate) mod dynamics {
     pub(crate) const LEADS_FROM: f64 = OUTSIDE_INTERVAL;
     /// ...until it is as probable as this.
     pub(crate) const LEADS_UNTIL: f64 = 0.9;
+}
+
+/// A motion that changes at a steady rate from the beginning.
+pub(crate) mod steady_change {
+    /// Probability that it does. Few frames do not tell: at the rate that moves an object by one deviation of a pose between three frames a
+    /// constant generator is off by more than three of its own deviations.
+    pub(crate) const PRIOR: f64 = 0.1;
+    /// Sizes of the rates of change, as deviations, in deviations of a pose per square of a step: all are as probable as each other. Larger
+    /// ones are seen in the third frame, and smaller ones not before the sixtieth.
+    pub(crate) const SIZES: [f64; 6] = [4.0, 1.0, 0.25, 0.06, 0.015, 0.004];
+    /// A size that all of them are small against.
+    pub(crate) const ANY: f64 = 30.0;
+    /// Frames after which such changes are seen, or too small to matter.
+    pub(crate) const FRAMES: usize = 128;
+    /// Logarithm of a Bayes factor beyond which there is no doubt.
+    pub(crate) const LARGEST_LOGARITHM: f64 = 50.0;
+    /// What makes their covariance regular, in the same unit, squared: far below what so many frames tell.
+    pub(crate) const SINGULAR: f64 = 1e-12;
 }
 
 /// Series of innovations, and what they say of deviations.

@@ -1,0 +1,139 @@
+//! A motion that changes at a steady rate from the beginning: how probable that is, and how far off a constant one is then.
+use freeform_riccati::MotionModel;
+use nalgebra::{SMatrix, SVector};
+
+use super::{
+    centred::{CentredDeviations, CentredMatrix, CentredVector, LARGEST},
+    course::Course,
+    hypothesis::{CentredMeasurement, Hypothesis},
+};
+use crate::tuning::steady_change as tuning;
+
+/// Motions that change at a steady rate since hypotheses began: a constant generator, and one whose centroid has run straight. Next to nothing
+/// is taken to be known of the rates of change beforehand, so that what the frames say of them can be weighed for each size that they may
+/// have. They have no part in where the object is expected.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct SteadyChange<const N: usize> {
+    hypotheses: [Hypothesis<N>; 2],
+    /// Deviations of a pose over the square of a step: the unit of rates of change.
+    units: CentredVector,
+    frames: usize,
+}
+
+/// What a motion that may change adds to what is known of a constant one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PossibleChange<const N: usize> {
+    /// Probability that the motion changes by as much as frames can tell.
+    pub(super) probability: f64,
+    /// Second moments of how far off pose and motion are if it does, times the probability: of the mean distances...
+    pub(super) apart: SMatrix<f64, N, N>,
+    /// ...and beside those.
+    pub(super) beside: SMatrix<f64, N, N>,
+}
+
+impl<const N: usize> SteadyChange<N> {
+    /// Begins with what is believed of a constant generator after a step of so many seconds.
+    pub(super) fn begin(
+        model: MotionModel,
+        (mean, covariance): (SVector<f64, N>, SMatrix<f64, N, N>),
+        (pose_variance, seconds): (&CentredVector, f64),
+    ) -> Self {
+        let hypotheses = [true, false].map(|turns| {
+            Hypothesis::begin((Course::SteadyChange { turns }, model), (mean, covariance), (pose_variance, seconds))
+        });
+        Self { hypotheses, units: pose_variance.map(f64::sqrt) / (seconds * seconds), frames: 0 }
+    }
+
+    /// Whether it has been followed for long: smaller changes than those that are reckoned with would be seen by then.
+    fn is_over(&self) -> bool {
+        self.frames >= tuning::FRAMES
+    }
+
+    /// Its hypotheses as long as they are followed, which are moved on like others.
+    pub(super) fn hypotheses(&mut self) -> &mut [Hypothesis<N>] {
+        if self.is_over() { &mut [] } else { &mut self.hypotheses }
+    }
+
+    /// Takes a frame.
+    pub(super) fn update(&mut self, measurement: &CentredMeasurement) {
+        for hypothesis in self.hypotheses() {
+            hypothesis.update(measurement);
+        }
+        self.frames = (self.frames + 1).min(tuning::FRAMES);
+    }
+
+    /// What it adds to what is known of a motion that is otherwise constant, in that its velocity `turns` with the object or does not. The rates
+    /// of change are those of the turn alone, of the velocity alone, or of all parameters, each of some sizes, by their Bayes factors. `factors` are
+    /// what deviations of poses are to be multiplied by, about the centroid; `place` carries errors of this state to those that are asked for.
+    pub(super) fn possible(
+        &self,
+        turns: bool,
+        factors: &CentredDeviations,
+        place: &SMatrix<f64, N, N>,
+    ) -> Option<PossibleChange<N>> {
+        if self.is_over() {
+            return None;
+        }
+        let (k, unit) = (Hypothesis::<N>::K, &self.units);
+        let Hypothesis { mean, covariance, .. } = &self.hypotheses[usize::from(!turns)];
+        let own = |i: usize, j: usize| f64::from(u8::from(i == j));
+        let known = CentredMatrix::from_fn(|i, j| match i < k && j < k {
+            true => covariance[(2 * k + i, 2 * k + j)] / (unit[i] * unit[j]) + tuning::SINGULAR * own(i, j),
+            false => own(i, j),
+        });
+        let information = known.cholesky()?.inverse();
+        let found = CentredVector::from_fn(|i, _| if i < k { mean[2 * k + i] / unit[i] } else { 0.0 });
+        let widened = CentredMatrix::from_fn(|i, j| information[(i, j)] / (factors[i] * factors[j]));
+        let changes = Changes { information: widened, score: widened * found }.weighed(k)?;
+        let of_state = SMatrix::<f64, N, LARGEST>::from_fn(|i, j| match i < 2 * k && j < k {
+            true => covariance[(i, 2 * k + j)] / unit[j],
+            false => 0.0,
+        });
+        let sensitivity = place * of_state * information;
+        let carried = |moments: CentredMatrix| sensitivity * moments * sensitivity.transpose();
+        let Weighed { probability, apart, beside } = changes;
+        Some(PossibleChange { probability, apart: carried(apart), beside: carried(beside) })
+    }
+}
+
+/// What frames say of rates of change, in their units.
+struct Changes {
+    information: CentredMatrix,
+    score: CentredVector,
+}
+
+/// Rates of change weighed against none: the probability that they matter, and their second moments times that of each.
+struct Weighed {
+    probability: f64,
+    apart: CentredMatrix,
+    beside: CentredMatrix,
+}
+
+impl Changes {
+    /// Weighs changes of k parameters.
+    fn weighed(&self, k: usize) -> Option<Weighed> {
+        let some = [0..k - 2, k - 2..k, 0..k];
+        let each = tuning::PRIOR / (some.len() * tuning::SIZES.len()) as f64;
+        let mut all = 1.0 - tuning::PRIOR;
+        let (mut probability, mut apart, mut beside) = (0.0, CentredMatrix::zeros(), CentredMatrix::zeros());
+        for (members, size) in some.iter().flat_map(|members| tuning::SIZES.map(|size| (members, size))) {
+            let variance = size * size;
+            let among = |i: usize, j: usize| members.contains(&i) && members.contains(&j);
+            let of_prior = CentredMatrix::from_fn(|i, j| {
+                f64::from(u8::from(i == j)) + if among(i, j) { variance * self.information[(i, j)] } else { 0.0 }
+            });
+            let factor = of_prior.cholesky()?;
+            let score = CentredVector::from_fn(|i, _| if members.contains(&i) { self.score[i] } else { 0.0 });
+            let (sizes, left) = (factor.solve(&score) * variance, factor.inverse());
+            let logarithm = 0.5 * (score.dot(&sizes) - factor.ln_determinant());
+            let weight = each * logarithm.min(tuning::LARGEST_LOGARITHM).exp();
+            all += weight;
+            // Of a size that frames do not tell from none, a change is no other motion.
+            probability += weight * members.clone().map(|i| 1.0 - left[(i, i)]).fold(0.0, f64::max);
+            apart += sizes * sizes.transpose() * weight;
+            beside += CentredMatrix::from_fn(|i, j| if among(i, j) { weight * variance * left[(i, j)] } else { 0.0 });
+        }
+        Some(Weighed { probability: probability / all, apart: apart / all, beside: beside / all })
+    }
+}
