@@ -5,7 +5,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Vector2};
 
 use super::{
-    centred::{CentredVector, carried, parts},
+    centred::{LARGEST, carried, parts},
     course::Course,
     hypothesis::Hypothesis,
     step::{Step, turned_along},
@@ -32,28 +32,26 @@ impl<const N: usize> Hypothesis<N> {
         } else {
             let motion = &self.mean.as_slice()[k..2 * k];
             let v = parts(&model.generator(motion)).1;
-            // What a constant velocity has there is no rate.
-            let half_way =
-                CentredVector::from_fn(
-                    |j, _| {
-                        if j < k - 2 { motion[j] + 0.5 * dt * self.mean[2 * k + j] } else { 0.0 }
-                    },
-                );
-            let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
+            let changes = matches!(self.course, Course::SteadyChange { .. });
+            let change_of = |j: usize| if changes { self.mean[2 * k + j] } else { 0.0 };
+            // Half way through the step.
+            let mut rates = [0.0; LARGEST];
+            for j in 0..k - 2 {
+                rates[j] = motion[j] + 0.5 * dt * change_of(j);
+            }
+            let (turn, along) = model.linear_flow_with_integral(&rates[..k], dt);
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
-            let (shift, later) = if self.course == Course::ConstantVelocity {
-                (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning)
-            } else {
-                (along * v, turn * v)
+            let (shift, later) = match self.course {
+                Course::ConstantVelocity => (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning),
+                // Others have no such entries, but for a steady change.
+                _ => (along * v + 0.5 * dt * dt * turning, turn * v + along * turning),
             };
             let transition = self.transition(step, (&turn, &along, &v, &later));
             self.covariance = carried(&transition, &self.covariance, self.size());
             self.set_velocity(&turn, &shift, &later);
             for j in 0..k - 2 {
-                self.mean[j] += dt * self.mean[k + j];
-            }
-            if let Course::SteadyChange { .. } = self.course {
-                self.add_steady_change(dt);
+                self.mean[j] += dt * rates[j];
+                self.mean[k + j] += if changes { dt * self.mean[2 * k + j] } else { 0.0 };
             }
         }
         for j in 0..k - 2 {
@@ -64,16 +62,6 @@ impl<const N: usize> Hypothesis<N> {
         // Turns that differ by a round are the same.
         let turn = &mut self.mean[k - 3];
         *turn -= TAU * (*turn / TAU).round();
-    }
-
-    /// Adds what a steady change does in a step, to what a constant generator does.
-    fn add_steady_change(&mut self, dt: f64) {
-        let k = Self::K;
-        for j in 0..k {
-            let change = self.mean[2 * k + j];
-            self.mean[j] += 0.5 * dt * dt * change;
-            self.mean[k + j] += dt * change;
-        }
     }
 
     /// Adds the way that the centroid has gone in a step, and sets the velocity after it.

@@ -133,7 +133,7 @@ impl<const N: usize> Hypothesis<N> {
             Course::SteadyChange { turns: true } => {
                 let half_way = motion + 0.5 * dt * acceleration;
                 let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
-                (turn, along, along * v + 0.5 * dt * dt * w, turn * v + dt * w)
+                (turn, along, along * v + 0.5 * dt * dt * w, turn * v + along * w)
             }
             Course::ConstantVelocity => {
                 let (turn, along) = of_motion();
@@ -228,6 +228,11 @@ impl<const N: usize> Hypothesis<N> {
             for j in 0..k {
                 f[(j, 2 * k + j)] = 0.5 * dt * dt;
                 f[(k + j, 2 * k + j)] = dt;
+            }
+        }
+        if self.course == (Course::SteadyChange { turns: true }) {
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                f[(k + rates + i, 2 * k + rates + j)] = along[(i, j)];
             }
         }
         f

@@ -137,3 +137,68 @@ impl Changes {
         Some(Weighed { probability: probability / all, apart: apart / all, beside: beside / all })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix2, Matrix3, Point2, Vector2};
+
+    use super::*;
+    use crate::dynamics::{CentredPose, step::Step};
+
+    /// Changes of three parameters that are each found with a deviation of 0.5, the first one so many deviations from none.
+    fn found_at(deviations: f64) -> Weighed {
+        let information = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| if i < 3 { 4.0 } else { 1.0 }));
+        let score = CentredVector::from_fn(|i, _| if i == 0 { 2.0 * deviations } else { 0.0 });
+        Changes { information, score }.weighed(3).expect("regular")
+    }
+
+    #[test]
+    fn a_change_that_is_not_found_is_less_probable_than_before_and_one_of_six_deviations_is_beyond_doubt() {
+        let [none, some, clear] = [0.0, 2.0, 6.0].map(found_at);
+        assert!(none.probability < 0.3 * tuning::PRIOR && none.apart.amax() == 0.0, "{}", none.probability);
+        assert!(none.probability < some.probability && some.probability < 0.5, "{}", some.probability);
+        assert!(clear.probability > 0.9, "{}", clear.probability);
+        // Nearly all of the three units that are found are there, known to about half a unit.
+        let size = clear.apart[(0, 0)].sqrt();
+        assert!((2.7..3.0).contains(&size), "{size}");
+        assert!((0.4..0.5).contains(&clear.beside[(0, 0)].sqrt()), "{}", clear.beside);
+    }
+
+    #[test]
+    fn a_motion_that_changes_steadily_is_moved_on_as_by_an_integrator() {
+        let (steps, seconds) = (200, 1.0);
+        let (omega, change) = (1.5, -0.8);
+        let (velocity, push) = (Vector2::new(0.6, -0.2), Vector2::new(0.3, 0.9));
+        let pose = CentredPose { pose: Matrix3::identity(), centroid: Point2::origin() };
+        let variance = CentredVector::repeat(1.0);
+        for turns in [true, false] {
+            let begun = [0.0, 0.0, 0.0, omega, velocity.x, velocity.y, change, push.x, push.y];
+            let mut hypothesis = Hypothesis::<9> {
+                course: Course::SteadyChange { turns },
+                mean: begun.into(),
+                covariance: SMatrix::identity(),
+            };
+            let dt = seconds / f64::from(steps);
+            let step = Step::new((MotionModel::Rigid, dt), [&pose, &pose], &variance).expect("poses");
+            (0..steps).for_each(|_| assert!(hypothesis.predict(&step)));
+            // The clockwise turn of section 1: a rotation by the angle that has been turned by since.
+            let angle = |t: f64| omega * t + 0.5 * change * t * t;
+            let turn = |by: f64| Matrix2::new(by.cos(), by.sin(), -by.sin(), by.cos());
+            let at = |t: f64, from: f64| if turns { turn(angle(t) - angle(from)) } else { Matrix2::identity() };
+            let pieces = 2000;
+            let width = seconds / f64::from(pieces);
+            let times = || (0..pieces).map(|i| (f64::from(i) + 0.5) * width);
+            let velocity_at = |t: f64| {
+                let pushed = times().filter(|s| *s < t).map(|s| at(t, s) * push * width);
+                at(t, 0.0) * velocity + pushed.fold(Vector2::zeros(), |sum, v| sum + v)
+            };
+            let later = velocity_at(seconds);
+            let expected_turn = angle(seconds);
+            assert!((hypothesis.mean[0] - expected_turn).abs() < 1e-12, "{turns}: {}", hypothesis.mean);
+            assert!((hypothesis.mean.fixed_rows::<2>(4) - later).norm() < 2e-3, "{turns}: {} {later}", hypothesis.mean);
+            let way = (0..100).map(|i| velocity_at((f64::from(i) + 0.5) / 100.0) / 100.0);
+            let way = way.fold(Vector2::zeros(), |sum, v| sum + v);
+            assert!((hypothesis.mean.fixed_rows::<2>(1) - way).norm() < 2e-3, "{turns}: {} {way}", hypothesis.mean);
+        }
+    }
+}

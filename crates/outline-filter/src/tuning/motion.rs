@@ -62,11 +62,11 @@ pub(crate) mod dynamics {
     pub(crate) const BEGINS_TO_SHAKE: f64 = 0.01;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate. Where frames
     /// do not tell a constant velocity from a constant generator, as where an object turns slowly, chance must not leave it out.
-    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.814;
+    pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.886;
     pub(crate) const PRIOR_OF_VELOCITY: f64 = 0.09;
     /// Of each of [`SHAKEN`].
     pub(crate) const PRIOR_OF_SHAKEN: f64 = 0.002;
-    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.01;
+    pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
     /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
     pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
     /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some forty

@@ -6,6 +6,7 @@ mod filter_input;
 mod filter_motion;
 mod filter_observability;
 mod filter_support;
+mod first_frames;
 mod gaps;
 mod known_outline;
 mod mask_rounding;
