@@ -16,6 +16,7 @@ pub(crate) fn write_stress_json(sink: &mut impl Write, report: &StressReport) ->
     let document = json!({
         "schema": "freeform.stress/1",
         "runs": report.runs,
+        "frames": report.frames,
         "seed": report.seed,
         "notes": NOTES,
         "kinds": kinds.collect::<Vec<_>>(),

@@ -65,7 +65,8 @@ pub(crate) fn write_stress_markdown(sink: &mut impl Write, report: &StressReport
         writeln!(sink)?;
     }
     LEGEND.iter().try_for_each(|line| writeln!(sink, "- {line}"))?;
-    writeln!(sink, "- {}\n\n{} runs of each kind, seed {}.", notes(), report.runs, report.seed)
+    let first = report.frames.map(|frames| format!(", the first {frames} frames of each")).unwrap_or_default();
+    writeln!(sink, "- {}\n\n{} runs of each kind{first}, seed {}.", notes(), report.runs, report.seed)
 }
 
 /// The kinds with what they are.

@@ -248,6 +248,17 @@ fn the_stress_suite_gives_the_same_json_whatever_the_number_of_threads() {
 }
 
 #[test]
+fn the_stress_suite_judges_what_is_stated_after_so_many_frames() {
+    let document = json(&succeed("evaluate --suite stress --kinds omega --runs 1 --frames 3 --format json", ""));
+    assert_eq!(document["frames"], 3);
+    // Nobody can tell a spin that grows slowly from a constant one by three frames.
+    let omega = &document["overall"]["quantities"]["omega"];
+    assert!(omega["median_deviations"].as_f64().expect("a number") < 3.0, "{omega}");
+    let markdown = succeed(&format!("{STRESS} --frames 2 --format markdown"), "");
+    assert!(markdown.ends_with("2 runs of each kind, the first 2 frames of each, seed 0.\n"), "{markdown}");
+}
+
+#[test]
 fn the_kinds_of_the_stress_suite_are_listed_with_what_they_are() {
     let all = succeed("evaluate --suite stress --list", "");
     assert!(all.lines().count() > 80, "{all}");
@@ -265,7 +276,9 @@ fn the_stress_suite_refuses_what_has_no_meaning_there() {
         ("--suite stress --method icp", "--method"),
         ("--suite stress --format csv", "json"),
         ("--suite stress --noise 0.1", "--noise"),
+        ("--suite stress --frames 3,8", "one number"),
         ("--suite arc --kinds plain", "--kinds"),
+        ("--suite arc --frames 3", "--frames"),
         ("--list", "--list"),
     ] {
         let output = run(&format!("evaluate {arguments}"), "");

@@ -30,6 +30,8 @@ pub struct StressStudy {
 pub struct StressReport {
     /// Sequences of each kind.
     pub runs: usize,
+    /// Frames after which what is stated was judged; `None` for whole sequences.
+    pub frames: Option<usize>,
     /// What everything random followed from.
     pub seed: u64,
     /// One for each kind, in the order of the study.
@@ -78,6 +80,7 @@ impl StressStudy {
         };
         Ok(StressReport {
             runs: self.runs,
+            frames: self.frames,
             seed: self.seed,
             kinds: by_kind
                 .iter()
