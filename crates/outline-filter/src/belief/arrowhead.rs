@@ -58,6 +58,39 @@ impl Arrowhead {
         );
     }
 
+    /// Lets pose and motion, whose covariance is given, have changed at random, so that `after` is known of them. Offsets keep what they are known
+    /// to be, and their regression on pose and motion; what they would come to know of each other is dropped.
+    pub(crate) fn add_covariance(&mut self, covariance: &StateMatrix, after: &StateMatrix) {
+        match self.k {
+            3 => self.add_covariance_sized::<6>(covariance, after),
+            4 => self.add_covariance_sized::<8>(covariance, after),
+            6 => self.add_covariance_sized::<12>(covariance, after),
+            _ => self.add_covariance_sized::<16>(covariance, after),
+        }
+    }
+
+    fn add_covariance_sized<const S: usize>(&mut self, covariance: &StateMatrix, after: &StateMatrix) {
+        // Before (x) given after (x'): x = gain x' + rest.
+        let of_size = |m: &StateMatrix| SMatrix::<f64, S, S>::from_fn(|i, j| m[(i, j)]);
+        let covariance = of_size(covariance);
+        let gain = covariance * of_size(after);
+        let rest = covariance - gain * covariance;
+        let [gain, rest] = [gain, rest].map(rows::<S>);
+        let (own, couplings) = self.cells.all_mut::<S>();
+        vectorised(
+            #[inline(always)]
+            || {
+                for (own, coupling) in own.iter_mut().zip(couplings.iter_mut()) {
+                    widen_cell(own, coupling, &gain, &rest);
+                }
+            },
+        );
+        let told = told_by_offsets::<S>(&self.cells);
+        for (i, (row, told)) in self.dense.iter_mut().zip(&told).enumerate() {
+            (0..S).for_each(|j| row[j] = after[(i, j)] + told[j]);
+        }
+    }
+
     /// Information of pose and motion with the offsets eliminated, `L - sum c c' / o`; unit diagonal beyond the state.
     pub(crate) fn marginal(&self) -> StateMatrix {
         match self.k {
@@ -145,6 +178,34 @@ fn transform<const K: usize, const S: usize>(v: &mut [f64; S], inverse: &Paramet
         }
     }
     *v = moved;
+}
+
+fn rows<const S: usize>(m: SMatrix<f64, S, S>) -> [[f64; S]; S] {
+    std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]))
+}
+
+/// What is known of an offset after its regression on pose and motion has been carried over to what they are now: they were `gain` times that, but
+/// for `rest`, the covariance of what is not known of it.
+#[inline(always)]
+fn widen_cell<const S: usize>(own: &mut f64, coupling: &mut [f64; S], gain: &[[f64; S]; S], rest: &[[f64; S]; S]) {
+    let known = *own;
+    if !(known > 0.0) {
+        return;
+    }
+    let slope = coupling.map(|entry| entry / known);
+    let (mut moved, mut unknown) = ([0.0; S], [0.0; S]);
+    for i in 0..S {
+        for j in 0..S {
+            moved[j] += gain[i][j] * slope[i];
+            unknown[j] += rest[i][j] * slope[i];
+        }
+    }
+    let mut variance = 0.0;
+    for j in 0..S {
+        variance += unknown[j] * slope[j];
+    }
+    *own = 1.0 / (1.0 / known + f64::max(variance, 0.0));
+    *coupling = moved.map(|entry| entry * *own);
 }
 
 /// Sum of `c c' / o` over the cells; nothing is told of those that nothing is known of.

@@ -3,7 +3,7 @@ use freeform_estimate::ProcessNoise;
 
 use super::{ByKind, centred_change, kind_index};
 use crate::{
-    belief::{Belief, EarlierPoses, StateMatrix, StateVector, scaled_inverse},
+    belief::{Belief, EarlierPoses, StateMatrix, scaled_inverse},
     map::NullDirection,
 };
 
@@ -65,28 +65,13 @@ impl Belief {
     pub(crate) fn add_covariance(&mut self, added: &StateMatrix) {
         let k = self.information.k;
         let Some(covariance) = scaled_inverse(&self.marginal, k) else { return };
-        // Before (x) given after (x'): x = K x' + rest.
         let Some(after) = scaled_inverse(&(covariance + added), k) else { return };
         for (j, span) in self.memory.effective.iter_mut().enumerate().take(k) {
             let (known, new) = (covariance[(k + j, k + j)], added[(k + j, k + j)]);
             // What a filter forgets at this rate in each step it remembers for steps over rate.
             *span *= known / (known + new);
         }
-        let gain = covariance * after;
-        let rest = covariance - gain * covariance;
-        let mut dense = after;
-        for (known, entries) in self.information.cells.iter_mut().filter(|(known, _)| **known > 0.0) {
-            let mut slope = StateVector::zeros();
-            slope.iter_mut().zip(entries.iter()).for_each(|(slope, coupling)| *slope = coupling / *known);
-            let own = 1.0 / (1.0 / *known + (slope.transpose() * rest * slope).x.max(0.0));
-            let coupling = gain.transpose() * slope * own;
-            dense += coupling * coupling.transpose() / own;
-            *known = own;
-            entries.iter_mut().zip(coupling.iter()).for_each(|(entry, coupling)| *entry = *coupling);
-        }
-        for (i, row) in self.information.dense.iter_mut().enumerate().take(2 * k) {
-            (0..2 * k).for_each(|j| row[j] = dense[(i, j)]);
-        }
+        self.information.add_covariance(&covariance, &after);
         self.marginal = after;
     }
 }

@@ -27,8 +27,7 @@ pub(super) struct RepeatedFrames {
 impl RepeatedFrames {
     /// Takes the outline of a frame at a time in seconds; whether it repeats the one before it, and not so often that the object must be at rest.
     pub(super) fn take(&mut self, time: f64, outline: &Outline) -> bool {
-        let points = || outline.pieces().flat_map(|piece| piece.points);
-        if points().eq(&self.points) {
+        if self.repeats(outline) {
             self.times = (self.times + 1).min(MOST_REPEATED + 1);
         } else {
             if !self.points.is_empty() {
@@ -37,10 +36,21 @@ impl RepeatedFrames {
             }
             self.since = time;
             self.points.clear();
-            self.points.extend(points());
+            outline.pieces().for_each(|piece| self.points.extend_from_slice(piece.points));
             self.times = 0;
         }
         (1..=MOST_REPEATED).contains(&self.times)
+    }
+
+    /// Whether an outline has the points of the last frame, one after the other.
+    fn repeats(&self, outline: &Outline) -> bool {
+        let mut rest = self.points.as_slice();
+        let is_same = outline.pieces().all(|piece| {
+            let Some((points, others)) = rest.split_at_checked(piece.points.len()) else { return false };
+            rest = others;
+            points == piece.points
+        });
+        is_same && rest.is_empty()
     }
 
     /// Forgets the times between frames, of which a motion was not known.
