@@ -8,7 +8,8 @@ use super::{Cell, OutlineMap};
 pub(super) struct Bisectors {
     across: [Vector2<f64>; 2],
     at: [f64; 2],
-    neighbours: [u32; 2],
+    /// The cell itself, and its neighbours.
+    cells: [u32; 3],
     is_end: bool,
 }
 
@@ -20,23 +21,20 @@ impl Bisectors {
         Self {
             across: others.map(|other| 2.0 * (other - centre)),
             at: others.map(|other| other.coords.norm_squared() - centre.coords.norm_squared()),
-            neighbours: neighbours.map(|neighbour| neighbour as u32),
+            cells: [number, neighbours[0], neighbours[1]].map(|cell| cell as u32),
             is_end: neighbours.contains(&number),
         }
     }
 
-    /// The neighbour that is nearer to a place, if one is; of both the nearest.
+    /// The nearest to a place of the cell and its neighbours. Which it is cannot be foreseen: it is looked up, without a branch.
     #[inline(always)]
-    fn nearer(&self, q: &Point2<f64>) -> Option<usize> {
+    fn nearest(&self, q: &Point2<f64>) -> u32 {
         let beyond = |side: usize| {
             let across = &self.across[side];
             across.x * q.x + across.y * q.y - self.at[side]
         };
         let [a, b] = [beyond(0), beyond(1)];
-        if !(a > 0.0 || b > 0.0) {
-            return None;
-        }
-        Some(self.neighbours[usize::from(b > a)] as usize)
+        self.cells[usize::from((a > 0.0) | (b > 0.0)) * (1 + usize::from(b > a))]
     }
 }
 
@@ -61,10 +59,11 @@ impl OutlineMap {
         let mut number = near;
         // No more steps than cells: a place that is equally far from all of them might be handed round by rounding.
         for _ in 0..self.bisectors.len() {
-            match self.bisectors[number].nearer(q) {
-                Some(nearer) => number = nearer,
-                None => break,
+            let nearest = self.bisectors[number].nearest(q) as usize;
+            if nearest == number {
+                break;
             }
+            number = nearest;
         }
         number
     }
@@ -98,16 +97,19 @@ impl OutlineMap {
             numbers.fill(0);
             return;
         }
-        // A first look at all of them waits for none; which way to go from there cannot be foreseen.
+        // A first look at all of them waits for none.
         self.field.pixels(places.clone(), numbers);
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (nearest, bisectors) = (self.field.nearest(), self.bisectors.as_slice());
+        for (number, q) in numbers.iter_mut().zip(places.clone()) {
+            *number = bisectors[nearest[*number as usize] as usize].nearest(&q);
+        }
+        // Next to none have to go further.
         for (number, q) in numbers.iter_mut().zip(places) {
-            let near = nearest[*number as usize];
-            *number = match bisectors[near as usize].nearer(&q) {
-                Some(nearer) => self.nearest_from(nearer, &q) as u32,
-                None => near,
-            };
+            let further = bisectors[*number as usize].nearest(&q);
+            if further != *number {
+                *number = self.nearest_from(further as usize, &q) as u32;
+            }
         }
     }
 }
