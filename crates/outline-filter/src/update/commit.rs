@@ -1,5 +1,8 @@
 //! A proposal committed.
-use super::{gate::without_leverage, solve::Proposal};
+use super::{
+    gate::{NONE, without_leverage},
+    solve::Proposal,
+};
 use crate::{
     belief::Belief,
     measurement::{Frame, NoiseModel, PointOnCell},
@@ -25,32 +28,50 @@ pub(crate) fn commit(
     shape.compare_innovations(belief, &frame.shifts, &cells_before, noise, &mut frame.values);
     // Room for the next frame.
     frame.cells_with_frame = cells_before;
-    let units = 1.0 / (noise.sigma * noise.sigma);
     let own = belief.information.cells.own();
-    let points = frame.columns.points();
-    match frame.deviations.ratios() {
-        None => vectorised(
-            #[inline(always)]
-            || {
-                for point in points.clone() {
-                    add_residual(&point, own, (units, 1.0), noise);
-                }
-            },
-        ),
-        Some(ratios) => {
-            for (point, ratio) in points.zip(ratios) {
-                add_residual(&point, own, (units, (ratio * ratio).recip()), noise);
-            }
-        }
-    }
+    add_residuals(frame, own, noise);
 }
 
-/// Adds what a point says of the noise of its cell, in units of the variance of good points; it counts for a share of one.
-#[inline(always)]
-fn add_residual(m: &PointOnCell, own: &[f64], (units, share): (f64, f64), noise: &mut NoiseModel) {
-    if m.weight > 0.0
-        && let Some(factor) = without_leverage(m, own[m.cell])
-    {
-        noise.add_residual(m.cell, m.residual * m.residual * units * factor * share, share);
+/// Adds what the points say of the noise of their cells, of which `own` is known, in units of the variance of good points.
+fn add_residuals(frame: &mut Frame, own: &[f64], noise: &mut NoiseModel) {
+    let units = 1.0 / (noise.sigma * noise.sigma);
+    let Frame { columns, values, deviations, .. } = frame;
+    let points = columns.points();
+    if let Some(ratios) = deviations.ratios() {
+        for (point, ratio) in points.zip(ratios) {
+            let share = (ratio * ratio).recip();
+            let square = square_told(&point, own.get(point.cell).copied().unwrap_or(NONE), units);
+            if square != NONE {
+                noise.add_residual(point.cell, square * share, share);
+            }
+        }
+        return;
     }
+    values.resize(columns.len(), 0.0);
+    let squares = values.as_mut_slice();
+    vectorised(
+        #[inline(always)]
+        || {
+            // What lies anywhere is looked up first: the quotients after that are taken in vectors.
+            for (square, number) in squares.iter_mut().zip(&columns.numbers) {
+                *square = own.get(*number as usize).copied().unwrap_or(NONE);
+            }
+            for (square, point) in squares.iter_mut().zip(points.clone()) {
+                *square = square_told(&point, *square, units);
+            }
+            for (square, number) in squares.iter().zip(&columns.numbers) {
+                if *square != NONE {
+                    noise.add_residual(*number as usize, *square, 1.0);
+                }
+            }
+        },
+    );
+}
+
+/// The squared residual of a point, in some units and without its own share of the information `own` on its cell; [`NONE`] where it tells nothing.
+#[inline(always)]
+fn square_told(point: &PointOnCell, own: f64, units: f64) -> f64 {
+    let (factor, is_told) = without_leverage(point.weight, point.by_offset, own);
+    let square = point.residual * point.residual * units * factor;
+    if is_told { square } else { NONE }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use super::solve::Proposal;
 use crate::{
     map::median_about,
-    measurement::{Columns, Frame, PointOnCell, View, spread, weighted_median},
+    measurement::{Columns, Frame, View, spread, weighted_median},
     tuning::{
         measurement::MEDIAN_TO_DEVIATION, noise::NEVER_TOO_MUCH, registration::FEWEST_ON_OUTLINE, update as tuning,
     },
@@ -209,7 +209,8 @@ fn told_by_deviations(
         };
         all.known += share;
         all.agreeing += if m.residual.abs() < limit(*ratio) { share } else { 0.0 };
-        if let Some(factor) = without_leverage(&m, *own).filter(|_| m.weight > 0.0) {
+        let (factor, is_told) = without_leverage(m.weight, m.by_offset, *own);
+        if is_told {
             weighted.push((m.residual.abs() * factor.sqrt() / ratio, share));
         }
     }
@@ -230,12 +231,11 @@ fn told_alike(columns: &Columns, own: &[f64], limit: f64, values: &mut [f64]) ->
     let of_points = values.iter_mut().zip(residuals).zip(weights.iter().zip(by_offsets));
     for ((value, residual), (weight, by_offset)) in of_points {
         let (own, size) = (*value, residual.abs());
-        let of_point = weight * by_offset * by_offset;
-        let is_told = (of_point < tuning::LARGEST_LEVERAGE * own) & (*weight > 0.0);
+        let (factor, is_told) = without_leverage(*weight, *by_offset, own);
         known += u64::from(own != NONE);
         agreeing += u64::from((own != NONE) & (size < limit));
         told += u64::from(is_told);
-        let value_told = size * (own / (own - of_point)).sqrt();
+        let value_told = size * factor.sqrt();
         *value = if is_told { value_told } else { NONE };
     }
     let (told, new_points) = (told as usize, numbers.len() - known as usize);
@@ -250,15 +250,15 @@ fn told_alike(columns: &Columns, own: &[f64], limit: f64, values: &mut [f64]) ->
     Told { known: known as f64, agreeing: agreeing as f64, new: new_points as f64, new_points, told }
 }
 
-/// In place of the information of no cell, and of the size of a point that tells nothing: no number that either may be.
-const NONE: f64 = -1.0;
+/// In place of the information of no cell, and of the size or square of a point that tells nothing: no number that any of them may be.
+pub(super) const NONE: f64 = -1.0;
 
-/// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is;
-/// `None` where that share is too large to tell.
+/// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is, and
+/// whether that share is small enough to tell. `own` is all of that information; there is none where it is not positive.
 #[inline(always)]
-pub(super) fn without_leverage(measurement: &PointOnCell, own: f64) -> Option<f64> {
-    let of_point = measurement.weight * measurement.by_offset * measurement.by_offset;
-    (of_point < tuning::LARGEST_LEVERAGE * own).then(|| own / (own - of_point))
+pub(super) fn without_leverage(weight: f64, by_offset: f64, own: f64) -> (f64, bool) {
+    let of_point = weight * by_offset * by_offset;
+    (own / (own - of_point), (of_point < tuning::LARGEST_LEVERAGE * own) & (weight > 0.0))
 }
 
 impl fmt::Display for Rejection {
