@@ -31,12 +31,15 @@ impl Extent {
         }
     }
 
-    /// Most noise, normalised, that a frame may have which is searched from all turns. While an object is lost, frames that show others make more
-    /// noise tolerated: few of those are searched for it.
-    fn most_noise(self, track: &Track) -> f64 {
+    /// Deviation of few points, normalised, up to which the frame is searched from all turns. While an object is lost, frames that show others make
+    /// more noise tolerated: what would need all of that, and more, is looked into in few of them.
+    fn most_spread(self, track: &Track) -> f64 {
+        let tolerated = track.most_noise_tolerated();
         match self {
-            Self::Part(part) if !part.is_multiple_of(tuning::NOISY_SEARCHED) => track.usual_noise_tolerated(),
-            _ => track.most_noise_tolerated(),
+            Self::Part(part) if !part.is_multiple_of(tuning::NOISY_SEARCHED) => {
+                (tuning::HOPELESS * track.usual_noise_tolerated()).max(tolerated)
+            }
+            _ => tuning::HOPELESS * tolerated,
         }
     }
 }
@@ -76,7 +79,7 @@ impl Registration {
             Extent::Part(_) if turns.len() > 1 && Outlook::can_be_told(track, points.len()) => {
                 told.iter().for_each(|start| begin(&mut begun, start));
                 numbered().filter(|(i, _)| extent.has_turn(*i)).for_each(|(_, start)| begin(&mut begun, start));
-                let limit = tuning::HOPELESS * extent.most_noise(track);
+                let limit = extent.most_spread(track);
                 let may_end = |spread: f64| spread <= tuning::MARGIN_BEFORE_LAST_STEPS * limit;
                 let by_spread = |a: &&RegisteredPose, b: &&RegisteredPose| a.spread.total_cmp(&b.spread);
                 let ends: Vec<_> = begun.iter().filter(|found| may_end(found.spread)).map(further).collect();

@@ -32,8 +32,8 @@ pub(crate) mod registration {
     pub(crate) const PARTS: usize = 8;
     /// ...and from one part to the next it is so many turns: after three frames no turn is further than 22.5 degrees from a start.
     pub(crate) const TO_NEXT_PART: usize = 3;
-    /// Of the frames of a lost object that show something within the noise that is tolerated, but not within that of the frames taken before, one in so
-    /// many is searched from all turns; it has no factor in common with [`PARTS`], so that each part has its turn.
+    /// Of the frames of a lost object that show something which is hopeless but for the noise that such frames have made tolerated, one in so many is
+    /// searched from all turns; it has no factor in common with [`PARTS`], so that each part has its turn.
     pub(crate) const NOISY_SEARCHED: usize = 3;
     /// Points that the search is made with.
     pub(crate) const FEW_POINTS: usize = 80;
