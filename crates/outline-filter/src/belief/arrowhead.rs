@@ -189,7 +189,7 @@ fn rows<const S: usize>(m: SMatrix<f64, S, S>) -> [[f64; S]; S] {
 #[inline(always)]
 fn widen_cell<const S: usize>(own: &mut f64, coupling: &mut [f64; S], gain: &[[f64; S]; S], rest: &[[f64; S]; S]) {
     let known = *own;
-    if !(known > 0.0) {
+    if known.is_nan() || known <= 0.0 {
         return;
     }
     let slope = coupling.map(|entry| entry / known);
