@@ -73,7 +73,9 @@ impl MotionFilter {
             let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
             all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
-        Some(Statement { random, all, family: unmodelled.family })
+        // What is seen of it may be the edges, which are reckoned with as far as they may lie off.
+        let family = unmodelled.family.filter(|_| displacement > edge_uncertainty);
+        Some(Statement { random, all, family })
     }
 
     /// What the outlines do that the motion model does not have, if that is beyond doubt: the model to try is another.

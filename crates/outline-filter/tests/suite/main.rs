@@ -18,3 +18,4 @@ mod recording;
 #[cfg(feature = "serde")]
 mod saved_state;
 mod washers;
+mod wrong_families;

@@ -2,38 +2,75 @@ use std::collections::HashMap;
 
 use nalgebra::Point2;
 
+/// Segments of a small loop, whose points are put in a row again; wider ones are two parts of the line that cross.
+const LOOP: usize = 8;
+
 /// Points to either side of a crossing that go back to where they were.
 const AROUND: usize = 4;
 
-/// Rounds after which all points go back.
-const ROUNDS: usize = 4;
+/// Rounds in which small loops are straightened, and rounds after which all points go back.
+const ROUNDS: [usize; 2] = [3, 7];
 
 /// Twice the area of a triangle, in square pixels, below which its corners lie on one line.
 const ON_ONE_LINE: f64 = 1e-9;
 
-/// Puts points of a closed line that have been moved back to where they were, near places where the line crosses itself, until it does
-/// so nowhere; it did not before it was moved.
-pub(super) fn undo_crossings(before: &[Point2<f64>], moved: &mut [Point2<f64>]) {
+/// What has become of a line that was moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Moved {
+    /// All of its points are where they were moved to.
+    Everywhere,
+    /// Some are elsewhere.
+    NotEverywhere,
+}
+
+/// Undoes the crossings of a closed line that has been moved, until it crosses itself nowhere; it did not before it was moved. Where neighbours
+/// have passed each other they are put in a row between those around them, and elsewhere points go back to where they were.
+pub(super) fn undo_crossings(before: &[Point2<f64>], moved: &mut [Point2<f64>]) -> Moved {
     let count = moved.len();
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS[1] {
         let crossing = crossing_segments(moved);
         if crossing.is_empty() {
-            return;
+            return if round == 0 { Moved::Everywhere } else { Moved::NotEverywhere };
         }
-        for segment in crossing {
-            for k in 0..=2 * AROUND + 1 {
-                let at = (segment + count + k - AROUND.min(count)) % count;
-                moved[at] = before[at];
+        for pair in crossing {
+            match loop_between(pair, count) {
+                Some((from, length)) if round < ROUNDS[0] => straighten(moved, from, length),
+                _ => pair.into_iter().for_each(|segment| put_back(before, moved, segment)),
             }
         }
     }
     if !crossing_segments(moved).is_empty() {
         moved.copy_from_slice(before);
     }
+    Moved::NotEverywhere
 }
 
-/// The segments, by their first points, that others cross.
-fn crossing_segments(points: &[Point2<f64>]) -> Vec<usize> {
+/// The first segment of the small loop that two make which cross, and how many it has after that.
+fn loop_between([i, j]: [usize; 2], count: usize) -> Option<(usize, usize)> {
+    let [on, back] = [(j + count - i) % count, (i + count - j) % count];
+    let (from, length) = if on < back { (i, on) } else { (j, back) };
+    (length <= LOOP && 2 * length < count).then_some((from, length))
+}
+
+/// Puts the points of a loop in a row, evenly spaced.
+fn straighten(moved: &mut [Point2<f64>], from: usize, length: usize) {
+    let count = moved.len();
+    let (first, last) = (moved[from], moved[(from + length + 1) % count]);
+    for k in 1..=length {
+        moved[(from + k) % count] = first + (last - first) * (k as f64 / (length + 1) as f64);
+    }
+}
+
+fn put_back(before: &[Point2<f64>], moved: &mut [Point2<f64>], segment: usize) {
+    let count = moved.len();
+    for k in 0..=2 * AROUND + 1 {
+        let at = (segment + count + k - AROUND.min(count)) % count;
+        moved[at] = before[at];
+    }
+}
+
+/// The pairs of segments, by their first points, that cross.
+fn crossing_segments(points: &[Point2<f64>]) -> Vec<[usize; 2]> {
     let count = points.len();
     let ends = |i: usize| (points[i], points[(i + 1) % count]);
     let mut cells: HashMap<(i32, i32), Vec<usize>> = HashMap::new();
@@ -46,7 +83,7 @@ fn crossing_segments(points: &[Point2<f64>]) -> Vec<usize> {
             for &j in others.iter() {
                 let is_next = j == i || (j + 1) % count == i || (i + 1) % count == j;
                 if !is_next && do_cross((a, b), ends(j)) {
-                    crossing.extend([i, j]);
+                    crossing.push([j, i]);
                 }
             }
             others.push(i);
@@ -75,21 +112,33 @@ mod tests {
         let along = |k: usize| Point2::new(10.0 + 0.37 * k as f64, 20.0 + 0.37 * k as f64);
         let mut points: Vec<_> = (0..40).map(along).collect();
         points.extend([Point2::new(24.8, 20.0), Point2::new(10.0, 20.0 - 1e-3)]);
-        assert_eq!(crossing_segments(&points), Vec::<usize>::new());
+        assert!(crossing_segments(&points).is_empty());
+    }
+
+    fn circle(radius: f64, k: usize) -> Point2<f64> {
+        let angle = std::f64::consts::TAU * k as f64 / 60.0;
+        Point2::new(20.0 + radius * angle.cos(), 20.0 + radius * angle.sin())
     }
 
     #[test]
-    fn a_line_that_crosses_itself_goes_back_there_and_stays_moved_elsewhere() {
-        let circle = |radius: f64, k: usize| {
-            let angle = std::f64::consts::TAU * k as f64 / 60.0;
-            Point2::new(20.0 + radius * angle.cos(), 20.0 + radius * angle.sin())
-        };
+    fn neighbours_that_have_passed_each_other_are_put_in_a_row_and_others_stay() {
+        let before: Vec<_> = (0..60).map(|k| circle(8.0, k)).collect();
+        let mut moved: Vec<_> = (0..60).map(|k| circle(7.0, k)).collect();
+        moved.swap(10, 12);
+        assert_eq!(undo_crossings(&before, &mut moved), Moved::NotEverywhere);
+        assert!(crossing_segments(&moved).is_empty());
+        assert!((moved[11] - circle(7.0, 11)).norm() < 0.2, "{}", moved[11]);
+        assert_eq!(moved[40], circle(7.0, 40));
+    }
+
+    #[test]
+    fn parts_of_a_line_that_cross_go_back_there_and_stay_moved_elsewhere() {
         let before: Vec<_> = (0..60).map(|k| circle(8.0, k)).collect();
         let mut moved: Vec<_> = (0..60).map(|k| circle(8.3, k)).collect();
-        moved.swap(10, 12);
-        undo_crossings(&before, &mut moved);
+        // Beyond the other side.
+        moved[10] = circle(-9.0, 10);
+        assert_eq!(undo_crossings(&before, &mut moved), Moved::NotEverywhere);
         assert!(crossing_segments(&moved).is_empty());
-        assert_eq!(moved[11], before[11]);
-        assert_eq!(moved[40], circle(8.3, 40));
+        assert_eq!((moved[10], moved[25]), (before[10], circle(8.3, 25)));
     }
 }

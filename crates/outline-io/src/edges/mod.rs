@@ -6,6 +6,7 @@
 mod blur_width;
 mod crossings;
 mod edge_profile;
+mod fitting;
 mod step_fit;
 mod systematic;
 
@@ -16,7 +17,7 @@ use nalgebra::{Point2, Vector2};
 use crate::contrast::{Contrast, signal};
 pub use edge_profile::{EdgeProfile, SoughtEdges};
 
-use crossings::undo_crossings;
+use crossings::{Moved, undo_crossings};
 use step_fit::StepFit;
 
 /// Width of the edges before it is known, in pixels.
@@ -24,18 +25,6 @@ const FIRST_WIDTH: f64 = 1.2;
 
 /// Crossings to either side that the direction of an outline is taken from.
 const NEIGHBOURS: usize = 3;
-
-/// How far narrow profiles reach, in widths of the edge and pixels: near enough for thin parts.
-const NARROW: [f64; 2] = [2.2, 1.2];
-
-/// How far wide ones do, where nothing else is in the way, the farther of the two: as far as the grey values of both sides are known well. Of the
-/// information on a place, 0.28 over the width, what is not known of them takes 0.5 over the reach. Four widths and the pixels beyond leave a
-/// deviation of up to 1.25 times what it would be for edges up to 1.5 pixels wide, but 1.34 times for wider ones. Farther than need be
-/// the light of one side changes.
-const WIDE: [[f64; 2]; 2] = [[4.0, 1.5], [6.0, -1.5]];
-
-/// Farthest that the wide profile may move an edge, in widths of it.
-const SAME_EDGE: f64 = 0.4;
 
 /// An edge farther from the outline than this, and so many widths of the edge, is another edge, in pixels.
 const FARTHEST: [f64; 2] = [1.2, 1.2];
@@ -102,8 +91,9 @@ struct Edge {
     step: f64,
     /// Root mean square of what the fit leaves.
     residual: f64,
-    /// How much farther out the edge is seen as the light changes on one side of it more than on the other.
-    one_sided: f64,
+    /// How much farther out the edge is seen as the light changes on one side of it more than on the other; `None` where its profile is too
+    /// short to tell.
+    one_sided: Option<f64>,
     /// Standard deviation of the place by its profile, of a pixel of contour where noise is as large as the step.
     deviation: f64,
 }
@@ -122,7 +112,15 @@ impl EdgeSource<'_> {
 
     /// Moves a closed line of crossings, given from the left upper pixel of a window, onto the edges. `None`, and the line as it was, where
     /// it has no edges.
-    pub(crate) fn refine(&self, line: &mut [Crossing], [left, top]: [usize; 2]) -> Option<EdgeFit> {
+    pub(crate) fn refine(&self, line: &mut [Crossing], place: [usize; 2]) -> Option<EdgeFit> {
+        let (fit, moved) = self.move_onto_edges(line, place)?;
+        // The normals of a ragged line that is far from the edges are not those of the edges.
+        let again = if moved == Moved::NotEverywhere { self.move_onto_edges(line, place) } else { None };
+        Some(again.map_or(fit, |(fit, _)| fit))
+    }
+
+    /// As [`refine`](Self::refine), along the normals that the line has.
+    fn move_onto_edges(&self, line: &mut [Crossing], [left, top]: [usize; 2]) -> Option<(EdgeFit, Moved)> {
         let at = |c: &Crossing| Point2::new(left as f64 + c.x, top as f64 + c.y);
         let points: Vec<Point2<f64>> = line.iter().map(at).collect();
         let normals: Vec<Option<Vector2<f64>>> = (0..line.len()).map(|i| outward(line, i)).collect();
@@ -155,71 +153,26 @@ impl EdgeSource<'_> {
             let random = noise.max(0.3) * edges[i].deviation / step;
             if is_clear[i] { random } else { random.max(0.5 * farthest) }
         };
-        let deviations = (0..line.len()).map(deviation).collect();
-        let shifts = edges.iter().zip(&is_clear).filter(|(_, clear)| **clear).map(|(edge, _)| edge.one_sided);
+        let mut deviations: Vec<f64> = (0..line.len()).map(deviation).collect();
+        let shifts = edges.iter().zip(&is_clear).filter(|(_, clear)| **clear).filter_map(|(edge, _)| edge.one_sided);
         let systematic = systematic::of(&fit, noise, contrast, shifts, line.len());
         let shift = |i: usize| (places[i] + bends[i]) * normals[i].unwrap_or_default();
         // Nothing is seen beyond the picture.
         let [right, lower] = [self.picture.width(), self.picture.height()].map(|size| f64::from(size) - 0.5);
         let within = |p: Point2<f64>| Point2::new(p.x.clamp(-0.5, right), p.y.clamp(-0.5, lower));
         let mut moved: Vec<Point2<f64>> = (0..line.len()).map(|i| within(points[i] + shift(i))).collect();
-        undo_crossings(&points, &mut moved);
+        let on_edges = moved.clone();
+        let result = undo_crossings(&points, &mut moved);
+        for ((deviation, moved), on_edge) in deviations.iter_mut().zip(&moved).zip(&on_edges) {
+            // A point that is not where its edge was found is off by as much.
+            *deviation = deviation.hypot((moved - on_edge).norm());
+        }
         for (crossing, (moved, before)) in line.iter_mut().zip(moved.iter().zip(&points)) {
             // The difference is rounded.
             crossing.x = (crossing.x + (moved.x - before.x)).clamp(-0.5 - left as f64, right - left as f64);
             crossing.y = (crossing.y + (moved.y - before.y)).clamp(-0.5 - top as f64, lower - top as f64);
         }
-        Some(EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share })
-    }
-
-    /// The edges on the normals of points, each by the widest profile that shows it alone, and the widest fit. `None` where there are none.
-    fn fitted(&self, points: &[Point2<f64>], normals: &[Option<Vector2<f64>>]) -> Option<(Vec<Edge>, StepFit)> {
-        let mut edges = vec![Edge::default(); points.len()];
-        self.fit_all(points, normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
-        let width = blur_width::of(self, points, normals, &edges)?;
-        let narrow = StepFit::new(width, reach(NARROW, width).clamp(2.5, 8.0));
-        self.fit_all(points, normals, &mut edges, &narrow, 3);
-        let far = WIDE.map(|of| reach(of, width)).into_iter().fold(3.0, f64::max);
-        let fit = StepFit::new(width, far.min(18.0));
-        let mut wide = edges.clone();
-        self.fit_all(points, normals, &mut wide, &fit, 2);
-        let with_normal = wide.iter().zip(normals).filter(|(_, normal)| normal.is_some());
-        let typical = median(with_normal.map(|(edge, _)| edge.residual))?;
-        for (edge, wide) in edges.iter_mut().zip(wide) {
-            let is_same_edge = (wide.place - edge.place).abs() <= SAME_EDGE * width && wide.step >= 0.7 * edge.step;
-            if is_same_edge && wide.residual <= 1.5 * typical.max(0.5) {
-                *edge = wide;
-            }
-        }
-        Some((edges, fit))
-    }
-
-    fn fit_all(
-        &self,
-        points: &[Point2<f64>],
-        normals: &[Option<Vector2<f64>>],
-        edges: &mut [Edge],
-        fit: &StepFit,
-        rounds: usize,
-    ) {
-        let (mut values, deviation) = (Vec::new(), fit.deviation_of_place());
-        for ((point, normal), edge) in points.iter().zip(normals).zip(edges) {
-            edge.deviation = deviation;
-            let Some(normal) = *normal else { continue };
-            for _ in 0..rounds {
-                self.profile(point + edge.place * normal, normal, fit, &mut values);
-                let found = fit.of(&values);
-                // Outwards the signal falls.
-                edge.step = -found.step;
-                edge.residual = found.residual;
-                edge.one_sided = found.one_sided;
-                let moved = if edge.step > 0.0 { found.place.clamp(-1.0, 1.0) } else { 0.0 };
-                edge.place = (edge.place + moved).clamp(-8.0, 8.0);
-                if moved.abs() < 0.004 {
-                    break;
-                }
-            }
-        }
+        Some((EdgeFit { deviations, systematic, contrast, blur: width, noise, clear_share }, result))
     }
 }
 
@@ -238,11 +191,6 @@ fn interpolated(picture: &GrayImage, place: Point2<f64>, value: impl Fn(u8) -> f
     let upper = pixel(at) + u * (pixel(at + right) - pixel(at));
     let lower = pixel(at + below) + u * (pixel(at + below + right) - pixel(at + below));
     upper + v * (lower - upper)
-}
-
-/// How far profiles reach, in pixels, by widths of the edge and pixels.
-fn reach([widths, pixels]: [f64; 2], width: f64) -> f64 {
-    widths * width + pixels
 }
 
 /// The unit normal outwards at a crossing, in columns and rows; `None` on the edge of the picture.

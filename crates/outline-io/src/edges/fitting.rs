@@ -1,0 +1,170 @@
+//! The edges on the normals of points, each by the widest profile that shows it alone.
+use nalgebra::{Point2, Vector2};
+
+use super::step_fit::{SPACING, StepFit};
+use super::{Edge, EdgeSource, FIRST_WIDTH, blur_width, median};
+
+/// How far narrow profiles reach, in widths of the edge and pixels: near enough for thin parts.
+const NARROW: [f64; 2] = [2.2, 1.2];
+
+/// How far wide ones do, where nothing else is in the way, the farther of the two: as far as the grey values of both sides are known well. Of the
+/// information on a place, 0.28 over the width, what is not known of them takes 0.5 over the reach. Four widths and the pixels beyond leave a
+/// deviation of up to 1.25 times what it would be for edges up to 1.5 pixels wide, but 1.34 times for wider ones. Farther than need be
+/// the light of one side changes.
+const WIDE: [[f64; 2]; 2] = [[4.0, 1.5], [6.0, -1.5]];
+
+/// A wide fit that leaves so many times what narrow ones leave is of more than one edge.
+const NOT_ALONE: f64 = 1.3;
+
+/// Farthest that the wide profile may move an edge, in widths of it.
+const SAME_EDGE: f64 = 0.4;
+
+/// Light that differs from that of its side of the step by more than so large a share of the step, and so many times what the fits leave, is another
+/// edge. A fifth of a step is reached 0.85 widths before its middle, so that this many widths nearer a hundredth of it is left.
+const ANOTHER_EDGE: [f64; 2] = [0.2, 4.0];
+const BEFORE_ANOTHER: f64 = 1.4;
+
+/// Shortest profile, in widths of the edge and pixels: 1.8 widths tell a place no more where the grey values of both sides are not known.
+const SHORTEST: [f64; 2] = [2.0, 0.0];
+
+/// How far profiles reach, in pixels, by widths of the edge and pixels.
+fn reach([widths, pixels]: [f64; 2], width: f64) -> f64 {
+    widths * width + pixels
+}
+
+impl EdgeSource<'_> {
+    /// The edges on the normals of points, and the widest fit. `None` where there are none.
+    pub(super) fn fitted(
+        &self,
+        points: &[Point2<f64>],
+        normals: &[Option<Vector2<f64>>],
+    ) -> Option<(Vec<Edge>, StepFit)> {
+        let mut edges = vec![Edge::default(); points.len()];
+        self.fit_all(points, normals, &mut edges, &StepFit::new(FIRST_WIDTH, 4.0), 2);
+        let width = blur_width::of(self, points, normals, &edges)?;
+        let narrow = StepFit::new(width, reach(NARROW, width).clamp(2.5, 8.0));
+        self.fit_all(points, normals, &mut edges, &narrow, 3);
+        let far = WIDE.map(|of| reach(of, width)).into_iter().fold(3.0, f64::max);
+        let fit = StepFit::new(width, far.min(18.0));
+        let mut wide = edges.clone();
+        self.fit_all(points, normals, &mut wide, &fit, 2);
+        let typical_of = |edges: &[Edge]| {
+            let with_normal = edges.iter().zip(normals).filter(|(_, normal)| normal.is_some());
+            median(with_normal.map(|(edge, _)| edge.residual))
+        };
+        // Of a thin body most wide profiles reach its other side.
+        let [of_wide, of_narrow] = [typical_of(&wide)?, NOT_ALONE * typical_of(&edges)?];
+        let is_thin = of_narrow < of_wide;
+        let typical = of_wide.min(of_narrow);
+        let mut shorter = Shorter { fit: &fit, typical, fits: Vec::new(), values: Vec::new() };
+        for (index, (edge, wide)) in edges.iter_mut().zip(wide).enumerate() {
+            let is_same_edge = (wide.place - edge.place).abs() <= SAME_EDGE * width && wide.step >= 0.7 * edge.step;
+            let is_wide = is_same_edge && wide.residual <= 1.5 * typical.max(0.5);
+            let found = match normals[index] {
+                Some(normal) if is_thin || !is_wide => shorter.refitted(self, (points[index], normal), edge),
+                _ => None,
+            };
+            if let Some(found) = found {
+                *edge = found;
+            } else if is_wide {
+                *edge = wide;
+            }
+        }
+        Some((edges, fit))
+    }
+
+    fn fit_all(
+        &self,
+        points: &[Point2<f64>],
+        normals: &[Option<Vector2<f64>>],
+        edges: &mut [Edge],
+        fit: &StepFit,
+        rounds: usize,
+    ) {
+        let (mut values, deviation) = (Vec::new(), fit.deviation_of_place());
+        for ((point, normal), edge) in points.iter().zip(normals).zip(edges) {
+            edge.deviation = deviation;
+            let Some(normal) = *normal else { continue };
+            self.fit_one(*point, normal, edge, fit, (rounds, &mut values));
+        }
+    }
+
+    /// Moves an edge to where a fit has it, in so many rounds.
+    #[inline]
+    fn fit_one(
+        &self,
+        point: Point2<f64>,
+        normal: Vector2<f64>,
+        edge: &mut Edge,
+        fit: &StepFit,
+        (rounds, values): (usize, &mut Vec<f64>),
+    ) {
+        for _ in 0..rounds {
+            self.profile(point + edge.place * normal, normal, fit, values);
+            let found = fit.of(values);
+            // Outwards the signal falls.
+            edge.step = -found.step;
+            edge.residual = found.residual;
+            edge.one_sided = Some(found.one_sided);
+            let moved = if edge.step > 0.0 { found.place.clamp(-1.0, 1.0) } else { 0.0 };
+            edge.place = (edge.place + moved).clamp(-8.0, 8.0);
+            if moved.abs() < 0.004 {
+                break;
+            }
+        }
+    }
+}
+
+/// Fits to profiles that end before another edge.
+struct Shorter<'a> {
+    /// The widest.
+    fit: &'a StepFit,
+    /// What fits leave of an edge alone.
+    typical: f64,
+    /// By half pixels from the shortest on, made where one is needed.
+    fits: Vec<StepFit>,
+    values: Vec<f64>,
+}
+
+impl Shorter<'_> {
+    /// An edge that the narrow profile has found, by one that reaches as far as it is alone; `None` where the widest shows it alone.
+    fn refitted(
+        &mut self,
+        source: &EdgeSource,
+        (point, normal): (Point2<f64>, Vector2<f64>),
+        edge: &Edge,
+    ) -> Option<Edge> {
+        let width = self.fit.width();
+        source.profile(point + edge.place * normal, normal, self.fit, &mut self.values);
+        let least = reach(SHORTEST, width);
+        let alone = (self.alone(edge)? - BEFORE_ANOTHER * width).max(least);
+        if self.fits.is_empty() {
+            let most = self.fit.offsets().last().unwrap_or(least);
+            let reaches = (0..).map(|k| least + SPACING * f64::from(k)).take_while(|reach| *reach < most);
+            self.fits.extend(reaches.map(|reach| StepFit::new(width, reach)));
+        }
+        let index = (((alone - least) / SPACING) as usize).min(self.fits.len().saturating_sub(1));
+        let fit = self.fits.get(index)?;
+        let mut shorter = *edge;
+        source.fit_one(point, normal, &mut shorter, fit, (2, &mut self.values));
+        let is_same_edge = (shorter.place - edge.place).abs() <= SAME_EDGE * width && shorter.step > 0.0;
+        Some(match is_same_edge {
+            true => Edge { one_sided: None, deviation: fit.deviation_of_place(), ..shorter },
+            false => Edge { one_sided: None, ..*edge },
+        })
+    }
+
+    /// How far the widest profile, which has been taken about an edge, shows it alone to both sides, in pixels; `None` if it does to its ends.
+    fn alone(&self, edge: &Edge) -> Option<f64> {
+        let (values, width) = (&self.values, self.fit.width());
+        let middle = values.len() / 2;
+        let near = ((2.0 * width / SPACING) as usize).min(middle);
+        let level = values[middle - near..=middle + near].iter().sum::<f64>() / (2 * near + 1) as f64;
+        let most = (ANOTHER_EDGE[0] * edge.step).max(ANOTHER_EDGE[1] * self.typical);
+        let differs = |k: usize| {
+            let [inner, outer] = [values[middle - k], values[middle + k]];
+            inner < level + 0.5 * edge.step - most || outer > level - 0.5 * edge.step + most
+        };
+        (near..=middle).find(|k| differs(*k)).map(|k| SPACING * k as f64)
+    }
+}
