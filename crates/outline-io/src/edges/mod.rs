@@ -61,7 +61,7 @@ pub struct EdgeFit {
     /// of a place told by one pixel of contour. Of a point without an edge of its own, which lies between its neighbours', larger.
     pub deviations: Vec<f64>,
     /// Systematic uncertainty of the outline, in its unit: how far edges may lie off together along a side of it, by the grid of pixels, the
-    /// rounding of grey values, light that changes on one side of the edge, and noise that neighbours share.
+    /// rounding of grey values, and light that changes on one side of the edge.
     pub systematic: f64,
     /// Median height of the step, in grey values; positive.
     pub contrast: f64,
@@ -155,7 +155,7 @@ impl EdgeSource<'_> {
         };
         let mut deviations: Vec<f64> = (0..line.len()).map(deviation).collect();
         let shifts = edges.iter().zip(&is_clear).filter(|(_, clear)| **clear).filter_map(|(edge, _)| edge.one_sided);
-        let systematic = systematic::of(&fit, noise, contrast, shifts, line.len());
+        let systematic = systematic::of(&fit, noise, contrast, shifts);
         let shift = |i: usize| (places[i] + bends[i]) * normals[i].unwrap_or_default();
         // Nothing is seen beyond the picture.
         let [right, lower] = [self.picture.width(), self.picture.height()].map(|size| f64::from(size) - 0.5);

@@ -13,10 +13,6 @@ const AT_WIDTH: f64 = 0.7;
 const FALLS_BY: f64 = 8.0;
 const SHARPEST: f64 = 0.57;
 
-/// How far sides would have to be off, over the deviation of the mean of all points, for poses to be off by as much as they are in noise: 1.15 to 1.2
-/// times what independent points would make of them. 4 / pi points lie on a pixel of contour, and neighbours read the same pixels.
-const OF_NEIGHBOURS: f64 = 1.8;
-
 /// Points of a stretch, over which the light changes little and the noise much, and points between stretches, so that they share no pixel.
 const STRETCH: usize = 12;
 const BETWEEN: usize = 4;
@@ -28,15 +24,10 @@ const ROUNDING: f64 = 1.0 / 12.0;
 const NOISE_SURE: f64 = 0.8;
 
 /// All of it, for edges fitted like this, with this noise and contrast, from what each edge shows of light that changes on one side, in the
-/// order of so many points of contour; pixels.
-pub(super) fn of(fit: &StepFit, noise: f64, contrast: f64, one_sided: impl Iterator<Item = f64>, points: usize) -> f64 {
+/// order of the contour; pixels. Noise that neighbouring points share has no part in it: it is another one in the next picture.
+pub(super) fn of(fit: &StepFit, noise: f64, contrast: f64, one_sided: impl Iterator<Item = f64>) -> f64 {
     let of_grey_value = fit.deviation_of_place() / contrast;
-    let parts = [
-        of_grid(fit.width()),
-        of_rounding(noise) * of_grey_value,
-        of_light(one_sided),
-        of_neighbours(noise * of_grey_value, points),
-    ];
+    let parts = [of_grid(fit.width()), of_rounding(noise) * of_grey_value, of_light(one_sided)];
     parts.into_iter().fold(0.0, f64::hypot)
 }
 
@@ -53,11 +44,6 @@ fn of_rounding(noise: f64) -> f64 {
     // The mean of what is rounded, as a series in sines of the grey value (B. Widrow and I. Kollar, Quantization Noise, 2008): its first term.
     let share = (-4.0 * std::f64::consts::PI.powi(2) * sensor).exp();
     (ROUNDING * share).sqrt()
-}
-
-/// Of noise that neighbours share, for so many points of such a deviation, in pixels.
-fn of_neighbours(deviation: f64, points: usize) -> f64 {
-    OF_NEIGHBOURS * deviation / (points.max(1) as f64).sqrt()
 }
 
 /// Of light that changes on one side of the edge: from how much farther out each edge is seen for it, in pixels and in the order of the contour.

@@ -87,11 +87,25 @@ fn settings() -> TraceSettings {
     TraceSettings { clipping: Clipping::Open, ..TraceSettings::default() }
 }
 
-/// The mean places of many edges, in pixels, and in units of the bound for every edge.
-fn places_of_edges(count: u64, of: impl Fn(u64) -> Step) -> Vec<(f64, f64)> {
-    let place = |k: u64| {
+/// What is found of an edge.
+struct Found {
+    /// Its mean place, in pixels.
+    mean: f64,
+    /// The same in units of the bound.
+    ratio: f64,
+    /// How far its points lie off, root mean square, over what they state.
+    of_stated: f64,
+}
+
+/// What is found of many edges.
+fn found_of_edges(count: u64, of: impl Fn(u64) -> Step) -> Vec<Found> {
+    let found = |k: u64| {
         let step = of(k);
-        let errors = step.errors(&step.traced((step.angle * 1000.0) as u64, &settings()));
+        let traced = step.traced((step.angle * 1000.0) as u64, &settings());
+        let errors = step.errors(&traced);
+        let mut stated = traced.edges.expect("edges").deviations;
+        stated.sort_by(f64::total_cmp);
+        let of_stated = size(errors.iter().copied()) / stated[stated.len() / 2];
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         // An edge crosses so many of the lines between pixels on a pixel of its length.
         let length = errors.len() as f64 / (step.angle.cos().abs() + step.angle.sin().abs());
@@ -100,9 +114,9 @@ fn places_of_edges(count: u64, of: impl Fn(u64) -> Step) -> Vec<(f64, f64)> {
         let width = step.blur.hypot(12.0_f64.powf(-0.5));
         let noise = step.noise.hypot(12.0_f64.powf(-0.5));
         let bound = noise / step.contrast * (2.0 * std::f64::consts::PI.sqrt() * width / length).sqrt();
-        (mean, mean / bound)
+        Found { mean, ratio: mean / bound, of_stated }
     };
-    (0..count).map(place).collect()
+    (0..count).map(found).collect()
 }
 
 #[test]
@@ -113,7 +127,7 @@ fn edges_have_no_bias_and_scatter_as_little_as_the_grey_values_allow() {
         let mut of_blur = Vec::new();
         for (case, contrast) in (0..).zip([20.0, 70.0, 200.0]) {
             for (part, shading) in (0..).zip([0.0, 0.5]) {
-                let places = places_of_edges(EDGES, |k| Step {
+                let found = found_of_edges(EDGES, |k| Step {
                     angle: 0.05 + 0.151 * (k + EDGES * (2 * case + part)) as f64,
                     place: 0.37 * (k % 8) as f64,
                     contrast,
@@ -121,10 +135,16 @@ fn edges_have_no_bias_and_scatter_as_little_as_the_grey_values_allow() {
                     shading,
                     noise: 0.03 * contrast,
                 });
-                let bias = places.iter().map(|(mean, _)| mean).sum::<f64>() / EDGES as f64;
-                let ratios: Vec<f64> = places.iter().map(|(_, ratio)| *ratio).collect();
+                let bias = found.iter().map(|edge| edge.mean).sum::<f64>() / EDGES as f64;
+                let ratios: Vec<f64> = found.iter().map(|edge| edge.ratio).collect();
                 let ratio = rms(&ratios);
-                println!("contrast {contrast} blur {blur} shading {shading}: bias {bias:.4}, {ratio:.2} of the bound");
+                let of_stated = size(found.iter().map(|edge| edge.of_stated));
+                println!(
+                    "contrast {contrast} blur {blur} shading {shading}: bias {bias:.4}, {ratio:.2} of the bound, \
+                     points {of_stated:.2} of what they state"
+                );
+                // Points share pixels with their neighbours, so that they scatter less than a pixel of edge by itself, whose deviation they state.
+                assert!((0.7..1.1).contains(&of_stated), "{of_stated}");
                 // So many edges tell a ratio to 6 %.
                 assert!(bias.abs() < 0.005 && ratio < 1.5, "{bias} {ratio}");
                 of_blur.extend(ratios);
