@@ -93,7 +93,9 @@ impl<const N: usize> InteractingHypotheses<N> {
 
     /// What a motion that changes at a steady rate adds to hypotheses of constant ones, weighted with them.
     fn possible_change(&self) -> Option<PossibleChange<N>> {
-        let (change, factors) = (self.steady_change.as_ref()?, self.factors());
+        let change = self.steady_change.as_ref()?;
+        // What a camera shakes is none of the object's motion.
+        let factors = self.factors() * self.shaking.sqrt();
         let mut sum = PossibleChange { probability: 0.0, apart: SMatrix::zeros(), beside: SMatrix::zeros() };
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let turns = match hypothesis.course {
@@ -198,7 +200,7 @@ impl<const N: usize> InteractingHypotheses<N> {
 /// What squared distances from what is stated count more than by the probability of `others`: an interval of 95 % reaches those that have as
 /// much as lies outside.
 fn reach_of(others: f64) -> f64 {
-    (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0)
+    if others > 0.0 { (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0) } else { 1.0 }
 }
 
 /// Motion and covariance of a summary about the centroid.

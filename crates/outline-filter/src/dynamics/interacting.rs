@@ -43,7 +43,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) common: CommonError,
     series: InnovationSeries<LARGEST>,
     /// Factor of the variance of a pose by the most probable hypothesis.
-    shaking: f64,
+    pub(super) shaking: f64,
     leads: bool,
     /// Whether a turn that the outline does not show is told by the path of the centroid, as whoever asks for a constant generator wants it.
     turn_is_of_path: bool,
