@@ -35,10 +35,8 @@ impl<const N: usize> Hypothesis<N> {
             let changes = matches!(self.course, Course::SteadyChange { .. });
             let change_of = |j: usize| if changes { self.mean[2 * k + j] } else { 0.0 };
             // Half way through the step.
-            let mut rates = [0.0; LARGEST];
-            for j in 0..k - 2 {
-                rates[j] = motion[j] + 0.5 * dt * change_of(j);
-            }
+            let rates: [f64; LARGEST] =
+                std::array::from_fn(|j| if j < k - 2 { motion[j] + 0.5 * dt * change_of(j) } else { 0.0 });
             let (turn, along) = model.linear_flow_with_integral(&rates[..k], dt);
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
             let (shift, later) = match self.course {
@@ -49,8 +47,8 @@ impl<const N: usize> Hypothesis<N> {
             let transition = self.transition(step, (&turn, &along, &v, &later));
             self.covariance = carried(&transition, &self.covariance, self.size());
             self.set_velocity(&turn, &shift, &later);
-            for j in 0..k - 2 {
-                self.mean[j] += dt * rates[j];
+            for (j, rate) in rates.iter().enumerate().take(k - 2) {
+                self.mean[j] += dt * rate;
                 self.mean[k + j] += if changes { dt * self.mean[2 * k + j] } else { 0.0 };
             }
         }

@@ -352,6 +352,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             && is_finite(self.reference.pose.as_slice())
             && is_finite(self.reference.centroid.coords.as_slice())
             && self.pose_variance.iter().all(|variance| variance.is_finite() && *variance > 0.0)
+            && self.steady_change.as_ref().is_none_or(SteadyChange::is_valid)
             && self.common.is_valid(model)
             && self.series.is_valid()
             && (self.shaking == 1.0

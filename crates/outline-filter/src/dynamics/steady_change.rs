@@ -15,7 +15,8 @@ use crate::tuning::steady_change as tuning;
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct SteadyChange<const N: usize> {
-    hypotheses: [Hypothesis<N>; 2],
+    /// Whose velocity turns with the object, and whose does not.
+    hypotheses: Vec<Hypothesis<N>>,
     /// Deviations of a pose over the square of a step: the unit of rates of change.
     units: CentredVector,
     frames: usize,
@@ -39,10 +40,10 @@ impl<const N: usize> SteadyChange<N> {
         (mean, covariance): (SVector<f64, N>, SMatrix<f64, N, N>),
         (pose_variance, seconds): (&CentredVector, f64),
     ) -> Self {
-        let hypotheses = [true, false].map(|turns| {
+        let hypotheses = [true, false].into_iter().map(|turns| {
             Hypothesis::begin((Course::SteadyChange { turns }, model), (mean, covariance), (pose_variance, seconds))
         });
-        Self { hypotheses, units: pose_variance.map(f64::sqrt) / (seconds * seconds), frames: 0 }
+        Self { hypotheses: hypotheses.collect(), units: pose_variance.map(f64::sqrt) / (seconds * seconds), frames: 0 }
     }
 
     /// Whether it has been followed for long: smaller changes than those that are reckoned with would be seen by then.
@@ -61,6 +62,17 @@ impl<const N: usize> SteadyChange<N> {
             hypothesis.update(measurement);
         }
         self.frames = (self.frames + 1).min(tuning::FRAMES);
+    }
+
+    /// Whether all numbers can be worked with.
+    #[cfg(feature = "serde")]
+    pub(super) fn is_valid(&self) -> bool {
+        let is_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        let courses = self.hypotheses.iter().map(|hypothesis| hypothesis.course);
+        courses.eq([true, false].map(|turns| Course::SteadyChange { turns }))
+            && self.hypotheses.iter().all(|h| is_finite(h.mean.as_slice()) && is_finite(h.covariance.as_slice()))
+            && self.units.iter().all(|unit| unit.is_finite() && *unit > 0.0)
+            && self.frames <= tuning::FRAMES
     }
 
     /// What it adds to what is known of a motion that is otherwise constant, in that its velocity `turns` with the object or does not. The rates

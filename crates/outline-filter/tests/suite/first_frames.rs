@@ -14,7 +14,6 @@ fn errors(spin: f64) -> Vec<f64> {
     for (number, shape) in SHAPES.into_iter().enumerate() {
         let dynamics = sim_camera::Dynamics::Accelerating { spin, middle: Vector2::zeros() };
         let path = Trajectory::new(Point2::origin(), 1.2, Vector2::new(0.3, -0.2), dynamics).expect("finite numbers");
-        let truth = path.clone();
         let motion = Motion::varying(move |t| path.motion(t));
         for seed in 0..3 {
             let settings = Settings { noise: 0.004, ..settings(15, seed + 10 * number as u64) };
@@ -24,7 +23,7 @@ fn errors(spin: f64) -> Vec<f64> {
                 let omega =
                     run.estimate().and_then(|estimate| estimate.parameters().next()).filter(|_| frame.index > 1);
                 let stated = omega.and_then(|omega| omega.value.zip(omega.standard_deviation));
-                errors.extend(stated.map(|(value, deviation)| (value - truth.omega(frame.time)).abs() / deviation));
+                errors.extend(stated.map(|(value, deviation)| (value - path.omega(frame.time)).abs() / deviation));
             }
         }
     }
