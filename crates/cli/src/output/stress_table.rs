@@ -65,7 +65,7 @@ pub(crate) fn write_stress_markdown(sink: &mut impl Write, report: &StressReport
         writeln!(sink)?;
     }
     LEGEND.iter().try_for_each(|line| writeln!(sink, "- {line}"))?;
-    let first = report.frames.map(|frames| format!(", the first {frames} frames of each")).unwrap_or_default();
+    let first = report.frames.map(|frames| format!(", at most the first {frames} frames of each")).unwrap_or_default();
     writeln!(sink, "- {}\n\n{} runs of each kind{first}, seed {}.", notes(), report.runs, report.seed)
 }
 

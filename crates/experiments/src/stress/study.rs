@@ -18,7 +18,7 @@ pub struct StressStudy {
     pub kinds: Vec<Kind>,
     /// Sequences of each kind, at least 1.
     pub runs: usize,
-    /// Frames after which what is stated is judged, at least 2; `None` for whole sequences.
+    /// Frames after which what is stated is judged, taken to be 2 at least; longer than a sequence means all of it; `None` for whole sequences.
     pub frames: Option<usize>,
     /// Everything random follows from it.
     pub seed: u64,
@@ -65,8 +65,9 @@ impl StressStudy {
     /// # Errors
     /// What the simulator or the tracker refuses.
     pub fn run(&self, progress: &(dyn Fn() + Sync)) -> Result<StressReport, ExperimentError> {
+        let frames = self.frames.map(|frames| frames.max(2));
         let outcomes = (0..self.run_count()).into_par_iter().map(|job| {
-            let outcome = self.one(&self.kinds[job / self.runs], job % self.runs);
+            let outcome = self.run_one(&self.kinds[job / self.runs], frames, job % self.runs);
             progress();
             outcome
         });
@@ -80,7 +81,7 @@ impl StressStudy {
         };
         Ok(StressReport {
             runs: self.runs,
-            frames: self.frames,
+            frames,
             seed: self.seed,
             kinds: by_kind
                 .iter()
@@ -92,9 +93,9 @@ impl StressStudy {
     }
 
     /// One sequence, followed by a tracker with default settings.
-    fn one(&self, kind: &Kind, number: usize) -> Result<Outcome, ExperimentError> {
+    fn run_one(&self, kind: &Kind, frames: Option<usize>, number: usize) -> Result<Outcome, ExperimentError> {
         let recipe = &kind.recipe;
-        let count = self.frames.map_or(recipe.frames, |frames| frames.min(recipe.frames));
+        let count = frames.map_or(recipe.frames, |frames| frames.min(recipe.frames));
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ hash(&kind.path()));
         rng.set_stream(number as u64);
         let sequence = Sequence::new(recipe, &mut rng)?;

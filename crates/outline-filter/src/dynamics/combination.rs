@@ -94,8 +94,8 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// What a motion that changes at a steady rate adds to hypotheses of constant ones, weighted with them.
     fn possible_change(&self) -> Option<PossibleChange<N>> {
         let change = self.steady_change.as_ref()?;
-        // What a camera shakes is none of the object's motion.
-        let factors = self.factors() * self.shaking.sqrt();
+        // While a camera that shakes explains the frames best, their poses say as little of a change.
+        let wider = (&self.factors(), self.shaking);
         let mut sum = PossibleChange { probability: 0.0, apart: SMatrix::zeros(), beside: SMatrix::zeros() };
         for (hypothesis, weight) in self.hypotheses.iter().zip(&self.weights) {
             let turns = match hypothesis.course {
@@ -104,7 +104,7 @@ impl<const N: usize> InteractingHypotheses<N> {
                 Course::Shaken { .. } | Course::Accelerating { .. } | Course::SteadyChange { .. } => continue,
             };
             if *weight > tuning::OUTSIDE_THREE_DEVIATIONS {
-                let possible = change.possible(turns, &factors, &self.place_of(hypothesis))?;
+                let possible = change.possible(turns, wider, &self.place_of(hypothesis))?;
                 sum.probability += weight * possible.probability;
                 sum.apart += possible.apart * *weight;
                 sum.beside += possible.beside * *weight;

@@ -234,6 +234,11 @@ impl<const N: usize> Hypothesis<N> {
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 f[(k + rates + i, 2 * k + rates + j)] = along[(i, j)];
             }
+            // The rates half way through the step are larger by half of what they change.
+            for (i, j) in (0..2).flat_map(|i| (0..rates).map(move |j| (i, j))) {
+                f[(k + rates + i, 2 * k + j)] = 0.5 * dt * f[(k + rates + i, k + j)];
+                f[(rates + i, 2 * k + j)] = 0.5 * dt * f[(rates + i, k + j)];
+            }
         }
         f
     }

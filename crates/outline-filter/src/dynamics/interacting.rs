@@ -157,8 +157,11 @@ impl<const N: usize> InteractingHypotheses<N> {
         mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
         let step = Step::new((self.model, seconds), [&self.reference, pose], &self.pose_variance);
         let possible = step.is_some_and(|step| {
-            let steady = self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses);
-            self.hypotheses.iter_mut().chain(steady).all(|hypothesis| hypothesis.predict(&step))
+            let fails = |change: &mut SteadyChange<N>| change.hypotheses().iter_mut().any(|h| !h.predict(&step));
+            if self.steady_change.as_mut().is_some_and(fails) {
+                self.steady_change = None;
+            }
+            self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step))
         });
         self.reference = *pose;
         if !self.turn_is_of_path {

@@ -76,12 +76,13 @@ impl<const N: usize> SteadyChange<N> {
     }
 
     /// What it adds to what is known of a motion that is otherwise constant, in that its velocity `turns` with the object or does not. The rates
-    /// of change are those of the turn alone, of the velocity alone, or of all parameters, each of some sizes, by their Bayes factors. `factors` are
-    /// what deviations of poses are to be multiplied by, about the centroid; `place` carries errors of this state to those that are asked for.
+    /// of change are those of the turn alone, of the velocity alone, or of all parameters, each of some sizes, by their Bayes factors. Deviations of
+    /// poses about the centroid are to be multiplied by factors, as what is stated will be, and their variances by that of a camera that shakes;
+    /// `place` carries errors of this state to those that are asked for.
     pub(super) fn possible(
         &self,
         turns: bool,
-        factors: &CentredDeviations,
+        (widened_later, shaking): (&CentredDeviations, f64),
         place: &SMatrix<f64, N, N>,
     ) -> Option<PossibleChange<N>> {
         if self.is_over() {
@@ -96,14 +97,19 @@ impl<const N: usize> SteadyChange<N> {
         });
         let information = known.cholesky()?.inverse();
         let found = CentredVector::from_fn(|i, _| if i < k { mean[2 * k + i] / unit[i] } else { 0.0 });
-        let widened = CentredMatrix::from_fn(|i, j| information[(i, j)] / (factors[i] * factors[j]));
+        let widened =
+            CentredMatrix::from_fn(|i, j| information[(i, j)] / (widened_later[i] * widened_later[j] * shaking));
         let changes = Changes { information: widened, score: widened * found }.weighed(k)?;
         let of_state = SMatrix::<f64, N, LARGEST>::from_fn(|i, j| match i < 2 * k && j < k {
             true => covariance[(i, 2 * k + j)] / unit[j],
             false => 0.0,
         });
         let sensitivity = place * of_state * information;
-        let carried = |moments: CentredMatrix| sensitivity * moments * sensitivity.transpose();
+        // What is stated is widened by the factors later on, and these are sizes as they are.
+        let carried = |moments: CentredMatrix| {
+            let carried = sensitivity * moments * sensitivity.transpose();
+            SMatrix::<f64, N, N>::from_fn(|i, j| carried[(i, j)] / (widened_later[i % k] * widened_later[j % k]))
+        };
         let Weighed { probability, apart, beside } = changes;
         Some(PossibleChange { probability, apart: carried(apart), beside: carried(beside) })
     }
@@ -174,6 +180,34 @@ mod tests {
         let size = clear.apart[(0, 0)].sqrt();
         assert!((2.7..3.0).contains(&size), "{size}");
         assert!((0.4..0.5).contains(&clear.beside[(0, 0)].sqrt()), "{}", clear.beside);
+    }
+
+    /// Columns of the propagation of errors over a step, by finite differences and as the covariance is carried.
+    #[test]
+    fn errors_of_a_steady_change_are_carried_as_the_motion_is() {
+        let pose = CentredPose { pose: Matrix3::identity(), centroid: Point2::origin() };
+        let variance = CentredVector::repeat(1.0);
+        let dt = 0.005;
+        let step = Step::new((MotionModel::Rigid, dt), [&pose, &pose], &variance).expect("poses");
+        let mean = SVector::<f64, 9>::from([0.0, 0.0, 0.0, 1.5, 0.6, -0.2, -0.8, 0.3, 0.9]);
+        for turns in [true, false] {
+            let moved = |mean: SVector<f64, 9>, covariance: SMatrix<f64, 9, 9>| {
+                let mut hypothesis = Hypothesis::<9> { course: Course::SteadyChange { turns }, mean, covariance };
+                assert!(hypothesis.predict(&step));
+                hypothesis
+            };
+            for j in 3..9 {
+                let unit = SVector::<f64, 9>::from_fn(|i, _| f64::from(u8::from(i == j)));
+                let (ahead, behind) =
+                    (moved(mean + 1e-5 * unit, SMatrix::zeros()), moved(mean - 1e-5 * unit, SMatrix::zeros()));
+                let difference = (ahead.mean - behind.mean) / 2e-5;
+                let carried = moved(mean, unit * unit.transpose()).covariance;
+                let column = carried.column(j) / carried[(j, j)].sqrt();
+                // Of motions to the second order of a step, of their changes to the third.
+                let tolerance = if j < 6 { dt * dt } else { 10.0 * dt * dt * dt };
+                assert!((difference - column).amax() < tolerance, "{turns} {j}: {difference} {column}");
+            }
+        }
     }
 
     #[test]

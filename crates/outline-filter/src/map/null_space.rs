@@ -250,9 +250,11 @@ impl OutlineMap {
             } else if is_shown && is_turn {
                 space.weakest_turn = space.weakest_turn.min(told);
                 let rest = Rest::of(&of_cells, &vector.into_owned(), k);
-                if rest.lever - of_noise < space.turn_without_most {
-                    space.turn_without_most = rest.lever - of_noise;
-                    space.turn_of_rest = rest.turn(model, &to_body);
+                // A long bar without its ends does not show where it is along itself, which is no turn.
+                if let Some(turn) = rest.turn(model, &to_body)
+                    && rest.lever - of_noise < space.turn_without_most
+                {
+                    (space.turn_without_most, space.turn_of_rest) = (rest.lever - of_noise, Some(turn));
                 }
                 is_shown = told >= needed;
             }

@@ -168,7 +168,8 @@ impl OutlineMap {
                 && (cell.normal.norm_squared() - 1.0).abs() < tuning::UNIT_NORMAL
                 && cell.neighbours.iter().all(|number| *number < count)
         };
-        let NullSpace { in_body, frame, centroid, weakest_turn, .. } = &self.null_space;
+        let NullSpace { in_body, frame, centroid, weakest_turn, turn_without_most, turn_of_rest, turn: _ } =
+            &self.null_space;
         let is_valid = (tuning::FEWEST_CELLS..=tuning::MOST_SAVED).contains(&count)
             && self.cells.iter().all(is_cell)
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.spacing)
@@ -177,6 +178,8 @@ impl OutlineMap {
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
             && !weakest_turn.is_nan()
+            && !turn_without_most.is_nan()
+            && turn_of_rest.as_ref().is_none_or(|(turn, centre)| turn.iter().chain(&centre.coords).all(within))
             && in_body.iter().flatten().chain(frame).all(within)
             && centroid.iter().all(|coordinate| coordinate.is_finite());
         if is_valid {

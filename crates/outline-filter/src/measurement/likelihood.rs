@@ -294,7 +294,7 @@ mod tests {
             let [none, few, most, all] = [0, 1, points / 2, points].map(with_unknown);
             assert!(none.all() < few.all() && few.all() < most.all() && most.all() <= all.all(), "{points}");
             assert!(
-                !all.is_worse_than(&none) && all.is_worse_by(0.45 * tuning::SIGNIFICANT.min(4.0), &none),
+                !all.is_worse_than(&none) && all.is_worse_by(0.9 * tuning::MOST_AGAINST * tuning::SIGNIFICANT, &none),
                 "{points}"
             );
             // Outliers in their place do.

@@ -73,7 +73,7 @@ impl MotionFilter {
             let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
             all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }
-        // What is seen of it may be the edges, which are reckoned with as far as they may lie off.
+        // Edges may move points by as much, and that is in the deviations already.
         let family = unmodelled.family.filter(|_| displacement > edge_uncertainty);
         Some(Statement { random, all, family })
     }

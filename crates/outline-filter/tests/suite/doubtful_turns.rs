@@ -178,5 +178,6 @@ fn a_turn_that_has_grown_beyond_half_a_circle_per_frame_is_in_doubt() {
         turn += rate;
         rate += 0.01;
     }
+    // Of 170: a turn that grows is doubtful as long as few frames tell how fast.
     assert!(were_known > 30, "{were_known}");
 }
