@@ -3,6 +3,7 @@ mod association;
 mod centring;
 mod chains;
 mod contour;
+mod contour_area;
 mod growth;
 mod local_fit;
 mod medians;

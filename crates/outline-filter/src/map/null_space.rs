@@ -66,93 +66,11 @@ impl Default for NullSpace {
     }
 }
 
-/// The area within a closed contour of cells.
-#[derive(Debug, Clone, Copy)]
-struct ContourArea {
-    origin: Point2<f64>,
-    /// Twice the area, signed.
-    area: f64,
-    moment: Vector2<f64>,
-    cells: usize,
-    /// The cell of the contour that comes first.
-    least: usize,
-}
-
-impl ContourArea {
-    fn centroid(&self) -> Option<Point2<f64>> {
-        (self.area != 0.0).then(|| self.origin + self.moment / (3.0 * self.area))
-    }
-}
-
 impl OutlineMap {
     /// The object's centroid in the body frame: the centroid of the area that the outline encloses, which a body of even thickness turns
     /// about where nothing holds it; the centre of the cells where the outline is not closed.
     pub(crate) fn centroid(&self) -> Point2<f64> {
         self.null_space.centroid
-    }
-
-    /// The contours that the cells make, if all of them are closed; none where there are no cells.
-    fn closed_contours(&self) -> Vec<ContourArea> {
-        let (mut contours, mut cells, mut start) = (Vec::new(), 0, 0);
-        while cells < self.cells.len() && start < self.cells.len() {
-            let Some(contour) = self.contour_from(start) else { return Vec::new() };
-            // Each contour counts once, from the first of its cells.
-            if contour.least == start {
-                cells += contour.cells;
-                contours.push(contour);
-            }
-            start += 1;
-        }
-        contours
-    }
-
-    /// Centroid of the area within the polygon of the cells, if they are one closed contour; of several, within the largest, which is the
-    /// boundary of the body.
-    fn area_centroid(contours: &[ContourArea]) -> Option<Point2<f64>> {
-        contours.iter().max_by(|a, b| a.area.abs().total_cmp(&b.area.abs()))?.centroid()
-    }
-
-    /// Mean square of the lever arms of a turn that the places of closed contours beside each other have; squares of the RMS radius. Errors of
-    /// normals, which make levers along a contour, do not make these. 0 where a contour is not round: a slit has no place to speak of, and
-    /// a curved slot has one beside its middle without showing the turn by its sides.
-    fn levers_of_places(&self, contours: &[ContourArea], spread: f64) -> f64 {
-        let is_round = |contour: &ContourArea| {
-            let length = contour.cells as f64 * self.spacing;
-            // The area is twice that of the contour.
-            std::f64::consts::TAU * contour.area.abs() > tuning::ROUND * length * length
-        };
-        if !contours.iter().all(is_round) {
-            return 0.0;
-        }
-        let total = contours.iter().map(|contour| contour.cells as f64).sum::<f64>();
-        let places = || contours.iter().filter_map(|contour| Some((contour.cells as f64 / total, contour.centroid()?)));
-        let middle = places().map(|(share, centre)| share * centre.coords).sum::<Vector2<f64>>();
-        let squares = places().map(|(share, centre)| share * (centre.coords - middle).norm_squared()).sum::<f64>();
-        // Half of the normals are across the way to the middle.
-        0.5 * squares / (spread * spread)
-    }
-
-    /// The closed contour that a cell is of; `None` where it is of an open one.
-    fn contour_from(&self, start: usize) -> Option<ContourArea> {
-        let origin = self.cells.get(start)?.centre;
-        let (mut last, mut here) = (start, self.cells[start].neighbours[1]);
-        let (mut area, mut moment) = (0.0, Vector2::zeros());
-        let (mut cells, mut least) = (1, start);
-        while here != start {
-            // Links may point either way.
-            let [a, b] = self.cells[here].neighbours;
-            let next = if a == last { b } else { a };
-            if cells == self.cells.len() || a == here || b == here {
-                return None;
-            }
-            let (p, q) = (self.cells[last].centre - origin, self.cells[here].centre - origin);
-            let twice = p.perp(&q);
-            area += twice;
-            moment += twice * (p + q);
-            (cells, least) = (cells + 1, least.min(here));
-            (last, here) = (here, next);
-        }
-        (cells > 1).then_some(ContourArea { origin, area, moment, cells, least })
     }
 
     /// What frames have said of the turn.

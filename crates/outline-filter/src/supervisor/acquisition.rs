@@ -231,7 +231,7 @@ impl MotionFilter {
         let Some(best) = accepted.min_by(|a, b| a.squares.total_cmp(&b.squares)) else { return };
         for candidate in candidates.iter_mut() {
             let Candidate { track, outcome, likelihood, verdict_of, .. } = candidate;
-            if likelihood.is_worse_than(&best) {
+            if outcome.is_accepted() || likelihood.is_worse_than(&best) {
                 continue;
             }
             self.frame.load(outline, track.reference());

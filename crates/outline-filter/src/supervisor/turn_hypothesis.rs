@@ -67,8 +67,8 @@ impl TurnHypothesis {
         Some(found)
     }
 
-    /// What was found of the loaded frame, which the present track has shown to be one of the object: once more where it was rejected for what lies
-    /// beyond the known ends of the outline.
+    /// What was found of the loaded frame, which the present track has shown to be one of the object: once more where it was rejected for its
+    /// noise, or for what lies beyond the known ends of the outline.
     pub(super) fn again_if_vouched_for(
         &mut self,
         settings: &FilterSettings,

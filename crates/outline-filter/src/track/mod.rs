@@ -9,6 +9,7 @@ mod growth;
 #[cfg(test)]
 mod jacobians_tests;
 mod known_outline;
+mod outcome;
 mod outline;
 mod remapping;
 mod rounding;
@@ -28,8 +29,9 @@ mod usual_agreement;
 
 pub(crate) use estimate::TurnTold;
 pub use known_outline::{KnownOutline, KnownPiece};
+pub(crate) use outcome::{Comparison, Outcome};
 pub(crate) use remapping::PlacedFrame;
 #[cfg(feature = "serde")]
 pub(crate) use saved::SavedCells;
-pub(crate) use track::{Comparison, Outcome, Track};
+pub(crate) use track::Track;
 pub(crate) use turn::{turn_between, wrapped};

@@ -2,11 +2,12 @@ use std::sync::Arc;
 
 use freeform_curve_fit::Outline;
 use freeform_estimate::ProcessNoise;
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector};
+use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
 use super::{
-    first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile, usual_agreement::UsualAgreement,
+    Comparison, Outcome, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile,
+    usual_agreement::UsualAgreement,
 };
 use crate::{
     belief::Belief,
@@ -15,7 +16,7 @@ use crate::{
     measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning},
-    update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection, Sensitivity, commit, hold},
+    update::{FrameMeasurement, Gate, PoseMeasurement, Rejection, Sensitivity, commit, hold},
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
@@ -42,61 +43,6 @@ pub(crate) struct Track {
     pub(super) first_pose: FirstPose,
     /// Frames taken.
     pub(super) frames: usize,
-}
-
-/// Whether a frame is to be compared with what other tracks make of it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Comparison {
-    Asked,
-    NotAsked,
-}
-
-/// What became of a frame.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Outcome {
-    pub(crate) measurement: FrameMeasurement,
-    pub(crate) verdict: Result<(), Rejection>,
-    pub(crate) innovation: PoseInnovation,
-    /// What the frame tells of the pose by itself, if it shows the outline, taken or not.
-    pub(crate) pose: Option<PoseMeasurement>,
-    /// Standard deviations that the rounding of masks adds to that, about the centroid, normalised.
-    pub(crate) rounding: CentredDeviations,
-    /// Displacement of the whole outline by the frame, in the body frame.
-    pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
-    /// Whether more of its points than usual disagree with the outline.
-    pub(crate) disagrees: bool,
-    /// Of the frame, given the prediction; zero unless asked for.
-    pub(crate) likelihood: NegativeLogLikelihood,
-}
-
-impl Outcome {
-    /// Of a frame that is not taken, and of which no pose is told.
-    pub(super) fn unsolved(measurement: FrameMeasurement, gate: &Gate) -> Self {
-        Self {
-            measurement,
-            verdict: gate.verdict(&measurement).and(Err(Rejection::NotFound)),
-            innovation: PoseInnovation::default(),
-            pose: None,
-            rounding: CentredDeviations::zeros(),
-            shift: SVector::zeros(),
-            disagrees: false,
-            likelihood: NegativeLogLikelihood::default(),
-        }
-    }
-
-    pub(crate) fn is_accepted(&self) -> bool {
-        self.verdict.is_ok()
-    }
-
-    /// The gate by which the frame, of so many points, is judged where another pose shows that it is one of the object; `None` where it was
-    /// rejected for something that this says nothing of.
-    pub(crate) fn gate_if_vouched_for(&self, gate: Gate, points: usize) -> Option<Gate> {
-        match self.verdict {
-            Err(Rejection::NoiseTooLarge { .. }) => Some(gate.without_noise()),
-            Err(Rejection::AgreementTooSmall { .. }) => gate.vouched_for(&self.measurement, points),
-            _ => None,
-        }
-    }
 }
 
 impl Track {

@@ -1,0 +1,64 @@
+//! What became of a frame.
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::SVector;
+
+use crate::{
+    dynamics::CentredDeviations,
+    measurement::NegativeLogLikelihood,
+    update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection},
+};
+
+/// Whether a frame is to be compared with what other tracks make of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Comparison {
+    Asked,
+    NotAsked,
+}
+
+/// What became of a frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Outcome {
+    pub(crate) measurement: FrameMeasurement,
+    pub(crate) verdict: Result<(), Rejection>,
+    pub(crate) innovation: PoseInnovation,
+    /// What the frame tells of the pose by itself, if it shows the outline, taken or not.
+    pub(crate) pose: Option<PoseMeasurement>,
+    /// Standard deviations that the rounding of masks adds to that, about the centroid, normalised.
+    pub(crate) rounding: CentredDeviations,
+    /// Displacement of the whole outline by the frame, in the body frame.
+    pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
+    /// Whether more of its points than usual disagree with the outline.
+    pub(crate) disagrees: bool,
+    /// Of the frame, given the prediction; zero unless asked for.
+    pub(crate) likelihood: NegativeLogLikelihood,
+}
+
+impl Outcome {
+    /// Of a frame that is not taken, and of which no pose is told.
+    pub(super) fn unsolved(measurement: FrameMeasurement, gate: &Gate) -> Self {
+        Self {
+            measurement,
+            verdict: gate.verdict(&measurement).and(Err(Rejection::NotFound)),
+            innovation: PoseInnovation::default(),
+            pose: None,
+            rounding: CentredDeviations::zeros(),
+            shift: SVector::zeros(),
+            disagrees: false,
+            likelihood: NegativeLogLikelihood::default(),
+        }
+    }
+
+    pub(crate) fn is_accepted(&self) -> bool {
+        self.verdict.is_ok()
+    }
+
+    /// The gate by which the frame, of so many points, is judged where another pose shows that it is one of the object; `None` where it was
+    /// rejected for something that this says nothing of.
+    pub(crate) fn gate_if_vouched_for(&self, gate: Gate, points: usize) -> Option<Gate> {
+        match self.verdict {
+            Err(Rejection::NoiseTooLarge { .. }) => Some(gate.without_noise()),
+            Err(Rejection::AgreementTooSmall { .. }) => gate.vouched_for(&self.measurement, points),
+            _ => None,
+        }
+    }
+}
