@@ -204,12 +204,6 @@ impl OutlineMap {
         self.null_space.turn_without_most < tuning::TOLD_BY_REST * self.null_space.weakest_turn
     }
 
-    /// The turn that the outline shows least without the cells that tell most of it, and its centre, both in the body frame.
-    #[cfg(test)]
-    pub(super) fn turn_of_rest(&self) -> Option<(ParameterVector, Point2<f64>)> {
-        self.null_space.turn_of_rest
-    }
-
     /// Deviation that directions of normals may have at most, in rad. Points slide along an outline that errs in its normals, and the
     /// levers that these errors make say that they do not: the less an outline shows of its turn, the better its normals must be.
     pub(crate) fn normal_noise(&self) -> f64 {

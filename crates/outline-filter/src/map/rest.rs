@@ -79,7 +79,7 @@ mod tests {
         let track = Track::begin(MotionModel::Rigid, &ring(), 0.0, &mut frame).expect("a track");
         let map = track.map();
         assert!(!track.turn_is_unseen() && map.turn_hangs_on_few());
-        let (reference, (turn, centre)) = (track.reference(), map.turn_of_rest().expect("a turn"));
+        let (reference, (turn, centre)) = (track.reference(), map.null_space.turn_of_rest.expect("a turn"));
         let centre = reference.origin + reference.radius * centre.coords;
         assert!((centre - Point2::new(0.5, 0.2)).norm() < 0.003, "{centre}");
         // The centroid lies away from the gap.

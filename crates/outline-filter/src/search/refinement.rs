@@ -174,7 +174,7 @@ impl Seen<'_> {
             unknown += usize::from(is_beyond_end);
             lies.push(Lies::of(is_beyond_end, distance < most.elsewhere));
         }
-        // Where one piece ends and the next begins hardly matters: points there border on others that are as near as any.
+        // All points are taken as one open piece: a run of them across the seam of a contour, or of two pieces, needs an end on one side only.
         let count = lies.len();
         hide_points(
             &mut lies[..],

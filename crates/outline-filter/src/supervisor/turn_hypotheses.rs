@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 
 use super::{
     settings::FilterSettings,
-    turn_hypothesis::{Reason, TurnHypothesis, gate_of_motion},
+    turn_hypothesis::{Reason, TurnHypothesis, again_if_vouched_for},
 };
 use crate::{
     measurement::{Frame, NegativeLogLikelihood},
@@ -240,13 +240,8 @@ impl TurnHypotheses {
             // Searches that began apart may find the same motion in the end.
             let are_compared = is_alike && outcome.is_accepted() && found.is_accepted();
             let have_met = are_compared && rival.has_met(track, different_turn(self.symmetry_angle));
-            if found.is_accepted()
-                && !self.likelihood.is_worse_than(&of_rival)
-                && let Some(gate) = outcome.gate_if_vouched_for(gate_of_motion(settings, track), frame.points.len())
-            {
-                // The other has shown that the frame shows the object.
-                let again = track.update(frame, &gate, Comparison::NotAsked);
-                outcome = if again.is_accepted() { again } else { outcome };
+            if found.is_accepted() && !self.likelihood.is_worse_than(&of_rival) {
+                outcome = again_if_vouched_for(track, settings, frame, outcome);
             }
             // Of what looks the same the path decides nothing.
             let [of_present, of_points] = [self.likelihood, of_rival].map(NegativeLogLikelihood::of_points);

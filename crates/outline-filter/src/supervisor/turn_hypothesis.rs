@@ -67,25 +67,32 @@ impl TurnHypothesis {
         Some(found)
     }
 
-    /// What was found of the loaded frame, which the present track has shown to be one of the object: once more where it was rejected for its
-    /// noise, or for what lies beyond the known ends of the outline.
+    /// What was found of the loaded frame, which the present track has shown to be one of the object.
     pub(super) fn again_if_vouched_for(
         &mut self,
         settings: &FilterSettings,
         frame: &mut Frame,
         found: Outcome,
     ) -> Outcome {
-        let Some(track) = self.track.as_mut() else { return found };
-        let Some(gate) = found.gate_if_vouched_for(gate_of_motion(settings, track), frame.points.len()) else {
-            return found;
-        };
-        let again = track.update(frame, &gate, Comparison::NotAsked);
-        if again.is_accepted() { again } else { found }
+        self.track.as_mut().map_or(found, |track| again_if_vouched_for(track, settings, frame, found))
     }
 
     pub(super) fn has_met(&self, present: &Track, different_turn: f64) -> bool {
         self.track.as_ref().is_some_and(|track| present.has_met(track, different_turn))
     }
+}
+
+/// What a track has found of the loaded frame, which another has shown to be one of the object: once more where it was rejected for its noise, or
+/// for what lies beyond the known ends of the outline.
+pub(super) fn again_if_vouched_for(
+    track: &mut Track,
+    settings: &FilterSettings,
+    frame: &mut Frame,
+    found: Outcome,
+) -> Outcome {
+    let gate = found.gate_if_vouched_for(gate_of_motion(settings, track), frame.points.len());
+    let again = gate.map(|gate| track.update(frame, &gate, Comparison::NotAsked));
+    again.filter(Outcome::is_accepted).unwrap_or(found)
 }
 
 /// The gate for a frame of a track whose motion goes on as it was.

@@ -87,6 +87,16 @@ fn settings() -> TraceSettings {
     TraceSettings { clipping: Clipping::Open, ..TraceSettings::default() }
 }
 
+/// Root mean square.
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
 /// What is found of an edge.
 struct Found {
     /// Its mean place, in pixels.
@@ -103,9 +113,7 @@ fn found_of_edges(count: u64, of: impl Fn(u64) -> Step) -> Vec<Found> {
         let step = of(k);
         let traced = step.traced((step.angle * 1000.0) as u64, &settings());
         let errors = step.errors(&traced);
-        let mut stated = traced.edges.expect("edges").deviations;
-        stated.sort_by(f64::total_cmp);
-        let of_stated = size(errors.iter().copied()) / stated[stated.len() / 2];
+        let of_stated = rms(&errors) / median(traced.edges.expect("edges").deviations);
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         // An edge crosses so many of the lines between pixels on a pixel of its length.
         let length = errors.len() as f64 / (step.angle.cos().abs() + step.angle.sin().abs());
@@ -122,7 +130,6 @@ fn found_of_edges(count: u64, of: impl Fn(u64) -> Step) -> Vec<Found> {
 #[test]
 fn edges_have_no_bias_and_scatter_as_little_as_the_grey_values_allow() {
     const EDGES: u64 = 150;
-    let rms = |ratios: &[f64]| (ratios.iter().map(|r| r * r).sum::<f64>() / ratios.len() as f64).sqrt();
     for blur in [0.7, 1.5, 3.0] {
         let mut of_blur = Vec::new();
         for (case, contrast) in (0..).zip([20.0, 70.0, 200.0]) {
@@ -138,7 +145,7 @@ fn edges_have_no_bias_and_scatter_as_little_as_the_grey_values_allow() {
                 let bias = found.iter().map(|edge| edge.mean).sum::<f64>() / EDGES as f64;
                 let ratios: Vec<f64> = found.iter().map(|edge| edge.ratio).collect();
                 let ratio = rms(&ratios);
-                let of_stated = size(found.iter().map(|edge| edge.of_stated));
+                let of_stated = rms(&found.iter().map(|edge| edge.of_stated).collect::<Vec<_>>());
                 println!(
                     "contrast {contrast} blur {blur} shading {shading}: bias {bias:.4}, {ratio:.2} of the bound, \
                      points {of_stated:.2} of what they state"
@@ -185,10 +192,7 @@ fn blur_contrast_and_noise_are_told_and_points_have_their_deviations() {
     );
     assert!(clear_share > 0.9 && systematic < 0.1, "{clear_share} {systematic}");
     let errors = step.errors(&traced);
-    let spread = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
-    let mut sorted = deviations;
-    sorted.sort_by(f64::total_cmp);
-    let typical = sorted[sorted.len() / 2];
+    let (spread, typical) = (rms(&errors), median(deviations));
     // Points 0.8 pixels apart share pixels with their neighbours, so that each scatters less than one pixel of edge does.
     assert!(spread < 1.3 * typical && spread > 0.3 * typical, "{spread} {typical}");
 }
@@ -237,11 +241,6 @@ fn a_blurred_disc_has_its_radius() {
     }
 }
 
-/// Root mean square.
-fn size(values: impl Iterator<Item = f64> + Clone) -> f64 {
-    (values.clone().map(|v| v * v).sum::<f64>() / values.count() as f64).sqrt()
-}
-
 #[test]
 fn a_thin_bar_has_its_thickness_and_points_that_are_off_as_they_state() {
     for (blur, thickness) in [(0.7, 4.0), (0.7, 6.0), (1.2, 6.0), (1.2, 8.0), (2.0, 9.0), (2.0, 11.0)] {
@@ -262,12 +261,10 @@ fn a_thin_bar_has_its_thickness_and_points_that_are_off_as_they_state() {
             systematic.push(edges.systematic);
             let places = step.errors(&traced).into_iter().map(|distance| distance.abs() - 0.5 * thickness);
             errors.extend(places);
-            let mut of_points = edges.deviations;
-            of_points.sort_by(f64::total_cmp);
-            deviations.push(of_points[of_points.len() / 2]);
+            deviations.push(median(edges.deviations));
         }
         let bias = errors.iter().sum::<f64>() / errors.len() as f64;
-        let [off, stated, together] = [&errors, &deviations, &systematic].map(|of| size(of.iter().copied()));
+        let [off, stated, together] = [&errors, &deviations, &systematic].map(|of| rms(of));
         println!("blur {blur} thickness {thickness}: bias {bias:.3}, {off:.3} stated {stated:.3}, {together:.3}");
         // Profiles that reach the other side made them 0.3 to 0.6 thicker, with deviations of 0.1 to 0.6 and a systematic part of a pixel.
         assert!(bias.abs() < 0.04 * blur.max(1.0) && off < 1.3 * stated && stated < 2.0 * off, "{bias} {off} {stated}");
@@ -295,7 +292,7 @@ fn a_small_disc_that_is_found_far_from_its_edge_is_traced_on_it() {
         ratios.extend(of_seed.iter().zip(&deviations).map(|(error, stated)| error / stated));
         errors.extend(of_seed);
     }
-    let [off, ratio] = [&errors, &ratios].map(|of| size(of.iter().copied()));
+    let [off, ratio] = [&errors, &ratios].map(|of| rms(of));
     println!("off {off:.3}, {ratio:.2} of what is stated");
     assert!(off < 0.15 && ratio < 1.5, "{off} {ratio}");
 }
