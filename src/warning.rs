@@ -99,6 +99,8 @@ pub enum Warning {
     Aliases {
         /// These, in rad/s, nearest to zero first.
         omega: Vec<f64>,
+        /// The model: where it has no omega, these are mean angular velocities (a2 - a3) / 2.
+        motion: MotionModel,
     },
     /// The method diverged, and its numbers are not finite.
     Diverged,
@@ -225,7 +227,7 @@ impl fmt::Display for Warning {
             Self::PlaneMisfit { excess } => write_plane_misfit(f, *excess),
             Self::TooManyRejected { rejected, frames } => write_too_many_rejected(f, *rejected, *frames),
             Self::WrongFamily { family, motion } => write_wrong_family(f, *family, *motion),
-            Self::Aliases { omega } => write_aliases(f, omega),
+            Self::Aliases { omega, motion } => write_aliases(f, omega, *motion),
             Self::Diverged => f.write_str("the identifier diverged: its numbers are not finite"),
             Self::StateLost { reason } => write_state_lost(f, reason),
             Self::FrameRejected(rejection) => write!(f, "rejected: {rejection}"),
@@ -296,11 +298,12 @@ fn write_too_many_rejected(f: &mut fmt::Formatter<'_>, rejected: usize, frames: 
     )
 }
 
-fn write_aliases(f: &mut fmt::Formatter<'_>, omega: &[f64]) -> fmt::Result {
+fn write_aliases(f: &mut fmt::Formatter<'_>, omega: &[f64], motion: MotionModel) -> fmt::Result {
     let list: Vec<String> = omega.iter().take(MOST_ALIASES).map(|omega| significant(*omega, 4)).collect();
     write!(
         f,
-        "the outline has a symmetry: omega may also be {} rad/s; the smallest turn from frame to frame was taken",
+        "the outline has a symmetry: {} may also be {} rad/s; the smallest turn from frame to frame was taken",
+        if motion.parameter_names().contains(&"omega") { "omega" } else { "the mean angular velocity (a2 - a3) / 2" },
         list.join(" or ")
     )
 }

@@ -278,7 +278,7 @@ impl FilteredObject {
         }
         let aliases = filter.aliases();
         if !aliases.is_empty() {
-            warnings.push(Warning::Aliases { omega: aliases });
+            warnings.push(Warning::Aliases { omega: aliases, motion: filter.settings().model });
         }
         if filter.motion_changed() {
             let dynamics = filter.dynamics().map(|weights| weights.most_probable());

@@ -29,7 +29,7 @@ fn examples() -> Vec<Warning> {
             rival_turns: vec![40_f64.to_radians()],
             parameters: vec!["omega"],
         }),
-        Warning::Aliases { omega: vec![-4.712, 7.854] },
+        Warning::Aliases { omega: vec![-4.712, 7.854], motion: MotionModel::Rigid },
         Warning::TwoPlanes(Box::new(PlaneAmbiguity {
             solutions: [solution(0.6), solution(0.4)],
             parameters: vec!["wx", "wy", "normal"],

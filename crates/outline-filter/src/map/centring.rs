@@ -1,9 +1,11 @@
 //! Coordinates about the middle of a map in which it has the size 1.
 use freeform_riccati::MotionModel;
-use nalgebra::{Matrix2, Matrix3, Point2, Vector2};
+use nalgebra::{Matrix2, Matrix3, Point2, Rotation2, Vector2};
 
 use super::Cell;
 use crate::tuning::null_space::ANY_DIRECTION;
+#[cfg(feature = "serde")]
+use crate::tuning::null_space::UNDONE;
 
 /// Coordinates about the mean of the cells in which their RMS radius is 1. Where shapes may be stretched, outlines that are the same up to a
 /// stretch are the same in them: a slender one shows as much there as one that is as long as wide.
@@ -27,7 +29,8 @@ pub(super) struct NormalByNeighbours {
 
 /// Makes an outline as long as wide.
 #[derive(Debug, Clone, Copy)]
-struct Stretch {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Stretch {
     linear: Matrix2<f64>,
     inverse: Matrix2<f64>,
     /// How much longer the outline gets.
@@ -35,8 +38,9 @@ struct Stretch {
 }
 
 impl Centring {
-    /// That of the cells of a map; `sigma` is the deviation of their noise, which is wide enough for an outline that is a line.
-    pub(super) fn of(cells: &[Cell], model: MotionModel, sigma: f64) -> Self {
+    /// That of the cells of a map; `sigma` is the deviation of their noise, which is wide enough for an outline that is a line, `of_area` the
+    /// covariance of the places within it, where it is closed.
+    pub(super) fn of(cells: &[Cell], model: MotionModel, sigma: f64, of_area: Option<Matrix2<f64>>) -> Self {
         let count = cells.len() as f64;
         let centroid = Point2::from(cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
         let spread = cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
@@ -44,11 +48,13 @@ impl Centring {
         if model <= MotionModel::Similarity {
             return centring;
         }
-        let scatter = cells.iter().map(|cell| cell.centre - centroid).map(|v| v * v.transpose() / count);
-        let axes = scatter.sum::<Matrix2<f64>>().symmetric_eigen();
+        // Stretches of cells depend on the way that the outline is stretched.
+        let of_cells = || cells.iter().map(|cell| cell.centre - centroid).map(|v| v * v.transpose() / count).sum();
+        let axes = of_area.unwrap_or_else(of_cells).symmetric_eigen();
         let least = (sigma * sigma).max(spread * spread * f64::EPSILON);
+        let variances = axes.eigenvalues.map(|variance| variance.max(least));
         // Relative to those of an outline of this size that is as long as wide.
-        let widths = axes.eigenvalues.map(|variance| (2.0 * variance.max(least)).sqrt() / spread);
+        let widths = variances.map(|variance| (2.0 * variance / variances.sum()).sqrt());
         let along_axes =
             |sizes: Vector2<f64>| axes.eigenvectors * Matrix2::from_diagonal(&sizes) * axes.eigenvectors.transpose();
         let (linear, inverse) = (along_axes(widths.map(f64::recip)), along_axes(widths));
@@ -84,20 +90,56 @@ impl Centring {
         self.spread
     }
 
-    pub(super) fn is_stretched(&self) -> bool {
-        self.stretch.is_some()
+    /// What makes the outline as long as wide; `None` where its shape is kept.
+    pub(super) fn stretch(&self) -> Option<Stretch> {
+        self.stretch
     }
 
     /// A generator as it is before the stretch.
     pub(super) fn unstretched(&self, generator: &Matrix3<f64>) -> Matrix3<f64> {
-        let Some(Stretch { linear, inverse, .. }) = self.stretch else { return *generator };
-        inverse.to_homogeneous() * generator * linear.to_homogeneous()
+        self.stretch.map_or(*generator, |stretch| stretch.unstretched(generator))
     }
 
     /// From these coordinates, before the stretch, to the body frame.
     pub(super) fn to_body(self) -> Matrix3<f64> {
         let Self { centroid: c, spread, .. } = self;
         Matrix3::new(spread, 0.0, c.x, 0.0, spread, c.y, 0.0, 0.0, 1.0)
+    }
+}
+
+impl Stretch {
+    /// A generator of the stretched outline as it is before the stretch.
+    pub(super) fn unstretched(&self, generator: &Matrix3<f64>) -> Matrix3<f64> {
+        self.inverse.to_homogeneous() * generator * self.linear.to_homogeneous()
+    }
+
+    /// As [`unstretched`](Self::unstretched), made one whose parameters are a vector of length 1.
+    pub(super) fn unit_generator(&self, model: MotionModel, generator: &Matrix3<f64>) -> Matrix3<f64> {
+        let generator = self.unstretched(generator);
+        let parameters = model.parameters_of(&generator);
+        let length = parameters[..model.parameter_count()].iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+        generator / length
+    }
+
+    /// How many times as long as wide the outline is.
+    pub(super) fn ratio(&self) -> f64 {
+        let widths = self.inverse.symmetric_eigenvalues();
+        widths.max() / widths.min()
+    }
+
+    /// The linear part of a turn of the stretched outline by an angle, rad, before the stretch.
+    pub(super) fn turn(&self, angle: f64) -> Matrix2<f64> {
+        self.inverse * Rotation2::new(angle).matrix() * self.linear
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Stretch {
+    /// Whether it stretches and can be undone.
+    pub(super) fn is_valid(&self) -> bool {
+        let undone = self.linear * self.inverse;
+        let is_finite = self.linear.iter().chain(&self.inverse).all(|entry| entry.is_finite());
+        is_finite && (undone - Matrix2::identity()).amax() < UNDONE && self.mean_length > 0.0
     }
 }
 
@@ -126,7 +168,7 @@ mod tests {
     #[test]
     fn a_slender_ellipse_is_a_circle_where_shapes_may_be_stretched() {
         let cells = ellipse(0.1);
-        let centring = Centring::of(&cells, MotionModel::Affine, 1e-3);
+        let centring = Centring::of(&cells, MotionModel::Affine, 1e-3, None);
         for cell in &cells {
             let p = centring.centred(&cell.centre);
             let (normal, _) = centring.normal(&normal_of(cell));
@@ -149,7 +191,7 @@ mod tests {
     #[test]
     fn where_shapes_keep_their_form_an_outline_is_as_slender_as_it_is() {
         let cells = ellipse(0.1);
-        let centring = Centring::of(&cells, MotionModel::Similarity, 1e-3);
+        let centring = Centring::of(&cells, MotionModel::Similarity, 1e-3, None);
         assert!((centring.centred(&cells[50].centre).coords.norm() - 0.14).abs() < 1e-2);
         assert_eq!(centring.normal(&normal_of(&cells[7])), (cells[7].normal, 1e-4));
         assert_eq!(centring.relative_length(&cells[7].normal), 1.0);

@@ -1,5 +1,5 @@
 //! Areas within the closed contours of cells: the centroid of a body, and what the places of its contours tell of a turn.
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Matrix2, Point2, Vector2};
 
 use super::OutlineMap;
 use crate::tuning::null_space as tuning;
@@ -11,6 +11,8 @@ pub(super) struct ContourArea {
     /// Twice the area, signed.
     area: f64,
     moment: Vector2<f64>,
+    /// Second moments about the origin, times 24, signed.
+    second: Matrix2<f64>,
     cells: usize,
     /// The cell of the contour that comes first.
     least: usize,
@@ -20,6 +22,17 @@ impl ContourArea {
     fn centroid(&self) -> Option<Point2<f64>> {
         (self.area != 0.0).then(|| self.origin + self.moment / (3.0 * self.area))
     }
+
+    /// Covariance of the places in the area.
+    fn covariance(&self) -> Option<Matrix2<f64>> {
+        let mean = self.centroid()? - self.origin;
+        Some(self.second / (12.0 * self.area) - mean * mean.transpose())
+    }
+}
+
+/// The largest of some contours.
+fn boundary(contours: &[ContourArea]) -> Option<&ContourArea> {
+    contours.iter().max_by(|a, b| a.area.abs().total_cmp(&b.area.abs()))
 }
 
 impl OutlineMap {
@@ -41,7 +54,12 @@ impl OutlineMap {
     /// Centroid of the area within the polygon of the cells, if they are one closed contour; of several, within the largest, which is the
     /// boundary of the body.
     pub(super) fn area_centroid(contours: &[ContourArea]) -> Option<Point2<f64>> {
-        contours.iter().max_by(|a, b| a.area.abs().total_cmp(&b.area.abs()))?.centroid()
+        boundary(contours)?.centroid()
+    }
+
+    /// Covariance of the places in that area. An affine map of the outline maps it as well, which is not true of places along the outline.
+    pub(super) fn area_covariance(contours: &[ContourArea]) -> Option<Matrix2<f64>> {
+        boundary(contours)?.covariance()
     }
 
     /// Mean square of the lever arms of a turn that the places of closed contours beside each other have; squares of the RMS radius. Errors of
@@ -68,7 +86,7 @@ impl OutlineMap {
     fn contour_from(&self, start: usize) -> Option<ContourArea> {
         let origin = self.cells.get(start)?.centre;
         let (mut last, mut here) = (start, self.cells[start].neighbours[1]);
-        let (mut area, mut moment) = (0.0, Vector2::zeros());
+        let (mut area, mut moment, mut second) = (0.0, Vector2::zeros(), Matrix2::zeros());
         let (mut cells, mut least) = (1, start);
         while here != start {
             // Links may point either way.
@@ -81,9 +99,45 @@ impl OutlineMap {
             let twice = p.perp(&q);
             area += twice;
             moment += twice * (p + q);
+            second += twice * (p * p.transpose() + q * q.transpose() + (p + q) * (p + q).transpose());
             (cells, least) = (cells + 1, least.min(here));
             (last, here) = (here, next);
         }
-        (cells > 1).then_some(ContourArea { origin, area, moment, cells, least })
+        (cells > 1).then_some(ContourArea { origin, area, moment, second, cells, least })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::Outline;
+    use freeform_riccati::MotionModel;
+    use nalgebra::Vector2;
+
+    use super::*;
+    use crate::{
+        drawn_curves::{all_around, lobed, polar},
+        measurement::Frame,
+        track::Track,
+    };
+
+    /// Covariance of the area of a curve of three lobes that has been moved by an affine map, in image coordinates.
+    fn covariance_of(map: &Matrix2<f64>) -> Matrix2<f64> {
+        let place = |t| map * polar(lobed(t, &[(3.0, [0.2, 0.0]), (2.0, [0.0, 0.1])]), t) + Vector2::new(3.0, -1.0);
+        let outline = Outline::closed(all_around(2000, place)).expect("an outline");
+        let track = Track::begin(MotionModel::Affine, &outline, 0.0, &mut Frame::default()).expect("a track");
+        let radius = track.reference().radius;
+        let covariance = OutlineMap::area_covariance(&track.map().closed_contours()).expect("a closed contour");
+        covariance * radius * radius
+    }
+
+    #[test]
+    fn the_covariance_of_an_area_goes_along_with_affine_maps() {
+        let plain = covariance_of(&Matrix2::identity());
+        // Of a circle it is a quarter of the squared radius.
+        assert!((0.2..0.35).contains(&plain.m11) && (0.2..0.35).contains(&plain.m22), "{plain}");
+        for map in [Matrix2::new(0.3, 0.1, -0.4, 1.2), Matrix2::new(-1.0, 0.5, 0.2, 0.4)] {
+            let (found, expected) = (covariance_of(&map), map * plain * map.transpose());
+            assert!((found - expected).amax() < 0.003 * expected.amax(), "{found} {expected}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::{
     OutlineMap,
-    centring::{Centring, NormalByNeighbours},
+    centring::{Centring, NormalByNeighbours, Stretch},
     local_fit::direction_variance,
     rest::Rest,
     turn_evidence::{TurnEvent, TurnEvidence},
@@ -13,6 +13,9 @@ use crate::tuning::{
     contour::{NO_DIRECTION, NORMAL_NOISE},
     null_space as tuning,
 };
+
+/// Generator of a turn about the origin by 1 rad, clockwise where y points up.
+const CLOCKWISE: Matrix3<f64> = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy)]
@@ -43,6 +46,8 @@ pub(super) struct NullSpace {
     /// From centred coordinates of unit RMS radius to the body frame.
     pub(super) frame: Matrix3<f64>,
     pub(super) centroid: Point2<f64>,
+    /// What makes the outline as long as wide, where its shape may be stretched.
+    pub(super) stretch: Option<Stretch>,
     pub(super) turn: TurnEvidence,
     /// Smallest eigenvalue of the levers of a turn that may be shown, less what errors of the normals make of it.
     pub(super) weakest_turn: f64,
@@ -58,6 +63,7 @@ impl Default for NullSpace {
             in_body: Vec::new(),
             frame: Matrix3::identity(),
             centroid: Point2::origin(),
+            stretch: None,
             turn: TurnEvidence::default(),
             weakest_turn: f64::INFINITY,
             turn_without_most: f64::INFINITY,
@@ -86,9 +92,6 @@ impl OutlineMap {
 
     /// After a frame that has not shown the turn about the object's centroid: marks it as not observable.
     pub(crate) fn hide_turn(&mut self, model: MotionModel) {
-        let turn = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-        let parameters = model.parameters_of(&turn);
-        let size = parameters[..model.parameter_count()].iter().map(|c| c * c).sum::<f64>().sqrt();
         let space = &mut self.null_space;
         let Some(inverse) = space.frame.try_inverse() else { return };
         if !space.holds_turn(model) {
@@ -102,8 +105,24 @@ impl OutlineMap {
                 space.centroid = centre;
                 return;
             }
-            space.in_body.push(model.parameters_of(&(space.frame * turn / size * inverse)));
+            space.in_body.push(model.parameters_of(&(space.frame * space.unit_turn(model) * inverse)));
         }
+    }
+
+    /// The turn of the body by an angle about its centroid, rad, anticlockwise where y points up. Where the model may stretch an outline, that of one
+    /// which is stretched until it is as long as wide: only such turns may leave it as it is. `None` where it may not.
+    pub(crate) fn stretched_turn(&self, angle: f64) -> Option<Matrix3<f64>> {
+        let turn = self.null_space.stretch?.turn(angle);
+        let centroid = self.null_space.centroid.coords;
+        let shift = centroid - turn * centroid;
+        let mut map = turn.to_homogeneous();
+        (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
+        Some(map)
+    }
+
+    /// How many times as long as wide an outline is that may be stretched; 1 where it may not.
+    pub(crate) fn stretch_ratio(&self) -> f64 {
+        self.null_space.stretch.map_or(1.0, |stretch| stretch.ratio())
     }
 
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
@@ -124,7 +143,8 @@ impl OutlineMap {
     pub(crate) fn find_null_directions(&mut self, model: MotionModel, sigma: f64) {
         let k = model.parameter_count();
         let count = self.cells.len() as f64;
-        let centring = Centring::of(&self.cells, model, sigma);
+        let contours = self.closed_contours();
+        let centring = Centring::of(&self.cells, model, sigma, Self::area_covariance(&contours));
         let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
         levers.view_mut((0, 0), (k, k)).fill(0.0);
         // What errors of the normals alone would make of the levers.
@@ -142,7 +162,6 @@ impl OutlineMap {
             of_cells.push((across, count));
             levers_of_noise += variance / count * along * along.transpose();
         }
-        let contours = self.closed_contours();
         let centroid = Self::area_centroid(&contours).unwrap_or(centring.centroid);
         let of_places = self.levers_of_places(&contours, centring.spread());
         let noise = sigma / centring.spread();
@@ -160,26 +179,28 @@ impl OutlineMap {
             let told = *value - of_noise;
             let generator = model.generator(&vector.as_slice()[..k]);
             let mut is_shown = *value >= tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise);
-            // Where shapes may change, a weak direction is more of that than of a turn.
-            let is_turn = model <= MotionModel::Similarity && turn_rate(&generator).abs() > tuning::HOLDS_TURN;
+            let is_turn = turn_rate(&generator).abs() > tuning::HOLDS_TURN;
             if is_turn && places_show_turn {
                 space.weakest_turn = space.weakest_turn.min(told.max(of_places));
                 is_shown = true;
             } else if is_shown && is_turn {
                 space.weakest_turn = space.weakest_turn.min(told);
-                let rest = Rest::of(&of_cells, &vector.into_owned(), k);
-                // A long bar without its ends does not show where it is along itself, which is no turn.
-                if let Some(turn) = rest.turn(model, &to_body)
-                    && rest.lever - of_noise < space.turn_without_most
-                {
-                    (space.turn_without_most, space.turn_of_rest) = (rest.lever - of_noise, Some(turn));
+                // Where the outline may be stretched, frames are not asked whether they tell a turn (`turn_profile`).
+                if centring.stretch().is_none() {
+                    let rest = Rest::of(&of_cells, &vector.into_owned(), k);
+                    // A long bar without its ends does not show where it is along itself, which is no turn.
+                    if let Some(turn) = rest.turn(model, &to_body)
+                        && rest.lever - of_noise < space.turn_without_most
+                    {
+                        (space.turn_without_most, space.turn_of_rest) = (rest.lever - of_noise, Some(turn));
+                    }
                 }
                 is_shown = told >= needed;
             }
             if !is_shown {
                 let Some(inverse) = to_body.try_inverse() else { continue };
                 let mut direction = model.parameters_of(&centring.unstretched(&generator));
-                if centring.is_stretched() {
+                if centring.stretch().is_some() {
                     direction = orthonormal(direction, &unseen);
                 }
                 unseen.push(direction);
@@ -187,7 +208,7 @@ impl OutlineMap {
                 space.in_body.push(model.parameters_of(&(to_body * generator * inverse)));
             }
         }
-        (space.frame, space.centroid) = (to_body, centroid);
+        (space.frame, space.centroid, space.stretch) = (to_body, centroid, centring.stretch());
         space.turn = space.turn.after(TurnEvent::AskedAnew);
         if space.turn == TurnEvidence::Refuted {
             self.hide_turn(model);
@@ -326,6 +347,15 @@ fn orthonormal(mut direction: ParameterVector, others: &[ParameterVector]) -> Pa
 }
 
 impl NullSpace {
+    /// The generator of a clockwise turn in centred coordinates whose parameters are a vector of length 1.
+    fn unit_turn(&self, model: MotionModel) -> Matrix3<f64> {
+        if let Some(stretch) = self.stretch {
+            return stretch.unit_generator(model, &CLOCKWISE);
+        }
+        let parameters = model.parameters_of(&CLOCKWISE);
+        CLOCKWISE / parameters[..model.parameter_count()].iter().map(|c| c * c).sum::<f64>().sqrt()
+    }
+
     fn holds_turn(&self, model: MotionModel) -> bool {
         let Some(inverse) = self.frame.try_inverse() else { return false };
         self.in_body.iter().any(|direction| {

@@ -1,5 +1,7 @@
 use nalgebra::{Point2, Vector2};
 
+#[cfg(feature = "serde")]
+use super::centring::Stretch;
 use super::{Contour, association::Bisectors, nearest_field::NearestField, null_space::NullSpace};
 use crate::tuning::map as tuning;
 
@@ -168,7 +170,7 @@ impl OutlineMap {
                 && (cell.normal.norm_squared() - 1.0).abs() < tuning::UNIT_NORMAL
                 && cell.neighbours.iter().all(|number| *number < count)
         };
-        let NullSpace { in_body, frame, centroid, weakest_turn, turn_without_most, turn_of_rest, turn: _ } =
+        let NullSpace { in_body, frame, centroid, stretch, weakest_turn, turn_without_most, turn_of_rest, turn: _ } =
             &self.null_space;
         let is_valid = (tuning::FEWEST_CELLS..=tuning::MOST_SAVED).contains(&count)
             && self.cells.iter().all(is_cell)
@@ -177,6 +179,7 @@ impl OutlineMap {
             && (1.0 / tuning::FARTHEST..=tuning::FARTHEST).contains(&self.step)
             && self.most_seen <= tuning::MOST_SAVED
             && in_body.len() <= freeform_riccati::MAX_PARAMETERS
+            && stretch.as_ref().is_none_or(Stretch::is_valid)
             && !weakest_turn.is_nan()
             && !turn_without_most.is_nan()
             && turn_of_rest.as_ref().is_none_or(|(turn, centre)| turn.iter().chain(&centre.coords).all(within))

@@ -1,11 +1,13 @@
 //! Global registration: an object that is known as a track looked for in a frame, without a guess of how it has moved.
 mod landmarks;
+mod nearby;
 mod outlook;
 mod refinement;
 mod registration;
 mod symmetry;
 
 pub(crate) use landmarks::Landmarks;
+pub(crate) use nearby::displacement_nearby;
 pub(crate) use refinement::RegisteredPose;
 pub(crate) use registration::Registration;
 pub(crate) use symmetry::symmetry_order;

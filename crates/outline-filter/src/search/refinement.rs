@@ -1,6 +1,6 @@
 //! A pose brought onto the points of a frame from one that is near, by least squares of their distances from the outline.
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, is_affine, map_point_by, pull_back_by};
-use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
+use nalgebra::{Const, DimMin, Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use crate::{
     map::{NullDirection, OutlineMap, median},
@@ -21,6 +21,9 @@ pub(crate) struct RegisteredPose {
     pub(super) spread: f64,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(crate) turn: f64,
+    /// Size of the change from the pose before, shifts left out: that of the turn; where shapes may be stretched the norm of what the linear part
+    /// changes.
+    pub(crate) change: f64,
 }
 
 /// How a start is followed.
@@ -105,7 +108,7 @@ where
     let score = if shows_outline { mean_distance(track, points, &pose, &mut numbers) } else { f64::INFINITY };
     let spread = if shows_outline { spread } else { f64::INFINITY };
     let turn = turn_of(&pose, track.body_pose());
-    RegisteredPose { pose, score, spread, turn }
+    RegisteredPose { pose, score, spread, turn, change: turn.abs() }
 }
 
 /// Keeps steps off a direction that the outline does not show.
@@ -291,6 +294,15 @@ fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, num
 pub(super) fn turn_of(pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
     let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
     (step[(1, 0)] - step[(0, 1)]).atan2(step[(0, 0)] + step[(1, 1)])
+}
+
+/// Size of the change from one pose to another, shifts left out.
+pub(super) fn change_of(model: MotionModel, pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
+    if model <= MotionModel::Similarity {
+        return turn_of(pose, before).abs();
+    }
+    let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
+    (step.fixed_view::<2, 2>(0, 0) - Matrix2::identity()).norm()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point2, Vector2};
 use super::{
     Landmarks,
     outlook::Outlook,
-    refinement::{RegisteredPose, Steps, refined, turn_of},
+    refinement::{RegisteredPose, Steps, change_of, refined, turn_of},
 };
 use crate::{
     track::{Track, turn_between, wrapped},
@@ -91,6 +91,7 @@ impl Registration {
             // A start between middles slides along what the frame shows more of.
             found.pose = track.view().map.least_moved(model, pose, &found.pose);
             found.turn = turn_of(&found.pose, pose);
+            found.change = change_of(model, &found.pose, pose);
         }
         best
     }
@@ -109,6 +110,7 @@ fn starts(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2
         .collect();
     if turns > 1 {
         starts.push(Matrix3::identity());
+        starts.extend(stretched_turns(track, &body_centre, &centre));
     }
     if let Some([before, after]) = landmarks.filter(|_| turns > 1) {
         let ([a, b], [c, d]) = (before.normalised(track.reference()), after.normalised(track.reference()));
@@ -120,6 +122,24 @@ fn starts(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2
         }
     }
     starts
+}
+
+/// Of an outline whose shape may be stretched, and which is not as long as wide: turns of it as one that is, which may leave it as it is.
+fn stretched_turns(track: &Track, from: &Vector2<f64>, to: &Vector2<f64>) -> Vec<Matrix3<f64>> {
+    let (map, pose) = (track.view().map, track.body_pose());
+    if map.stretch_ratio() < tuning::STRETCHED {
+        return Vec::new();
+    }
+    let Some(inverse) = pose.try_inverse() else { return Vec::new() };
+    let turns = (1..tuning::TURNS).map(|i| std::f64::consts::TAU * i as f64 / tuning::TURNS as f64);
+    let stretched = turns.filter_map(|angle| {
+        let mut start = pose * map.stretched_turn(angle)? * inverse;
+        let shift = to - map_point(&start, &Point2::from(*from)).coords;
+        start[(0, 2)] += shift.x;
+        start[(1, 2)] += shift.y;
+        Some(start)
+    });
+    stretched.collect()
 }
 
 /// Adds the smallest turns either way that look like the best of some poses.

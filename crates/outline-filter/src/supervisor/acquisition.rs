@@ -209,8 +209,8 @@ impl MotionFilter {
                 continue;
             }
             let likelihood = NegativeLogLikelihood::default();
-            let (found_in, verdict_of) = (found.pose, VerdictOf::Itself);
-            candidates.push(Candidate { track, outcome, found_in, turn, likelihood, verdict_of });
+            let (found_in, verdict_of, change) = (found.pose, VerdictOf::Itself, found.change);
+            candidates.push(Candidate { track, outcome, found_in, turn, change, likelihood, verdict_of });
         }
         // Only those that are accepted are compared, with each other and the others.
         let is_any_accepted = candidates.iter().any(|candidate| candidate.outcome.is_accepted());

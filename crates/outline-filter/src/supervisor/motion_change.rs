@@ -64,8 +64,9 @@ impl MotionHistory {
         self.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening)
     }
 
-    /// Records what became of a frame some time after the one before.
-    pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64) {
+    /// Records what became of a frame some time after the one before. If it was not taken, `elsewhere` is how far from where it was expected the
+    /// object lies, where that was looked for.
+    pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64, elsewhere: Option<PoseVector>) {
         self.since_taken += seconds;
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
@@ -76,7 +77,7 @@ impl MotionHistory {
                     dynamics.record_change();
                 }
             }
-        } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error()) {
+        } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error()).or(elsewhere) {
             self.contradiction = Some(pose / self.since_taken);
         }
     }

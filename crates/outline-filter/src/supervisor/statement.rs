@@ -1,6 +1,6 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_riccati::MAX_PARAMETERS;
+use freeform_riccati::{MAX_PARAMETERS, turn_rate};
 use nalgebra::DMatrix;
 
 use super::motion_filter::{Counts, MotionFilter, Phase};
@@ -144,12 +144,21 @@ impl MotionFilter {
     }
 
     /// Other angular velocities, in rad/s, that explain the outlines as well as the one stated: those of the turns of
-    /// [`rival_turns`](Self::rival_turns). Empty where those are, and where omega is not one of the parameters.
+    /// [`rival_turns`](Self::rival_turns). Empty where those are. Where omega is not one of the parameters, the mean angular velocity
+    /// (a2 - a3) / 2 of an affine or projective motion stands for it.
     #[must_use]
     pub fn aliases(&self) -> Vec<f64> {
-        let names = self.settings.model.parameter_names();
-        let omega = names.iter().position(|name| *name == "omega");
-        let known = omega.and_then(|j| self.estimate()?.parameters().nth(j)?.value);
+        if self.turn_hypotheses.rival_turns().is_empty() {
+            return Vec::new();
+        }
+        let known = self.estimate().and_then(|estimate| {
+            let values: Option<Vec<f64>> = estimate.parameters().map(|parameter| parameter.value).collect();
+            let model = self.settings.model;
+            match model.parameter_names().iter().position(|name| *name == "omega") {
+                Some(j) => estimate.parameters().nth(j)?.value,
+                None => Some(turn_rate(&model.generator(&values?))),
+            }
+        });
         let Some(omega) = known else { return Vec::new() };
         // Omega is positive clockwise where y points up, turns the other way.
         self.turn_hypotheses.rates_apart().map(|apart| omega - apart / self.seconds_per_unit()).collect()

@@ -3,9 +3,10 @@ use super::{motion_change::MotionHistory, settings::FilterSettings};
 use crate::{
     dynamics::{DynamicsFilter, Purpose},
     measurement::Frame,
+    search::displacement_nearby,
     track::{Comparison, Outcome, Track},
     tuning::update::{PARTLY_THERE, SUDDEN},
-    update::Gate,
+    update::{Gate, Rejection},
 };
 
 /// Largest squared innovation of a motion that goes on as it was.
@@ -65,7 +66,9 @@ pub(super) fn advance(
     predict(settings, track, history, seconds);
     let gates = Gates::of_new_frame(settings, track, history.widening(), is_after_rejected);
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, comparison);
-    history.record(&outcome, seconds);
+    let lies_elsewhere = matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. }));
+    let elsewhere = if lies_elsewhere { displacement_nearby(track, frame) } else { None };
+    history.record(&outcome, seconds, elsewhere);
     outcome
 }
 
@@ -79,7 +82,7 @@ pub(super) fn advance_again(
     predict(settings, track, history, seconds);
     let gates = Gates::of_accepted_frame(settings, track, history.widening());
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, Comparison::NotAsked);
-    history.record(&outcome, seconds);
+    history.record(&outcome, seconds, None);
     outcome
 }
 

@@ -29,6 +29,8 @@ pub(super) struct Candidate {
     pub(super) found_in: Matrix3<f64>,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(super) turn: f64,
+    /// Size of the change from the pose before.
+    pub(super) change: f64,
     pub(super) likelihood: NegativeLogLikelihood,
     pub(super) verdict_of: VerdictOf,
 }
@@ -61,7 +63,7 @@ pub(super) struct TurnHypotheses {
 }
 
 impl TurnHypotheses {
-    /// Of an outline with a symmetry of some order, 1 where there is none, takes the smallest turn of all that are not significantly worse than the best.
+    /// Of an outline with a symmetry of some order, 1 where there is none, takes the smallest change of all that are not significantly worse than the best.
     pub(super) fn among(mut candidates: Vec<Candidate>, symmetry: usize, seconds: f64) -> (Option<Candidate>, Self) {
         let symmetry_angle = TAU / symmetry as f64;
         let different_turn = different_turn(symmetry_angle);
@@ -75,7 +77,7 @@ impl TurnHypotheses {
                 different.push(candidate);
             }
         }
-        different.sort_by(|a, b| a.turn.abs().total_cmp(&b.turn.abs()));
+        different.sort_by(|a, b| a.change.total_cmp(&b.change));
         let mut others = different.into_iter();
         let taken = others.next();
         let mut all = Self {

@@ -1,6 +1,8 @@
 //! What a track says of the motion.
 use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVelocity, is_worth};
-use freeform_riccati::{MAX_PARAMETERS, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point};
+use freeform_riccati::{
+    MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point,
+};
 use nalgebra::{DMatrix, DVector, Matrix3, Point2, SVector, Vector2};
 
 use super::Track;
@@ -268,7 +270,8 @@ impl Track {
             let largest = sizes.iter().copied().fold(0.0, f64::max);
             let turns = self.turn_is_unseen();
             for ((blind, size), kind) in blind.iter_mut().zip(sizes).zip(model.parameter_kinds()) {
-                let least = if turns && *kind == ParameterKind::Velocity { TURNS_WITH } else { TAKES_PART };
+                let takes_all = *kind == ParameterKind::Velocity || model > MotionModel::Similarity;
+                let least = if turns && takes_all { TURNS_WITH } else { TAKES_PART };
                 *blind |= size > least * largest;
             }
         }

@@ -27,8 +27,12 @@ impl Track {
         -time * turn_rate(&model.generator(&self.belief().motion[..model.parameter_count()]))
     }
 
-    /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid.
+    /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid. Where the model may stretch the outline, it is
+    /// turned as one that is as long as wide.
     pub(crate) fn turned(&self, pose: &Matrix3<f64>, angle: f64) -> Matrix3<f64> {
+        if let Some(turn) = self.map.stretched_turn(angle) {
+            return pose * turn;
+        }
         let centre = map_point(pose, &self.map.centroid()).coords;
         turn_between(angle, &centre, &centre) * pose
     }

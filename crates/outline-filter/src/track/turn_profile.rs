@@ -4,7 +4,7 @@
 //! points are taken for outliers, and errors of the normals of all others promise that the turn is known well. The profile of the likelihood does
 //! not: poses turned a little either way must be worse.
 use freeform_curve_fit::Outline;
-use freeform_riccati::MAX_PARAMETERS;
+use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::{Matrix3, SVector};
 
 use super::{Outcome, Track};
@@ -42,9 +42,10 @@ impl TurnProfile {
 
 impl Track {
     /// Compares the pose of an accepted frame with turned ones, where the outline hardly shows its turn; whether the last frames do not tell it as
-    /// well as is said.
+    /// well as is said. Not where the model may stretch the outline: what turns it then is told with what stretches it.
     pub(crate) fn add_to_turn_profile(&mut self, outline: &Outline, outcome: &Outcome, frame: &mut Frame) -> bool {
-        if !(self.map.shows_turn_weakly() || self.map.turn_hangs_on_few()) || self.turn_is_unseen() {
+        let is_weak = self.map.shows_turn_weakly() || self.map.turn_hangs_on_few();
+        if !is_weak || self.turn_is_unseen() || self.model() > MotionModel::Similarity {
             return false;
         }
         let Some(turn) = self.turn_to_be_told(outcome, outline.point_count()) else { return false };

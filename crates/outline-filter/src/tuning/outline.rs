@@ -155,6 +155,9 @@ pub(crate) mod null_space {
     pub(crate) const TURNS_WITH: f64 = 1e-6;
     /// Share of the deviation of a velocity at the origin of the image that a rate which is not known may make: beyond, neither is known.
     pub(crate) const HANGS_ON: f64 = 0.5;
+    /// How far the product of a saved stretch and its inverse may be from one: far above rounding, far below anything that would show.
+    #[cfg(feature = "serde")]
+    pub(crate) const UNDONE: f64 = 1e-6;
     /// Information that holds a direction, in units of the noise: it moves by no more than a thirty-thousandth of it, which does not add up
     /// over the frames of a recording, and leaves seven digits to the solution.
     pub(crate) const HOLDING: f64 = 1e9;

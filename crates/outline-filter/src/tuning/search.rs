@@ -27,6 +27,9 @@ pub(crate) mod remapping {
 pub(crate) mod registration {
     /// Turns tried over the whole circle, 15 degrees apart: within reach of the local search on every outline tried.
     pub(crate) const TURNS: usize = 24;
+    /// Length of an outline over its width from which on turns that stretch it are tried, too: with less, what they differ by from plain turns is
+    /// within reach of the search.
+    pub(crate) const STRETCHED: f64 = 1.15;
     /// Points that the search is made with.
     pub(crate) const FEW_POINTS: usize = 80;
     /// Distance beyond which points count alike in the score of a pose, in radii: they may be hidden in the map or wrong. Trimming a share of

@@ -42,6 +42,35 @@ fn a_motion_that_stays_for_thousands_of_frames_is_known_in_each_of_them() {
     }
 }
 
+/// A turn that has changed leaves a part of the points on other parts of the outline.
+#[test]
+fn a_last_frame_that_lies_only_in_part_where_it_was_expected_widens_what_is_stated() {
+    let before = AffineMotion::from(RigidMotion { omega: -1.0, b1: 0.1, b2: 0.0 });
+    let mut lies_in_part = 0;
+    for (shape, omega) in [BuiltInShape::Phone, BuiltInShape::Van, BuiltInShape::Shoe, BuiltInShape::Hat]
+        .into_iter()
+        .flat_map(|shape| [1.0, 2.0, 3.0, 4.0].map(|omega| (shape, omega)))
+    {
+        let after = AffineMotion::from(RigidMotion { omega, b1: 0.1, b2: 0.0 });
+        let motion = Motion::piecewise(vec![(0.0, before), (38.0 / 30.0, after)]).expect("two phases");
+        let frames = frames_of(shape, motion, Settings { noise: 0.002, ..settings(40, 3) });
+        let mut run = filter(MotionModel::Rigid);
+        let mut last = None;
+        for frame in &frames {
+            last = run.step(frame.time, &frame.outline).expect("increasing times").rejection;
+        }
+        if !matches!(last, Some(Rejection::AgreementTooSmall { .. })) {
+            continue;
+        }
+        lies_in_part += 1;
+        let stated = run.estimate().expect("an estimate");
+        let found = stated.parameters().next().expect("omega");
+        let Some((value, deviation)) = found.value.zip(found.standard_deviation) else { continue };
+        assert!((value - omega).abs() < 4.0 * deviation, "{shape} {omega}: {value} {deviation}");
+    }
+    assert!(lies_in_part >= 3, "{lies_in_part}");
+}
+
 #[test]
 fn process_noise_lets_the_filter_follow_a_motion_that_drifts() {
     let drifting = |t: f64| AffineMotion::from(RigidMotion { omega: 1.0 + 0.5 * t, b1: 0.2, b2: -0.1 });

@@ -17,5 +17,6 @@ mod recorded;
 mod recording;
 #[cfg(feature = "serde")]
 mod saved_state;
+mod seen_aslant;
 mod washers;
 mod wrong_families;

@@ -1,0 +1,28 @@
+//! An object looked for near where it was expected.
+use freeform_riccati::{MotionModel, logarithm};
+use nalgebra::SVector;
+
+use super::refinement::{Steps, refined};
+use crate::{
+    measurement::Frame,
+    track::Track,
+    tuning::{noise::LARGEST, registration as tuning},
+};
+
+/// How far from its predicted pose the object lies in a loaded frame which does not show it there, by few of its points: an error of the pose like
+/// those of the belief. `None` where it does not lie near, within some degrees and a tenth of its radius.
+pub(crate) fn displacement_nearby(
+    track: &Track,
+    frame: &Frame,
+) -> Option<SVector<f64, { freeform_riccati::MAX_PARAMETERS }>> {
+    let stride = (frame.points.len() / tuning::FEW_POINTS).max(1);
+    let few: Vec<_> = frame.points.iter().step_by(stride).copied().collect();
+    let predicted = track.body_pose();
+    let begun = refined(track, &few, MotionModel::Rigid, predicted, Steps::FIRST);
+    let found = refined(track, &few, MotionModel::Rigid, &begun.pose, Steps::FURTHER);
+    if found.spread > track.most_noise_tolerated().min(LARGEST) {
+        return None;
+    }
+    let change = logarithm(&(found.pose * predicted.try_inverse()?))?;
+    Some(SVector::from(track.model().parameters_of(&change)))
+}
