@@ -165,7 +165,9 @@ impl OutlineMap {
         let centroid = Self::area_centroid(&contours).unwrap_or(centring.centroid);
         let of_places = self.levers_of_places(&contours, centring.spread());
         let noise = sigma / centring.spread();
-        let places_show_turn = of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
+        // Light that moves a hole moves it as a stretch does, too.
+        let places_show_turn = centring.stretch().is_none()
+            && of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
         let of_normals = direction_variance(sigma / self.step, self.half_window);
         let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_normals);
         let eigen = levers.symmetric_eigen();
