@@ -11,6 +11,16 @@ const PATIENCE: u64 = 15;
 /// Farthest that an object may be from where it is expected, in its diameters; half as much more for every frame missed.
 const REACH: f64 = 1.0;
 
+/// Farthest that an object that moves by more than its diameter may be from where it is expected, in its movement: twice that where it
+/// turns back.
+const REACH_OF_FAST: f64 = 2.2;
+
+/// Farthest that an object may have moved between its first two sightings, in its diameters, where nothing else is like it.
+const FIRST_REACH: f64 = 8.0;
+
+/// Largest ratio of areas between sightings of what moves so far: a fast object is blurred.
+const FIRST_GROWTH: f64 = 1.5;
+
 /// Largest ratio of areas between sightings of one object of which neither is clipped.
 const LARGEST_GROWTH: f64 = 2.0;
 
@@ -47,8 +57,10 @@ pub(crate) const OBJECT_LIMIT: usize = 256;
 struct Known {
     name: u64,
     centre: Point2<f64>,
-    /// Movement from frame to frame.
-    velocity: Vector2<f64>,
+    /// Movement from frame to frame; `None` where it has been seen once.
+    velocity: Option<Vector2<f64>>,
+    /// How fast it moves, or half as fast as it moved before: where it turns back it may stand still for a moment.
+    speed: f64,
     /// The area seen.
     area: f64,
     clipped: bool,
@@ -98,19 +110,20 @@ impl Known {
     fn seen(name: u64, frame: u64, traced: &TracedOutline) -> Self {
         let (centre, area, clipped) = (traced.centre, traced.area, traced.touches_border);
         let shape = if clipped { None } else { traced.invariants };
-        Self { name, centre, velocity: Vector2::zeros(), area, clipped, shape, frame }
+        Self { name, centre, velocity: None, speed: 0.0, area, clipped, shape, frame }
     }
 
     fn see(&mut self, frame: u64, traced: &TracedOutline) {
         let frames = frame.saturating_sub(self.frame).max(1) as f64;
         let velocity = (traced.centre - self.centre) / frames;
         let now = Self::seen(self.name, frame, traced);
-        *self = Self { velocity, shape: now.shape.or(self.shape), ..now };
+        let speed = velocity.norm().max(0.5 * self.speed);
+        *self = Self { velocity: Some(velocity), speed, shape: now.shape.or(self.shape), ..now };
     }
 
     /// Where it should be.
     fn expected(&self, frame: u64) -> Point2<f64> {
-        self.centre + self.velocity * frame.saturating_sub(self.frame) as f64
+        self.centre + self.velocity.unwrap_or_else(Vector2::zeros) * frame.saturating_sub(self.frame) as f64
     }
 
     fn difference(&self, frame: u64, traced: &TracedOutline) -> Difference {
@@ -129,6 +142,24 @@ impl Known {
 
     fn cost(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {
         self.difference(frame, traced).cost()
+    }
+
+    /// The same of what was seen in the frame before, if it may be far from where it is expected: as it was seen for the first time then, or as
+    /// it moves by more than its diameter and may turn back.
+    fn cost_of_far(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {
+        let Difference { distance, growth: Some(growth), shape, .. } = self.difference(frame, traced) else {
+            return None;
+        };
+        let diameter = (4.0 * self.area.max(traced.area) / std::f64::consts::PI).sqrt();
+        let reach = if self.velocity.is_none() { FIRST_REACH } else { REACH_OF_FAST * self.speed / diameter };
+        if reach < REACH_OF_FAST {
+            return None;
+        }
+        let place = distance / reach;
+        let growth = growth / FIRST_GROWTH.ln();
+        let shape = shape.map_or(0.0, |shape| shape / OTHER_SHAPE);
+        (self.frame + 1 == frame && place.max(growth.abs()).max(shape) <= 1.0)
+            .then_some(place.powi(2) + growth.powi(2) + shape.powi(2))
     }
 }
 
@@ -219,7 +250,22 @@ impl Identities {
 
     fn all(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Vec<(u64, TracedOutline)> {
         let cost = |known: usize, seen: usize| self.known[known].cost(frame, &traced[seen]);
-        let seen_as = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
+        let mut seen_as = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
+        // What is left over on both sides may be what moves by more than its own size.
+        let mut is_left = vec![true; traced.len()];
+        for seen in seen_as.iter().flatten() {
+            is_left[*seen] = false;
+        }
+        let far = |known: usize, seen: usize| {
+            let is_free = seen_as[known].is_none() && is_left[seen];
+            if is_free { self.known[known].cost_of_far(frame, &traced[seen]) } else { None }
+        };
+        if (0..self.known.len()).any(|k| (0..traced.len()).any(|seen| far(k, seen).is_some())) {
+            let found = assign([self.known.len(), traced.len()], far, LARGEST_COST);
+            for (seen, found) in seen_as.iter_mut().zip(found) {
+                *seen = seen.or(found);
+            }
+        }
         let mut names = vec![None; traced.len()];
         for (known, seen) in self.known.iter_mut().zip(seen_as) {
             if let Some(seen) = seen {
