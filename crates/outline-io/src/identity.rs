@@ -18,6 +18,12 @@ const REACH_OF_FAST: f64 = 2.2;
 /// Farthest that an object may have moved between its first two sightings, in its diameters, where nothing else is like it.
 const FIRST_REACH: f64 = 8.0;
 
+/// An object has left its place where it is so many sizes (roots of its area) away from where it was seen first.
+const LEFT: f64 = 1.0;
+
+/// It moves straight on where its movement changes by no more than this share of itself, and this share of its size.
+const STRAIGHT_ON: [f64; 2] = [0.5, 0.25];
+
 /// Largest ratio of areas between sightings of what moves so far: a fast object is blurred.
 const FIRST_GROWTH: f64 = 1.5;
 
@@ -47,6 +53,9 @@ pub enum Selection {
     /// are one in the picture, that one is left out; after more than 15 frames they are forgotten, and the joint object counts
     /// as a new one.
     All,
+    /// Of these those that move: each from the picture on in which it has left its place, by more than its own size and straight on in the last
+    /// three. What rests, and what comes and goes where light or noise change the picture, is never taken.
+    Moving,
 }
 
 /// Most objects of a picture that are followed.
@@ -67,6 +76,9 @@ struct Known {
     /// As it was when it was last seen whole.
     shape: Option<AffineMomentInvariants>,
     frame: u64,
+    /// Where it was seen first.
+    first: Point2<f64>,
+    has_left: bool,
 }
 
 /// How a sighting differs from an object.
@@ -110,15 +122,22 @@ impl Known {
     fn seen(name: u64, frame: u64, traced: &TracedOutline) -> Self {
         let (centre, area, clipped) = (traced.centre, traced.area, traced.touches_border);
         let shape = if clipped { None } else { traced.invariants };
-        Self { name, centre, velocity: None, speed: 0.0, area, clipped, shape, frame }
+        Self { name, centre, velocity: None, speed: 0.0, area, clipped, shape, frame, first: centre, has_left: false }
     }
 
     fn see(&mut self, frame: u64, traced: &TracedOutline) {
         let frames = frame.saturating_sub(self.frame).max(1) as f64;
         let velocity = (traced.centre - self.centre) / frames;
-        let now = Self::seen(self.name, frame, traced);
         let speed = velocity.norm().max(0.5 * self.speed);
-        *self = Self { velocity: Some(velocity), speed, shape: now.shape.or(self.shape), ..now };
+        let size = traced.area.sqrt();
+        let goes_on = self.velocity.is_some_and(|before| {
+            let fastest = velocity.norm().max(before.norm());
+            (velocity - before).norm() < STRAIGHT_ON[0] * fastest + STRAIGHT_ON[1] * size
+        });
+        let has_left = self.has_left || goes_on && (traced.centre - self.first).norm() > LEFT * size;
+        let now = Self::seen(self.name, frame, traced);
+        let (velocity, shape) = (Some(velocity), now.shape.or(self.shape));
+        *self = Self { velocity, speed, shape, first: self.first, has_left, ..now };
     }
 
     /// Where it should be.
@@ -192,11 +211,15 @@ impl Identities {
         match self.selection {
             Selection::Largest => Ok(traced.into_iter().take(1).map(|traced| (0, traced)).collect()),
             Selection::Nearest => self.nearest(frame, traced).map(|found| vec![(0, found)]),
-            Selection::All => {
+            Selection::All | Selection::Moving => {
                 let (traced, touching) = self.without_touching(frame, traced);
-                let named = self.all(frame, traced);
+                let mut named = self.all(frame, traced);
+                if self.selection == Selection::Moving {
+                    named.retain(|(name, _)| self.known.iter().any(|known| known.name == *name && known.has_left));
+                }
                 match touching {
                     Some(objects) if named.is_empty() => Err(TraceError::Touching { objects }),
+                    None if named.is_empty() => Err(TraceError::NothingMoved),
                     _ => Ok(named),
                 }
             }

@@ -58,6 +58,30 @@ fn a_ball_keeps_its_name_while_it_moves_by_several_times_its_size_and_bounces() 
     }
 }
 
+#[test]
+fn only_what_has_left_its_place_is_taken_where_what_moves_is_asked_for() {
+    let pictures: Vec<GrayImage> = (0..12)
+        .map(|frame| {
+            let mut places = vec![(100.0, 80.0, 12.0), (20.0 + 6.0 * f64::from(frame), 20.0, 9.0)];
+            // Something flickers.
+            if frame % 2 == 0 {
+                places.push((160.0, 50.0, 8.0));
+            }
+            discs(&places)
+        })
+        .collect();
+    let settings = PictureSettings { selection: Selection::Moving, ..PictureSettings::default() };
+    for (frame, traced) in traced(pictures, settings).iter().enumerate() {
+        match &traced.objects {
+            Ok(objects) => {
+                assert!(frame > 2 && objects.len() == 1, "frame {frame}: {}", objects.len());
+                assert!((objects[0].1.centre.x - 20.5 - 6.0 * frame as f64).abs() < 1.0, "frame {frame}");
+            }
+            Err(error) => assert!(frame < 4 && error == &TraceError::NothingMoved, "{frame}: {error}"),
+        }
+    }
+}
+
 /// A square and a triangle of like area at these places, each turned by an angle.
 fn square_and_triangle(square: Option<(f64, f64)>, triangle: Option<(f64, f64)>, turn: f64) -> GrayImage {
     let (sin, cos) = turn.sin_cos();
