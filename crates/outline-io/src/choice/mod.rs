@@ -212,11 +212,12 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
     let best = fine.first();
     let is_in_doubt = best.is_none_or(|best| best.rests || best.score < CONVINCING);
     let rests = best.filter(|best| best.rests).map(|best| best.tracing);
-    if is_in_doubt && resting.is_none() {
-        if let Some(moving) = moving_instead(sample, base, *first, rests.as_ref()) {
-            fine.retain(|candidate| candidate.tracing != moving.tracing);
-            fine.insert(0, moving);
-        }
+    if is_in_doubt
+        && resting.is_none()
+        && let Some(moving) = moving_instead(sample, base, *first, rests.as_ref())
+    {
+        fine.retain(|candidate| candidate.tracing != moving.tracing);
+        fine.insert(0, moving);
     }
     TracingChoice { candidates: fine }
 }

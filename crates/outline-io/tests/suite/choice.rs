@@ -30,13 +30,13 @@ fn ruler(x: f64, y: f64) -> f64 {
     ((x - 150.0).abs() - 8.0).max((y - 120.0).abs() - 90.0)
 }
 
-fn chosen(pictures: Vec<GrayImage>) -> TracingEvidence {
+fn chosen(pictures: &[GrayImage]) -> TracingEvidence {
     let sample = PictureSample::read(&[Channel::Luminance], |_| {
         let frame = |(frame, picture): (u64, GrayImage)| {
             let time = frame as f64 / 30.0;
             Ok::<_, PictureError>(PictureFrame { frame, time, file: "memory".to_owned(), picture: picture.into() })
         };
-        Some((0..).zip(pictures.clone()).map(frame))
+        Some((0..).zip(pictures.to_vec()).map(frame))
     });
     let trace = TraceSettings { minimum_area: 64, ..TraceSettings::default() };
     let choice = choose_tracing(&sample, &PictureSettings { trace, ..PictureSettings::default() }, &[]);
@@ -51,7 +51,7 @@ fn a_small_disc_that_moves_is_followed_where_something_larger_rests() {
             let place = [16.0 + step * f64::from(frame), 30.0 + 1.5 * f64::from(frame), radius];
             picture(frame, |x, y| ruler(x, y).min(disc(x, y, place)))
         });
-        let best = chosen(pictures.collect());
+        let best = chosen(&pictures.collect::<Vec<_>>());
         assert!(matches!(best.tracing.way, TracingWay::Median(_)) && !best.rests, "step {step}: {best:?}");
         assert!(best.movement > 3.0 * step, "step {step}: {best:?}");
     }
@@ -59,7 +59,7 @@ fn a_small_disc_that_moves_is_followed_where_something_larger_rests() {
 
 #[test]
 fn what_rests_is_told_to_rest_where_nothing_moves() {
-    let best = chosen((0..12).map(|frame| picture(frame, ruler)).collect());
+    let best = chosen(&(0..12).map(|frame| picture(frame, ruler)).collect::<Vec<_>>());
     assert!(best.rests && best.selection == Selection::Largest, "{best:?}");
 }
 
@@ -73,7 +73,7 @@ fn a_toothed_wheel_that_turns_in_its_place_is_followed_and_not_its_teeth() {
                 x.hypot(y) - 60.0 - 8.0 * (5.0 * along).cos()
             })
         };
-        let best = chosen((0..24).map(wheel).collect());
+        let best = chosen(&(0..24).map(wheel).collect::<Vec<_>>());
         assert!(!matches!(best.tracing.way, TracingWay::Median(_)) && !best.rests, "{turn}: {best:?}");
         assert!((0.12..0.2).contains(&best.area_share), "{turn}: {best:?}");
     }
