@@ -2,8 +2,8 @@
 use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
-    Channel, Difference, PicturePreview, PictureSettings, Smoothing, Tracing, TracingChoice, TracingEvidence,
-    TracingWay,
+    Channel, Difference, PicturePreview, PictureSettings, Selection, Smoothing, Tracing, TracingChoice,
+    TracingEvidence, TracingWay,
 };
 use freeform_motion::short;
 
@@ -24,7 +24,13 @@ impl Chosen {
         let found = best.map_or_else(String::new, |TracingEvidence { found, pictures, score, .. }| {
             format!(", {found} of {pictures} pictures tried show an object, score {}", short(*score))
         });
-        format!("traced with {} (chosen among {} ways{found})", self.options, self.choice.candidates.len())
+        let still = match best {
+            Some(best) if best.rests => {
+                "; it rests, and nothing was seen to move: what is smaller is found by --background whole --objects moving --min-area PIXELS"
+            }
+            _ => "",
+        };
+        format!("traced with {} (chosen among {} ways{found}){still}", self.options, self.choice.candidates.len())
     }
 
     /// What is said where nothing stands out.
@@ -60,9 +66,14 @@ pub(crate) fn choose(
     let mut options = given.clone();
     take(&mut options, &best.tracing);
     let mut parts = options_of(&best.tracing);
-    if best.objects > 1 && given.objects.is_none() {
-        options.objects = Some(ObjectsChoice::All);
-        parts.push("--objects all".to_owned());
+    let objects = match best.selection {
+        Selection::All => Some((ObjectsChoice::All, "--objects all")),
+        Selection::Moving => Some((ObjectsChoice::Moving, "--objects moving")),
+        Selection::Largest | Selection::Nearest => None,
+    };
+    if let (Some((objects, option)), None) = (objects, given.objects) {
+        options.objects = Some(objects);
+        parts.push(option.to_owned());
     }
     if best.has_steady_contours && given.contours.is_none() {
         options.contours = Some(ContoursChoice::All);

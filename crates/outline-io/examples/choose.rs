@@ -25,10 +25,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let choice = choose_tracing(&sample, &base, &[]);
     println!("read in {read:?}, chosen in {:?}; convincing: {}", started.elapsed() - read, choice.is_convincing());
-    println!("score found steady even contrast smooth moved clipped area objects");
+    println!("score found steady even contrast smooth moved rests clipped area objects");
     for c in choice.candidates.iter().take(14) {
         println!(
-            "{:.3} {:2}/{:2} {:.2} {:.2} {:.2} {:.2} {:6.1} {:.2} {:.3} {} {:?}",
+            "{:.3} {:2}/{:2} {:.2} {:.2} {:.2} {:.2} {:6.1} {} {:.2} {:.3} {} {:?}",
             c.score,
             c.found,
             c.pictures,
@@ -37,6 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             c.contrast,
             c.smoothness,
             c.movement,
+            u8::from(c.rests),
             c.clipped,
             c.area_share,
             c.objects,

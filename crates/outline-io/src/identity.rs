@@ -11,6 +11,22 @@ const PATIENCE: u64 = 15;
 /// Farthest that an object may be from where it is expected, in its diameters; half as much more for every frame missed.
 const REACH: f64 = 1.0;
 
+/// Farthest that an object that moves by more than its diameter may be from where it is expected, in its movement: twice that where it
+/// turns back.
+const REACH_OF_FAST: f64 = 2.2;
+
+/// Farthest that an object may have moved between its first two sightings, in its diameters, where nothing else is like it.
+const FIRST_REACH: f64 = 8.0;
+
+/// An object has left its place where it is so many sizes (roots of its area) away from where it was seen first.
+const LEFT: f64 = 1.0;
+
+/// It moves straight on where its movement changes by no more than this share of itself, and this share of its size.
+const STRAIGHT_ON: [f64; 2] = [0.5, 0.25];
+
+/// Largest ratio of areas between sightings of what moves so far: a fast object is blurred.
+const FIRST_GROWTH: f64 = 1.5;
+
 /// Largest ratio of areas between sightings of one object of which neither is clipped.
 const LARGEST_GROWTH: f64 = 2.0;
 
@@ -37,6 +53,9 @@ pub enum Selection {
     /// are one in the picture, that one is left out; after more than 15 frames they are forgotten, and the joint object counts
     /// as a new one.
     All,
+    /// Of these those that move: each from the picture on in which it has left its place, by more than its own size and straight on in the last
+    /// three. What rests, and what comes and goes where light or noise change the picture, is never taken.
+    Moving,
 }
 
 /// Most objects of a picture that are followed.
@@ -47,14 +66,19 @@ pub(crate) const OBJECT_LIMIT: usize = 256;
 struct Known {
     name: u64,
     centre: Point2<f64>,
-    /// Movement from frame to frame.
-    velocity: Vector2<f64>,
+    /// Movement from frame to frame; `None` where it has been seen once.
+    velocity: Option<Vector2<f64>>,
+    /// How fast it moves, or half as fast as it moved before: where it turns back it may stand still for a moment.
+    speed: f64,
     /// The area seen.
     area: f64,
     clipped: bool,
     /// As it was when it was last seen whole.
     shape: Option<AffineMomentInvariants>,
     frame: u64,
+    /// Where it was seen first.
+    first: Point2<f64>,
+    has_left: bool,
 }
 
 /// How a sighting differs from an object.
@@ -98,19 +122,27 @@ impl Known {
     fn seen(name: u64, frame: u64, traced: &TracedOutline) -> Self {
         let (centre, area, clipped) = (traced.centre, traced.area, traced.touches_border);
         let shape = if clipped { None } else { traced.invariants };
-        Self { name, centre, velocity: Vector2::zeros(), area, clipped, shape, frame }
+        Self { name, centre, velocity: None, speed: 0.0, area, clipped, shape, frame, first: centre, has_left: false }
     }
 
     fn see(&mut self, frame: u64, traced: &TracedOutline) {
         let frames = frame.saturating_sub(self.frame).max(1) as f64;
         let velocity = (traced.centre - self.centre) / frames;
+        let speed = velocity.norm().max(0.5 * self.speed);
+        let size = traced.area.sqrt();
+        let goes_on = self.velocity.is_some_and(|before| {
+            let fastest = velocity.norm().max(before.norm());
+            (velocity - before).norm() < STRAIGHT_ON[0] * fastest + STRAIGHT_ON[1] * size
+        });
+        let has_left = self.has_left || goes_on && (traced.centre - self.first).norm() > LEFT * size;
         let now = Self::seen(self.name, frame, traced);
-        *self = Self { velocity, shape: now.shape.or(self.shape), ..now };
+        let (velocity, shape) = (Some(velocity), now.shape.or(self.shape));
+        *self = Self { velocity, speed, shape, first: self.first, has_left, ..now };
     }
 
     /// Where it should be.
     fn expected(&self, frame: u64) -> Point2<f64> {
-        self.centre + self.velocity * frame.saturating_sub(self.frame) as f64
+        self.centre + self.velocity.unwrap_or_else(Vector2::zeros) * frame.saturating_sub(self.frame) as f64
     }
 
     fn difference(&self, frame: u64, traced: &TracedOutline) -> Difference {
@@ -129,6 +161,24 @@ impl Known {
 
     fn cost(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {
         self.difference(frame, traced).cost()
+    }
+
+    /// The same of what was seen in the frame before, if it may be far from where it is expected: as it was seen for the first time then, or as
+    /// it moves by more than its diameter and may turn back.
+    fn cost_of_far(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {
+        let Difference { distance, growth: Some(growth), shape, .. } = self.difference(frame, traced) else {
+            return None;
+        };
+        let diameter = (4.0 * self.area.max(traced.area) / std::f64::consts::PI).sqrt();
+        let reach = if self.velocity.is_none() { FIRST_REACH } else { REACH_OF_FAST * self.speed / diameter };
+        if reach < REACH_OF_FAST {
+            return None;
+        }
+        let place = distance / reach;
+        let growth = growth / FIRST_GROWTH.ln();
+        let shape = shape.map_or(0.0, |shape| shape / OTHER_SHAPE);
+        (self.frame + 1 == frame && place.max(growth.abs()).max(shape) <= 1.0)
+            .then_some(place.powi(2) + growth.powi(2) + shape.powi(2))
     }
 }
 
@@ -161,11 +211,15 @@ impl Identities {
         match self.selection {
             Selection::Largest => Ok(traced.into_iter().take(1).map(|traced| (0, traced)).collect()),
             Selection::Nearest => self.nearest(frame, traced).map(|found| vec![(0, found)]),
-            Selection::All => {
+            Selection::All | Selection::Moving => {
                 let (traced, touching) = self.without_touching(frame, traced);
-                let named = self.all(frame, traced);
+                let mut named = self.all(frame, traced);
+                if self.selection == Selection::Moving {
+                    named.retain(|(name, _)| self.known.iter().any(|known| known.name == *name && known.has_left));
+                }
                 match touching {
                     Some(objects) if named.is_empty() => Err(TraceError::Touching { objects }),
+                    None if named.is_empty() => Err(TraceError::NothingMoved),
                     _ => Ok(named),
                 }
             }
@@ -219,7 +273,22 @@ impl Identities {
 
     fn all(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Vec<(u64, TracedOutline)> {
         let cost = |known: usize, seen: usize| self.known[known].cost(frame, &traced[seen]);
-        let seen_as = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
+        let mut seen_as = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
+        // What is left over on both sides may be what moves by more than its own size.
+        let mut is_left = vec![true; traced.len()];
+        for seen in seen_as.iter().flatten() {
+            is_left[*seen] = false;
+        }
+        let far = |known: usize, seen: usize| {
+            let is_free = seen_as[known].is_none() && is_left[seen];
+            if is_free { self.known[known].cost_of_far(frame, &traced[seen]) } else { None }
+        };
+        if (0..self.known.len()).any(|k| (0..traced.len()).any(|seen| far(k, seen).is_some())) {
+            let found = assign([self.known.len(), traced.len()], far, LARGEST_COST);
+            for (seen, found) in seen_as.iter_mut().zip(found) {
+                *seen = seen.or(found);
+            }
+        }
         let mut names = vec![None; traced.len()];
         for (known, seen) in self.known.iter_mut().zip(seen_as) {
             if let Some(seen) = seen {

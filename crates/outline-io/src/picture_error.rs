@@ -232,6 +232,9 @@ pub enum TraceError {
         /// How many.
         objects: usize,
     },
+    /// All objects are where they were first seen.
+    #[error("no object has left the place where it was first seen")]
+    NothingMoved,
     /// The outline is longer than that of any object.
     #[error("no outline: it would have more than {limit} points")]
     TooManyPoints {

@@ -130,9 +130,9 @@ impl PictureOptions {
         options.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
     }
 
-    /// Whether all objects are taken.
+    /// Whether several objects may be taken.
     pub(crate) fn follows_all(&self) -> bool {
-        self.objects() == ObjectsChoice::All
+        matches!(self.objects(), ObjectsChoice::All | ObjectsChoice::Moving)
     }
 
     /// Which objects are taken.
@@ -265,6 +265,8 @@ pub(crate) enum ObjectsChoice {
     Nearest,
     /// All objects; each keeps its number from picture to picture
     All,
+    /// Those of all that move: each from where it has left its place
+    Moving,
 }
 
 impl ObjectsChoice {
@@ -273,6 +275,7 @@ impl ObjectsChoice {
             Self::Largest => Selection::Largest,
             Self::Nearest => Selection::Nearest,
             Self::All => Selection::All,
+            Self::Moving => Selection::Moving,
         }
     }
 }

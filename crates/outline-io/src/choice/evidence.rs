@@ -10,9 +10,10 @@ use crate::channel::Channel;
 use crate::contrast::Contrast;
 use crate::edges::median;
 use crate::ground_surface::ground_surface;
+use crate::identity::Selection;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
-use crate::trace::{blurred, trace_objects};
+use crate::trace::{TracedOutline, blurred, trace_objects};
 use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
 /// Most pixels of a picture where ways are tried for the first time.
@@ -26,6 +27,9 @@ const FINE_PICTURES: usize = 15;
 
 /// Objects looked at in a picture.
 const OBJECTS: usize = 6;
+
+/// Pictures so far from each other show whether something moves.
+const FAR_APART: u64 = 5;
 
 /// A level lies so many standard deviations of the ground beyond it, and at least so many grey values.
 const BEYOND_NOISE: f64 = 6.0;
@@ -50,12 +54,16 @@ pub struct TracingEvidence {
     pub smoothness: f64,
     /// Farthest movement seen, of the middle or of the outline, in pixels.
     pub movement: f64,
+    /// Whether it rests: it moves no more from one picture to another far from it than its outline scatters.
+    pub rests: bool,
     /// Share of the pictures in which the edge of the picture clips it.
     pub clipped: f64,
     /// Median share of the picture that it has.
     pub area_share: f64,
     /// Objects of at least half its area, in the median picture.
     pub objects: usize,
+    /// Which objects are worth to be followed: all where several are of its size, those that move where it was chosen as it moves.
+    pub selection: Selection,
     /// Share of its area that holes and marks have.
     pub inner_share: f64,
     /// Whether holes or marks within it, of less than half of its area, are the same all the time.
@@ -88,6 +96,11 @@ impl Trial {
     /// More pictures as they are in the sample.
     pub(super) fn fine(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Self {
         Self::of(sample, base, channel, u64::MAX, FINE_PICTURES)
+    }
+
+    /// All pictures of the sample, as they are in it.
+    pub(super) fn whole(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Self {
+        Self::of(sample, base, channel, u64::MAX, usize::MAX)
     }
 
     fn of(sample: &PictureSample, base: &PictureSettings, channel: Channel, most: u64, count: usize) -> Self {
@@ -192,22 +205,62 @@ impl Trial {
     fn sights(&self, tracing: &Tracing) -> Vec<Sight> {
         let settings = self.settings(tracing);
         let mut sights = Vec::new();
-        for (k, (&frame, picture)) in self.frames.iter().zip(&self.pictures).enumerate() {
-            let difference = self.ground(tracing, &settings, k).map(|ground| settings.difference.of(picture, ground));
-            let looked_at = difference.as_ref().unwrap_or(picture);
-            let Ok(traced) = trace_objects(looked_at, &settings.trace, OBJECTS) else { continue };
-            let line = settings.trace.ring.map(|ring| ring.contrast);
-            let contrast = line.unwrap_or(settings.trace.contrast);
-            let reach = if line.is_some() { 1.5 } else { 2.0 };
-            sights.extend(Sight::of(frame, &traced, looked_at, contrast, reach, sights.last()));
+        for k in 0..self.count() {
+            let Some(Seen { frame, traced, picture, contrast, reach }) = self.seen(tracing, &settings, k, OBJECTS)
+            else {
+                continue;
+            };
+            sights.extend(Sight::of(frame, &traced, &picture, contrast, reach, sights.last()));
         }
         sights
     }
+
+    /// What a way finds in the first picture in which it finds something.
+    pub(super) fn first_sight(&self, tracing: &Tracing) -> Option<Sight> {
+        let settings = self.settings(tracing);
+        let seen = (0..self.count()).find_map(|k| self.seen(tracing, &settings, k, OBJECTS))?;
+        Sight::of(seen.frame, &seen.traced, &seen.picture, seen.contrast, seen.reach, None)
+    }
+
+    /// All that a way finds, picture for picture.
+    pub(super) fn all_sights(&self, tracing: &Tracing, most: usize) -> Vec<Vec<Sight>> {
+        let settings = self.settings(tracing);
+        let all = |Seen { frame, traced, picture, contrast, reach }: Seen| {
+            traced.iter().map(|one| Sight::of_one(frame, one, &traced, &picture, contrast, reach)).collect()
+        };
+        (0..self.count()).map(|k| self.seen(tracing, &settings, k, most).map_or_else(Vec::new, all)).collect()
+    }
+
+    fn seen(&self, tracing: &Tracing, settings: &PictureSettings, k: usize, most: usize) -> Option<Seen> {
+        let (frame, picture) = (self.frames[k], &self.pictures[k]);
+        let difference = self.ground(tracing, settings, k).map(|ground| settings.difference.of(picture, ground));
+        let picture = difference.map_or_else(|| Arc::clone(picture), Arc::new);
+        let traced = trace_objects(&picture, &settings.trace, most).ok()?;
+        let line = settings.trace.ring.map(|ring| ring.contrast);
+        let contrast = line.unwrap_or(settings.trace.contrast);
+        let reach = if line.is_some() { 1.5 } else { 2.0 };
+        Some(Seen { frame, traced, picture, contrast, reach })
+    }
+}
+
+/// What is seen in one picture.
+struct Seen {
+    frame: u64,
+    traced: Vec<TracedOutline>,
+    /// What was traced: the picture, or its difference from the ground.
+    picture: Arc<GrayImage>,
+    contrast: Contrast,
+    /// Distance from the outline at which its sides are looked at.
+    reach: f64,
 }
 
 /// Tries a way; `None` where it finds nothing.
 pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence> {
-    let sights = trial.sights(&tracing);
+    evidence_of(trial, tracing, &trial.sights(&tracing))
+}
+
+/// What speaks for a way by what it finds; `None` where that is nothing.
+pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> Option<TracingEvidence> {
     let factor = f64::from(trial.factor);
     let (found, pictures) = (sights.len(), trial.count());
     let picture_area = trial.pictures.first().map(|p| f64::from(p.width()) * f64::from(p.height()))?;
@@ -224,8 +277,8 @@ pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence>
     let pairs: Vec<(&Sight, &Sight)> =
         sights.windows(2).filter(|w| w[0].frame + 1 == w[1].frame).map(|w| (&w[0], &w[1])).collect();
     let evenness = if pairs.is_empty() && pictures < 2 { 1.0 } else { evenness(&pairs, factor) };
-    let smoothness = if pictures < 3 { 1.0 } else { smoothness(&sights) };
-    let movement = factor * movement(&sights);
+    let smoothness = if pictures < 3 { 1.0 } else { smoothness(sights) };
+    let movement = factor * movement(sights);
     let area_share = area / picture_area;
 
     let moves = if pictures < 3 || movement > 1.5 { 1.0 } else { 0.35 };
@@ -253,9 +306,11 @@ pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence>
         contrast,
         smoothness,
         movement,
+        rests: rests(sights, factor),
         clipped,
         area_share,
         objects,
+        selection: if objects > 1 { Selection::All } else { Selection::Largest },
         inner_share: of(&|sight| sight.inner.0)?,
         has_steady_contours: has_steady_contours(&whole),
         score,
@@ -299,13 +354,27 @@ fn evenness(pairs: &[(&Sight, &Sight)], factor: f64) -> f64 {
     }
 }
 
-/// How little the path bends within three pictures, in sizes of the object.
+/// How little the path bends within three pictures, in sizes of the object, and in steps where those are longer.
 fn smoothness(sights: &[Sight]) -> f64 {
     let bends = sights.windows(3).filter(|w| w[0].frame + 2 == w[2].frame && w.iter().all(|sight| !sight.is_clipped));
-    let bend = median(
-        bends.map(|w| (w[0].centre.coords - 2.0 * w[1].centre.coords + w[2].centre.coords).norm() / w[1].area.sqrt()),
-    );
+    let bend = median(bends.map(|w| {
+        let step = (w[1].centre - w[0].centre).norm();
+        (w[0].centre.coords - 2.0 * w[1].centre.coords + w[2].centre.coords).norm() / (w[1].size() + 2.0 * step)
+    }));
     bend.map_or(0.5, |bend| 1.0 / (1.0 + (bend / 0.05).powi(2)))
+}
+
+/// Whether what is seen rests: from picture to picture it hardly moves, and pictures far from each other show it where it was.
+fn rests(sights: &[Sight], factor: f64) -> bool {
+    let moved = |a: &Sight, b: &Sight| (a.centre - b.centre).norm().max(a.unlike(b));
+    let near = median(sights.windows(2).filter(|w| w[0].frame + 1 == w[1].frame).map(|w| moved(&w[0], &w[1])));
+    let Some(near) = near else { return false };
+    let again = median(sights.iter().step_by(2).filter_map(|a| {
+        let far = sights.iter().filter(|b| a.frame.abs_diff(b.frame) >= FAR_APART);
+        far.map(|b| moved(a, b)).min_by(f64::total_cmp)
+    }));
+    let hardly = (1.0 / factor).max(0.02 * median(sights.iter().map(Sight::size)).unwrap_or(0.0));
+    again.is_some_and(|again| near < hardly && again < 1.5 * near + 0.5 / factor)
 }
 
 /// Farthest movement of the middle or of the outline about it, in pixels of the trial.

@@ -1,5 +1,6 @@
 //! How objects are best found in a sequence: every way is tried on some of its pictures and judged by what tells a body from ground.
 mod evidence;
+mod moving;
 mod sample;
 mod scaled;
 mod sight;
@@ -17,6 +18,7 @@ use crate::threshold::Threshold;
 use crate::trace_settings::{Smoothing, TraceSettings};
 pub use evidence::TracingEvidence;
 use evidence::{Trial, judged};
+use moving::what_moves;
 pub use sample::{PictureSample, SamplePlan};
 
 /// A way to tell objects from the ground.
@@ -177,6 +179,16 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
     if is_good(&coarse) {
         fine = looked_closer(sample, base, &mut coarse, &mut looked_at);
     }
+    // Where the best rests beyond doubt, other channels would show that it rests.
+    let best = if is_good(&fine) { fine.iter() } else { coarse.iter() }.max_by(|a, b| a.score.total_cmp(&b.score));
+    let resting = best.filter(|best| best.rests && best.score >= CONVINCING).map(|best| best.tracing);
+    let early = resting.and_then(|tracing| moving_instead(sample, base, *first, Some(&tracing)));
+    if let Some(moving) = early {
+        sort(&mut coarse);
+        coarse.retain(|candidate| candidate.tracing != moving.tracing);
+        coarse.insert(0, moving);
+        return TracingChoice { candidates: coarse };
+    }
     // Scaled down, a picture has less noise than as it is.
     if !is_good(&fine) && !others.is_empty() {
         let in_others = |channel: &Channel| {
@@ -197,7 +209,28 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
     sort(&mut fine);
     coarse.retain(|candidate| !looked_at.iter().any(|tracing| tracing.is_like(&candidate.tracing)));
     fine.extend(coarse);
+    let best = fine.first();
+    let is_in_doubt = best.is_none_or(|best| best.rests || best.score < CONVINCING);
+    let rests = best.filter(|best| best.rests).map(|best| best.tracing);
+    if is_in_doubt
+        && resting.is_none()
+        && let Some(moving) = moving_instead(sample, base, *first, rests.as_ref())
+    {
+        fine.retain(|candidate| candidate.tracing != moving.tracing);
+        fine.insert(0, moving);
+    }
     TracingChoice { candidates: fine }
+}
+
+/// What moves, in place of a way that finds what `rests`, or nothing for sure.
+fn moving_instead(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    channel: Channel,
+    rests: Option<&Tracing>,
+) -> Option<TracingEvidence> {
+    let may_show = !sample.is_two_valued() && sample.len() >= FEWEST_FOR_MEDIAN;
+    if may_show { what_moves(sample, base, channel, rests) } else { None }
 }
 
 /// The best ways once more, in more pictures as they are, with their variants. `looked_at` are those that have been looked at so.

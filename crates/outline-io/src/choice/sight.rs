@@ -11,6 +11,7 @@ use crate::trace::TracedOutline;
 const PLACES: usize = 64;
 
 /// What was found in a picture.
+#[derive(Clone)]
 pub(super) struct Sight {
     pub(super) frame: u64,
     pub(super) centre: Point2<f64>,
@@ -44,11 +45,23 @@ impl Sight {
             alike.min_by(|a, b| far(a).total_cmp(&far(b)))
         });
         let chosen = nearest.or_else(|| traced.iter().find(|t| !t.touches_border)).or(traced.first())?;
+        Some(Self::of_one(frame, chosen, traced, picture, contrast, reach))
+    }
+
+    /// Of one of the objects of a picture.
+    pub(super) fn of_one(
+        frame: u64,
+        chosen: &TracedOutline,
+        traced: &[TracedOutline],
+        picture: &GrayImage,
+        contrast: Contrast,
+        reach: f64,
+    ) -> Self {
         let boundary = chosen.outline.pieces().next().map_or(&[][..], |piece| piece.points);
         let points: Vec<Point2<f64>> = boundary.to_vec();
         let inner = chosen.outline.pieces().skip(1).map(|piece| area_of(piece.points) / chosen.area);
         let inner = (inner.clone().sum(), inner.count());
-        Some(Self {
+        Self {
             frame,
             centre: chosen.centre,
             area: chosen.area,
@@ -63,7 +76,12 @@ impl Sight {
                 .fold(0.0, f64::max),
             objects: [traced.iter().filter(|t| 2.0 * t.area > chosen.area).count(), chosen.object_count],
             points,
-        })
+        }
+    }
+
+    /// Its size, the root of its area.
+    pub(super) fn size(&self) -> f64 {
+        self.area.sqrt()
     }
 
     /// Mean distance of some points of this outline from another, the middles laid on each other.

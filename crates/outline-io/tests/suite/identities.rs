@@ -34,6 +34,54 @@ fn objects_keep_their_names_while_they_pass_each_other_vanish_and_come_back() {
     }
 }
 
+#[test]
+fn a_ball_keeps_its_name_while_it_moves_by_several_times_its_size_and_bounces() {
+    let place = |frame: u32| {
+        let along = if frame < 5 { 30.0 * f64::from(frame) } else { 270.0 - 30.0 * f64::from(frame) };
+        (20.0 + along, 20.0 + 0.6 * f64::from(frame).powi(2))
+    };
+    let pictures: Vec<GrayImage> = (0..10)
+        .map(|frame| {
+            let (x, y) = place(frame);
+            discs(&[(100.0, 90.0, 8.0), (x, y, 4.0)])
+        })
+        .collect();
+    let trace = TraceSettings { y_up: false, minimum_area: 20, ..TraceSettings::default() };
+    let settings = PictureSettings { selection: Selection::All, trace, ..PictureSettings::default() };
+    for (frame, traced) in traced(pictures, settings).iter().enumerate() {
+        let objects = traced.objects.as_ref().expect("both");
+        let (x, y) = place(frame as u32);
+        let names: Vec<u64> = objects.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, [0, 1], "frame {frame}");
+        let ball = &objects.iter().min_by(|a, b| a.1.area.total_cmp(&b.1.area)).expect("a ball");
+        assert!(ball.0 == 1 && (ball.1.centre - Point2::new(x, y)).norm() < 1.0, "frame {frame}: {}", ball.1.centre);
+    }
+}
+
+#[test]
+fn only_what_has_left_its_place_is_taken_where_what_moves_is_asked_for() {
+    let pictures: Vec<GrayImage> = (0..12)
+        .map(|frame| {
+            let mut places = vec![(100.0, 80.0, 12.0), (20.0 + 6.0 * f64::from(frame), 20.0, 9.0)];
+            // Something flickers.
+            if frame % 2 == 0 {
+                places.push((160.0, 50.0, 8.0));
+            }
+            discs(&places)
+        })
+        .collect();
+    let settings = PictureSettings { selection: Selection::Moving, ..PictureSettings::default() };
+    for (frame, traced) in traced(pictures, settings).iter().enumerate() {
+        match &traced.objects {
+            Ok(objects) => {
+                assert!(frame > 2 && objects.len() == 1, "frame {frame}: {}", objects.len());
+                assert!((objects[0].1.centre.x - 20.5 - 6.0 * frame as f64).abs() < 1.0, "frame {frame}");
+            }
+            Err(error) => assert!(frame < 4 && error == &TraceError::NothingMoved, "{frame}: {error}"),
+        }
+    }
+}
+
 /// A square and a triangle of like area at these places, each turned by an angle.
 fn square_and_triangle(square: Option<(f64, f64)>, triangle: Option<(f64, f64)>, turn: f64) -> GrayImage {
     let (sin, cos) = turn.sin_cos();

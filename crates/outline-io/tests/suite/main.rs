@@ -1,5 +1,6 @@
 //! One program for all of them, since each costs a link and its share of compiling.
 mod bad_pictures;
+mod choice;
 mod cmyk;
 mod columns;
 mod contours;

@@ -1,0 +1,186 @@
+//! What moves in front of a ground that rests. It is looked for where the best way finds what rests, or nothing for sure: the largest thing
+//! that stands out of a still picture is seldom the one whose motion is asked for.
+use nalgebra::{Point2, Vector2};
+
+use super::evidence::{TracingEvidence, Trial, evidence_of};
+use super::sight::Sight;
+use super::{AGAINST_NOISE, PictureSample, Tracing, TracingWay};
+use crate::background::Difference;
+use crate::channel::Channel;
+use crate::identity::Selection;
+use crate::picture_outlines::PictureSettings;
+use crate::trace_settings::Smoothing;
+
+/// Objects of a picture that are looked at.
+const OBJECTS: usize = 12;
+
+/// Largest logarithm of the ratio of areas from one picture to the next, and what the rounding of a small outline adds, over its size.
+const GROWTH: f64 = 0.15;
+const GROWTH_OF_SMALL: f64 = 2.0;
+
+/// Largest step from one picture to the next, in sizes (roots of areas).
+const LARGEST_STEP: f64 = 8.0;
+
+/// How far two steps that follow each other may differ: in sizes, in steps, and in pixels of the trial.
+const BEND: [f64; 3] = [0.03, 0.25, 0.3];
+
+/// Steps of so many sizes need no straight way: nothing else is where the thing was.
+const OVERLAP: f64 = 0.5;
+
+/// Least way in three pictures: in sizes, and in pixels of the trial.
+const LEAST_WAY: [f64; 2] = [0.1, 1.5];
+
+/// Least distance between places of one thing at different times, in sizes; it has been seen to leave its place.
+const APART: f64 = 1.0;
+
+/// Logarithm of the ratio of areas, and distance of the affine moment invariants, that one thing may have at different times.
+const ALIKE: f64 = 0.5;
+
+/// Fewest bursts, and least share of all, in which it is seen to move.
+const FEWEST_BURSTS: usize = 2;
+const LEAST_SHARE: f64 = 0.15;
+
+/// Least likeness of all bursts together, 1 for each where nothing changes.
+const LEAST_LIKENESS: f64 = 1.2;
+
+/// Least score. Clutter that looks as if something moved is far below it.
+const LEAST_SCORE: f64 = 0.005;
+
+/// Three sightings of one thing in pictures that follow each other.
+type Chain = [Sight; 3];
+
+/// The way that shows best what moves, if something does. `rests` is what was found instead, if that rests.
+pub(super) fn what_moves(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    channel: Channel,
+    rests: Option<&Tracing>,
+) -> Option<TracingEvidence> {
+    let trial = Trial::whole(sample, base, channel);
+    let still = rests.and_then(|tracing| Trial::fine(sample, base, tracing.channel).first_sight(tracing));
+    let plain = |smoothing| Tracing { way: TracingWay::Median(Difference::Either), channel, smoothing, level: None };
+    let smoothings = match base.trace.smoothing {
+        Smoothing::Automatic => vec![Smoothing::Automatic, Smoothing::Gaussian(AGAINST_NOISE)],
+        given => vec![given],
+    };
+    let ways = smoothings.into_iter().flat_map(|smoothing| {
+        let otsu = plain(smoothing);
+        let level = trial.noise_level(&otsu).map(|level| level * f64::from(sample.factor()));
+        [Some(otsu), level.map(|level| Tracing { level: Some(level), ..otsu })].into_iter().flatten()
+    });
+    let seen = ways.filter_map(|tracing| moving(&trial, tracing, still.as_ref()));
+    seen.max_by(|a, b| a.score.total_cmp(&b.score))
+}
+
+/// What a way shows that moves.
+fn moving(trial: &Trial, tracing: Tracing, still: Option<&Sight>) -> Option<TracingEvidence> {
+    let pictures = trial.all_sights(&tracing, OBJECTS);
+    let bursts: Vec<&[Vec<Sight>]> = pictures.windows(3).filter(|burst| follow_each_other(burst)).collect();
+    let mut chains: Vec<Vec<Chain>> = bursts.iter().map(|burst| chains_of(burst)).collect();
+    for chains in &mut chains {
+        chains.retain(|chain| still.is_none_or(|still| !lies_on(&chain[1], still)));
+    }
+    let fewest = FEWEST_BURSTS.max((LEAST_SHARE * bursts.len() as f64).ceil() as usize);
+    // Which of them are one thing: the largest number that are like one of them.
+    let groups = chains.iter().flatten().map(|chain| like(chain, &chains));
+    let (group, likeness) = groups.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if group.len() < fewest || likeness < LEAST_LIKENESS || !leaves(&group) {
+        return None;
+    }
+    if still.is_some_and(|still| turns_with(&group, still)) {
+        return None;
+    }
+    let mut sights: Vec<Sight> = group.into_iter().flatten().cloned().collect();
+    sights.sort_by_key(|sight| sight.frame);
+    sights.dedup_by_key(|sight| sight.frame);
+    let found = evidence_of(trial, tracing, &sights).filter(|found| found.score >= LEAST_SCORE)?;
+    let selection = if found.objects > 1 { Selection::Moving } else { found.selection };
+    Some(TracingEvidence { selection, ..found })
+}
+
+/// Of every burst the chain that is most like a given one, where any is; and how like they are, all together.
+fn like<'a>(seed: &Chain, chains: &'a [Vec<Chain>]) -> (Vec<&'a Chain>, f64) {
+    let difference = |chain: &Chain| {
+        let growth = (chain[1].area / seed[1].area).ln() / ALIKE;
+        let shape = chain[1].invariants.zip(seed[1].invariants).map_or(1.0, |(a, b)| a.distance(&b) / ALIKE);
+        growth.powi(2) + shape.min(1.0).powi(2)
+    };
+    let best = chains.iter().filter_map(|chains| {
+        let of_burst = chains.iter().map(|chain| (chain, difference(chain)));
+        of_burst.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, difference)| *difference < 2.0)
+    });
+    let group: Vec<(&Chain, f64)> = best.collect();
+    let likeness = group.iter().map(|(_, difference)| (-difference).exp()).sum();
+    (group.into_iter().map(|(chain, _)| chain).collect(), likeness)
+}
+
+/// Whether a thing is seen in different places.
+fn leaves(group: &[&Chain]) -> bool {
+    let first = &group[0][0];
+    group.iter().any(|chain| (chain[2].centre - first.centre).norm() > APART * first.size())
+}
+
+/// Whether it goes around the middle of another, within its outline: then it is a part of that.
+fn turns_with(group: &[&Chain], still: &Sight) -> bool {
+    let radius = |chain: &Chain| (chain[1].centre - still.centre).norm();
+    let first = radius(group[0]);
+    let is_part = |chain: &&Chain| {
+        is_within(&chain[1].centre, &still.points) && (radius(chain) - first).abs() < 0.5 * chain[1].size()
+    };
+    group.iter().all(is_part)
+}
+
+fn follow_each_other(burst: &[Vec<Sight>]) -> bool {
+    let frames: Vec<u64> = burst.iter().filter_map(|sights| Some(sights.first()?.frame)).collect();
+    frames.len() == 3 && frames[0] + 1 == frames[1] && frames[1] + 1 == frames[2]
+}
+
+/// What goes straight on within three pictures.
+fn chains_of(burst: &[Vec<Sight>]) -> Vec<Chain> {
+    let [first, second, third] = burst else { return Vec::new() };
+    let goes_on = |a: &Sight, b: &Sight, c: &Sight| {
+        let (one, two) = (b.centre - a.centre, c.centre - b.centre);
+        let step = one.norm().max(two.norm());
+        let bend = BEND[0] * b.size() + BEND[1] * step + BEND[2];
+        let overlaps = step < OVERLAP * b.size();
+        (overlaps || (two - one).norm() < bend) && (one + two).norm() > LEAST_WAY[0] * b.size() + LEAST_WAY[1]
+    };
+    let chain = |b: &Sight| -> Option<Chain> {
+        let candidates = |of: &'_ [Sight]| -> Vec<Sight> { of.iter().filter(|a| is_like(a, b)).cloned().collect() };
+        let (before, after) = (candidates(first), candidates(third));
+        let pairs = before.iter().flat_map(|a| after.iter().map(move |c| (a, c)));
+        let straight = pairs.filter(|(a, c)| goes_on(a, b, c));
+        let (a, c) = straight.min_by(|x, y| way([x.0, b, x.1]).total_cmp(&way([y.0, b, y.1])))?;
+        Some([a.clone(), b.clone(), c.clone()])
+    };
+    second.iter().filter_map(chain).collect()
+}
+
+/// Length of the way.
+fn way([a, b, c]: [&Sight; 3]) -> f64 {
+    (b.centre - a.centre).norm() + (c.centre - b.centre).norm()
+}
+
+/// Whether both may be one thing in pictures that follow each other.
+fn is_like(a: &Sight, b: &Sight) -> bool {
+    let size = a.size().min(b.size());
+    !a.is_clipped
+        && !b.is_clipped
+        && (a.area / b.area).ln().abs() < GROWTH + GROWTH_OF_SMALL / size
+        && (a.centre - b.centre).norm() < LARGEST_STEP * size
+}
+
+/// Whether a thing lies on the outline of another: what turns with it changes the picture there.
+fn lies_on(sight: &Sight, still: &Sight) -> bool {
+    let to = |point: &Point2<f64>| -> Vector2<f64> { point - sight.centre };
+    still.points.iter().any(|point| to(point).norm() < sight.size())
+}
+
+/// Whether a point lies within a closed line, by the crossings of a ray.
+fn is_within(point: &Point2<f64>, line: &[Point2<f64>]) -> bool {
+    let edges = line.iter().zip(line.iter().cycle().skip(1));
+    let crosses = |(p, q): &(&Point2<f64>, &Point2<f64>)| {
+        (p.y > point.y) != (q.y > point.y) && point.x < p.x + (point.y - p.y) / (q.y - p.y) * (q.x - p.x)
+    };
+    edges.filter(crosses).count() % 2 == 1
+}
