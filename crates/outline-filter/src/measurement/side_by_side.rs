@@ -158,7 +158,13 @@ impl Columns {
         let (own_places, numbers) = (self.own_places.as_slice(), self.numbers.as_mut_slice());
         vectorised(
             #[inline(always)]
-            || map.associate(own_places.iter().copied(), numbers),
+            || {
+                let places = own_places.iter().map(
+                    #[inline(always)]
+                    |place| *place,
+                );
+                map.associate(places, numbers);
+            },
         );
     }
 
