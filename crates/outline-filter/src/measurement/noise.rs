@@ -233,6 +233,11 @@ impl NoiseModel {
         (ratio / (1.0 + tuning::CORRELATION_SIGNIFICANT * uncertainty)).max(self.rounding.shared_by)
     }
 
+    /// Whether enough frames have been seen to tell, and the errors of points beside each other have not been found to depend on each other.
+    pub(crate) fn is_found_independent(&self) -> bool {
+        self.correlation.frames >= tuning::CORRELATION_TOLD && self.correlation() <= 1.0
+    }
+
     /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
     pub(crate) fn effective_variance(&self) -> f64 {
         self.sigma * self.sigma * self.correlation()

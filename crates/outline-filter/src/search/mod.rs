@@ -7,5 +7,5 @@ mod symmetry;
 
 pub(crate) use landmarks::Landmarks;
 pub(crate) use refinement::RegisteredPose;
-pub(crate) use registration::Registration;
+pub(crate) use registration::{Extent, Registration};
 pub(crate) use symmetry::symmetry_order;
