@@ -1,5 +1,6 @@
 //! Global registration: an object that is known as a track looked for in a frame, without a guess of how it has moved.
 mod landmarks;
+mod linearised;
 mod outlook;
 mod refinement;
 mod registration;
