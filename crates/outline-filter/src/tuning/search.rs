@@ -35,6 +35,8 @@ pub(crate) mod registration {
     /// Of the frames of a lost object that show something which is hopeless but for the noise that such frames have made tolerated, one in so many is
     /// searched from all turns; it has no factor in common with [`PARTS`], so that each part has its turn.
     pub(crate) const NOISY_SEARCHED: usize = 3;
+    /// Points that the related points of an outline are found by: they need to tell a turn to some degrees.
+    pub(crate) const POINTS_OF_LANDMARKS: usize = 100;
     /// Points that the search is made with.
     pub(crate) const FEW_POINTS: usize = 80;
     /// Distance beyond which points count alike in the score of a pose, in radii: they may be hidden in the map or wrong. Trimming a share of
