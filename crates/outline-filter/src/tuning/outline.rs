@@ -30,7 +30,7 @@ pub(crate) mod map {
     /// Shortest run of new places that is taken: one alone is an outlier as often as not.
     pub(crate) const SHORTEST_RUN: usize = 2;
     /// Longest side of the picture of nearest cells, pixels: it stays within the second cache of a processor.
-    pub(crate) const FIELD_PIXELS: f64 = 192.0;
+    pub(crate) const FIELD_PIXELS: f64 = 96.0;
     /// Margin of that picture around the cells, in their extent: points of frames that are not yet aligned lie there.
     pub(crate) const FIELD_MARGIN: f64 = 0.1;
     /// Smallest pixel of that picture, in spacings: finer ones would not make the cell that a pixel names a nearer one.
