@@ -7,12 +7,21 @@ use crate::{
     vectors::{LANES, Lanes, vectorised},
 };
 
+/// How well the cells of points are to be known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Association {
+    /// Near the points: enough while a pose is some degrees off.
+    Near,
+    Nearest,
+}
+
 /// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.
 pub(super) struct Seen<'a> {
     pub(super) points: &'a [Point2<f64>],
     pub(super) inverse: &'a Matrix3<f64>,
     pub(super) map: &'a OutlineMap,
     pub(super) offsets: &'a [f64],
+    pub(super) association: Association,
 }
 
 /// Normal equations with Tukey's weights: their matrix, and their right-hand side.
@@ -55,7 +64,7 @@ impl<const K: usize> Rows<K> {
         numbers: &mut [u32],
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
     ) {
-        let Seen { points, inverse, map, offsets } = seen;
+        let Seen { points, inverse, map, offsets, .. } = seen;
         map.associate_all(
             points.iter().map(
                 #[inline(always)]
@@ -153,14 +162,15 @@ pub(super) struct SideBySide {
 impl SideBySide {
     #[inline(always)]
     fn linearise(&mut self, seen: &Seen<'_>, numbers: &mut [u32]) {
-        let Seen { points, inverse, map, offsets } = seen;
-        map.associate_all(
-            points.iter().map(
-                #[inline(always)]
-                |p| map_point_by::<true>(inverse, p),
-            ),
-            numbers,
+        let Seen { points, inverse, map, offsets, association } = seen;
+        let places = points.iter().map(
+            #[inline(always)]
+            |p| map_point_by::<true>(inverse, p),
         );
+        match association {
+            Association::Near => map.associate_near(places, numbers),
+            Association::Nearest => map.associate_all(places, numbers),
+        }
         // What lies anywhere is looked up first: the loop after that runs in vectors.
         let (cells, lines) = (map.cells(), self.lines.as_mut_slice());
         for (line, number) in lines.iter_mut().zip(numbers) {
@@ -194,27 +204,26 @@ impl SideBySide {
         let [residuals, turns, along_x, along_y] = &self.columns;
         let mut sums = [[0.0; LANES]; 9];
         let columns = residuals.iter().zip(turns).zip(along_x.iter().zip(along_y));
-        for ((residual, turn), (along_x, along_y)) in columns {
+        for ((residual, a), (b, c)) in columns {
+            let (mut weight, mut r) = ([0.0; LANES], [0.0; LANES]);
             for lane in 0..LANES {
                 let u = residual[lane] * scale;
                 let kept = 1.0 - u * u;
-                // As in the plain way; no number is not greater than zero.
-                let counts = kept > 0.0;
-                let only = |number: f64| if counts { number } else { 0.0 };
-                let (kept, r) = (only(kept), only(residual[lane]));
-                let (a, b, c) = (only(turn[lane]), only(along_x[lane]), only(along_y[lane]));
-                let weight = kept * kept;
-                let (wa, wb, wc) = (weight * a, weight * b, weight * c);
-                sums[0][lane] += wa * a;
-                sums[1][lane] += wa * b;
-                sums[2][lane] += wa * c;
-                sums[3][lane] += wb * b;
-                sums[4][lane] += wb * c;
-                sums[5][lane] += wc * c;
-                sums[6][lane] += r * wa;
-                sums[7][lane] += r * wb;
-                sums[8][lane] += r * wc;
+                // As in the plain way; no number is not greater than zero. Normals of an affine pose are numbers always.
+                weight[lane] = if kept > 0.0 { kept * kept } else { 0.0 };
+                r[lane] = if kept > 0.0 { residual[lane] } else { 0.0 };
             }
+            let (wa, wb, wc) = (product(&weight, a), product(&weight, b), product(&weight, c));
+            let [aa, ab, ac, bb, bc, cc, ra, rb, rc] = &mut sums;
+            add_product(aa, &wa, a);
+            add_product(ab, &wa, b);
+            add_product(ac, &wa, c);
+            add_product(bb, &wb, b);
+            add_product(bc, &wb, c);
+            add_product(cc, &wc, c);
+            add_product(ra, &wa, &r);
+            add_product(rb, &wb, &r);
+            add_product(rc, &wc, &r);
         }
         sums
     }
@@ -239,6 +248,22 @@ fn linearise_lanes(
         (u[lane], v[lane]) = (pulled_x * slope, pulled_y * slope);
         // Of the foot of the point, which lies along the normal.
         turn[lane] = u[lane] * p.y - v[lane] * p.x;
+    }
+}
+
+#[inline(always)]
+fn product(a: &Lanes, b: &Lanes) -> Lanes {
+    let mut product = [0.0; LANES];
+    for lane in 0..LANES {
+        product[lane] = a[lane] * b[lane];
+    }
+    product
+}
+
+#[inline(always)]
+fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+    for lane in 0..LANES {
+        sum[lane] += a[lane] * b[lane];
     }
 }
 
@@ -321,7 +346,8 @@ mod tests {
             let pose = Matrix3::new(0.8 * stretch, -0.6, 0.1, 0.6 * stretch, 0.8, -0.05, 0.0, 0.0, 1.0);
             let inverse = pose.try_inverse().expect("an inverse");
             let offsets = view.belief.offsets.as_slice();
-            let seen = Seen { points: &frame.points, inverse: &inverse, map: view.map, offsets };
+            let association = Association::Nearest;
+            let seen = Seen { points: &frame.points, inverse: &inverse, map: view.map, offsets, association };
             let mut numbers = vec![0; count as usize];
             let (mut rows, mut lanes) = (Rows::<3>::new(MotionModel::Rigid, count as usize), SideBySide::default());
             rows.take(&seen, &mut numbers);
