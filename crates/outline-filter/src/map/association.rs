@@ -90,16 +90,6 @@ impl OutlineMap {
         self.has_ends && self.bisectors[nearest].is_end && self.is_beyond_end(nearest, q)
     }
 
-    /// Numbers of cells near places, one for each: of one that is nearest, or hardly farther than that. There is to be a cell.
-    #[inline(always)]
-    pub(crate) fn associate_near(&self, places: impl Iterator<Item = Point2<f64>> + Clone, numbers: &mut [u32]) {
-        self.field.pixels(places, numbers);
-        let nearest = self.field.nearest();
-        for number in numbers {
-            *number = nearest[*number as usize];
-        }
-    }
-
     /// As [`associate`](Self::associate), of places beyond ends too.
     #[inline(always)]
     pub(crate) fn associate_all(&self, places: impl Iterator<Item = Point2<f64>> + Clone, numbers: &mut [u32]) {

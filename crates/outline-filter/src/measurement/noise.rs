@@ -373,3 +373,23 @@ impl NoiseModel {
             && self.inflation.iter().all(VarianceInflation::is_valid)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_independent_only_once_enough_frames_have_told_so() {
+        let seen = |frames: usize, ratio: f64| {
+            let mut noise = NoiseModel::new(1.0);
+            (0..frames).for_each(|_| noise.update_correlation(ratio, 1.0));
+            noise
+        };
+        assert!(!seen(15, 1.0).is_found_independent());
+        assert!(seen(16, 1.0).is_found_independent() && seen(16, 1.1).is_found_independent());
+        assert!(!seen(16, 1.2).is_found_independent() && !seen(1000, 1.1).is_found_independent());
+        let mut of_mask = seen(50, 1.0);
+        of_mask.allow_for_rounding(Rounding::of_mask(0.1, (6.0, 400)));
+        assert!(!of_mask.is_found_independent());
+    }
+}

@@ -154,6 +154,10 @@ impl Columns {
     }
 
     /// Finds the cells nearest to the places of the points in the body frame.
+    #[expect(
+        clippy::map_clone,
+        reason = "`copied` may become a function by itself, made for the least of all processors"
+    )]
     fn associate(&mut self, map: &OutlineMap) {
         let (own_places, numbers) = (self.own_places.as_slice(), self.numbers.as_mut_slice());
         vectorised(

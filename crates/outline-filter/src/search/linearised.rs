@@ -7,21 +7,12 @@ use crate::{
     vectors::{LANES, Lanes, vectorised},
 };
 
-/// How well the cells of points are to be known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Association {
-    /// Near the points: enough while a pose is some degrees off.
-    Near,
-    Nearest,
-}
-
 /// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.
 pub(super) struct Seen<'a> {
     pub(super) points: &'a [Point2<f64>],
     pub(super) inverse: &'a Matrix3<f64>,
     pub(super) map: &'a OutlineMap,
     pub(super) offsets: &'a [f64],
-    pub(super) association: Association,
 }
 
 /// Normal equations with Tukey's weights: their matrix, and their right-hand side.
@@ -64,7 +55,7 @@ impl<const K: usize> Rows<K> {
         numbers: &mut [u32],
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
     ) {
-        let Seen { points, inverse, map, offsets, .. } = seen;
+        let Seen { points, inverse, map, offsets } = seen;
         map.associate_all(
             points.iter().map(
                 #[inline(always)]
@@ -162,15 +153,14 @@ pub(super) struct SideBySide {
 impl SideBySide {
     #[inline(always)]
     fn linearise(&mut self, seen: &Seen<'_>, numbers: &mut [u32]) {
-        let Seen { points, inverse, map, offsets, association } = seen;
-        let places = points.iter().map(
-            #[inline(always)]
-            |p| map_point_by::<true>(inverse, p),
+        let Seen { points, inverse, map, offsets } = seen;
+        map.associate_all(
+            points.iter().map(
+                #[inline(always)]
+                |p| map_point_by::<true>(inverse, p),
+            ),
+            numbers,
         );
-        match association {
-            Association::Near => map.associate_near(places, numbers),
-            Association::Nearest => map.associate_all(places, numbers),
-        }
         // What lies anywhere is looked up first: the loop after that runs in vectors.
         let (cells, lines) = (map.cells(), self.lines.as_mut_slice());
         for (line, number) in lines.iter_mut().zip(numbers) {
@@ -346,8 +336,7 @@ mod tests {
             let pose = Matrix3::new(0.8 * stretch, -0.6, 0.1, 0.6 * stretch, 0.8, -0.05, 0.0, 0.0, 1.0);
             let inverse = pose.try_inverse().expect("an inverse");
             let offsets = view.belief.offsets.as_slice();
-            let association = Association::Nearest;
-            let seen = Seen { points: &frame.points, inverse: &inverse, map: view.map, offsets, association };
+            let seen = Seen { points: &frame.points, inverse: &inverse, map: view.map, offsets };
             let mut numbers = vec![0; count as usize];
             let (mut rows, mut lanes) = (Rows::<3>::new(MotionModel::Rigid, count as usize), SideBySide::default());
             rows.take(&seen, &mut numbers);

@@ -2,7 +2,7 @@
 use freeform_riccati::{MotionModel, is_affine, map_point_by};
 use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector};
 
-use super::linearised::{Association, Equations, Linearised, Rows, Seen, SideBySide};
+use super::linearised::{Equations, Linearised, Rows, Seen, SideBySide};
 use crate::{
     map::median,
     measurement::{Lies, View, hide_points},
@@ -31,21 +31,15 @@ pub(super) struct Steps {
     /// Deviation of the residuals that the first step allows for, normalised. Where the median residual is small from the beginning, as on a
     /// disc with a pin, the points that tell the turn are those that are far off.
     widest: f64,
-    association: Association,
 }
 
 impl Steps {
     /// Of a search, until searches may have come together...
-    pub(super) const FIRST: Self =
-        Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST, association: Association::Near };
+    pub(super) const FIRST: Self = Self { most: tuning::FIRST_STEPS, widest: tuning::WIDEST };
     /// ...and from there on.
-    pub(super) const FURTHER: Self = Self {
-        most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS,
-        widest: tuning::WIDEST_FURTHER,
-        association: Association::Nearest,
-    };
-    pub(super) const REFINEMENT: Self =
-        Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED, association: Association::Nearest };
+    pub(super) const FURTHER: Self =
+        Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
+    pub(super) const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
 }
 
 /// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals, at most so many.
@@ -87,8 +81,7 @@ where
     let mut shows_outline = true;
     for _ in 0..steps.most {
         let Some(inverse) = pose.try_inverse() else { break };
-        let association = steps.association;
-        let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets, association };
+        let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
         linearised.take(&seen, &mut numbers);
         if model == belief.model {
             map.null_directions(model, &pose).iter().for_each(|direction| linearised.leave_out(direction));
@@ -136,7 +129,7 @@ struct MostDistance {
 impl Seen<'_> {
     #[inline(always)]
     fn mean_distance<const AFFINE: bool>(&self, most: MostDistance, numbers: &mut [u32]) -> f64 {
-        let Self { points, inverse, map, offsets, .. } = self;
+        let Self { points, inverse, map, offsets } = self;
         let places = points.iter().map(
             #[inline(always)]
             |p| map_point_by::<AFFINE>(inverse, p),
@@ -187,8 +180,7 @@ fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, num
     if points.is_empty() || map.cells().is_empty() {
         return f64::INFINITY;
     }
-    let association = Association::Nearest;
-    let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets, association };
+    let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
     let of_point = noise.sigma.hypot(tuning::FROM_CENTRE * map.spacing());
     let most = MostDistance {
         beyond_end: tuning::BEYOND_END * of_point,
