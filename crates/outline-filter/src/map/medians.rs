@@ -13,35 +13,40 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
+/// Puts the numbers of two lists in order, place by place.
+#[inline(always)]
+fn exchange(values: &mut [Lanes; 9], a: usize, b: usize) {
+    let (x, y) = (values[a], values[b]);
+    for lane in 0..LANES {
+        values[a][lane] = if x[lane] < y[lane] { x[lane] } else { y[lane] };
+        values[b][lane] = if x[lane] < y[lane] { y[lane] } else { x[lane] };
+    }
+}
+
 /// Middle ones of all that nine lists side by side hold in a place, by the exchanges of J. L. Smith's network (Implementing median filters in
 /// XC4000E FPGAs, 1996).
 #[inline(always)]
 fn medians_of_nine(mut values: [Lanes; 9]) -> Lanes {
-    for (a, b) in [
-        (1, 2),
-        (4, 5),
-        (7, 8),
-        (0, 1),
-        (3, 4),
-        (6, 7),
-        (1, 2),
-        (4, 5),
-        (7, 8),
-        (0, 3),
-        (5, 8),
-        (4, 7),
-        (3, 6),
-        (1, 4),
-        (2, 5),
-        (4, 7),
-        (4, 2),
-        (6, 4),
-        (4, 2),
-    ] {
-        let (x, y) = (values[a], values[b]);
-        values[a] = std::array::from_fn(|lane| if x[lane] < y[lane] { x[lane] } else { y[lane] });
-        values[b] = std::array::from_fn(|lane| if x[lane] < y[lane] { y[lane] } else { x[lane] });
-    }
+    // Written one by one, so that all nine stay in registers.
+    exchange(&mut values, 1, 2);
+    exchange(&mut values, 4, 5);
+    exchange(&mut values, 7, 8);
+    exchange(&mut values, 0, 1);
+    exchange(&mut values, 3, 4);
+    exchange(&mut values, 6, 7);
+    exchange(&mut values, 1, 2);
+    exchange(&mut values, 4, 5);
+    exchange(&mut values, 7, 8);
+    exchange(&mut values, 0, 3);
+    exchange(&mut values, 5, 8);
+    exchange(&mut values, 4, 7);
+    exchange(&mut values, 3, 6);
+    exchange(&mut values, 1, 4);
+    exchange(&mut values, 2, 5);
+    exchange(&mut values, 4, 7);
+    exchange(&mut values, 4, 2);
+    exchange(&mut values, 6, 4);
+    exchange(&mut values, 4, 2);
     values[4]
 }
 

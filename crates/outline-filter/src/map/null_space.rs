@@ -6,7 +6,7 @@ use super::{
     OutlineMap,
     centring::{Centring, NormalByNeighbours, Stretch},
     local_fit::direction_variance,
-    rest::Rest,
+    rest::{Rest, add_square},
     turn_evidence::{TurnEvent, TurnEvidence},
 };
 use crate::tuning::{
@@ -158,9 +158,9 @@ impl OutlineMap {
             let p = centring.centred(&cell.centre);
             let velocities = |along| SVector::from(model.normal_velocities(&p, along));
             let (across, along) = (velocities(&normal), velocities(&Vector2::new(-normal.y, normal.x)));
-            levers += across * across.transpose() / count;
+            add_square(&mut levers, &across, count.recip(), k);
             of_cells.push((across, count));
-            levers_of_noise += variance / count * along * along.transpose();
+            add_square(&mut levers_of_noise, &along, variance / count, k);
         }
         let centroid = Self::area_centroid(&contours).unwrap_or(centring.centroid);
         let of_places = self.levers_of_places(&contours, centring.spread());

@@ -4,6 +4,21 @@ use nalgebra::{Matrix3, Point2, SMatrix, SVector};
 
 use crate::tuning::null_space as tuning;
 
+/// Adds the square of a vector of so many entries, the others being zero, so many times.
+pub(super) fn add_square(
+    sum: &mut SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+    vector: &SVector<f64, MAX_PARAMETERS>,
+    times: f64,
+    entries: usize,
+) {
+    for j in 0..entries {
+        let weighted = times * vector[j];
+        for i in 0..entries {
+            sum[(i, j)] += weighted * vector[i];
+        }
+    }
+}
+
 /// What is left of an outline where a frame disagrees with the cells that tell most of a direction of the pose.
 pub(super) struct Rest {
     /// Mean square of the levers that it has in the direction that it shows least, over all cells.
@@ -20,16 +35,26 @@ impl Rest {
         entries: usize,
     ) -> Self {
         let mut rest = Self { lever: 0.0, direction: *direction };
-        let mut cells: Vec<_> = of_cells.iter().collect();
-        let kept = ((1.0 - tuning::MISSED) * cells.len() as f64).ceil() as usize;
+        let kept = ((1.0 - tuning::MISSED) * of_cells.len() as f64).ceil() as usize;
+        let lever = |(across, count): &(SVector<f64, MAX_PARAMETERS>, f64),
+                     direction: &SVector<f64, MAX_PARAMETERS>| {
+            let along: f64 = (0..entries).map(|i| across[i] * direction[i]).sum();
+            along * along / count
+        };
+        let mut ordered = Vec::with_capacity(of_cells.len());
         for _ in 0..tuning::ROUNDS_OF_REST {
-            let lever =
-                |(across, count): &(SVector<f64, MAX_PARAMETERS>, f64)| across.dot(&rest.direction).powi(2) / count;
-            cells.sort_by(|a, b| lever(a).total_cmp(&lever(b)));
+            ordered.clear();
+            ordered.extend(of_cells.iter().map(|cell| lever(cell, &rest.direction)).zip(0_u32..));
+            // Which of them count is all that matters.
+            let by_lever = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+            if kept < ordered.len() {
+                ordered.select_nth_unstable_by(kept, by_lever);
+            }
             let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
             levers.view_mut((0, 0), (entries, entries)).fill(0.0);
-            for (across, count) in &cells[..kept.min(cells.len())] {
-                levers += across * across.transpose() / *count;
+            for (_, number) in &ordered[..kept.min(ordered.len())] {
+                let (across, count) = &of_cells[*number as usize];
+                add_square(&mut levers, across, count.recip(), entries);
             }
             let eigen = levers.symmetric_eigen();
             let least = eigen.eigenvalues.imin();

@@ -233,6 +233,11 @@ impl NoiseModel {
         (ratio / (1.0 + tuning::CORRELATION_SIGNIFICANT * uncertainty)).max(self.rounding.shared_by)
     }
 
+    /// Whether enough frames have been seen to tell, and the errors of points beside each other have not been found to depend on each other.
+    pub(crate) fn is_found_independent(&self) -> bool {
+        self.correlation.frames >= tuning::CORRELATION_TOLD && self.correlation() <= 1.0
+    }
+
     /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
     pub(crate) fn effective_variance(&self) -> f64 {
         self.sigma * self.sigma * self.correlation()
@@ -366,5 +371,25 @@ impl NoiseModel {
             && !self.level.frames.iter().any(|spread| spread.is_nan())
             && self.inflation.len() == cells
             && self.inflation.iter().all(VarianceInflation::is_valid)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_independent_only_once_enough_frames_have_told_so() {
+        let seen = |frames: usize, ratio: f64| {
+            let mut noise = NoiseModel::new(1.0);
+            (0..frames).for_each(|_| noise.update_correlation(ratio, 1.0));
+            noise
+        };
+        assert!(!seen(15, 1.0).is_found_independent());
+        assert!(seen(16, 1.0).is_found_independent() && seen(16, 1.1).is_found_independent());
+        assert!(!seen(16, 1.2).is_found_independent() && !seen(1000, 1.1).is_found_independent());
+        let mut of_mask = seen(50, 1.0);
+        of_mask.allow_for_rounding(Rounding::of_mask(0.1, (6.0, 400)));
+        assert!(!of_mask.is_found_independent());
     }
 }

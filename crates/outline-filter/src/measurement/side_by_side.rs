@@ -154,11 +154,21 @@ impl Columns {
     }
 
     /// Finds the cells nearest to the places of the points in the body frame.
+    #[expect(
+        clippy::map_clone,
+        reason = "`copied` may become a function by itself, made for the least of all processors"
+    )]
     fn associate(&mut self, map: &OutlineMap) {
         let (own_places, numbers) = (self.own_places.as_slice(), self.numbers.as_mut_slice());
         vectorised(
             #[inline(always)]
-            || map.associate(own_places.iter().copied(), numbers),
+            || {
+                let places = own_places.iter().map(
+                    #[inline(always)]
+                    |place| *place,
+                );
+                map.associate(places, numbers);
+            },
         );
     }
 

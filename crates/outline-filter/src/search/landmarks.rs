@@ -2,7 +2,7 @@ use freeform_curve_fit::{FitSettings, Fitter, Outline};
 use freeform_decompose::{Decomposition, RelatedPoints};
 use nalgebra::{Affine2, Point2};
 
-use crate::measurement::Reference;
+use crate::{measurement::Reference, tuning::registration as tuning};
 
 /// Related points of one outline, those of the quartic's two line pairs.
 #[derive(Debug, Clone, Copy)]
@@ -10,8 +10,17 @@ use crate::measurement::Reference;
 pub(crate) struct Landmarks([Point2<f64>; 2]);
 
 impl Landmarks {
-    /// In the image coordinates of the outline.
+    /// In the image coordinates of the outline. Few of its points tell the turn by far less than searches reach.
     pub(crate) fn of(outline: &Outline) -> Option<Self> {
+        let thinned = match outline {
+            Outline::Closed(closed) if outline.deviations().is_none() => {
+                let points = closed.points();
+                let stride = points.len() / tuning::POINTS_OF_LANDMARKS;
+                if stride > 1 { Outline::closed(points.iter().step_by(stride).copied().collect()).ok() } else { None }
+            }
+            _ => None,
+        };
+        let outline = thinned.as_ref().unwrap_or(outline);
         let fit = Fitter::new(FitSettings::default()).ok()?.fit(outline).ok()?;
         let decomposition = Decomposition::of(fit.working()).ok()?;
         let related = RelatedPoints::of(&decomposition);

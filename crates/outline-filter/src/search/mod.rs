@@ -1,5 +1,6 @@
 //! Global registration: an object that is known as a track looked for in a frame, without a guess of how it has moved.
 mod landmarks;
+mod linearised;
 mod nearby;
 mod outlook;
 mod refinement;
@@ -9,5 +10,5 @@ mod symmetry;
 pub(crate) use landmarks::Landmarks;
 pub(crate) use nearby::displacement_nearby;
 pub(crate) use refinement::RegisteredPose;
-pub(crate) use registration::Registration;
+pub(crate) use registration::{Extent, Registration};
 pub(crate) use symmetry::symmetry_order;

@@ -9,6 +9,8 @@ pub(super) enum Outlook {
     Open,
     /// Even in the pose that explains it best it scatters by far more than is tolerated.
     Hopeless,
+    /// As that, of the poses that were found from a part of the turns.
+    HopelessSoFar,
 }
 
 impl Outlook {
@@ -21,7 +23,7 @@ impl Outlook {
     /// Whether few points can tell that there is nothing to be found: of rigid motion alone, since others change the outline, of frames of enough
     /// points, and of outlines without ends, beyond which points may lie. Of points that state deviations it is not said
     /// either: [`Track::most_noise_tolerated`] is infinite then.
-    fn can_be_told(track: &Track, points: usize) -> bool {
+    pub(super) fn can_be_told(track: &Track, points: usize) -> bool {
         points >= tuning::ENOUGH_POINTS && track.model() == MotionModel::Rigid && !track.map().has_ends()
     }
 }

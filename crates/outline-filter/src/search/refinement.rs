@@ -1,9 +1,10 @@
 //! A pose brought onto the points of a frame from one that is near, by least squares of their distances from the outline.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, is_affine, map_point_by, pull_back_by};
-use nalgebra::{Const, DimMin, Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
+use freeform_riccati::{MotionModel, is_affine, map_point_by};
+use nalgebra::{Const, DimMin, Matrix2, Matrix3, Point2, SMatrix, SVector};
 
+use super::linearised::{Equations, Linearised, Rows, Seen, SideBySide};
 use crate::{
-    map::{NullDirection, OutlineMap, median},
+    map::median,
     measurement::{Lies, View, hide_points},
     track::Track,
     tuning::{measurement::MEDIAN_TO_DEVIATION, registration as tuning},
@@ -52,23 +53,25 @@ pub(super) fn refined(
     start: &Matrix3<f64>,
     steps: Steps,
 ) -> RegisteredPose {
+    let count = points.len();
     match model.parameter_count() {
-        3 => refined_sized::<3>(track, points, model, start, steps),
-        4 => refined_sized::<4>(track, points, model, start, steps),
-        6 => refined_sized::<6>(track, points, model, start, steps),
-        _ => refined_sized::<8>(track, points, model, start, steps),
+        3 if !track.map().has_ends() && is_affine(start) => {
+            refined_by::<3, SideBySide>(track, points, model, start, steps, SideBySide::default())
+        }
+        3 => refined_by(track, points, model, start, steps, Rows::<3>::new(model, count)),
+        4 => refined_by(track, points, model, start, steps, Rows::<4>::new(model, count)),
+        6 => refined_by(track, points, model, start, steps, Rows::<6>::new(model, count)),
+        _ => refined_by(track, points, model, start, steps, Rows::<8>::new(model, count)),
     }
 }
 
-/// Residual of a point, infinite where it has none, and how far a unit of each parameter of the motion moves the outline there.
-type Row<const K: usize> = (f64, [f64; K]);
-
-fn refined_sized<const K: usize>(
+fn refined_by<const K: usize, L: Linearised<K>>(
     track: &Track,
     points: &[Point2<f64>],
     model: MotionModel,
     start: &Matrix3<f64>,
     steps: Steps,
+    mut linearised: L,
 ) -> RegisteredPose
 where
     Const<K>: DimMin<Const<K>, Output = Const<K>>,
@@ -76,25 +79,23 @@ where
     let View { map, belief, noise } = track.view();
     let mut pose = *start;
     let mut numbers = vec![0; points.len()];
-    let mut rows: Vec<Row<K>> = vec![(0.0, [0.0; K]); points.len()];
     let mut sizes = Vec::with_capacity(points.len());
     let (mut widest, mut spread) = (steps.widest, f64::INFINITY);
     let mut shows_outline = true;
     for _ in 0..steps.most {
         let Some(inverse) = pose.try_inverse() else { break };
         let seen = Seen { points, inverse: &inverse, map, offsets: &belief.offsets };
-        seen.linearise_by(model, &mut numbers, &mut rows);
+        linearised.take(&seen, &mut numbers);
         if model == belief.model {
-            map.null_directions(model, &pose).iter().for_each(|direction| leave_out(direction, &mut rows));
+            map.null_directions(model, &pose).iter().for_each(|direction| linearised.leave_out(direction));
         }
-        sizes.clear();
-        sizes.extend(rows.iter().map(|(residual, _)| residual.abs()).filter(|size| size.is_finite()));
-        shows_outline = sizes.len() as f64 >= tuning::FEWEST_ON_OUTLINE * rows.len() as f64;
+        linearised.write_sizes(&mut sizes);
+        shows_outline = sizes.len() as f64 >= tuning::FEWEST_ON_OUTLINE * points.len() as f64;
         spread = MEDIAN_TO_DEVIATION * median(&mut sizes).unwrap_or(0.0).max(noise.sigma);
         let scale = tuning::TUKEY * spread.max(widest);
         let is_narrow = widest <= spread;
         widest *= tuning::NARROWER;
-        let Some(step) = weighted_step(&rows, scale) else { break };
+        let Some(step) = step_of(linearised.equations(scale)) else { break };
         let next = model.flow(step.as_slice(), 1.0).into_inner() * pose;
         if !next.iter().all(|e| e.is_finite()) || next.determinant().abs() < tuning::SMALLEST_AREA {
             break;
@@ -111,25 +112,11 @@ where
     RegisteredPose { pose, score, spread, turn, change: turn.abs() }
 }
 
-/// Keeps steps off a direction that the outline does not show.
-fn leave_out<const K: usize>(direction: &NullDirection, rows: &mut [Row<K>]) {
-    for (_, row) in rows {
-        let mut jacobian = [0.0; MAX_PARAMETERS];
-        jacobian[..K].copy_from_slice(row);
-        direction.project_out(&mut jacobian);
-        row.copy_from_slice(&jacobian[..K]);
-    }
-}
-
-/// The step by least squares with Tukey's weights, which are zero from `scale` on; `None` where numbers are not finite.
-fn weighted_step<const K: usize>(rows: &[Row<K>], scale: f64) -> Option<SVector<f64, K>>
+/// The step that solves normal equations; `None` where numbers are not finite.
+fn step_of<const K: usize>((gram, right): Equations<K>) -> Option<SVector<f64, K>>
 where
     Const<K>: DimMin<Const<K>, Output = Const<K>>,
 {
-    let (gram, right) = vectorised(
-        #[inline(always)]
-        || weighted_sums(rows, 1.0 / scale),
-    );
     let gram = SMatrix::<f64, K, K>::from_fn(|i, j| gram[i][j] + if i == j { tuning::DAMPING } else { 0.0 });
     Some(gram.cholesky()?.solve(&SVector::from(right)))
 }
@@ -140,14 +127,6 @@ struct MostDistance {
     /// Nearest to a known end of the outline, and beyond it.
     beyond_end: f64,
     elsewhere: f64,
-}
-
-/// Points as they are seen in a pose, given by its inverse, and the outline that they are brought onto.
-struct Seen<'a> {
-    points: &'a [Point2<f64>],
-    inverse: &'a Matrix3<f64>,
-    map: &'a OutlineMap,
-    offsets: &'a [f64],
 }
 
 impl Seen<'_> {
@@ -193,74 +172,6 @@ impl Seen<'_> {
         let are_enough = (points.len() - unknown) as f64 >= tuning::FEWEST_ON_OUTLINE * points.len() as f64;
         if are_enough { sum / points.len() as f64 } else { f64::INFINITY }
     }
-
-    /// Residuals of all points and their derivatives for a model.
-    fn linearise_by<const K: usize>(&self, model: MotionModel, numbers: &mut [u32], rows: &mut [Row<K>]) {
-        vectorised(
-            #[inline(always)]
-            || match (model, is_affine(self.inverse)) {
-                (MotionModel::Rigid, true) => {
-                    self.linearise::<true, K>(numbers, rows, |p, n| MotionModel::Rigid.normal_velocities(p, n));
-                }
-                (_, true) => self.linearise::<true, K>(numbers, rows, |p, n| model.normal_velocities(p, n)),
-                (_, false) => self.linearise::<false, K>(numbers, rows, |p, n| model.normal_velocities(p, n)),
-            },
-        );
-    }
-
-    /// Those derivatives by what `velocities` tell.
-    #[inline(always)]
-    fn linearise<const AFFINE: bool, const K: usize>(
-        &self,
-        numbers: &mut [u32],
-        rows: &mut [Row<K>],
-        velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
-    ) {
-        let Self { points, inverse, map, offsets } = self;
-        map.associate_all(
-            points.iter().map(
-                #[inline(always)]
-                |p| map_point_by::<AFFINE>(inverse, p),
-            ),
-            numbers,
-        );
-        let cells = map.cells();
-        for ((p, number), row) in points.iter().zip(numbers).zip(rows) {
-            let q = map_point_by::<AFFINE>(inverse, p);
-            let (cell, offset) = (&cells[*number as usize], offsets[*number as usize]);
-            let distance = cell.normal.x * (q.x - cell.centre.x) + cell.normal.y * (q.y - cell.centre.y) - offset;
-            let pulled = pull_back_by::<AFFINE>(inverse, p, &q, &cell.normal);
-            let slope = 1.0 / (pulled.x * pulled.x + pulled.y * pulled.y).sqrt();
-            let (residual, normal) = (distance * slope, pulled * slope);
-            let along = velocities(&(p - residual * normal), &normal);
-            // Beyond a known end nothing says where a point should lie.
-            row.0 = if map.lies_beyond_end(*number as usize, &q) { f64::INFINITY } else { residual };
-            row.1.copy_from_slice(&along[..K]);
-        }
-    }
-}
-
-/// Normal equations with Tukey's weights, for the inverse of their scale.
-#[inline(always)]
-fn weighted_sums<const K: usize>(rows: &[Row<K>], scale: f64) -> ([[f64; K]; K], [f64; K]) {
-    let (mut gram, mut right) = ([[0.0; K]; K], [0.0; K]);
-    for (residual, row) in rows {
-        let u = residual * scale;
-        let kept = 1.0 - u * u;
-        // Points that do not count are left out: their rows may be no numbers, which nothing multiplied by zero takes back.
-        if kept.is_nan() || kept <= 0.0 {
-            continue;
-        }
-        let weight = kept * kept;
-        for i in 0..K {
-            let weighted = weight * row[i];
-            right[i] += residual * weighted;
-            for j in 0..K {
-                gram[i][j] += weighted * row[j];
-            }
-        }
-    }
-    (gram, right)
 }
 
 /// Mean distance of points from the cells of the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away. Where the outline has
@@ -303,19 +214,4 @@ pub(super) fn change_of(model: MotionModel, pose: &Matrix3<f64>, before: &Matrix
     }
     let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
     (step.fixed_view::<2, 2>(0, 0) - Matrix2::identity()).norm()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_that_do_not_count_add_nothing_even_where_they_are_no_numbers() {
-        let good = [(0.1, [1.0, 0.5, -0.2]), (-0.3, [0.4, 1.0, 0.7])];
-        let sums = weighted_sums(&good, 1.0);
-        for bad in [(f64::NAN, [1.0; 3]), (f64::INFINITY, [1.0; 3]), (2.0, [f64::NAN; 3]), (1.0, [f64::INFINITY; 3])] {
-            assert_eq!(weighted_sums(&[good[0], bad, good[1]], 1.0), sums, "{bad:?}");
-        }
-        assert!(sums.1.iter().all(|sum| *sum != 0.0), "{sums:?}");
-    }
 }

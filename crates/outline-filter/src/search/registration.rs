@@ -11,6 +11,39 @@ use crate::{
     tuning::{registration as tuning, symmetry as of_symmetry},
 };
 
+/// Where a search starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Extent {
+    /// From turns all around.
+    Whole,
+    /// From a part of these turns first, by the number of the frame since the object was lost; from the others only where the frame may show the
+    /// object, as far as those say.
+    Part(usize),
+}
+
+impl Extent {
+    /// Whether the start from this one of all turns belongs to the part that is searched first.
+    fn has_turn(self, number: usize) -> bool {
+        match self {
+            Self::Whole => true,
+            // Parts that follow each other lie far apart.
+            Self::Part(part) => number % tuning::PARTS == part * tuning::TO_NEXT_PART % tuning::PARTS,
+        }
+    }
+
+    /// Deviation of few points, normalised, up to which the frame is searched from all turns. While an object is lost, frames that show others make
+    /// more noise tolerated: what would need all of that, and more, is looked into in few of them.
+    fn most_spread(self, track: &Track) -> f64 {
+        let tolerated = track.most_noise_tolerated();
+        match self {
+            Self::Part(part) if !part.is_multiple_of(tuning::NOISY_SEARCHED) => {
+                (tuning::HOPELESS * track.usual_noise_tolerated()).max(tolerated)
+            }
+            _ => tuning::HOPELESS * tolerated,
+        }
+    }
+}
+
 /// Rigid poses that bring the outline of a track onto the points of a frame, apart from those that a symmetry adds.
 #[derive(Debug, Clone)]
 pub(crate) struct Registration {
@@ -21,23 +54,46 @@ pub(crate) struct Registration {
 impl Registration {
     /// Searches with normalised points of a frame, from turns all around; `landmarks` are the related points of the track in its present pose,
     /// and those of the frame.
-    pub(crate) fn search(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Self {
+    pub(crate) fn search(
+        track: &Track,
+        points: &[Point2<f64>],
+        landmarks: Option<[Landmarks; 2]>,
+        extent: Extent,
+    ) -> Self {
         let stride = (points.len() / tuning::FEW_POINTS).max(1);
         let few: Vec<_> = points.iter().step_by(stride).copied().collect();
         let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
-        let starts = starts(track, points, landmarks);
-        let mut begun: Vec<RegisteredPose> = Vec::with_capacity(starts.len());
-        for start in &starts {
+        let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
+        let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
+        let Starts { turns, told } = Starts::of(track, points, landmarks);
+        let mut begun: Vec<RegisteredPose> = Vec::with_capacity(turns.len() + told.len());
+        let begin = |begun: &mut Vec<RegisteredPose>, start: &Matrix3<f64>| {
             let found = search(&(start * track.body_pose()), Steps::FIRST);
             // Searches that have come together go on together.
             if !begun.iter().any(|other| (other.pose - found.pose).norm() < tuning::TOGETHER) {
                 begun.push(found);
             }
+        };
+        let numbered = || turns.iter().enumerate();
+        match extent {
+            Extent::Part(_) if turns.len() > 1 && Outlook::can_be_told(track, points.len()) => {
+                told.iter().for_each(|start| begin(&mut begun, start));
+                numbered().filter(|(i, _)| extent.has_turn(*i)).for_each(|(_, start)| begin(&mut begun, start));
+                let limit = extent.most_spread(track);
+                let may_end = |spread: f64| spread <= tuning::MARGIN_BEFORE_LAST_STEPS * limit;
+                let by_spread = |a: &&RegisteredPose, b: &&RegisteredPose| a.spread.total_cmp(&b.spread);
+                let ends: Vec<_> = begun.iter().filter(|found| may_end(found.spread)).map(further).collect();
+                if let Some(best) = ends.iter().chain(&begun).min_by(by_spread)
+                    && best.spread > limit
+                {
+                    return Self { rigid: vec![*best], outlook: Outlook::HopelessSoFar };
+                }
+                numbered().filter(|(i, _)| !extent.has_turn(*i)).for_each(|(_, start)| begin(&mut begun, start));
+            }
+            _ => turns.iter().chain(&told).for_each(|start| begin(&mut begun, start)),
         }
-        let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
         let least = begun.iter().map(|found| found.spread).fold(f64::INFINITY, f64::min);
         keep(&mut begun, tuning::SEARCHED_ON);
-        let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
         let mut rigid = Vec::with_capacity(begun.len());
         // Where all are far off by now, it is enough that the best of them remains so.
         if outlook_by(least / tuning::MARGIN_BEFORE_LAST_STEPS) == Outlook::Hopeless {
@@ -67,7 +123,17 @@ impl Registration {
 
     /// Whether the frame shows something else, as far as a search with few of its points says. There is one pose then.
     pub(crate) fn is_hopeless(&self) -> bool {
-        self.outlook == Outlook::Hopeless
+        self.outlook != Outlook::Open
+    }
+
+    /// Whether it has gone no further than the part of the turns that were searched first. It is hopeless, and has the pose that comes nearest.
+    pub(crate) fn is_of_part(&self) -> bool {
+        self.outlook == Outlook::HopelessSoFar
+    }
+
+    /// Deviation of few points of the frame from the outline in the best pose, normalised; infinite where there is none.
+    pub(crate) fn spread(&self) -> f64 {
+        self.rigid.first().map_or(f64::INFINITY, |best| best.spread)
     }
 
     /// The poses of the track's model, at most four (eight with more parameters than rigid motion has), with the smallest turns either way of an
@@ -97,31 +163,41 @@ impl Registration {
     }
 }
 
-/// Changes of the present pose that searches start from: turns about the centroids all around, and those that related points tell.
-fn starts(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Vec<Matrix3<f64>> {
-    let (map, pose) = (track.view().map, track.body_pose());
-    let count = map.cells().len() as f64;
-    let body_centre = map.cells().iter().map(|c| map_point(pose, &c.centre).coords / count).sum::<Vector2<f64>>();
-    let centre = points.iter().map(|p| p.coords / points.len() as f64).sum::<Vector2<f64>>();
-    // Of turns that make no difference the least is taken.
-    let turns = if track.turn_is_unseen() { 1 } else { tuning::TURNS };
-    let mut starts: Vec<_> = (0..turns)
-        .map(|i| turn_between(std::f64::consts::TAU * i as f64 / tuning::TURNS as f64, &body_centre, &centre))
-        .collect();
-    if turns > 1 {
-        starts.push(Matrix3::identity());
-        starts.extend(stretched_turns(track, &body_centre, &centre));
-    }
-    if let Some([before, after]) = landmarks.filter(|_| turns > 1) {
-        let ([a, b], [c, d]) = (before.normalised(track.reference()), after.normalised(track.reference()));
-        for (c, d) in [(c, d), (d, c)] {
-            let (from, to) = (b - a, d - c);
-            let turn = from.perp(&to).atan2(from.dot(&to));
-            let middle = |p: Point2<f64>, q: Point2<f64>| 0.5 * (p.coords + q.coords);
-            starts.push(turn_between(turn, &middle(a, b), &middle(c, d)));
+/// Changes of the present pose that searches start from.
+struct Starts {
+    /// Turns about the centroids, all around.
+    turns: Vec<Matrix3<f64>>,
+    /// None at all, those that stretch the outline, and what related points tell.
+    told: Vec<Matrix3<f64>>,
+}
+
+impl Starts {
+    fn of(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Self {
+        let (map, pose) = (track.view().map, track.body_pose());
+        let count = map.cells().len() as f64;
+        let body_centre = map.cells().iter().map(|c| map_point(pose, &c.centre).coords / count).sum::<Vector2<f64>>();
+        let centre = points.iter().map(|p| p.coords / points.len() as f64).sum::<Vector2<f64>>();
+        // Of turns that make no difference the least is taken.
+        let count = if track.turn_is_unseen() { 1 } else { tuning::TURNS };
+        let turns = (0..count)
+            .map(|i| turn_between(std::f64::consts::TAU * i as f64 / tuning::TURNS as f64, &body_centre, &centre))
+            .collect();
+        let mut told = Vec::new();
+        if count > 1 {
+            told.push(Matrix3::identity());
+            told.extend(stretched_turns(track, &body_centre, &centre));
         }
+        if let Some([before, after]) = landmarks.filter(|_| count > 1) {
+            let ([a, b], [c, d]) = (before.normalised(track.reference()), after.normalised(track.reference()));
+            for (c, d) in [(c, d), (d, c)] {
+                let (from, to) = (b - a, d - c);
+                let turn = from.perp(&to).atan2(from.dot(&to));
+                let middle = |p: Point2<f64>, q: Point2<f64>| 0.5 * (p.coords + q.coords);
+                told.push(turn_between(turn, &middle(a, b), &middle(c, d)));
+            }
+        }
+        Self { turns, told }
     }
-    starts
 }
 
 /// Of an outline whose shape may be stretched, and which is not as long as wide: turns of it as one that is, which may leave it as it is.
@@ -217,13 +293,41 @@ mod tests {
         for step in 0..12 {
             let turn = std::f64::consts::TAU * f64::from(step) / 12.0 + 0.1;
             frame.load(&shown(0.25, turn), track.reference());
-            let found = Registration::search(&track, &frame.points, None);
+            let found = Registration::search(&track, &frame.points, None, Extent::Whole);
             assert!(!found.is_hopeless(), "{turn}");
             let best = found.rigid[0];
             assert!(wrapped(best.turn - turn).abs() < 0.01, "{turn}: {best:?}");
             frame.load(&shown(-0.1, turn), track.reference());
-            let other = Registration::search(&track, &frame.points, None);
+            let other = Registration::search(&track, &frame.points, None, Extent::Whole);
             assert!(other.is_hopeless() && other.rigid.len() == 1, "{turn}: {other:?}");
         }
+    }
+
+    #[test]
+    fn parts_of_the_turns_that_follow_each_other_find_what_all_of_them_do_and_end_early_elsewhere() {
+        let mut frame = Frame::default();
+        let track = Track::begin(MotionModel::Rigid, &shown(0.25, 0.0), 0.0, &mut frame).expect("a track");
+        let parts = || (0..tuning::PARTS).map(Extent::Part);
+        for number in 0..tuning::TURNS {
+            assert_eq!(parts().filter(|part| part.has_turn(number)).count(), 1, "{number}");
+        }
+        let mut longest = 0;
+        for step in 0..12 {
+            let turn = std::f64::consts::TAU * f64::from(step) / 12.0 + 0.1;
+            frame.load(&shown(0.25, turn), track.reference());
+            let whole = Registration::search(&track, &frame.points, None, Extent::Whole).rigid[0];
+            let found: Vec<_> = parts().map(|part| Registration::search(&track, &frame.points, None, part)).collect();
+            assert!(found.iter().all(|found| found.is_of_part() == found.is_hopeless()), "{turn}: {found:?}");
+            for found in found.iter().filter(|found| !found.is_of_part()) {
+                assert!((found.rigid[0].pose - whole.pose).norm() < 1e-6, "{turn}: {found:?} {whole:?}");
+            }
+            longest = found.iter().position(|found| !found.is_of_part()).expect("a part that finds it").max(longest);
+            frame.load(&shown(-0.1, turn), track.reference());
+            for part in parts() {
+                let other = Registration::search(&track, &frame.points, None, part);
+                assert!(other.is_of_part() && other.rigid.len() == 1, "{turn}: {other:?}");
+            }
+        }
+        assert!(longest <= 3, "{longest}");
     }
 }

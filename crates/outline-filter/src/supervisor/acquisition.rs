@@ -9,7 +9,7 @@ use super::{
 use crate::{
     map::TurnEvent,
     measurement::{NegativeLogLikelihood, Tolerance},
-    search::{Landmarks, RegisteredPose, Registration, symmetry_order},
+    search::{Extent, Landmarks, RegisteredPose, Registration, symmetry_order},
     track::{Comparison, Outcome, Track},
     tuning::{supervisor::LARGEST_INNOVATION, usual_agreement::ELSEWHERE},
     update::Gate,
@@ -25,13 +25,32 @@ impl MotionFilter {
             let mut going_on = track.clone();
             going_on.predict(seconds);
             self.frame.load(outline, going_on.reference());
-            let outcome = going_on.update(&mut self.frame, &gate, Comparison::NotAsked);
+            // Nearly all frames of a lost object show something else.
+            let outcome = going_on
+                .rejected_at_a_glance(&mut self.frame, &gate)
+                .unwrap_or_else(|| going_on.update(&mut self.frame, &gate, Comparison::NotAsked));
             if outcome.is_accepted() {
                 self.replace(going_on, time, Phase::Tracking);
                 return Some(outcome);
             }
+            if self.track.as_ref().is_some_and(|track| track.noise().is_found_independent()) {
+                return self.search_in_part(time, seconds, outline, outcome);
+            }
         }
         self.search(time, seconds, outline)
+    }
+
+    /// Searches for a lost object from a part of all turns, and goes on from the others where that leaves hope; `expected` is what became of the
+    /// frame where the object was expected. For outlines whose points err independently: where they err together, what a start leaves says little of
+    /// whether it leads to the object.
+    fn search_in_part(&mut self, time: f64, seconds: f64, outline: &Outline, expected: Outcome) -> Option<Outcome> {
+        let registration = self.begin_search(outline, Extent::Part(self.counts.rejected_in_a_row))?;
+        if !registration.is_of_part() {
+            return self.measure_found(time, seconds, outline, &registration);
+        }
+        self.turn_hypotheses = TurnHypotheses::default();
+        self.track.as_mut().into_iter().for_each(|track| track.record_normalised_spread(registration.spread()));
+        Some(expected)
     }
 
     /// Where more points than usual of a frame that has been taken disagree, they may be those that tell the pose: the object is searched
@@ -65,23 +84,39 @@ impl MotionFilter {
 
     /// Searches for the object without a guess.
     fn search(&mut self, time: f64, seconds: f64, outline: &Outline) -> Option<Outcome> {
+        let registration = self.begin_search(outline, Extent::Whole)?;
+        self.measure_found(time, seconds, outline, &registration)
+    }
+
+    /// The outline of the track, asked anew whether it shows its turn, brought onto that of the frame; `None` where no more frames are searched.
+    fn begin_search(&mut self, outline: &Outline, extent: Extent) -> Option<Registration> {
         if !self.may_search() {
             return None;
         }
         self.searches.spend();
         self.track.as_mut().into_iter().for_each(Track::show_turn);
-        let registration = self.registered(outline)?;
+        self.registered(outline, extent)
+    }
+
+    /// Measures the poses that a search has found, and takes one of those that explain the frame.
+    fn measure_found(
+        &mut self,
+        time: f64,
+        seconds: f64,
+        outline: &Outline,
+        registration: &Registration,
+    ) -> Option<Outcome> {
         if registration.is_hopeless()
-            && let Some(outcome) = self.rejected_at_a_glance(&registration, seconds)
+            && let Some(outcome) = self.rejected_at_a_glance(registration, seconds)
         {
             return Some(outcome);
         }
         // The contour of one frame may hide errors that are smooth along it and change from frame to frame: they are only allowed for
         // where nothing fits without.
-        let mut candidates = self.candidates(outline, seconds, Tolerance::Known, &registration);
+        let mut candidates = self.candidates(outline, seconds, Tolerance::Known, registration);
         let is_relaxed = self.track.as_ref().is_some_and(Track::tolerates_more_relaxed);
         if is_relaxed && !candidates.iter().any(|candidate| candidate.outcome.is_accepted()) {
-            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, &registration);
+            let relaxed = self.candidates(outline, seconds, Tolerance::Relaxed, registration);
             candidates = if relaxed.is_empty() { candidates } else { relaxed };
         }
         let agreement = |c: &Candidate| c.outcome.measurement.agreement;
@@ -145,19 +180,19 @@ impl MotionFilter {
             return self.candidates_of(outline, seconds, tolerance, registration, measured);
         }
         track.hide_turn();
-        let Some(found) = self.registered(outline) else { return candidates };
+        let Some(found) = self.registered(outline, Extent::Whole) else { return candidates };
         self.candidates_of(outline, seconds, tolerance, &found, Vec::new())
     }
 
     /// The outline of the track brought onto that of the frame.
-    fn registered(&mut self, outline: &Outline) -> Option<Registration> {
+    fn registered(&mut self, outline: &Outline, extent: Extent) -> Option<Registration> {
         let track = self.track.as_ref()?;
         let landmarks = self.landmarks.and_then(|landmarks| {
             let pose = track.affine_pose()?;
             Some([landmarks.moved(&pose), Landmarks::of(outline)?])
         });
         self.frame.load(outline, track.reference());
-        Some(Registration::search(track, &self.frame.points, landmarks))
+        Some(Registration::search(track, &self.frame.points, landmarks, extent))
     }
 
     /// The poses of a registration with the frame, and those that the symmetry of the outline adds, measured, as far as they are not among

@@ -9,7 +9,8 @@ use crate::{
 
 impl Track {
     /// What the loaded outline is off by in the present pose, as one linearisation tells it, where that is so much that more of them would not
-    /// bring it through the gate: the pose has been searched for already, and they would change it little. The frame is not taken.
+    /// bring it through the gate: a pose that has been searched for already they would change little, and an object that goes on as predicted is near
+    /// it. The frame is not taken.
     pub(crate) fn rejected_at_a_glance(&self, frame: &mut Frame, gate: &Gate) -> Option<Outcome> {
         let view = self.view();
         let null = self.null_directions();

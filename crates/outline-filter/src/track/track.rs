@@ -185,7 +185,12 @@ impl Track {
 
     /// Records the spread of a frame, used or not.
     pub(crate) fn record_spread(&mut self, measurement: &FrameMeasurement) {
-        self.noise.record_spread(measurement.of_good_points(measurement.spread) / self.reference.radius);
+        self.record_normalised_spread(measurement.of_good_points(measurement.spread) / self.reference.radius);
+    }
+
+    /// As [`record_spread`](Self::record_spread), of good points, normalised.
+    pub(crate) fn record_normalised_spread(&mut self, spread: f64) {
+        self.noise.record_spread(spread);
     }
 
     /// Adopts the noise of another track: it is the same whatever the pose.
@@ -210,6 +215,14 @@ impl Track {
         }
         let of_search = [Tolerance::Known, Tolerance::Relaxed].map(|tolerance| self.noise.tolerated_where(tolerance));
         self.widened(of_search.into_iter().fold(self.largest_noise() / self.reference.radius, f64::max))
+    }
+
+    /// As [`most_noise_tolerated`](Self::most_noise_tolerated), of frames with no more noise than those that have been taken.
+    pub(crate) fn usual_noise_tolerated(&self) -> f64 {
+        if self.reference.stated.is_finite() {
+            return f64::INFINITY;
+        }
+        self.widened(of_noise::LARGEST_RATIO * self.noise.sigma.max(of_noise::NEVER_TOO_MUCH * self.map.spacing()))
     }
 
     /// Most noise of good points in a frame that shows the outline, image lengths.

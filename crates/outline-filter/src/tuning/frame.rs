@@ -76,6 +76,8 @@ pub(crate) mod noise {
     pub(crate) const CORRELATION_MEMORY: f64 = 50.0;
     /// Deviations of its estimate by which a correlation must be larger than none.
     pub(crate) const CORRELATION_SIGNIFICANT: f64 = 2.0;
+    /// Frames from which on it is told that there is none: a correlation of a seventh would have been found.
+    pub(crate) const CORRELATION_TOLD: f64 = 16.0;
     /// Deviation of a point of a mask, in pixels: measured on discs of 10 to 60 pixels in radius, smoothed by a pixel (`trace_mask`).
     pub(crate) const ROUNDED_POINT: f64 = 0.15;
     /// Length of a mask's contour that is off together, in pixels: the integral of the correlation that smoothing by a pixel leaves, 2 sqrt(pi).

@@ -29,8 +29,9 @@ pub(crate) mod map {
     pub(crate) const MOST_TIMES_SEEN: usize = 8;
     /// Shortest run of new places that is taken: one alone is an outlier as often as not.
     pub(crate) const SHORTEST_RUN: usize = 2;
-    /// Longest side of the picture of nearest cells, pixels: it stays within the second cache of a processor.
-    pub(crate) const FIELD_PIXELS: f64 = 192.0;
+    /// Longest side of the picture of nearest cells, pixels, which are hardly larger than the cells of 400 points: to fill it was a third of the first
+    /// frame with twice as many, and it stays within the first cache of a processor.
+    pub(crate) const FIELD_PIXELS: f64 = 96.0;
     /// Margin of that picture around the cells, in their extent: points of frames that are not yet aligned lie there.
     pub(crate) const FIELD_MARGIN: f64 = 0.1;
     /// Smallest pixel of that picture, in spacings: finer ones would not make the cell that a pixel names a nearer one.

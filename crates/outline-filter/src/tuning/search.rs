@@ -30,6 +30,16 @@ pub(crate) mod registration {
     /// Length of an outline over its width from which on turns that stretch it are tried, too: with less, what they differ by from plain turns is
     /// within reach of the search.
     pub(crate) const STRETCHED: f64 = 1.15;
+    /// Parts of these that a lost object is looked for from, one in each frame, until one says that the frame may show it: each has turns all around,
+    /// which with the pose before and those of related points cost little more than half of the time in which a frame of video is to be done...
+    pub(crate) const PARTS: usize = 8;
+    /// ...and from one part to the next it is so many turns: after three frames no turn is further than 22.5 degrees from a start.
+    pub(crate) const TO_NEXT_PART: usize = 3;
+    /// Of the frames of a lost object that show something which is hopeless but for the noise that such frames have made tolerated, one in so many is
+    /// searched from all turns; it has no factor in common with [`PARTS`], so that each part has its turn.
+    pub(crate) const NOISY_SEARCHED: usize = 3;
+    /// Points that the related points of an outline are found by: they need to tell a turn to some degrees.
+    pub(crate) const POINTS_OF_LANDMARKS: usize = 100;
     /// Points that the search is made with.
     pub(crate) const FEW_POINTS: usize = 80;
     /// Distance beyond which points count alike in the score of a pose, in radii: they may be hidden in the map or wrong. Trimming a share of
