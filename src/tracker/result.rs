@@ -36,7 +36,8 @@ pub struct ObjectResult {
     pub ambiguity: Option<Ambiguity>,
     /// Two motions of a plane in space that the outlines do not decide between.
     pub plane_ambiguity: Option<Box<PlaneAmbiguity>>,
-    /// Other angular velocities, rad/s, that explain the outlines as well, because the outline has a symmetry (motion filter).
+    /// Other angular velocities, rad/s, that explain the outlines as well, because the outline has a symmetry (motion filter); of
+    /// affine and projective motion mean ones, (a2 - a3) / 2.
     pub aliases: Vec<f64>,
     /// Probabilities of the hypotheses of dynamics (motion filter, from the third frame on).
     pub dynamics: Option<DynamicsWeights>,

@@ -231,8 +231,8 @@ impl PyMotionFilter {
         self.lock().rival_turns().to_vec()
     }
 
-    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; empty where there is
-    /// none.
+    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; of affine and projective motion mean
+    /// ones, (a2 - a3) / 2. Empty where there is none.
     #[getter]
     fn aliases<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let aliases = self.lock().aliases();

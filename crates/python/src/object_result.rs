@@ -78,8 +78,8 @@ impl PyObjectResult {
         PyArray1::from_slice(py, &self.rival_turns)
     }
 
-    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; empty where there is
-    /// none.
+    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; of affine and projective motion mean
+    /// ones, (a2 - a3) / 2. Empty where there is none.
     #[getter]
     fn aliases<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.aliases)

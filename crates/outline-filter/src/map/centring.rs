@@ -3,9 +3,9 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Matrix3, Point2, Rotation2, Vector2};
 
 use super::Cell;
-use crate::tuning::null_space::ANY_DIRECTION;
 #[cfg(feature = "serde")]
 use crate::tuning::null_space::UNDONE;
+use crate::tuning::null_space::{ANY_DIRECTION, AREA_OVER_CELLS};
 
 /// Coordinates about the mean of the cells in which their RMS radius is 1. Where shapes may be stretched, outlines that are the same up to a
 /// stretch are the same in them: a slender one shows as much there as one that is as long as wide.
@@ -15,6 +15,8 @@ pub(super) struct Centring {
     /// RMS radius in the body frame.
     spread: f64,
     stretch: Option<Stretch>,
+    /// How much longer the stretch makes the outline.
+    mean_length: f64,
 }
 
 /// A unit normal in the body frame, by the cells before and after it, and the variances of its direction in rad squared.
@@ -33,8 +35,6 @@ pub(super) struct NormalByNeighbours {
 pub(super) struct Stretch {
     linear: Matrix2<f64>,
     inverse: Matrix2<f64>,
-    /// How much longer the outline gets.
-    mean_length: f64,
 }
 
 impl Centring {
@@ -44,22 +44,25 @@ impl Centring {
         let count = cells.len() as f64;
         let centroid = Point2::from(cells.iter().map(|c| c.centre.coords / count).sum::<Vector2<f64>>());
         let spread = cells.iter().map(|c| (c.centre - centroid).norm_squared() / count).sum::<f64>().sqrt();
-        let mut centring = Self { centroid, spread, stretch: None };
+        let mut centring = Self { centroid, spread, stretch: None, mean_length: 1.0 };
         if model <= MotionModel::Similarity {
             return centring;
         }
-        // Stretches of cells depend on the way that the outline is stretched.
-        let of_cells = || cells.iter().map(|cell| cell.centre - centroid).map(|v| v * v.transpose() / count).sum();
-        let axes = of_area.unwrap_or_else(of_cells).symmetric_eigen();
+        let from_centre = || cells.iter().map(|cell| cell.centre - centroid);
         let least = (sigma * sigma).max(spread * spread * f64::EPSILON);
-        let variances = axes.eigenvalues.map(|variance| variance.max(least));
-        // Relative to those of an outline of this size that is as long as wide.
-        let widths = variances.map(|variance| (2.0 * variance / variances.sum()).sqrt());
+        let of_cells = from_centre().map(|v| v * v.transpose() / count).sum::<Matrix2<f64>>();
+        let of_area = of_area.filter(|area| is_like(area, &(of_cells + Matrix2::identity() * least)));
+        let axes = of_area.unwrap_or(of_cells).symmetric_eigen();
+        let widths = axes.eigenvalues.map(|variance| variance.max(least).sqrt());
         let along_axes =
             |sizes: Vector2<f64>| axes.eigenvectors * Matrix2::from_diagonal(&sizes) * axes.eigenvectors.transpose();
         let (linear, inverse) = (along_axes(widths.map(f64::recip)), along_axes(widths));
-        let lengths = cells.iter().map(|cell| (linear * along(&cell.normal)).norm());
-        centring.stretch = Some(Stretch { linear, inverse, mean_length: lengths.sum::<f64>() / count });
+        // Stretched, the RMS radius is still 1.
+        let radius = (from_centre().map(|v| (linear * v).norm_squared()).sum::<f64>() / count).sqrt() / spread;
+        let stretch = Stretch { linear: linear / radius, inverse: inverse * radius };
+        centring.mean_length =
+            cells.iter().map(|cell| (stretch.linear * along(&cell.normal)).norm()).sum::<f64>() / count;
+        centring.stretch = Some(stretch);
         centring
     }
 
@@ -71,7 +74,7 @@ impl Centring {
 
     /// How much longer the outline is here than in the body frame where it has this normal there, over what it is in the mean.
     pub(super) fn relative_length(&self, normal: &Vector2<f64>) -> f64 {
-        self.stretch.map_or(1.0, |stretch| (stretch.linear * along(normal)).norm() / stretch.mean_length)
+        self.stretch.map_or(1.0, |stretch| (stretch.linear * along(normal)).norm() / self.mean_length)
     }
 
     /// A normal in these coordinates, and the variance of its direction in rad squared. The tips of a slender outline count for much in them,
@@ -121,10 +124,15 @@ impl Stretch {
         generator / length
     }
 
-    /// How many times as long as wide the outline is.
-    pub(super) fn ratio(&self) -> f64 {
-        let widths = self.inverse.symmetric_eigenvalues();
+    /// How many times as long as wide the outline is after a linear map.
+    pub(super) fn ratio_after(&self, map: &Matrix2<f64>) -> f64 {
+        let widths = (map * self.inverse).singular_values();
         widths.max() / widths.min()
+    }
+
+    /// A linear map of the outline as one of the stretched outline.
+    pub(super) fn stretched(&self, map: &Matrix2<f64>) -> Matrix2<f64> {
+        self.linear * map * self.inverse
     }
 
     /// The linear part of a turn of the stretched outline by an angle, rad, before the stretch.
@@ -135,12 +143,25 @@ impl Stretch {
 
 #[cfg(feature = "serde")]
 impl Stretch {
-    /// Whether it stretches and can be undone.
+    /// Whether it stretches along two axes, and can be undone.
     pub(super) fn is_valid(&self) -> bool {
-        let undone = self.linear * self.inverse;
+        let undone = self.linear * self.inverse - Matrix2::identity();
+        let is_symmetric = |m: &Matrix2<f64>| (m.m12 - m.m21).abs() <= UNDONE * m.amax() && m.trace() > 0.0;
         let is_finite = self.linear.iter().chain(&self.inverse).all(|entry| entry.is_finite());
-        is_finite && (undone - Matrix2::identity()).amax() < UNDONE && self.mean_length > 0.0
+        is_finite
+            && undone.iter().all(|entry| entry.abs() < UNDONE)
+            && is_symmetric(&self.linear)
+            && is_symmetric(&self.inverse)
+            && self.inverse.determinant() > 0.0
     }
+}
+
+/// Whether the covariance of an area is about that of the cells around it. An outline that crosses itself encloses areas of both signs, which make no
+/// covariance.
+fn is_like(of_area: &Matrix2<f64>, of_cells: &Matrix2<f64>) -> bool {
+    let Some(root) = of_cells.cholesky().and_then(|factor| factor.l().try_inverse()) else { return false };
+    let ratios = (root * of_area * root.transpose()).symmetric_eigenvalues();
+    ratios.iter().all(|ratio| AREA_OVER_CELLS.contains(ratio))
 }
 
 /// The direction of an outline with this normal.
@@ -168,7 +189,8 @@ mod tests {
     #[test]
     fn a_slender_ellipse_is_a_circle_where_shapes_may_be_stretched() {
         let cells = ellipse(0.1);
-        let centring = Centring::of(&cells, MotionModel::Affine, 1e-3, None);
+        let of_area = Matrix2::from_diagonal(&Vector2::new(0.25, 0.0025));
+        let centring = Centring::of(&cells, MotionModel::Affine, 1e-3, Some(of_area));
         for cell in &cells {
             let p = centring.centred(&cell.centre);
             let (normal, _) = centring.normal(&normal_of(cell));
@@ -186,6 +208,17 @@ mod tests {
         // The flat sides are turned away from, the tips towards.
         let [tip, side] = [0, 50].map(|number| centring.normal(&normal_of(&cells[number])).1);
         assert!(tip < 1e-5 && side > 1e-3, "{tip} {side}");
+    }
+
+    #[test]
+    fn an_area_that_is_none_does_not_stretch_an_outline() {
+        let cells = ellipse(0.5);
+        let by_cells = Centring::of(&cells, MotionModel::Affine, 1e-3, None).stretch().expect("a stretch");
+        for of_area in [[0.1, -0.05], [10.0, 0.02], [1e-3, 2e-4]] {
+            let of_area = Matrix2::from_diagonal(&Vector2::from(of_area));
+            let stretch = Centring::of(&cells, MotionModel::Affine, 1e-3, Some(of_area)).stretch().expect("a stretch");
+            assert!((stretch.linear - by_cells.linear).amax() < 1e-12, "{of_area} {stretch:?}");
+        }
     }
 
     #[test]

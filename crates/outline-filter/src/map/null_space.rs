@@ -1,6 +1,6 @@
 //! Null directions: directions of the pose that an outline does not show, such as the turning of a circle about its centre.
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, turn_rate};
-use nalgebra::{Matrix3, Point2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::{
     OutlineMap,
@@ -120,9 +120,26 @@ impl OutlineMap {
         Some(map)
     }
 
-    /// How many times as long as wide an outline is that may be stretched; 1 where it may not.
-    pub(crate) fn stretch_ratio(&self) -> f64 {
-        self.null_space.stretch.map_or(1.0, |stretch| stretch.ratio())
+    /// How many times as long as wide an outline is, in a pose, that may be stretched; 1 where it may not.
+    pub(crate) fn stretch_ratio(&self, pose: &Matrix3<f64>) -> f64 {
+        let linear = pose.fixed_view::<2, 2>(0, 0).into_owned();
+        self.null_space.stretch.map_or(1.0, |stretch| stretch.ratio_after(&linear))
+    }
+
+    /// The linear part of a map of the body as one of the outline stretched until it is as long as wide, where it may be stretched.
+    pub(crate) fn stretched(&self, map: &Matrix3<f64>) -> Option<Matrix2<f64>> {
+        Some(self.null_space.stretch?.stretched(&map.fixed_view::<2, 2>(0, 0).into_owned()))
+    }
+
+    /// The generator of a clockwise turn by 1 rad of the outline stretched so, in the body frame, where it may be stretched.
+    pub(crate) fn stretched_turn_generator(&self) -> Option<Matrix3<f64>> {
+        Some(self.null_space.stretch?.unstretched(&CLOCKWISE))
+    }
+
+    /// Whether the outline may be stretched.
+    #[cfg(feature = "serde")]
+    pub(crate) fn may_be_stretched(&self) -> bool {
+        self.null_space.stretch.is_some()
     }
 
     /// Undoes [`hide_turn`](Self::hide_turn), so that it can be asked anew whether the turn is seen.
@@ -165,7 +182,7 @@ impl OutlineMap {
         let centroid = Self::area_centroid(&contours).unwrap_or(centring.centroid);
         let of_places = self.levers_of_places(&contours, centring.spread());
         let noise = sigma / centring.spread();
-        // Light that moves a hole moves it as a stretch does, too.
+        // Where the outline may be stretched, light that moves a hole looks like a stretch as well as like a turn.
         let places_show_turn = centring.stretch().is_none()
             && of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
         let of_normals = direction_variance(sigma / self.step, self.half_window);

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point2, SMatrix, SVector};
 
 use crate::tuning::null_space as tuning;
 
-/// Adds the square of a vector of so many entries, the others being zero, so many times.
+/// Adds `times v v'` to a sum; only the first `entries` of v are not zero.
 pub(super) fn add_square(
     sum: &mut SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
     vector: &SVector<f64, MAX_PARAMETERS>,

@@ -10,7 +10,8 @@ use crate::{measurement::Reference, tuning::registration as tuning};
 pub(crate) struct Landmarks([Point2<f64>; 2]);
 
 impl Landmarks {
-    /// In the image coordinates of the outline. Few of its points tell the turn by far less than searches reach.
+    /// In the image coordinates of the outline. A hundred of its points are enough: they tell the turn to some degrees, and
+    /// searches begin with that.
     pub(crate) fn of(outline: &Outline) -> Option<Self> {
         let thinned = match outline {
             Outline::Closed(closed) if outline.deviations().is_none() => {

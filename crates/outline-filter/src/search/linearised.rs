@@ -29,7 +29,7 @@ pub(super) trait Linearised<const K: usize> {
     /// Sizes of the residuals of points that have one, in the order of the points.
     fn write_sizes(&self, sizes: &mut Vec<f64>);
 
-    /// With weights that are zero from a residual of `scale` on. Points that do not count add nothing, even where their rows are no numbers.
+    /// With weights that are zero from a residual of `scale` on. Points that do not count add nothing.
     fn equations(&self, scale: f64) -> Equations<K>;
 }
 

@@ -1,5 +1,5 @@
 //! An object looked for near where it was expected.
-use freeform_riccati::{MotionModel, logarithm};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, logarithm};
 use nalgebra::SVector;
 
 use super::refinement::{Steps, refined};
@@ -10,11 +10,8 @@ use crate::{
 };
 
 /// How far from its predicted pose the object lies in a loaded frame which does not show it there, by few of its points: an error of the pose like
-/// those of the belief. `None` where it does not lie near, within some degrees and a tenth of its radius.
-pub(crate) fn displacement_nearby(
-    track: &Track,
-    frame: &Frame,
-) -> Option<SVector<f64, { freeform_riccati::MAX_PARAMETERS }>> {
+/// those of the belief, without what the outline does not show. `None` where a search from that pose does not lead to the object.
+pub(crate) fn displacement_nearby(track: &Track, frame: &Frame) -> Option<SVector<f64, MAX_PARAMETERS>> {
     let stride = (frame.points.len() / tuning::FEW_POINTS).max(1);
     let few: Vec<_> = frame.points.iter().step_by(stride).copied().collect();
     let predicted = track.body_pose();
@@ -24,5 +21,7 @@ pub(crate) fn displacement_nearby(
         return None;
     }
     let change = logarithm(&(found.pose * predicted.try_inverse()?))?;
-    Some(SVector::from(track.model().parameters_of(&change)))
+    let mut displacement = track.model().parameters_of(&change);
+    track.null_directions().iter().for_each(|null| null.subtract_from(&mut displacement));
+    Some(SVector::from(displacement))
 }

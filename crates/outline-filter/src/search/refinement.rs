@@ -108,7 +108,7 @@ where
     // Points that all lie beyond ends would fit anywhere.
     let score = if shows_outline { mean_distance(track, points, &pose, &mut numbers) } else { f64::INFINITY };
     let spread = if shows_outline { spread } else { f64::INFINITY };
-    let turn = turn_of(&pose, track.body_pose());
+    let turn = track.turn_to(&pose);
     RegisteredPose { pose, score, spread, turn, change: turn.abs() }
 }
 
@@ -201,17 +201,11 @@ fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, num
     )
 }
 
-/// Turn of a pose from the one before.
-pub(super) fn turn_of(pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
-    let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
-    (step[(1, 0)] - step[(0, 1)]).atan2(step[(0, 0)] + step[(1, 1)])
-}
-
-/// Size of the change from one pose to another, shifts left out.
-pub(super) fn change_of(model: MotionModel, pose: &Matrix3<f64>, before: &Matrix3<f64>) -> f64 {
-    if model <= MotionModel::Similarity {
-        return turn_of(pose, before).abs();
+/// Size of the change from the present pose of a track to another, shifts left out.
+pub(super) fn change_to(track: &Track, pose: &Matrix3<f64>) -> f64 {
+    if track.model() <= MotionModel::Similarity {
+        return track.turn_to(pose).abs();
     }
-    let step = before.try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
+    let step = track.body_pose().try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
     (step.fixed_view::<2, 2>(0, 0) - Matrix2::identity()).norm()
 }

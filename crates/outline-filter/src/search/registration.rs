@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point2, Vector2};
 use super::{
     Landmarks,
     outlook::Outlook,
-    refinement::{RegisteredPose, Steps, change_of, refined, turn_of},
+    refinement::{RegisteredPose, Steps, change_to, refined},
 };
 use crate::{
     track::{Track, turn_between, wrapped},
@@ -156,8 +156,8 @@ impl Registration {
         for found in &mut best {
             // A start between middles slides along what the frame shows more of.
             found.pose = track.view().map.least_moved(model, pose, &found.pose);
-            found.turn = turn_of(&found.pose, pose);
-            found.change = change_of(model, &found.pose, pose);
+            found.turn = track.turn_to(&found.pose);
+            found.change = change_to(track, &found.pose);
         }
         best
     }
@@ -203,17 +203,15 @@ impl Starts {
 /// Of an outline whose shape may be stretched, and which is not as long as wide: turns of it as one that is, which may leave it as it is.
 fn stretched_turns(track: &Track, from: &Vector2<f64>, to: &Vector2<f64>) -> Vec<Matrix3<f64>> {
     let (map, pose) = (track.view().map, track.body_pose());
-    if map.stretch_ratio() < tuning::STRETCHED {
+    if map.stretch_ratio(pose) < tuning::STRETCHED {
         return Vec::new();
     }
     let Some(inverse) = pose.try_inverse() else { return Vec::new() };
     let turns = (1..tuning::TURNS).map(|i| std::f64::consts::TAU * i as f64 / tuning::TURNS as f64);
     let stretched = turns.filter_map(|angle| {
-        let mut start = pose * map.stretched_turn(angle)? * inverse;
-        let shift = to - map_point(&start, &Point2::from(*from)).coords;
-        start[(0, 2)] += shift.x;
-        start[(1, 2)] += shift.y;
-        Some(start)
+        let turn = pose * map.stretched_turn(angle)? * inverse;
+        let shift = to - map_point(&turn, &Point2::from(*from)).coords;
+        Some(Matrix3::new_translation(&shift) * turn)
     });
     stretched.collect()
 }

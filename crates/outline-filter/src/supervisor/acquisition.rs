@@ -11,7 +11,10 @@ use crate::{
     measurement::{NegativeLogLikelihood, Tolerance},
     search::{Extent, Landmarks, RegisteredPose, Registration, symmetry_order},
     track::{Comparison, Outcome, Track},
-    tuning::{supervisor::LARGEST_INNOVATION, usual_agreement::ELSEWHERE},
+    tuning::{
+        supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION},
+        usual_agreement::ELSEWHERE,
+    },
     update::Gate,
 };
 
@@ -44,7 +47,9 @@ impl MotionFilter {
     /// frame where the object was expected. For outlines whose points err independently: where they err together, what a start leaves says little of
     /// whether it leads to the object.
     fn search_in_part(&mut self, time: f64, seconds: f64, outline: &Outline, expected: Outcome) -> Option<Outcome> {
-        let registration = self.begin_search(outline, Extent::Part(self.counts.rejected_in_a_row))?;
+        // Where searches are scarce, whole rounds of parts lie between them.
+        let rejected = self.counts.rejected_in_a_row;
+        let registration = self.begin_search(outline, Extent::Part(rejected + rejected / FRAMES_OF_SEARCH))?;
         if !registration.is_of_part() {
             return self.measure_found(time, seconds, outline, &registration);
         }

@@ -1,6 +1,6 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_riccati::{MAX_PARAMETERS, turn_rate};
+use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::DMatrix;
 
 use super::motion_filter::{Counts, MotionFilter, Phase};
@@ -144,24 +144,20 @@ impl MotionFilter {
     }
 
     /// Other angular velocities, in rad/s, that explain the outlines as well as the one stated: those of the turns of
-    /// [`rival_turns`](Self::rival_turns). Empty where those are. Where omega is not one of the parameters, the mean angular velocity
-    /// (a2 - a3) / 2 of an affine or projective motion stands for it.
+    /// [`rival_turns`](Self::rival_turns). Empty where those are, and where it is not stated. Where omega is not one of the parameters, the mean angular
+    /// velocity (a2 - a3) / 2 of an affine or projective motion stands for it.
     #[must_use]
     pub fn aliases(&self) -> Vec<f64> {
         if self.turn_hypotheses.rival_turns().is_empty() {
             return Vec::new();
         }
-        let known = self.estimate().and_then(|estimate| {
-            let values: Option<Vec<f64>> = estimate.parameters().map(|parameter| parameter.value).collect();
-            let model = self.settings.model;
-            match model.parameter_names().iter().position(|name| *name == "omega") {
-                Some(j) => estimate.parameters().nth(j)?.value,
-                None => Some(turn_rate(&model.generator(&values?))),
-            }
-        });
+        let Some((estimate, track)) = self.estimate().zip(self.track.as_ref()) else { return Vec::new() };
+        let value = |name: &str| estimate.parameters().find(|parameter| parameter.name == name)?.value;
+        let known = value("omega").or_else(|| Some(0.5 * (value("a2")? - value("a3")?)));
         let Some(omega) = known else { return Vec::new() };
+        let unit = track.mean_rate_of_turn() / self.seconds_per_unit();
         // Omega is positive clockwise where y points up, turns the other way.
-        self.turn_hypotheses.rates_apart().map(|apart| omega - apart / self.seconds_per_unit()).collect()
+        self.turn_hypotheses.rates_apart().map(|apart| omega - apart * unit).collect()
     }
 
     /// Pose and motion with their joint covariance, at the time of the last frame that was accepted, or rejected while tracking. `None`

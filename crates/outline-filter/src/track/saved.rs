@@ -2,6 +2,7 @@
 use std::sync::Arc;
 
 use freeform_estimate::StateFormat;
+use freeform_riccati::MotionModel;
 
 use super::Track;
 use crate::measurement::Reference;
@@ -26,6 +27,7 @@ impl Track {
             && time_unit == unit
             && self.frames < StateFormat::MOST_COUNTED
             && self.belief.is_valid(cells)
+            && (cells == 0 || self.map.may_be_stretched() == (self.belief.model > MotionModel::Similarity))
             && self.noise.is_valid(cells)
             && self.shape.is_valid(cells)
             && self.early_shape.is_valid(cells)

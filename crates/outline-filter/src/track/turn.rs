@@ -23,8 +23,31 @@ pub(crate) fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -
 impl Track {
     /// The turn that the motion makes in a time, in the filter's unit; rad, anticlockwise where y points up.
     pub(crate) fn turn_in(&self, time: f64) -> f64 {
-        let model = self.model();
-        -time * turn_rate(&model.generator(&self.belief().motion[..model.parameter_count()]))
+        let (model, pose) = (self.model(), self.body_pose());
+        let generator = model.generator(&self.belief().motion[..model.parameter_count()]);
+        // Of the outline as one that is as long as wide, where it may be stretched: as turns of a symmetry are.
+        let stretched = pose.try_inverse().and_then(|inverse| self.map.stretched(&(inverse * generator * pose)));
+        -time * turn_rate(&stretched.map_or(generator, |linear| linear.to_homogeneous()))
+    }
+
+    /// The turn from the present pose to another, rad, anticlockwise where y points up; where the outline may be stretched that of the outline as one
+    /// that is as long as wide, since only such turns can bring it onto itself.
+    pub(crate) fn turn_to(&self, pose: &Matrix3<f64>) -> f64 {
+        let inverse = self.body_pose().try_inverse();
+        let in_body = inverse.and_then(|inverse| self.map.stretched(&(inverse * pose)));
+        let step = in_body.unwrap_or_else(|| {
+            let step = inverse.map_or_else(Matrix3::identity, |inverse| pose * inverse);
+            step.fixed_view::<2, 2>(0, 0).into_owned()
+        });
+        (step.m21 - step.m12).atan2(step.m11 + step.m22)
+    }
+
+    /// Mean angular velocity (a2 - a3) / 2 of the outline in its present pose where it turns by 1 rad in a unit of time, as
+    /// [`turn_to`](Self::turn_to) has it.
+    pub(crate) fn mean_rate_of_turn(&self) -> f64 {
+        let pose = self.body_pose();
+        let turned = self.map.stretched_turn_generator().zip(pose.try_inverse());
+        turned.map_or(1.0, |(generator, inverse)| turn_rate(&(pose * generator * inverse)))
     }
 
     /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid. Where the model may stretch the outline, it is

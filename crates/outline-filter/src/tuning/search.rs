@@ -35,8 +35,8 @@ pub(crate) mod registration {
     pub(crate) const PARTS: usize = 8;
     /// ...and from one part to the next it is so many turns: after three frames no turn is further than 22.5 degrees from a start.
     pub(crate) const TO_NEXT_PART: usize = 3;
-    /// Of the frames of a lost object that show something which is hopeless but for the noise that such frames have made tolerated, one in so many is
-    /// searched from all turns; it has no factor in common with [`PARTS`], so that each part has its turn.
+    /// While an object is lost, frames that show something else make more noise tolerated. Frames that are hopeless without that are searched from all
+    /// turns once in so many; it has no factor in common with [`PARTS`], so that this happens to every part.
     pub(crate) const NOISY_SEARCHED: usize = 3;
     /// Points that the related points of an outline are found by: they need to tell a turn to some degrees.
     pub(crate) const POINTS_OF_LANDMARKS: usize = 100;

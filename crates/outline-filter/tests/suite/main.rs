@@ -9,6 +9,7 @@ mod filter_support;
 mod first_frames;
 mod gaps;
 mod known_outline;
+mod lost_objects;
 mod mask_rounding;
 mod moving_poses;
 mod plane;

@@ -1,0 +1,54 @@
+//! Objects that are lost, and come back.
+use freeform_outline_filter::Phase;
+use freeform_riccati::{MotionModel, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Camera, Frame, Scene, Settings, Simulator};
+use nalgebra::{Affine2, Rotation2};
+
+use crate::filter_support::{filter, settings};
+
+const BEFORE: usize = 30;
+const LOST: usize = 10;
+
+/// Frames of a shape at rest that has been turned by an angle, rad.
+fn at_rest(shape: BuiltInShape, angle: f64, settings: Settings) -> Vec<Frame> {
+    let turned = Affine2::from_matrix_unchecked(Rotation2::new(angle).to_homogeneous());
+    let scene = Scene::new(shape, RigidMotion::default(), Camera::default()).with_initial_pose(turned);
+    Simulator::new(scene, settings).expect("good settings").frames().collect()
+}
+
+#[test]
+fn a_lost_object_is_found_within_eight_frames_at_whatever_turn_it_comes_back() {
+    let mut frames_needed = Vec::new();
+    for (number, shape) in
+        (0_u32..24).zip([BuiltInShape::Bird, BuiltInShape::Glider, BuiltInShape::Van].into_iter().cycle())
+    {
+        let angle = 0.13 + std::f64::consts::TAU * f64::from(number) / 24.0;
+        let of = |count: usize| Settings { points: 400, ..settings(count, u64::from(number)) };
+        let before = at_rest(shape, 0.0, of(BEFORE));
+        let another = at_rest(BuiltInShape::Phone, 0.4, of(LOST));
+        let again = at_rest(shape, angle, of(8));
+        let mut run = filter(MotionModel::Rigid);
+        let mut needed = None;
+        for (frame, outline) in before.iter().chain(&another).chain(&again).map(|frame| &frame.outline).enumerate() {
+            let step = run.step(frame as f64 / 30.0, outline).expect("increasing times");
+            if frame < BEFORE {
+                assert!(step.is_accepted(), "{shape}, {angle}, frame {frame}");
+            } else if frame < BEFORE + LOST {
+                assert!(!step.is_accepted(), "{shape}, {angle}, frame {frame}");
+            } else if step.is_accepted() && needed.is_none() {
+                needed = Some(frame - BEFORE - LOST);
+                let turned = run.pose().expect("a pose").matrix().fixed_view::<2, 2>(0, 0).into_owned();
+                let found = (turned.m21 - turned.m12).atan2(turned.m11 + turned.m22);
+                let error = (found - angle).sin().abs() + (1.0 - (found - angle).cos());
+                assert!(error < 0.02, "{shape}, {angle}: {found}");
+            }
+            if frame + 1 == BEFORE + LOST {
+                assert_eq!(run.phase(), Phase::Lost, "{shape}, {angle}");
+            }
+        }
+        frames_needed.push(needed.unwrap_or_else(|| panic!("{shape}, {angle}: not found")));
+    }
+    // Most turns lie near one of those that are searched first.
+    let at_once = frames_needed.iter().filter(|needed| **needed == 0).count();
+    assert!(2 * at_once > frames_needed.len(), "{frames_needed:?}");
+}
