@@ -302,7 +302,8 @@ fn write_aliases(f: &mut fmt::Formatter<'_>, omega: &[f64], motion: MotionModel)
     let list: Vec<String> = omega.iter().take(MOST_ALIASES).map(|omega| significant(*omega, 4)).collect();
     write!(
         f,
-        "the outline has a symmetry: {} may also be {} rad/s; the smallest turn from frame to frame was taken",
+        "the outline has a symmetry: {} may also be {} rad/s, and what depends on it differs then; the smallest turn from \
+         frame to frame was taken",
         if motion.parameter_names().contains(&"omega") { "omega" } else { "the mean angular velocity (a2 - a3) / 2" },
         list.join(" or ")
     )

@@ -56,6 +56,7 @@ pub(super) struct Step {
     pub(super) innovation: Option<f64>,
     pub(super) state: Option<MotionState>,
     pub(super) ambiguity: Option<Ambiguity>,
+    pub(super) aliases: Vec<f64>,
     pub(super) rejected_because: Option<RejectionCause>,
 }
 
@@ -242,6 +243,7 @@ impl FilteredObject {
             innovation: step.measurement.map(|measurement| measurement.innovation),
             state: self.filter.state(),
             ambiguity: self.filter.ambiguity(),
+            aliases: self.filter.aliases(),
             rejected_because: step.rejection.map(RejectionCause::NotAccepted),
             ..Step::default()
         }

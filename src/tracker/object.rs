@@ -98,6 +98,7 @@ impl TrackedObject {
             innovation: step.innovation,
             ambiguity: step.ambiguity,
             plane_ambiguity: step.plane_ambiguity,
+            aliases: step.aliases,
             known_outline: match self.known_outline {
                 KnownOutlines::Given => self.identifier.known_outline().map(Box::new),
                 KnownOutlines::LeftOut => None,
@@ -148,6 +149,7 @@ impl TrackedObject {
             innovation: None,
             ambiguity: None,
             plane_ambiguity: None,
+            aliases: Vec::new(),
             known_outline: None,
             rejection,
             segment: self.identifier.restarts(),

@@ -39,6 +39,8 @@ pub struct Observation {
     pub ambiguity: Option<Ambiguity>,
     /// Two motions of a plane in space that the outlines so far do not decide between.
     pub plane_ambiguity: Option<Box<PlaneAmbiguity>>,
+    /// As [`ObjectResult::aliases`](super::ObjectResult::aliases), as known after the frame.
+    pub aliases: Vec<f64>,
     /// The outline as far as it is known, in the image, for the objects of [`Tracker::with_known_outlines`](super::Tracker::with_known_outlines)
     /// (motion filter).
     pub known_outline: Option<Box<KnownOutline>>,

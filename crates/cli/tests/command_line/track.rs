@@ -16,6 +16,16 @@ fn every_frame_is_one_line_and_the_last_agrees_with_identify() {
 }
 
 #[test]
+fn lines_list_the_other_rates_of_a_symmetric_outline() {
+    let csv = sequence("--shape ellipse");
+    let last = json(succeed("track", &csv).lines().last().expect("a line"));
+    let aliases = last["parameters"]["omega"]["aliases"].as_array().expect("a list");
+    assert!(!aliases.is_empty(), "{last}");
+    let whole = json(&succeed("identify - --format json", &csv));
+    assert_eq!(last["parameters"], whole["objects"][0]["parameters"]);
+}
+
+#[test]
 fn a_frame_that_is_no_outline_is_told_in_its_line() {
     let output = run("track", &(sequence("") + "20,5.0,1,1\n"));
     assert_eq!(output.status.code(), Some(0));
