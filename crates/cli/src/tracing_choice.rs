@@ -26,7 +26,7 @@ impl Chosen {
         });
         let still = match best {
             Some(best) if best.rests => {
-                "; it rests, and nothing was seen to move: what is smaller is found by --background whole --objects moving --min-area PIXELS"
+                "; it rests: what moves and is smaller may be found by --background whole --objects moving --min-area PIXELS"
             }
             _ => "",
         };

@@ -90,6 +90,13 @@ fn edges(points: &(impl Iterator<Item = Point2<f64>> + Clone)) -> impl Iterator<
     points.clone().zip(points.clone().cycle().skip(1))
 }
 
+/// Whether a point lies within a closed polygon, by the crossings of a ray.
+pub(crate) fn is_within(p: &Point2<f64>, polygon: &(impl Iterator<Item = Point2<f64>> + Clone)) -> bool {
+    let crossed = edges(polygon)
+        .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x));
+    crossed.count() % 2 == 1
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::Affine2;
@@ -141,13 +148,6 @@ mod tests {
                 assert!((value - expected).abs() < 1e-4, "{values:?}");
             }
         }
-    }
-
-    /// Whether a point lies within a closed polygon.
-    fn is_within(p: &Point2<f64>, polygon: &(impl Iterator<Item = Point2<f64>> + Clone)) -> bool {
-        let crossed = edges(polygon)
-            .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x));
-        crossed.count() % 2 == 1
     }
 
     #[test]

@@ -15,7 +15,8 @@ const REACH: f64 = 1.0;
 /// turns back.
 const REACH_OF_FAST: f64 = 2.2;
 
-/// Farthest that an object may have moved between its first two sightings, in its diameters, where nothing else is like it.
+/// Farthest that an object may have moved between its first two sightings, in its diameters, where nothing else that is
+/// like it is left over in reach in either of the two pictures.
 const FIRST_REACH: f64 = 8.0;
 
 /// An object has left its place where it is so many sizes (roots of its area) away from where it was seen first.
@@ -54,7 +55,7 @@ pub enum Selection {
     /// as a new one.
     All,
     /// Of these those that move: each from the picture on in which it has left its place, by more than its own size and straight on in the last
-    /// three. What rests, and what comes and goes where light or noise change the picture, is never taken.
+    /// three. What rests, and what comes and goes where light or noise change the picture, is hardly ever taken.
     Moving,
 }
 
@@ -134,7 +135,9 @@ impl Known {
             let fastest = velocity.norm().max(before.norm());
             (velocity - before).norm() < STRAIGHT_ON[0] * fastest + STRAIGHT_ON[1] * size
         });
-        let has_left = self.has_left || goes_on && (traced.centre - self.first).norm() > LEFT * size;
+        // After a gap it is looked for so far away that something is found by chance.
+        let follows = frame == self.frame + 1;
+        let has_left = self.has_left || follows && goes_on && (traced.centre - self.first).norm() > LEFT * size;
         let now = Self::seen(self.name, frame, traced);
         let (velocity, shape) = (Some(velocity), now.shape.or(self.shape));
         *self = Self { velocity, speed, shape, first: self.first, has_left, ..now };
@@ -145,9 +148,13 @@ impl Known {
         self.centre + self.velocity.unwrap_or_else(Vector2::zeros) * frame.saturating_sub(self.frame) as f64
     }
 
+    /// The larger one of its diameter and that of a sighting, as if they were discs.
+    fn diameter(&self, traced: &TracedOutline) -> f64 {
+        (4.0 * self.area.max(traced.area) / std::f64::consts::PI).sqrt()
+    }
+
     fn difference(&self, frame: u64, traced: &TracedOutline) -> Difference {
-        let diameter = (4.0 * self.area.max(traced.area) / std::f64::consts::PI).sqrt();
-        let distance = (traced.centre - self.expected(frame)).norm() / diameter;
+        let distance = (traced.centre - self.expected(frame)).norm() / self.diameter(traced);
         let missed = frame.saturating_sub(self.frame).saturating_sub(1) as f64;
         let whole = !self.clipped && !traced.touches_border;
         let shape = self.shape.zip(traced.invariants).filter(|_| !traced.touches_border);
@@ -169,8 +176,8 @@ impl Known {
         let Difference { distance, growth: Some(growth), shape, .. } = self.difference(frame, traced) else {
             return None;
         };
-        let diameter = (4.0 * self.area.max(traced.area) / std::f64::consts::PI).sqrt();
-        let reach = if self.velocity.is_none() { FIRST_REACH } else { REACH_OF_FAST * self.speed / diameter };
+        let reach =
+            if self.velocity.is_none() { FIRST_REACH } else { REACH_OF_FAST * self.speed / self.diameter(traced) };
         if reach < REACH_OF_FAST {
             return None;
         }
@@ -205,7 +212,8 @@ impl Identities {
     /// Names the objects of a picture, the most important of which comes first. Frames must increase.
     ///
     /// # Errors
-    /// No object is where the one followed should be; all objects touch others; no object at all where one is needed.
+    /// No object is where the one followed should be; all objects touch others; no object at all where one is needed; of
+    /// [`Selection::Moving`], none that has left its place.
     pub fn assign(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Result<Vec<(u64, TracedOutline)>, TraceError> {
         self.known.retain(|known| frame.saturating_sub(known.frame) <= PATIENCE + 1);
         match self.selection {
@@ -219,7 +227,7 @@ impl Identities {
                 }
                 match touching {
                     Some(objects) if named.is_empty() => Err(TraceError::Touching { objects }),
-                    None if named.is_empty() => Err(TraceError::NothingMoved),
+                    None if named.is_empty() && self.selection == Selection::Moving => Err(TraceError::NothingMoved),
                     _ => Ok(named),
                 }
             }
@@ -283,8 +291,18 @@ impl Identities {
             let is_free = seen_as[known].is_none() && is_left[seen];
             if is_free { self.known[known].cost_of_far(frame, &traced[seen]) } else { None }
         };
-        if (0..self.known.len()).any(|k| (0..traced.len()).any(|seen| far(k, seen).is_some())) {
-            let found = assign([self.known.len(), traced.len()], far, LARGEST_COST);
+        let (mut of_known, mut of_seen) = (vec![0; self.known.len()], vec![0; traced.len()]);
+        for (known, of_known) in of_known.iter_mut().enumerate() {
+            for (_, of_seen) in of_seen.iter_mut().enumerate().filter(|(seen, _)| far(known, *seen).is_some()) {
+                (*of_known, *of_seen) = (*of_known + 1, *of_seen + 1);
+            }
+        }
+        if of_known.iter().any(|count| *count > 0) {
+            // So far from a first sighting, only that nothing else is like it tells that it is the same.
+            let is_only = |known: usize, seen: usize| of_known[known] == 1 && of_seen[seen] == 1;
+            let may_be = |known: usize, seen: usize| self.known[known].velocity.is_some() || is_only(known, seen);
+            let cost = |known: usize, seen: usize| far(known, seen).filter(|_| may_be(known, seen));
+            let found = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
             for (seen, found) in seen_as.iter_mut().zip(found) {
                 *seen = seen.or(found);
             }

@@ -265,7 +265,7 @@ pub(crate) enum ObjectsChoice {
     Nearest,
     /// All objects; each keeps its number from picture to picture
     All,
-    /// Those of all that move: each from where it has left its place
+    /// Those of all that move: each from where it has left its place; what comes and goes is hardly ever taken
     Moving,
 }
 

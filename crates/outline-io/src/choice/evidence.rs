@@ -31,6 +31,9 @@ const OBJECTS: usize = 6;
 /// Pictures so far from each other show whether something moves.
 const FAR_APART: u64 = 5;
 
+/// What rests is nowhere so many times farther from where it was first than it may move from picture to picture.
+const FAR: f64 = 3.0;
+
 /// A level lies so many standard deviations of the ground beyond it, and at least so many grey values.
 const BEYOND_NOISE: f64 = 6.0;
 const LEAST_LEVEL: f64 = 8.0;
@@ -364,7 +367,8 @@ fn smoothness(sights: &[Sight]) -> f64 {
     bend.map_or(0.5, |bend| 1.0 / (1.0 + (bend / 0.05).powi(2)))
 }
 
-/// Whether what is seen rests: from picture to picture it hardly moves, and pictures far from each other show it where it was.
+/// Whether what is seen rests: from picture to picture it hardly moves, pictures far from each other show it where it was, and none shows it
+/// far from where it was first: what swings slowly comes back too.
 fn rests(sights: &[Sight], factor: f64) -> bool {
     let moved = |a: &Sight, b: &Sight| (a.centre - b.centre).norm().max(a.unlike(b));
     let near = median(sights.windows(2).filter(|w| w[0].frame + 1 == w[1].frame).map(|w| moved(&w[0], &w[1])));
@@ -374,7 +378,7 @@ fn rests(sights: &[Sight], factor: f64) -> bool {
         far.map(|b| moved(a, b)).min_by(f64::total_cmp)
     }));
     let hardly = (1.0 / factor).max(0.02 * median(sights.iter().map(Sight::size)).unwrap_or(0.0));
-    again.is_some_and(|again| near < hardly && again < 1.5 * near + 0.5 / factor)
+    again.is_some_and(|again| near < hardly && again < 1.5 * near + 0.5 / factor) && movement(sights) < FAR * hardly
 }
 
 /// Farthest movement of the middle or of the outline about it, in pixels of the trial.

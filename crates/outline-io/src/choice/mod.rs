@@ -51,7 +51,8 @@ pub struct Tracing {
     pub level: Option<f64>,
 }
 
-/// The ways that were tried, with what speaks for them, the best first.
+/// The ways that were tried, with what speaks for them, the best first; in front of them a way that shows what moves, where that is preferred,
+/// whatever its score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TracingChoice {
     /// All that found something in at least one picture.
@@ -168,6 +169,9 @@ impl TracingChoice {
 /// A way is judged by the share of pictures in which it finds something, by how steady area and affine moment invariants (Flusser and Suk,
 /// 1993) of what it finds are from picture to picture and over the sequence, by the contrast along its edge, by how smoothly it moves, by
 /// whether it moves at all, and by how much of it the edge of the picture clips.
+///
+/// Where what the best way finds rests, or is in doubt, a way that shows something that moves is preferred to it, even if its score is less. It
+/// is looked for in the first channel, where the pictures are not two-valued and at least eight.
 #[must_use]
 pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: &[Channel]) -> TracingChoice {
     let channels: Vec<Channel> =
@@ -182,8 +186,8 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
     // Where the best rests beyond doubt, other channels would show that it rests.
     let best = if is_good(&fine) { fine.iter() } else { coarse.iter() }.max_by(|a, b| a.score.total_cmp(&b.score));
     let resting = best.filter(|best| best.rests && best.score >= CONVINCING).map(|best| best.tracing);
-    let early = resting.and_then(|tracing| moving_instead(sample, base, *first, Some(&tracing)));
-    if let Some(moving) = early {
+    let mut early = resting.and_then(|tracing| moving_instead(sample, base, *first, Some(&tracing)));
+    if let Some(moving) = early.take_if(|moving| moving.score >= CONVINCING) {
         sort(&mut coarse);
         coarse.retain(|candidate| candidate.tracing != moving.tracing);
         coarse.insert(0, moving);
@@ -212,10 +216,9 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
     let best = fine.first();
     let is_in_doubt = best.is_none_or(|best| best.rests || best.score < CONVINCING);
     let rests = best.filter(|best| best.rests).map(|best| best.tracing);
-    if is_in_doubt
-        && resting.is_none()
-        && let Some(moving) = moving_instead(sample, base, *first, rests.as_ref())
-    {
+    let is_known = resting.is_some() && rests == resting;
+    let moving = || if is_known { early } else { moving_instead(sample, base, *first, rests.as_ref()) };
+    if is_in_doubt && let Some(moving) = moving() {
         fine.retain(|candidate| candidate.tracing != moving.tracing);
         fine.insert(0, moving);
     }

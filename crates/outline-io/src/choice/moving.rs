@@ -5,6 +5,7 @@ use nalgebra::{Point2, Vector2};
 use super::evidence::{TracingEvidence, Trial, evidence_of};
 use super::sight::Sight;
 use super::{AGAINST_NOISE, PictureSample, Tracing, TracingWay};
+use crate::affine_moment_invariants::is_within;
 use crate::background::Difference;
 use crate::channel::Channel;
 use crate::identity::Selection;
@@ -125,7 +126,8 @@ fn turns_with(group: &[&Chain], still: &Sight) -> bool {
     let radius = |chain: &Chain| (chain[1].centre - still.centre).norm();
     let first = radius(group[0]);
     let is_part = |chain: &&Chain| {
-        is_within(&chain[1].centre, &still.points) && (radius(chain) - first).abs() < 0.5 * chain[1].size()
+        is_within(&chain[1].centre, &still.points.iter().copied())
+            && (radius(chain) - first).abs() < 0.5 * chain[1].size()
     };
     group.iter().all(is_part)
 }
@@ -174,13 +176,4 @@ fn is_like(a: &Sight, b: &Sight) -> bool {
 fn lies_on(sight: &Sight, still: &Sight) -> bool {
     let to = |point: &Point2<f64>| -> Vector2<f64> { point - sight.centre };
     still.points.iter().any(|point| to(point).norm() < sight.size())
-}
-
-/// Whether a point lies within a closed line, by the crossings of a ray.
-fn is_within(point: &Point2<f64>, line: &[Point2<f64>]) -> bool {
-    let edges = line.iter().zip(line.iter().cycle().skip(1));
-    let crosses = |(p, q): &(&Point2<f64>, &Point2<f64>)| {
-        (p.y > point.y) != (q.y > point.y) && point.x < p.x + (point.y - p.y) / (q.y - p.y) * (q.x - p.x)
-    };
-    edges.filter(crosses).count() % 2 == 1
 }

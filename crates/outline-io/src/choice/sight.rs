@@ -40,7 +40,7 @@ impl Sight {
     ) -> Option<Self> {
         let before = before.filter(|before| before.frame + 1 == frame);
         let nearest = before.and_then(|before| {
-            let far = |t: &&TracedOutline| (t.centre - before.centre).norm() / before.area.sqrt();
+            let far = |t: &&TracedOutline| (t.centre - before.centre).norm() / before.size();
             let alike = traced.iter().filter(|t| (t.area / before.area).ln().abs() < 0.4 && far(t) < 1.5);
             alike.min_by(|a, b| far(a).total_cmp(&far(b)))
         });

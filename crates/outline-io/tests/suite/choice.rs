@@ -78,3 +78,16 @@ fn a_toothed_wheel_that_turns_in_its_place_is_followed_and_not_its_teeth() {
         assert!((0.12..0.2).contains(&best.area_share), "{turn}: {best:?}");
     }
 }
+
+#[test]
+fn a_disc_that_swings_slowly_does_not_rest() {
+    // From picture to picture by less than it would be seen to move, and back to where it was.
+    for amplitude in [0.0, 7.0] {
+        let swinging = |frame: u32| {
+            let along = amplitude * (std::f64::consts::TAU * f64::from(frame) / 24.0).cos();
+            picture(frame, move |x, y| disc(x, y, [160.0 + along, 120.0, 40.0]))
+        };
+        let best = chosen(&(0..24).map(swinging).collect::<Vec<_>>());
+        assert_eq!(best.rests, amplitude == 0.0, "{best:?}");
+    }
+}

@@ -214,3 +214,43 @@ fn the_nearest_object_is_followed_where_a_larger_one_comes_in() {
         }
     }
 }
+
+/// A number from 0 to 1, the same whenever it is asked for.
+fn scattered(count: u32) -> f64 {
+    let mixed = (count ^ (count >> 16)).wrapping_mul(0x85eb_ca6b);
+    let mixed = (mixed ^ (mixed >> 13)).wrapping_mul(0xc2b2_ae35);
+    f64::from(mixed ^ (mixed >> 16)) / f64::from(u32::MAX)
+}
+
+#[test]
+fn specks_that_come_and_go_anywhere_are_hardly_ever_taken_for_something_that_moves() {
+    const FRAMES: u32 = 60;
+    for specks in [2, 4, 8, 16] {
+        let pictures: Vec<GrayImage> = (0..FRAMES)
+            .map(|frame| {
+                let at = |k: u32| {
+                    let number = |n: u32| scattered(0x9e37_79b9_u32.wrapping_mul(3 * (64 * frame + k) + n + 1));
+                    (10.0 + 180.0 * number(0), 10.0 + 80.0 * number(1), 3.0 + number(2))
+                };
+                discs(&(0..specks).map(at).collect::<Vec<_>>())
+            })
+            .collect();
+        let trace = TraceSettings { minimum_area: 10, ..TraceSettings::default() };
+        let settings = PictureSettings { selection: Selection::Moving, trace, ..PictureSettings::default() };
+        let seen = traced(pictures, settings);
+        let taken: usize = seen.iter().filter_map(|traced| Some(traced.objects.as_ref().ok()?.len())).sum();
+        assert!(taken * 10 < (specks * FRAMES) as usize, "{taken} in {FRAMES} pictures of {specks} specks");
+    }
+}
+
+#[test]
+fn a_first_sighting_is_not_taken_for_one_far_away_where_something_else_is_like_it() {
+    for (seen, is_known) in [(vec![(80.0, 50.0, 5.0)], true), (vec![(80.0, 50.0, 5.0), (30.0, 80.0, 5.0)], false)] {
+        let pictures = vec![discs(&[(50.0, 50.0, 5.0)]), discs(&seen)];
+        let trace = TraceSettings { minimum_area: 20, ..TraceSettings::default() };
+        let settings = PictureSettings { selection: Selection::All, trace, ..PictureSettings::default() };
+        let traced = traced(pictures, settings);
+        let names: Vec<u64> = traced[1].objects.as_ref().expect("discs").iter().map(|(name, _)| *name).collect();
+        assert_eq!(names.contains(&0), is_known, "{names:?}");
+    }
+}
