@@ -62,36 +62,23 @@ impl Registration {
     ) -> Self {
         let stride = (points.len() / tuning::FEW_POINTS).max(1);
         let few: Vec<_> = points.iter().step_by(stride).copied().collect();
-        let search = |start: &Matrix3<f64>, steps| refined(track, &few, MotionModel::Rigid, start, steps);
-        let further = |found: &RegisteredPose| search(&found.pose, Steps::FURTHER);
+        let further = |found: &RegisteredPose| refined(track, &few, MotionModel::Rigid, &found.pose, Steps::FURTHER);
         let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
         let Starts { turns, told } = Starts::of(track, points, landmarks);
-        let mut begun: Vec<RegisteredPose> = Vec::with_capacity(turns.len() + told.len());
-        let begin = |begun: &mut Vec<RegisteredPose>, start: &Matrix3<f64>| {
-            let found = search(&(start * track.body_pose()), Steps::FIRST);
-            // Searches that have come together go on together.
-            if !begun.iter().any(|other| (other.pose - found.pose).norm() < tuning::TOGETHER) {
-                begun.push(found);
-            }
-        };
+        let mut begun = Begun { track, few: &few, poses: Vec::with_capacity(turns.len() + told.len()) };
         let numbered = || turns.iter().enumerate();
         match extent {
             Extent::Part(_) if turns.len() > 1 && Outlook::can_be_told(track, points.len()) => {
-                told.iter().for_each(|start| begin(&mut begun, start));
-                numbered().filter(|(i, _)| extent.has_turn(*i)).for_each(|(_, start)| begin(&mut begun, start));
-                let limit = extent.most_spread(track);
-                let may_end = |spread: f64| spread <= tuning::MARGIN_BEFORE_LAST_STEPS * limit;
-                let by_spread = |a: &&RegisteredPose, b: &&RegisteredPose| a.spread.total_cmp(&b.spread);
-                let ends: Vec<_> = begun.iter().filter(|found| may_end(found.spread)).map(further).collect();
-                if let Some(best) = ends.iter().chain(&begun).min_by(by_spread)
-                    && best.spread > limit
-                {
-                    return Self { rigid: vec![*best], outlook: Outlook::HopelessSoFar };
+                told.iter().for_each(|start| begun.add(start));
+                numbered().filter(|(i, _)| extent.has_turn(*i)).for_each(|(_, start)| begun.add(start));
+                if let Some(best) = begun.best_if_hopeless(extent.most_spread(track)) {
+                    return Self { rigid: vec![best], outlook: Outlook::HopelessSoFar };
                 }
-                numbered().filter(|(i, _)| !extent.has_turn(*i)).for_each(|(_, start)| begin(&mut begun, start));
+                numbered().filter(|(i, _)| !extent.has_turn(*i)).for_each(|(_, start)| begun.add(start));
             }
-            _ => turns.iter().chain(&told).for_each(|start| begin(&mut begun, start)),
+            _ => turns.iter().chain(&told).for_each(|start| begun.add(start)),
         }
+        let mut begun = begun.poses;
         let least = begun.iter().map(|found| found.spread).fold(f64::INFINITY, f64::min);
         keep(&mut begun, tuning::SEARCHED_ON);
         let mut rigid = Vec::with_capacity(begun.len());
@@ -160,6 +147,34 @@ impl Registration {
             found.change = change_to(track, &found.pose);
         }
         best
+    }
+}
+
+/// Searches with few points after their first steps; those that have come together are one.
+struct Begun<'a> {
+    track: &'a Track,
+    few: &'a [Point2<f64>],
+    poses: Vec<RegisteredPose>,
+}
+
+impl Begun<'_> {
+    /// Begins one more, from a change of the present pose.
+    fn add(&mut self, start: &Matrix3<f64>) {
+        let found = refined(self.track, self.few, MotionModel::Rigid, &(start * self.track.body_pose()), Steps::FIRST);
+        if !self.poses.iter().any(|other| (other.pose - found.pose).norm() < tuning::TOGETHER) {
+            self.poses.push(found);
+        }
+    }
+
+    /// The pose that the points deviate least from, if that is by more than a limit also where searches that come near it have gone on; `None`
+    /// where one of them has come below it.
+    fn best_if_hopeless(&self, limit: f64) -> Option<RegisteredPose> {
+        let may_end = |found: &&RegisteredPose| found.spread <= tuning::MARGIN_BEFORE_LAST_STEPS * limit;
+        let further =
+            |found: &RegisteredPose| refined(self.track, self.few, MotionModel::Rigid, &found.pose, Steps::FURTHER);
+        let ends: Vec<_> = self.poses.iter().filter(may_end).map(further).collect();
+        let best = ends.iter().chain(&self.poses).min_by(|a, b| a.spread.total_cmp(&b.spread))?;
+        (best.spread > limit).then_some(*best)
     }
 }
 
