@@ -20,7 +20,7 @@ const REACH_OF_FAST: f64 = 2.2;
 const FIRST_REACH: f64 = 8.0;
 
 /// An object has left its place where it is so many sizes (roots of its area) away from where it was seen first.
-const LEFT: f64 = 1.0;
+pub(crate) const LEFT: f64 = 1.0;
 
 /// It moves straight on where its movement changes by no more than this share of itself, and this share of its size.
 const STRAIGHT_ON: [f64; 2] = [0.5, 0.25];
@@ -279,34 +279,28 @@ impl Identities {
         (traced, touching)
     }
 
+    /// Assigns what is left over on both sides, which may be what moves by more than its own size.
+    fn assign_far(&self, frame: u64, traced: &[TracedOutline], seen_as: &mut [Option<usize>]) {
+        let known: Vec<usize> = (0..seen_as.len()).filter(|known| seen_as[*known].is_none()).collect();
+        let seen: Vec<usize> = (0..traced.len()).filter(|seen| !seen_as.contains(&Some(*seen))).collect();
+        let cost_of = |k: usize, s: usize| self.known[known[k]].cost_of_far(frame, &traced[seen[s]]);
+        let costs: Vec<Vec<_>> = (0..known.len()).map(|k| (0..seen.len()).map(|s| cost_of(k, s)).collect()).collect();
+        let of_known: Vec<usize> = costs.iter().map(|costs| costs.iter().flatten().count()).collect();
+        let in_column = |s: usize| costs.iter().filter(|costs| costs[s].is_some()).count();
+        let of_seen: Vec<usize> = (0..seen.len()).map(in_column).collect();
+        // So far from a first sighting, only that nothing else is like it tells that it is the same.
+        let may_be =
+            |k: usize, s: usize| self.known[known[k]].velocity.is_some() || of_known[k] == 1 && of_seen[s] == 1;
+        let cost = |k: usize, s: usize| costs[k][s].filter(|_| may_be(k, s));
+        for (k, found) in assign([known.len(), seen.len()], cost, LARGEST_COST).into_iter().enumerate() {
+            seen_as[known[k]] = found.map(|s| seen[s]);
+        }
+    }
+
     fn all(&mut self, frame: u64, traced: Vec<TracedOutline>) -> Vec<(u64, TracedOutline)> {
         let cost = |known: usize, seen: usize| self.known[known].cost(frame, &traced[seen]);
         let mut seen_as = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
-        // What is left over on both sides may be what moves by more than its own size.
-        let mut is_left = vec![true; traced.len()];
-        for seen in seen_as.iter().flatten() {
-            is_left[*seen] = false;
-        }
-        let far = |known: usize, seen: usize| {
-            let is_free = seen_as[known].is_none() && is_left[seen];
-            if is_free { self.known[known].cost_of_far(frame, &traced[seen]) } else { None }
-        };
-        let (mut of_known, mut of_seen) = (vec![0; self.known.len()], vec![0; traced.len()]);
-        for (known, of_known) in of_known.iter_mut().enumerate() {
-            for (_, of_seen) in of_seen.iter_mut().enumerate().filter(|(seen, _)| far(known, *seen).is_some()) {
-                (*of_known, *of_seen) = (*of_known + 1, *of_seen + 1);
-            }
-        }
-        if of_known.iter().any(|count| *count > 0) {
-            // So far from a first sighting, only that nothing else is like it tells that it is the same.
-            let is_only = |known: usize, seen: usize| of_known[known] == 1 && of_seen[seen] == 1;
-            let may_be = |known: usize, seen: usize| self.known[known].velocity.is_some() || is_only(known, seen);
-            let cost = |known: usize, seen: usize| far(known, seen).filter(|_| may_be(known, seen));
-            let found = assign([self.known.len(), traced.len()], cost, LARGEST_COST);
-            for (seen, found) in seen_as.iter_mut().zip(found) {
-                *seen = seen.or(found);
-            }
-        }
+        self.assign_far(frame, &traced, &mut seen_as);
         let mut names = vec![None; traced.len()];
         for (known, seen) in self.known.iter_mut().zip(seen_as) {
             if let Some(seen) = seen {

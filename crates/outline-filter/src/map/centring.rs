@@ -116,14 +116,6 @@ impl Stretch {
         self.inverse.to_homogeneous() * generator * self.linear.to_homogeneous()
     }
 
-    /// As [`unstretched`](Self::unstretched), made one whose parameters are a vector of length 1.
-    pub(super) fn unit_generator(&self, model: MotionModel, generator: &Matrix3<f64>) -> Matrix3<f64> {
-        let generator = self.unstretched(generator);
-        let parameters = model.parameters_of(&generator);
-        let length = parameters[..model.parameter_count()].iter().map(|entry| entry * entry).sum::<f64>().sqrt();
-        generator / length
-    }
-
     /// How many times as long as wide the outline is after a linear map.
     pub(super) fn ratio_after(&self, map: &Matrix2<f64>) -> f64 {
         let widths = (map * self.inverse).singular_values();
@@ -197,8 +189,7 @@ mod tests {
             assert!((p.coords.norm() - 1.0).abs() < 1e-9, "{p}");
             assert!((normal - p.coords).norm() < 1e-9, "{normal} {p}");
             // A rotation of the circle slides points along the ellipse.
-            let turn = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-            let in_body = centring.to_body() * centring.unstretched(&turn);
+            let in_body = centring.to_body() * centring.unstretched(&crate::map::CLOCKWISE);
             let from_body = centring.to_body().try_inverse().expect("a size");
             let velocity = in_body * from_body * cell.centre.to_homogeneous();
             assert!(velocity.xy().norm() > 0.05 && velocity.xy().dot(&cell.normal).abs() < 1e-9, "{velocity}");

@@ -15,7 +15,7 @@ use crate::tuning::{
 };
 
 /// Generator of a turn about the origin by 1 rad, clockwise where y points up.
-const CLOCKWISE: Matrix3<f64> = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+pub(crate) const CLOCKWISE: Matrix3<f64> = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy)]
@@ -126,9 +126,11 @@ impl OutlineMap {
         self.null_space.stretch.map_or(1.0, |stretch| stretch.ratio_after(&linear))
     }
 
-    /// The linear part of a map of the body as one of the outline stretched until it is as long as wide, where it may be stretched.
-    pub(crate) fn stretched(&self, map: &Matrix3<f64>) -> Option<Matrix2<f64>> {
-        Some(self.null_space.stretch?.stretched(&map.fixed_view::<2, 2>(0, 0).into_owned()))
+    /// The linear part of a map of the body as one of the outline stretched until it is as long as wide. Where it may not be stretched the map is not
+    /// asked for.
+    pub(crate) fn stretched(&self, map: impl FnOnce() -> Option<Matrix3<f64>>) -> Option<Matrix2<f64>> {
+        let stretch = self.null_space.stretch?;
+        Some(stretch.stretched(&map()?.fixed_view::<2, 2>(0, 0).into_owned()))
     }
 
     /// The generator of a clockwise turn by 1 rad of the outline stretched so, in the body frame, where it may be stretched.
@@ -137,7 +139,6 @@ impl OutlineMap {
     }
 
     /// Whether the outline may be stretched.
-    #[cfg(feature = "serde")]
     pub(crate) fn may_be_stretched(&self) -> bool {
         self.null_space.stretch.is_some()
     }
@@ -368,11 +369,9 @@ fn orthonormal(mut direction: ParameterVector, others: &[ParameterVector]) -> Pa
 impl NullSpace {
     /// The generator of a clockwise turn in centred coordinates whose parameters are a vector of length 1.
     fn unit_turn(&self, model: MotionModel) -> Matrix3<f64> {
-        if let Some(stretch) = self.stretch {
-            return stretch.unit_generator(model, &CLOCKWISE);
-        }
-        let parameters = model.parameters_of(&CLOCKWISE);
-        CLOCKWISE / parameters[..model.parameter_count()].iter().map(|c| c * c).sum::<f64>().sqrt()
+        let turn = self.stretch.map_or(CLOCKWISE, |stretch| stretch.unstretched(&CLOCKWISE));
+        let parameters = model.parameters_of(&turn);
+        turn / parameters[..model.parameter_count()].iter().map(|c| c * c).sum::<f64>().sqrt()
     }
 
     fn holds_turn(&self, model: MotionModel) -> bool {

@@ -15,6 +15,21 @@ pub(super) struct Seen<'a> {
     pub(super) offsets: &'a [f64],
 }
 
+impl Seen<'_> {
+    /// Finds the cell of each point.
+    #[inline(always)]
+    fn associate<const AFFINE: bool>(&self, numbers: &mut [u32]) {
+        let Self { points, inverse, map, .. } = self;
+        map.associate_all(
+            points.iter().map(
+                #[inline(always)]
+                |p| map_point_by::<AFFINE>(inverse, p),
+            ),
+            numbers,
+        );
+    }
+}
+
 /// Normal equations with Tukey's weights: their matrix, and their right-hand side.
 pub(super) type Equations<const K: usize> = ([[f64; K]; K], [f64; K]);
 
@@ -56,13 +71,7 @@ impl<const K: usize> Rows<K> {
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
     ) {
         let Seen { points, inverse, map, offsets } = seen;
-        map.associate_all(
-            points.iter().map(
-                #[inline(always)]
-                |p| map_point_by::<AFFINE>(inverse, p),
-            ),
-            numbers,
-        );
+        seen.associate::<AFFINE>(numbers);
         let cells = map.cells();
         for ((p, number), row) in points.iter().zip(numbers).zip(&mut self.rows) {
             let q = map_point_by::<AFFINE>(inverse, p);
@@ -154,13 +163,7 @@ impl SideBySide {
     #[inline(always)]
     fn linearise(&mut self, seen: &Seen<'_>, numbers: &mut [u32]) {
         let Seen { points, inverse, map, offsets } = seen;
-        map.associate_all(
-            points.iter().map(
-                #[inline(always)]
-                |p| map_point_by::<true>(inverse, p),
-            ),
-            numbers,
-        );
+        seen.associate::<true>(numbers);
         // What lies anywhere is looked up first: the loop after that runs in vectors.
         let (cells, lines) = (map.cells(), self.lines.as_mut_slice());
         for (line, number) in lines.iter_mut().zip(numbers) {

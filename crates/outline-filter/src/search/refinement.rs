@@ -1,6 +1,6 @@
 //! A pose brought onto the points of a frame from one that is near, by least squares of their distances from the outline.
 use freeform_riccati::{MotionModel, is_affine, map_point_by};
-use nalgebra::{Const, DimMin, Matrix2, Matrix3, Point2, SMatrix, SVector};
+use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector};
 
 use super::linearised::{Equations, Linearised, Rows, Seen, SideBySide};
 use crate::{
@@ -22,9 +22,6 @@ pub(crate) struct RegisteredPose {
     pub(super) spread: f64,
     /// Turn from the pose before, rad, anticlockwise where y points up.
     pub(crate) turn: f64,
-    /// Size of the change from the pose before, shifts left out: that of the turn; where shapes may be stretched the norm of what the linear part
-    /// changes.
-    pub(crate) change: f64,
 }
 
 /// How a start is followed.
@@ -43,6 +40,12 @@ impl Steps {
     pub(super) const FURTHER: Self =
         Self { most: tuning::SEARCH_STEPS - tuning::FIRST_STEPS, widest: tuning::WIDEST_FURTHER };
     pub(super) const REFINEMENT: Self = Self { most: tuning::REFINEMENT_STEPS, widest: tuning::WIDEST_REFINED };
+}
+
+/// So few of the points of a frame that a search is soon made.
+pub(super) fn few_of(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
+    let stride = (points.len() / tuning::FEW_POINTS).max(1);
+    points.iter().step_by(stride).copied().collect()
 }
 
 /// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals, at most so many.
@@ -109,7 +112,7 @@ where
     let score = if shows_outline { mean_distance(track, points, &pose, &mut numbers) } else { f64::INFINITY };
     let spread = if shows_outline { spread } else { f64::INFINITY };
     let turn = track.turn_to(&pose);
-    RegisteredPose { pose, score, spread, turn, change: turn.abs() }
+    RegisteredPose { pose, score, spread, turn }
 }
 
 /// The step that solves normal equations; `None` where numbers are not finite.
@@ -199,13 +202,4 @@ fn mean_distance(track: &Track, points: &[Point2<f64>], pose: &Matrix3<f64>, num
             }
         },
     )
-}
-
-/// Size of the change from the present pose of a track to another, shifts left out.
-pub(super) fn change_to(track: &Track, pose: &Matrix3<f64>) -> f64 {
-    if track.model() <= MotionModel::Similarity {
-        return track.turn_to(pose).abs();
-    }
-    let step = track.body_pose().try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
-    (step.fixed_view::<2, 2>(0, 0) - Matrix2::identity()).norm()
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point2, Vector2};
 use super::{
     Landmarks,
     outlook::Outlook,
-    refinement::{RegisteredPose, Steps, change_to, refined},
+    refinement::{RegisteredPose, Steps, few_of, refined},
 };
 use crate::{
     track::{Track, turn_between, wrapped},
@@ -60,8 +60,7 @@ impl Registration {
         landmarks: Option<[Landmarks; 2]>,
         extent: Extent,
     ) -> Self {
-        let stride = (points.len() / tuning::FEW_POINTS).max(1);
-        let few: Vec<_> = points.iter().step_by(stride).copied().collect();
+        let few = few_of(points);
         let further = |found: &RegisteredPose| refined(track, &few, MotionModel::Rigid, &found.pose, Steps::FURTHER);
         let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
         let Starts { turns, told } = Starts::of(track, points, landmarks);
@@ -144,7 +143,6 @@ impl Registration {
             // A start between middles slides along what the frame shows more of.
             found.pose = track.view().map.least_moved(model, pose, &found.pose);
             found.turn = track.turn_to(&found.pose);
-            found.change = change_to(track, &found.pose);
         }
         best
     }

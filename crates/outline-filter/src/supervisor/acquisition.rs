@@ -237,9 +237,8 @@ impl MotionFilter {
                 candidates.push(measured.swap_remove(at));
                 continue;
             }
-            let Some((mut track, turn)) = self.moved(found, seconds).map(|track| (track, found.turn)) else {
-                continue;
-            };
+            let (turn, change) = (found.turn, track.change_to(&found.pose));
+            let Some(mut track) = self.moved(found, seconds) else { continue };
             track.set_tolerance(tolerance);
             let gate = gate(&self.settings, &track);
             let outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
@@ -249,7 +248,7 @@ impl MotionFilter {
                 continue;
             }
             let likelihood = NegativeLogLikelihood::default();
-            let (found_in, verdict_of, change) = (found.pose, VerdictOf::Itself, found.change);
+            let (found_in, verdict_of) = (found.pose, VerdictOf::Itself);
             candidates.push(Candidate { track, outcome, found_in, turn, change, likelihood, verdict_of });
         }
         // Only those that are accepted are compared, with each other and the others.

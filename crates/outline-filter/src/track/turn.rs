@@ -2,7 +2,7 @@
 use std::f64::consts::{PI, TAU};
 
 use freeform_riccati::{map_point, turn_rate};
-use nalgebra::{Matrix3, Rotation2, Vector2};
+use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2};
 
 use super::Track;
 
@@ -26,28 +26,40 @@ impl Track {
         let (model, pose) = (self.model(), self.body_pose());
         let generator = model.generator(&self.belief().motion[..model.parameter_count()]);
         // Of the outline as one that is as long as wide, where it may be stretched: as turns of a symmetry are.
-        let stretched = pose.try_inverse().and_then(|inverse| self.map.stretched(&(inverse * generator * pose)));
+        let stretched = self.map.stretched(|| Some(pose.try_inverse()? * generator * pose));
         -time * turn_rate(&stretched.map_or(generator, |linear| linear.to_homogeneous()))
     }
 
     /// The turn from the present pose to another, rad, anticlockwise where y points up; where the outline may be stretched that of the outline as one
     /// that is as long as wide, since only such turns can bring it onto itself.
     pub(crate) fn turn_to(&self, pose: &Matrix3<f64>) -> f64 {
-        let inverse = self.body_pose().try_inverse();
-        let in_body = inverse.and_then(|inverse| self.map.stretched(&(inverse * pose)));
-        let step = in_body.unwrap_or_else(|| {
-            let step = inverse.map_or_else(Matrix3::identity, |inverse| pose * inverse);
-            step.fixed_view::<2, 2>(0, 0).into_owned()
-        });
+        let in_body = self.map.stretched(|| Some(self.body_pose().try_inverse()? * pose));
+        let step = in_body.unwrap_or_else(|| self.linear_step_to(pose));
         (step.m21 - step.m12).atan2(step.m11 + step.m22)
+    }
+
+    /// Size of the change from the present pose to another, shifts left out: that of the turn; where the outline may be stretched the norm of what the
+    /// linear part changes.
+    pub(crate) fn change_to(&self, pose: &Matrix3<f64>) -> f64 {
+        if self.map.may_be_stretched() {
+            (self.linear_step_to(pose) - Matrix2::identity()).norm()
+        } else {
+            self.turn_to(pose).abs()
+        }
+    }
+
+    /// The linear part of the change of the image from the present pose to another.
+    fn linear_step_to(&self, pose: &Matrix3<f64>) -> Matrix2<f64> {
+        let step = self.body_pose().try_inverse().map_or_else(Matrix3::identity, |inverse| pose * inverse);
+        step.fixed_view::<2, 2>(0, 0).into_owned()
     }
 
     /// Mean angular velocity (a2 - a3) / 2 of the outline in its present pose where it turns by 1 rad in a unit of time, as
     /// [`turn_to`](Self::turn_to) has it.
     pub(crate) fn mean_rate_of_turn(&self) -> f64 {
         let pose = self.body_pose();
-        let turned = self.map.stretched_turn_generator().zip(pose.try_inverse());
-        turned.map_or(1.0, |(generator, inverse)| turn_rate(&(pose * generator * inverse)))
+        let turned = self.map.stretched_turn_generator().and_then(|turn| Some(pose * turn * pose.try_inverse()?));
+        turned.map_or(1.0, |turned| turn_rate(&turned))
     }
 
     /// A pose turned by an angle, rad, anticlockwise where y points up, about the object's centroid. Where the model may stretch the outline, it is

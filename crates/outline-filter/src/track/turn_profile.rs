@@ -5,11 +5,11 @@
 //! not: poses turned a little either way must be worse.
 use freeform_curve_fit::Outline;
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::{Matrix3, SVector};
+use nalgebra::SVector;
 
 use super::{Outcome, Track};
 use crate::{
-    map::TurnEvent,
+    map::{CLOCKWISE, TurnEvent},
     measurement::{Frame, NegativeLogLikelihood},
     tuning::{likelihood::ENOUGH_POINTS, turn_profile as tuning},
 };
@@ -60,8 +60,7 @@ impl Track {
     /// promise too little.
     fn turn_to_be_told(&self, outcome: &Outcome, points: usize) -> Option<f64> {
         let model = self.belief.model;
-        let clockwise = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-        let about_centroid = SVector::from(model.parameters_of(&clockwise));
+        let about_centroid = SVector::from(model.parameters_of(&CLOCKWISE));
         let direction: SVector<f64, MAX_PARAMETERS> = self.centred_pose().about_origin(model)? * about_centroid;
         let of_turn = direction.dot(&(outcome.pose?.information * direction));
         // Of more points only so many are compared.

@@ -8,7 +8,7 @@ use super::{AGAINST_NOISE, PictureSample, Tracing, TracingWay};
 use crate::affine_moment_invariants::is_within;
 use crate::background::Difference;
 use crate::channel::Channel;
-use crate::identity::Selection;
+use crate::identity::{LEFT, Selection};
 use crate::picture_outlines::PictureSettings;
 use crate::trace_settings::Smoothing;
 
@@ -30,9 +30,6 @@ const OVERLAP: f64 = 0.5;
 
 /// Least way in three pictures: in sizes, and in pixels of the trial.
 const LEAST_WAY: [f64; 2] = [0.1, 1.5];
-
-/// Least distance between places of one thing at different times, in sizes; it has been seen to leave its place.
-const APART: f64 = 1.0;
 
 /// Logarithm of the ratio of areas, and distance of the affine moment invariants, that one thing may have at different times.
 const ALIKE: f64 = 0.5;
@@ -118,7 +115,7 @@ fn like<'a>(seed: &Chain, chains: &'a [Vec<Chain>]) -> (Vec<&'a Chain>, f64) {
 /// Whether a thing is seen in different places.
 fn leaves(group: &[&Chain]) -> bool {
     let first = &group[0][0];
-    group.iter().any(|chain| (chain[2].centre - first.centre).norm() > APART * first.size())
+    group.iter().any(|chain| (chain[2].centre - first.centre).norm() > LEFT * first.size())
 }
 
 /// Whether it goes around the middle of another, within its outline: then it is a part of that.
