@@ -4,6 +4,7 @@ use freeform_estimate::BoundError;
 use freeform_motion::PipelineError;
 use freeform_motion::tracker::TrackerError;
 use freeform_outline_filter::FilterError;
+use freeform_riccati::MotionModel;
 use freeform_sim_camera::{ShapeError, SimulationError};
 
 use crate::baseline::BaselineError;
@@ -63,6 +64,12 @@ pub enum ExperimentError {
     NoPlane {
         /// The method.
         method: crate::monte_carlo::Method,
+    },
+    /// The stress suite has no motions of this family.
+    #[error("the stress suite has rigid, similarity and affine motion, no {model} one")]
+    NoStressOfFamily {
+        /// The family.
+        model: MotionModel,
     },
     /// No kind of the stress suite has a class and name that contain this text.
     #[error(

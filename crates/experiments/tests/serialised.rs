@@ -49,8 +49,7 @@ fn a_report_of_a_study_comes_back_with_every_figure() {
 
 #[test]
 fn a_summary_of_a_stress_study_comes_back_and_its_report_can_be_written() {
-    let study =
-        StressStudy { kinds: kinds_containing("plain/3 frames").expect("a kind"), runs: 1, frames: None, seed: 1 };
+    let study = StressStudy { runs: 1, ..StressStudy::new(kinds_containing("plain/3 frames").expect("a kind")) };
     let report = study.run(&|| ()).expect("a report");
     let summary = postcard::to_allocvec(&report.overall).expect("memory");
     assert_eq!(postcard::from_bytes::<Summary>(&summary).expect("what was written"), report.overall);

@@ -52,6 +52,9 @@ pub(crate) struct EvaluateArgs {
 
     /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine,
     /// projective with --projective]
+    ///
+    /// With --suite stress rigid, similarity or affine: the objects grow or shrink as well, and for affine motion a camera looks at
+    /// their plane from aside.
     #[arg(long, value_enum)]
     pub(crate) motion: Option<MotionChoice>,
 
@@ -111,7 +114,7 @@ pub(crate) struct EvaluateArgs {
     /// expects, in the classes plain, noise, family, dynamics, round and symmetry. A table tells how often a stated value was more
     /// than four standard deviations off without a word, how often nothing was stated, and how often the 95 % intervals held.
     #[arg(long, value_name = "TEXT", num_args = 0..=1, default_missing_value = "",
-          conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "motion", "seconds", "fps", "points", "sampling",
+          conflicts_with_all = ["omega", "b", "affine", "projective", "scale", "seconds", "fps", "points", "sampling",
                                 "noise", "occlusion", "outliers", "wrong_frames", "acquisition"])]
     pub(crate) suite: Option<String>,
 

@@ -31,6 +31,11 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
             "--frames is for --suite stress: the settings of docs/accuracy.md have their own lengths",
         ));
     }
+    if args.suite.is_some() && args.motion.is_some() {
+        return Err(Failure::unusable(
+            "--motion is for --suite stress: the settings of docs/accuracy.md have their own motions",
+        ));
+    }
     let misplaced = [("--kinds", args.kinds.is_some()), ("--list", args.list)];
     if let Some((option, _)) = misplaced.into_iter().find(|(_, is_given)| *is_given) {
         return Err(Failure::unusable(format_args!("{option} is for --suite stress")));

@@ -3,8 +3,9 @@ use std::io;
 
 use freeform_experiments::monte_carlo::Method;
 use freeform_experiments::stress::{StressStudy, kinds_containing};
+use freeform_motion::riccati::MotionModel;
 
-use crate::args::{EvaluateArgs, EvaluateFormat};
+use crate::args::{EvaluateArgs, EvaluateFormat, MotionChoice};
 use crate::failure::Failure;
 use crate::output::{
     Sink, write_kinds, write_kinds_json, write_kinds_markdown, write_stress_json, write_stress_markdown,
@@ -43,7 +44,11 @@ pub(super) fn run(args: &EvaluateArgs) -> Result<(), Failure> {
             EvaluateFormat::Table | EvaluateFormat::Csv => write_kinds(sink, &kinds),
         });
     }
-    let study = StressStudy { kinds, runs: args.runs.unwrap_or(RUNS), frames, seed: args.seed };
+    let model = args.motion.unwrap_or(MotionChoice::Rigid).model();
+    if args.motion == Some(MotionChoice::Plane) || model == MotionModel::Projective {
+        return Err(Failure::unusable("--suite stress has rigid, similarity and affine motion"));
+    }
+    let study = StressStudy { kinds, model, runs: args.runs.unwrap_or(RUNS), frames, seed: args.seed };
     // The output is refused before the work, not after it.
     let sink = Sink::open(&args.output)?;
     let pool = super::evaluate::thread_pool(args)?;

@@ -15,6 +15,7 @@ pub(crate) fn write_stress_json(sink: &mut impl Write, report: &StressReport) ->
         report.classes.iter().map(|(class, summary)| (class.to_string(), summary_json(summary).into())).collect();
     let document = json!({
         "schema": "freeform.stress/1",
+        "motion": report.model.to_string(),
         "runs": report.runs,
         "frames": report.frames,
         "seed": report.seed,

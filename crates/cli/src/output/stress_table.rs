@@ -2,38 +2,22 @@
 use std::io::{self, Write};
 
 use freeform_experiments::stress::{Class, Kind, NOTES, Quantity, StressReport, Summary};
+use freeform_motion::riccati::MotionModel;
 use freeform_motion::significant;
 
 use super::aligned::write_aligned;
 use super::evaluate_table::decimals;
 
-/// Heads of the table; those of a quantity are preceded by its name.
-const COLUMNS: [&str; 16] = [
-    "class",
-    "kind",
-    "runs",
-    "silent wrong",
-    "off",
-    "unstated",
-    "warned",
-    "rejected",
-    "omega unstated",
-    "omega held",
-    "omega median",
-    "b unstated",
-    "b held",
-    "b median",
-    "v held",
-    "v median",
-];
+/// Heads of the columns before those of the quantities.
+const COLUMNS: [&str; 8] = ["class", "kind", "runs", "silent wrong", "off", "unstated", "warned", "rejected"];
 
 /// What the columns are.
 const LEGEND: [&str; 6] = [
     "silent wrong: share of the runs in which a stated value was more than 4 standard deviations off, no warning questioned it, and no alias \
      named the true angular velocity",
-    "off: the same, told or not; unstated: share of the runs in which omega, b or (round only) v was not stated",
+    "off: the same, told or not; unstated: share of the runs in which a parameter or (round only) v was not stated",
     "warned: share of the runs with a warning that questions the values; rejected: share of the frames that were not used",
-    "omega, b, v: angular velocity, velocity at the origin, velocity of the middle; all at the last frame",
+    "sigma, omega, a: growth, angular velocity, a1 to a4; b, v: velocity at the origin, of the middle; all at the last frame",
     "held: share of the stated values whose 95 % interval contains the truth",
     "median: median error in standard deviations, 0.67 where all is well",
 ];
@@ -41,9 +25,10 @@ const LEGEND: [&str; 6] = [
 /// One line for each kind, then for each class, then for all.
 pub(crate) fn write_stress_table(sink: &mut impl Write, report: &StressReport) -> io::Result<()> {
     let (kinds, totals) = rows(report);
-    let blank = vec![String::new(); COLUMNS.len()];
+    let heads = heads(report);
+    let blank = vec![String::new(); heads.len()];
     let rows: Vec<_> = kinds.into_iter().chain([blank]).chain(totals).collect();
-    write_aligned(sink, &COLUMNS, &rows, &[0, 1])?;
+    write_aligned(sink, &heads.iter().map(String::as_str).collect::<Vec<_>>(), &rows, &[0, 1])?;
     writeln!(sink)?;
     LEGEND.iter().try_for_each(|line| writeln!(sink, "{line}"))?;
     writeln!(sink, "{}", notes())
@@ -54,19 +39,18 @@ pub(crate) fn write_stress_markdown(sink: &mut impl Write, report: &StressReport
     let (kinds, totals) = rows(report);
     let line =
         |cells: &mut dyn Iterator<Item = &str>| cells.fold("|".to_owned(), |line, cell| line + " " + cell + " |");
+    let heads = heads(report);
+    let aligned = |column: usize| if column < 2 { "---" } else { "---:" };
     for rows in [totals, kinds] {
-        writeln!(sink, "{}", line(&mut COLUMNS.into_iter()))?;
-        writeln!(
-            sink,
-            "{}",
-            line(&mut COLUMNS.iter().map(|head| if *head == "class" || *head == "kind" { "---" } else { "---:" }))
-        )?;
+        writeln!(sink, "{}", line(&mut heads.iter().map(String::as_str)))?;
+        writeln!(sink, "{}", line(&mut (0..heads.len()).map(aligned)))?;
         rows.iter().try_for_each(|row| writeln!(sink, "{}", line(&mut row.iter().map(String::as_str))))?;
         writeln!(sink)?;
     }
     LEGEND.iter().try_for_each(|line| writeln!(sink, "- {line}"))?;
     let first = report.frames.map(|frames| format!(", at most the first {frames} frames of each")).unwrap_or_default();
-    writeln!(sink, "- {}\n\n{} runs of each kind{first}, seed {}.", notes(), report.runs, report.seed)
+    let motion = if report.model == MotionModel::Rigid { String::new() } else { format!(", {} motion", report.model) };
+    writeln!(sink, "- {}\n\n{} runs of each kind{motion}{first}, seed {}.", notes(), report.runs, report.seed)
 }
 
 /// The kinds with what they are.
@@ -94,22 +78,37 @@ fn notes() -> String {
     format!("warnings that do not question a stated value and do not count: {}", NOTES.join(", "))
 }
 
+/// Heads of the columns, of the quantities that are judged in any run.
+fn heads(report: &StressReport) -> Vec<String> {
+    let of_quantity = |quantity: Quantity| {
+        let unstated = (quantity != Quantity::V).then(|| format!("{quantity} unstated"));
+        unstated.into_iter().chain([format!("{quantity} held"), format!("{quantity} median")])
+    };
+    COLUMNS.map(str::to_owned).into_iter().chain(judged(report).flat_map(of_quantity)).collect()
+}
+
+fn judged(report: &StressReport) -> impl Iterator<Item = Quantity> {
+    report.overall.quantities.iter().map(|of| of.quantity)
+}
+
 /// Rows of the kinds, and of the classes and all.
 fn rows(report: &StressReport) -> (Vec<Vec<String>>, Vec<Vec<String>>) {
+    let quantities: Vec<Quantity> = judged(report).collect();
+    let row = |class: &str, kind: &str, summary: &Summary| row(class, kind, summary, &quantities);
     let kinds = report.kinds.iter().map(|of| row(of.kind.class.name(), &of.kind.name, &of.summary)).collect();
     let classes = report.classes.iter().map(|(class, summary)| row(class.name(), "all", summary));
     (kinds, classes.chain([row("all", "all", &report.overall)]).collect())
 }
 
-fn row(class: &str, kind: &str, summary: &Summary) -> Vec<String> {
+fn row(class: &str, kind: &str, summary: &Summary, quantities: &[Quantity]) -> Vec<String> {
     let percent = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share));
     let mut row = vec![class.to_owned(), kind.to_owned(), summary.runs.to_string()];
     row.extend(
         [summary.silent_wrong, summary.off, summary.unstated, summary.warned, summary.frames_rejected].map(percent),
     );
-    for quantity in Quantity::ALL {
-        let of = summary.quantities.iter().find(|of| of.quantity == quantity);
-        if quantity != Quantity::V {
+    for quantity in quantities {
+        let of = summary.quantities.iter().find(|of| of.quantity == *quantity);
+        if *quantity != Quantity::V {
             row.push(percent(of.and_then(|of| of.unstated)));
         }
         row.push(decimals(of.and_then(|of| of.coverage), 2));

@@ -259,6 +259,19 @@ fn the_stress_suite_judges_what_is_stated_after_so_many_frames() {
 }
 
 #[test]
+fn the_stress_suite_judges_the_parameters_of_the_family_that_is_asked_for() {
+    for (motion, names) in [("similarity", &["b", "omega", "sigma"][..]), ("affine", &["a", "b"])] {
+        let document = json(&succeed(&format!("{STRESS} --motion {motion} --format json"), ""));
+        assert_eq!(document["motion"], motion);
+        let quantities = document["overall"]["quantities"].as_object().expect("an object");
+        assert!(quantities.keys().eq(names), "{quantities:?}");
+        assert!(quantities.values().all(|of| of["unstated"] == 0.0 && of["silent_wrong"] == 0.0), "{quantities:?}");
+    }
+    let markdown = succeed(&format!("{STRESS} --motion affine --format markdown"), "");
+    assert!(markdown.contains("| a unstated |") && markdown.contains("affine motion, seed 0"), "{markdown}");
+}
+
+#[test]
 fn the_kinds_of_the_stress_suite_are_listed_with_what_they_are() {
     let all = succeed("evaluate --suite stress --list", "");
     assert!(all.lines().count() > 80, "{all}");
@@ -279,6 +292,9 @@ fn the_stress_suite_refuses_what_has_no_meaning_there() {
         ("--suite stress --frames 3,8", "one number"),
         ("--suite arc --kinds plain", "--kinds"),
         ("--suite arc --frames 3", "--frames"),
+        ("--suite arc --motion affine", "--motion"),
+        ("--suite stress --motion projective", "affine"),
+        ("--suite stress --motion plane", "affine"),
         ("--list", "--list"),
     ] {
         let output = run(&format!("evaluate {arguments}"), "");

@@ -73,6 +73,14 @@ impl Motion {
         self.trajectory.pose(time) * self.place
     }
 
+    /// The point that a constant generator leaves where it is; `None` of other motions, and where nothing turns.
+    pub(super) fn fixed_point(&self) -> Option<Point2<f64>> {
+        let is_constant = self.trajectory.dynamics() == Dynamics::Generator;
+        let omega = self.trajectory.omega(0.0);
+        let b = self.velocity_at(0.0, &Point2::origin());
+        (is_constant && omega != 0.0).then(|| Point2::new(b.y, -b.x) / omega)
+    }
+
     /// Velocity of the plane of the object at a point.
     pub(super) fn velocity_at(&self, time: f64, point: &Point2<f64>) -> Vector2<f64> {
         (self.trajectory.motion(time).generator() * point.to_homogeneous()).xy()
@@ -150,6 +158,14 @@ mod tests {
             ways[usize::from(omega > 0.0)] += 1;
         }
         assert!(ways.iter().all(|count| *count > 5), "{ways:?}");
+    }
+
+    #[test]
+    fn a_constant_generator_leaves_its_fixed_point_where_it_is() {
+        let motion = drawn(Path::Generator, 2);
+        let fixed = motion.fixed_point().expect("it turns");
+        assert!(motion.velocity_at(1.0, &fixed).norm() < 1e-12);
+        assert_eq!(drawn(Path::Velocity, 2).fixed_point(), None);
     }
 
     #[test]

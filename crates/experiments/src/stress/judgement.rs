@@ -1,7 +1,8 @@
 use std::fmt;
 
 use freeform_motion::tracker::ObjectResult;
-use nalgebra::{Point2, Vector2};
+use freeform_riccati::MotionModel;
+use nalgebra::Point2;
 
 use super::sequence::Truth;
 
@@ -28,8 +29,12 @@ const NEARER: f64 = 0.1;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quantity {
-    /// Angular velocity.
+    /// Rate of growth of a similarity.
+    Sigma,
+    /// Angular velocity, of rigid motion and similarities.
     Omega,
+    /// a1 to a4 of affine motion.
+    A,
     /// Velocity at the origin of the picture, two components.
     B,
     /// Velocity of the middle of the object, two components.
@@ -38,13 +43,15 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Omega, Self::B, Self::V];
+    pub const ALL: [Self; 5] = [Self::Sigma, Self::Omega, Self::A, Self::B, Self::V];
 
     /// Its name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Sigma => "sigma",
             Self::Omega => "omega",
+            Self::A => "a",
             Self::B => "b",
             Self::V => "v",
         }
@@ -72,23 +79,31 @@ pub(super) struct Outcome {
 
 impl Outcome {
     /// Judges the result for an object; `frame_rate` in the unit of time of the result.
-    pub(super) fn of(result: Option<&ObjectResult>, truth: &Truth, frame_rate: f64, judges_middle: bool) -> Self {
+    pub(super) fn of(
+        result: Option<&ObjectResult>,
+        truth: &Truth,
+        frame_rate: f64,
+        model: MotionModel,
+        judges_middle: bool,
+    ) -> Self {
         let stated = |index: usize| {
             let parameter = result?.estimate.as_ref()?.parameters().nth(index)?;
             Some((parameter.value?, parameter.standard_deviation.unwrap_or(0.0)))
         };
-        let error =
-            |stated: Option<(f64, f64)>, truth: f64| stated.map(|(value, std)| in_deviations(value - truth, std));
-        let mut numbers = vec![
-            (Quantity::Omega, error(stated(0), truth.omega)),
-            (Quantity::B, error(stated(1), truth.b.x)),
-            (Quantity::B, error(stated(2), truth.b.y)),
-        ];
+        let judged = |(index, (quantity, truth)): (usize, (Quantity, f64))| {
+            (quantity, stated(index).map(|(value, std)| in_deviations(value - truth, std)))
+        };
+        let mut numbers: Vec<_> = truth.parameters(model).into_iter().enumerate().map(judged).collect();
+        let rates = || {
+            let rates = numbers.iter().zip(0..).filter(|((quantity, _), _)| *quantity != Quantity::B);
+            rates.map(|(_, index)| stated(index).map(|(value, _)| value)).collect::<Option<Vec<f64>>>()
+        };
+        let stated_rates = rates();
         if judges_middle {
             let velocity = result.and_then(|result| result.velocity);
             // A stated turn belongs to the point that is stated with the velocity, not quite the middle.
-            let truth_at = |point: &Point2<f64>| match stated(0) {
-                Some(_) => truth.b + truth.omega * Vector2::new(point.y, -point.x),
+            let truth_at = |point: &Point2<f64>| match &stated_rates {
+                Some(_) => truth.b + truth.linear * point.coords,
                 None => truth.middle,
             };
             numbers.extend((0..2).map(|i| {
@@ -98,9 +113,10 @@ impl Outcome {
         }
         let warnings = result.map_or(&[][..], |result| &result.warnings);
         let aliases = result.map_or_else(Vec::new, |result| told_aliases(result, frame_rate));
-        let off = |omega: f64| (omega - truth.omega).abs();
-        let stated_off = stated(0).map_or(f64::INFINITY, |(omega, _)| off(omega));
-        let tolerance = if stated_off.is_finite() { NEARER * stated_off } else { NEARER * truth.omega.abs() };
+        let true_turn = truth.mean_turn(model);
+        let off = |turn: f64| (turn - true_turn).abs();
+        let stated_off = stated_rates.map_or(f64::INFINITY, |rates| off(mean_turn(&rates)));
+        let tolerance = if stated_off.is_finite() { NEARER * stated_off } else { NEARER * true_turn.abs() };
         Self {
             numbers,
             warned: warnings.iter().any(|warning| !NOTES.contains(&warning.code())),
@@ -135,6 +151,34 @@ impl Outcome {
     }
 }
 
+/// Mean angular velocity of all directions, by the rates of a motion: omega, sigma and omega, or a1 to a4.
+fn mean_turn(rates: &[f64]) -> f64 {
+    match *rates {
+        [omega] | [_, omega] => omega,
+        [_, a2, a3, _] => 0.5 * (a2 - a3),
+        _ => f64::NAN,
+    }
+}
+
+impl Truth {
+    /// The parameters of a motion in the order of its family; none of a projective one.
+    fn parameters(&self, model: MotionModel) -> Vec<(Quantity, f64)> {
+        let rates = match model {
+            MotionModel::Rigid => vec![(Quantity::Omega, self.omega)],
+            MotionModel::Similarity => vec![(Quantity::Sigma, self.growth), (Quantity::Omega, self.omega)],
+            MotionModel::Affine => self.linear.transpose().iter().map(|a| (Quantity::A, *a)).collect(),
+            MotionModel::Projective => return Vec::new(),
+        };
+        rates.into_iter().chain(self.b.iter().map(|b| (Quantity::B, *b))).collect()
+    }
+
+    /// Mean angular velocity of all directions in the picture.
+    fn mean_turn(&self, model: MotionModel) -> f64 {
+        let rates = self.parameters(model).into_iter().filter(|(quantity, _)| *quantity != Quantity::B);
+        mean_turn(&rates.map(|(_, rate)| rate).collect::<Vec<f64>>())
+    }
+}
+
 /// Whether a stated value with this error in deviations is wrong.
 fn is_wrong(error: f64) -> bool {
     // Not a number is no right one either.
@@ -159,12 +203,17 @@ mod tests {
     use freeform_motion::Warning;
     use freeform_motion::tracker::Method;
     use freeform_outline_filter::Ambiguity;
-    use freeform_riccati::MotionModel;
-    use nalgebra::Matrix2;
+    use nalgebra::{Matrix2, Vector2};
 
     use super::*;
 
-    const TRUTH: Truth = Truth { omega: 2.0, b: Vector2::new(0.5, 0.0), middle: Vector2::new(1.0, 0.0) };
+    const TRUTH: Truth = Truth {
+        omega: 2.0,
+        growth: 0.0,
+        linear: Matrix2::new(0.0, 2.0, -2.0, 0.0),
+        b: Vector2::new(0.5, 0.0),
+        middle: Vector2::new(1.0, 0.0),
+    };
 
     fn result(omega: f64) -> ObjectResult {
         let estimate = MotionEstimate::new(MotionModel::Rigid, &[omega, 0.5, 0.1], Some(&[0.01, 0.1, 0.1]));
@@ -176,8 +225,12 @@ mod tests {
         }
     }
 
+    fn of(result: Option<&ObjectResult>, truth: &Truth, judges_middle: bool) -> Outcome {
+        Outcome::of(result, truth, 30.0, MotionModel::Rigid, judges_middle)
+    }
+
     fn judged(result: &ObjectResult) -> Outcome {
-        Outcome::of(Some(result), &TRUTH, 30.0, false)
+        of(Some(result), &TRUTH, false)
     }
 
     #[test]
@@ -225,7 +278,7 @@ mod tests {
         none.estimate = none.estimate.map(|estimate| estimate.with_unobservable(0));
         let outcome = judged(&none);
         assert!(!outcome.is_off() && outcome.is_unstated_in(None) && !outcome.is_unstated_in(Some(Quantity::B)));
-        let nothing = Outcome::of(None, &TRUTH, 30.0, true);
+        let nothing = of(None, &TRUTH, true);
         assert_eq!(nothing.numbers.len(), 5);
         assert!(nothing.numbers.iter().all(|(_, error)| error.is_none()) && !nothing.is_off());
     }
@@ -240,16 +293,16 @@ mod tests {
             if !omega_is_stated {
                 result.estimate = result.estimate.map(|estimate| estimate.with_unobservable(0));
             }
-            Outcome::of(Some(&result), &TRUTH, 30.0, true).is_off_in(Some(Quantity::V))
+            of(Some(&result), &TRUTH, true).is_off_in(Some(Quantity::V))
         };
         assert!(!off(1.0, true) && !off(1.0, false));
         let truth_there = 0.5 + 2.0 * 0.25;
         assert_eq!(truth_there, 1.0);
         let elsewhere = Truth { middle: Vector2::new(0.9, 0.0), ..TRUTH };
         let result = ObjectResult { velocity: Some(velocity(1.0)), ..result(2.0) };
-        assert!(!Outcome::of(Some(&result), &elsewhere, 30.0, true).is_off_in(Some(Quantity::V)));
+        assert!(!of(Some(&result), &elsewhere, true).is_off_in(Some(Quantity::V)));
         let unknown =
             ObjectResult { estimate: result.estimate.map(|estimate| estimate.with_unobservable(0)), ..result };
-        assert!(Outcome::of(Some(&unknown), &elsewhere, 30.0, true).is_off_in(Some(Quantity::V)));
+        assert!(of(Some(&unknown), &elsewhere, true).is_off_in(Some(Quantity::V)));
     }
 }

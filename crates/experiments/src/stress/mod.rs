@@ -2,13 +2,13 @@
 //!
 //! A [`Kind`] is a way to make sequences, such as "a shadow on one side of the picture". [`all_kinds`] has those of docs/honesty.md in six
 //! [`Class`]es. A [`StressStudy`] makes runs of each, follows the object by a [`Tracker`](freeform_motion::Tracker) with default settings,
-//! and holds the values at the last frame against the truth then. The [`Summary`] of a kind tells how often a stated value was more than
+//! in rigid, similarity or affine motion, and holds the values at the last frame against the truth then. The [`Summary`] of a kind tells how often a stated value was more than
 //! four standard deviations off without a word, how often nothing was stated, and how often the 95 % intervals held.
 //!
 //! ```
 //! use freeform_experiments::stress::{StressStudy, kinds_containing};
 //!
-//! let study = StressStudy { kinds: kinds_containing("plain/white noise of 0.5 %")?, runs: 2, frames: None, seed: 1 };
+//! let study = StressStudy { runs: 2, ..StressStudy::new(kinds_containing("plain/white noise of 0.5 %")?) };
 //! let report = study.run(&|| ())?;
 //! assert_eq!(report.overall.runs, 2);
 //! # Ok::<(), freeform_experiments::ExperimentError>(())
@@ -23,6 +23,7 @@ mod kind;
 mod kinds;
 mod recipe;
 mod sequence;
+mod stretch;
 mod study;
 mod summary;
 mod view;

@@ -1,14 +1,16 @@
 //! The frames of one run, and the truth.
 use freeform_curve_fit::{OpenArc, OpenOutline, Outline, PixelGrid};
 use freeform_motion::outline_io::{GrayImage, Threshold, TraceSettings, trace_mask};
+use freeform_riccati::MotionModel;
 use freeform_sim_camera::{Mask, Shape};
-use nalgebra::{Point2, Rotation2, Vector2};
+use nalgebra::{Matrix2, Point2, Rotation2, Vector2};
 use rand::{Rng, RngExt as _};
 use std::f64::consts::TAU;
 
 use super::course::Motion;
 use super::fault::{Fault, FaultInTime, add_noise};
 use super::recipe::{Deformation, Depth, Recipe, Sampling, Sensing};
+use super::stretch::Stretch;
 use super::view::View;
 use crate::ExperimentError;
 use crate::monte_carlo::suite::SHAPES;
@@ -32,7 +34,12 @@ pub(super) struct SeenFrame {
 /// The truth at the last frame, in the units of the recipe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Truth {
+    /// Of the turn in the plane of the object.
     pub(super) omega: f64,
+    /// Rate of growth of the picture.
+    pub(super) growth: f64,
+    /// How the velocity in the picture of the plane of the object changes with the place, where the origin of the picture is.
+    pub(super) linear: Matrix2<f64>,
     /// Velocity in the picture of the plane of the object where the origin of the picture is.
     pub(super) b: Vector2<f64>,
     /// Velocity of the middle of the object.
@@ -43,8 +50,10 @@ pub(super) struct Truth {
 #[derive(Debug)]
 pub(super) struct Sequence<'a> {
     recipe: &'a Recipe,
+    model: MotionModel,
     contour: Shape,
     motion: Motion,
+    stretch: Stretch,
     view: View,
     /// Turn of the contour at time 0.
     first_turn: f64,
@@ -54,32 +63,52 @@ pub(super) struct Sequence<'a> {
 }
 
 impl<'a> Sequence<'a> {
-    /// Draws what is a matter of chance.
-    pub(super) fn new(recipe: &'a Recipe, rng: &mut impl Rng) -> Result<Self, ExperimentError> {
+    /// Draws what is a matter of chance, the motion from a family.
+    pub(super) fn new(recipe: &'a Recipe, model: MotionModel, rng: &mut impl Rng) -> Result<Self, ExperimentError> {
         let contour = recipe.body.contour(rng)?;
         let motion = recipe.course.draw(rng)?;
+        let stretch = Stretch::draw(model, motion.fixed_point().unwrap_or_else(Point2::origin), rng)?;
         let view = match recipe.view {
             View::Tilted { angle, distance, .. } => View::Tilted { angle, axis: rng.random_range(0.0..TAU), distance },
             other => other,
         };
         let first_turn = rng.random_range(0.0..TAU);
         let faults = recipe.faults.iter().map(|fault| FaultInTime::new(*fault, recipe.points, rng)).collect();
-        let mut sequence = Self { recipe, contour, motion, view, first_turn, faults, edges: Vec::new() };
+        let mut sequence =
+            Self { recipe, model, contour, motion, stretch, view, first_turn, faults, edges: Vec::new() };
         let half_way = sequence.points(recipe.time(recipe.frames / 2), &dense_places(), None);
         sequence.edges = sequence.faults.iter().map(|fault| fault.edge(&half_way)).collect();
         Ok(sequence)
     }
 
-    /// The truth at the time of a frame. Growth and bending about the middle have no part in it, as they have none in a rigid motion.
+    /// The truth at the time of a frame. Bending about the middle has no part in it, nor has growth about the middle in a rigid motion.
     pub(super) fn truth(&self, frame: usize) -> Truth {
         let time = self.recipe.time(frame);
         let per_time = 1.0 / self.recipe.time_unit;
         let per_velocity = self.recipe.length_unit * per_time;
         let velocity = |point: &Point2<f64>| self.motion.velocity_at(time, point);
+        let (omega, middle) = (self.motion.trajectory.omega(time), self.motion.middle(time));
+        let own_growth = match (self.model, self.recipe.deformation) {
+            (MotionModel::Rigid, _) => 0.0,
+            (_, Deformation::Growth(rate)) => rate,
+            _ => 0.0,
+        };
+        let Stretch { linear, growth, centre } = self.stretch;
+        let scale = self.stretch.scale(time);
+        // x' = rates x + offset in the plane of the object, and y' = (rates + growth) y + offset of y = centre + scale (x - centre).
+        let rates = Matrix2::new(own_growth, omega, -omega, own_growth);
+        let grown = rates + Matrix2::identity() * growth;
+        let offset_in_plane = velocity(&Point2::origin()) - own_growth * middle.coords;
+        let offset = scale * (rates * centre.coords + offset_in_plane) - grown * centre.coords;
+        let of_middle = growth * scale * (middle - centre) + scale * velocity(&middle);
+        let to_picture = self.view.derivative_at_origin() * linear;
+        let back = to_picture.try_inverse().unwrap_or_else(Matrix2::zeros);
         Truth {
-            omega: self.motion.trajectory.omega(time) * per_time,
-            b: self.view.derivative_at_origin() * velocity(&Point2::origin()) * per_velocity,
-            middle: velocity(&self.motion.middle(time)) * per_velocity,
+            omega: omega * per_time,
+            growth: (growth + own_growth) * per_time,
+            linear: to_picture * grown * back * per_time,
+            b: to_picture * offset * per_velocity,
+            middle: to_picture * of_middle * per_velocity,
         }
     }
 
@@ -196,10 +225,10 @@ impl<'a> Sequence<'a> {
     /// A point of the body with its normal, both turned as at time 0, in the picture.
     fn in_picture(&self, time: f64, place: f64, body: &Point2<f64>, normal: &Vector2<f64>) -> Point2<f64> {
         let pose = self.motion.trajectory.pose(time);
-        let normal = pose.matrix().fixed_view::<2, 2>(0, 0) * normal;
+        let normal = self.stretch.normal(&(pose.matrix().fixed_view::<2, 2>(0, 0) * normal));
         let across: f64 = self.faults.iter().map(|fault| fault.across(place, &normal)).sum();
-        let plane = pose * (self.motion.place + body.coords) + across * normal;
-        self.view.image(&plane)
+        let plane = pose * (self.motion.place + body.coords);
+        self.view.image(&(self.stretch.image(time, &plane) + across * normal))
     }
 }
 
@@ -230,7 +259,7 @@ mod tests {
 
     fn frames(recipe: &Recipe, seed: u64) -> (Truth, Vec<SeenFrame>) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let sequence = Sequence::new(recipe, &mut rng).expect("a sequence");
+        let sequence = Sequence::new(recipe, MotionModel::Rigid, &mut rng).expect("a sequence");
         (sequence.truth(recipe.frames - 1), sequence.frames(recipe.frames, &mut rng))
     }
 
@@ -294,6 +323,31 @@ mod tests {
         // The mean over the last step is half a step before its end.
         let omega = turn / (last.time - before.time) + 0.5 * 3.0 * truth.omega.signum() / 30.0;
         assert!((omega - truth.omega).abs() < 1e-6, "{omega} {}", truth.omega);
+    }
+
+    #[test]
+    fn the_truth_of_an_affine_motion_is_what_points_of_an_exact_outline_do_at_the_last_frame() {
+        let own = Recipe { noise: 0.0, sampling: Sampling::Same, frames: 401, fps: 400.0, ..Recipe::plain() };
+        for recipe in [
+            own.clone(),
+            Recipe { length_unit: 10.0, time_unit: 0.1, ..own.clone() },
+            Recipe { deformation: Deformation::Growth(-0.2), ..own.clone() },
+            Recipe { view: View::Aspect(0.1), ..own },
+        ] {
+            let mut rng = ChaCha8Rng::seed_from_u64(8);
+            let sequence = Sequence::new(&recipe, MotionModel::Affine, &mut rng).expect("a sequence");
+            // Central differences about the last frame but one.
+            let truth = sequence.truth(recipe.frames - 2);
+            let seen = sequence.frames(recipe.frames, &mut rng);
+            let [.., before, between, last] = &seen[..] else { panic!("frames") };
+            let points = |frame: &SeenFrame| frame.outline.as_ref().expect("an outline").points().collect::<Vec<_>>();
+            let [first, middle, second] = [before, between, last].map(points);
+            for ((p, q), r) in first.iter().zip(&middle).zip(&second) {
+                let velocity = (r - p) / (last.time - before.time);
+                let by_truth = truth.linear * q.coords + truth.b;
+                assert!((velocity - by_truth).norm() < 1e-4 * by_truth.norm(), "{velocity} {by_truth}");
+            }
+        }
     }
 
     #[test]

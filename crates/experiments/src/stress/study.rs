@@ -1,5 +1,7 @@
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
+use freeform_motion::tracker::Method;
 use freeform_motion::{Tracker, TrackerSettings};
+use freeform_riccati::MotionModel;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -16,6 +18,8 @@ use crate::ExperimentError;
 pub struct StressStudy {
     /// The kinds.
     pub kinds: Vec<Kind>,
+    /// The family of motions that is asked for, and of which the motions are but for what a kind adds: rigid, similarity or affine.
+    pub model: MotionModel,
     /// Sequences of each kind, at least 1.
     pub runs: usize,
     /// Frames after which what is stated is judged, taken to be 2 at least; longer than a sequence means all of it; `None` for whole sequences.
@@ -28,6 +32,8 @@ pub struct StressStudy {
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StressReport {
+    /// The family of motions that was asked for.
+    pub model: MotionModel,
     /// Sequences of each kind.
     pub runs: usize,
     /// Frames after which what is stated was judged; `None` for whole sequences.
@@ -53,6 +59,12 @@ pub struct KindReport {
 }
 
 impl StressStudy {
+    /// Twenty whole sequences of each kind, rigid motion, seed 0.
+    #[must_use]
+    pub const fn new(kinds: Vec<Kind>) -> Self {
+        Self { kinds, model: MotionModel::Rigid, runs: 20, frames: None, seed: 0 }
+    }
+
     /// Runs in all: how often [`run`](Self::run) calls its `progress`.
     #[must_use]
     pub fn run_count(&self) -> usize {
@@ -63,7 +75,7 @@ impl StressStudy {
     /// seed gives the same report whatever the number of threads, and a kind the same figures whatever other kinds there are.
     ///
     /// # Errors
-    /// What the simulator or the tracker refuses.
+    /// What the simulator or the tracker refuses, and projective motion.
     pub fn run(&self, progress: &(dyn Fn() + Sync)) -> Result<StressReport, ExperimentError> {
         let frames = self.frames.map(|frames| frames.max(2));
         let outcomes = (0..self.run_count()).into_par_iter().map(|job| {
@@ -80,6 +92,7 @@ impl StressStudy {
             Some((class, Summary::of(outcomes)))
         };
         Ok(StressReport {
+            model: self.model,
             runs: self.runs,
             frames,
             seed: self.seed,
@@ -98,9 +111,9 @@ impl StressStudy {
         let count = frames.map_or(recipe.frames, |frames| frames.min(recipe.frames));
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ hash(&kind.path()));
         rng.set_stream(number as u64);
-        let sequence = Sequence::new(recipe, &mut rng)?;
+        let sequence = Sequence::new(recipe, self.model, &mut rng)?;
         let truth = sequence.truth(count - 1);
-        let mut tracker = Tracker::new(TrackerSettings::default())?;
+        let mut tracker = Tracker::new(TrackerSettings::new(Method::Filter, self.model))?;
         for seen in sequence.frames(count, &mut rng) {
             let frame = seen.index as u64;
             let object = DEFAULT_OBJECT.to_owned();
@@ -110,7 +123,7 @@ impl StressStudy {
             }
         }
         let frame_rate = recipe.fps / recipe.time_unit;
-        Ok(Outcome::of(tracker.results().first(), &truth, frame_rate, kind.judges_middle()))
+        Ok(Outcome::of(tracker.results().first(), &truth, frame_rate, self.model, kind.judges_middle()))
     }
 }
 
@@ -126,7 +139,7 @@ mod tests {
 
     fn report(text: &str, seed: u64) -> StressReport {
         let kinds = kinds_containing(text).expect("some");
-        StressStudy { kinds, runs: 2, frames: None, seed }.run(&|| ()).expect("a report")
+        StressStudy { runs: 2, seed, ..StressStudy::new(kinds) }.run(&|| ()).expect("a report")
     }
 
     #[test]
