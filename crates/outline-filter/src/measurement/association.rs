@@ -110,7 +110,7 @@ impl View<'_> {
         columns.hand_cells_back(measurements);
         for (measurement, p) in measurements.iter_mut().zip(points.iter()) {
             let normal = self.distance(measurement, p, inverse, shifts);
-            self.linearise(measurement, p, &normal, null);
+            self.linearise(measurement, p, &normal, shifts, null);
         }
         self.weigh(measurements, values, deviations, pass);
         if self.map.has_ends() {

@@ -50,6 +50,8 @@ pub(crate) struct Columns {
     /// Of every cell, and one for none; and how fast the residuals of its points fall as its offset grows.
     pub(crate) lines: Vec<CellLine>,
     pub(crate) by_offsets_of_cells: Vec<f64>,
+    /// Where the cells themselves lie along the normals of their lines, without their offsets: Jacobians are taken there.
+    pub(crate) own_lines: Vec<f64>,
     /// Of every cell, and one for none: what its points add up to, and what a step makes of their residuals.
     pub(crate) sums: Vec<CellSums>,
     pub(crate) moves: Vec<[f64; 2]>,
@@ -165,15 +167,16 @@ impl CellSums {
 }
 
 impl CellLine {
-    /// What the Jacobian of a point on the line is at its foot, and what comes to it along the line, by the normal velocities that each parameter
-    /// of the pose error gives a point.
+    /// The Jacobian at the foot of a line along this normal, which lies `at` along it, and what comes to it along the line, by the normal
+    /// velocities that each parameter of the pose error gives a point.
     #[inline(always)]
     pub(crate) fn jacobian<const K: usize>(
         &self,
+        at: f64,
         velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> [f64; MAX_PARAMETERS],
     ) -> [[f64; K]; 2] {
         let normal = self.normal();
-        let foot = Point2::from(self.at() * normal);
+        let foot = Point2::from(at * normal);
         let of_foot = velocities(&foot, &normal);
         let further = velocities(&Point2::new(foot.x - normal.y, foot.y + normal.x), &normal);
         [std::array::from_fn(|i| of_foot[i]), std::array::from_fn(|i| further[i] - of_foot[i])]

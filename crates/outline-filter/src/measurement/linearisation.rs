@@ -54,21 +54,24 @@ impl View<'_> {
         pulled * measurement.by_offset
     }
 
-    /// The Jacobian of the distance: the normal velocity that each parameter of the pose error gives the foot of the point on the outline.
-    /// For affine motion the noisy point itself would bias it.
+    /// The Jacobian of the distance: the normal velocity that each parameter of the pose error gives the foot of the point on the line through
+    /// its cell. The noise of the point itself would bias motions that grow or shear, and so would that of the offset, from frames before.
     #[inline]
     pub(super) fn linearise(
         &self,
         measurement: &mut Measurement,
         p: &Point2<f64>,
         normal: &Vector2<f64>,
+        shifts: &[f64],
         null: &[NullDirection],
     ) {
         if measurement.cell == NO_CELL {
             measurement.jacobian = [0.0; MAX_PARAMETERS];
             return;
         }
-        let foot = p - measurement.residual * normal;
+        let number = measurement.cell;
+        let from_cell = measurement.residual + (self.belief.offsets[number] + shifts[number]) * measurement.by_offset;
+        let foot = p - from_cell * normal;
         measurement.jacobian = self.belief.model.normal_velocities(&foot, normal);
         null.iter().for_each(|direction| direction.project_out(&mut measurement.jacobian));
     }

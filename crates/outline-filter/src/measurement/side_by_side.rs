@@ -33,13 +33,14 @@ impl View<'_> {
         }
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (points, places) = (points.as_slice(), places.as_mut_slice());
-        let Columns { own_places, lines, by_offsets_of_cells, .. } = columns;
+        let Columns { own_places, lines, by_offsets_of_cells, own_lines, .. } = columns;
         let (own_places, lines) = (own_places.as_mut_slice(), lines.as_mut_slice());
         let by_offsets_of_cells = by_offsets_of_cells.as_mut_slice();
+        let own_lines = own_lines.as_mut_slice();
         vectorised(
             #[inline(always)]
             || {
-                write_lines(self, inverse, shifts, (lines, by_offsets_of_cells));
+                write_lines(self, inverse, shifts, (lines, by_offsets_of_cells, own_lines));
                 for (place, p) in own_places.iter_mut().zip(points.iter()) {
                     *place = map_point_by::<true>(inverse, p);
                 }
@@ -135,6 +136,7 @@ impl Columns {
         rows.resize(points, [0.0; LANES]);
         self.lines.resize(cells + 1, CellLine::NONE);
         self.by_offsets_of_cells.resize(cells + 1, 0.0);
+        self.own_lines.resize(cells + 1, 0.0);
         self.jacobians = Jacobians::OfCells;
     }
 
@@ -245,28 +247,30 @@ fn write_lines(
     view: &View<'_>,
     inverse: &Matrix3<f64>,
     shifts: &[f64],
-    (lines, by_offsets): (&mut [CellLine], &mut [f64]),
+    (lines, by_offsets, own_lines): (&mut [CellLine], &mut [f64], &mut [f64]),
 ) {
     let (cells, offsets) = (view.map.cells(), &view.belief.offsets);
     let (origin, away) = (Point2::origin(), map_point_by::<true>(inverse, &Point2::origin()));
     let inflations = view.noise.inflations();
-    for ((line, inflation), ((cell, offset), shift)) in
-        lines.iter_mut().zip(inflations).zip(cells.iter().zip(offsets).zip(shifts))
-    {
+    let of_lines = lines.iter_mut().zip(own_lines.iter_mut()).zip(inflations);
+    for (((line, own), inflation), ((cell, offset), shift)) in of_lines.zip(cells.iter().zip(offsets).zip(shifts)) {
         let pulled = pull_back_by::<true>(inverse, &origin, &away, &cell.normal);
-        let at = cell.normal.dot(&(cell.centre - away)) + offset + shift;
+        *own = cell.normal.dot(&(cell.centre - away));
+        let at = *own + offset + shift;
         *line = CellLine([pulled.x, pulled.y, at, inflation]);
     }
     // Roots and quotients in vectors.
-    for (CellLine([x, y, at, of_points]), by_offset) in lines.iter_mut().zip(by_offsets.iter_mut()) {
+    let of_lines = lines.iter_mut().zip(own_lines.iter_mut());
+    for ((CellLine([x, y, at, of_points]), own), by_offset) in of_lines.zip(by_offsets.iter_mut()) {
         // A unit step along the image normal moves the body point by |D' n| along n.
         let scale = 1.0 / (*x * *x + *y * *y).sqrt();
-        (*x, *y, *at) = (*x * scale, *y * scale, *at * scale);
+        (*x, *y, *at, *own) = (*x * scale, *y * scale, *at * scale, *own * scale);
         *of_points = (1.0 / *of_points).sqrt();
         *by_offset = scale;
     }
     lines[cells.len()] = CellLine::NONE;
     by_offsets[cells.len()] = 0.0;
+    own_lines[cells.len()] = 0.0;
 }
 
 /// Distances of points from the lines of their cells, coordinates along these, and Tukey's weights for a deviation; how many of the points are
@@ -320,7 +324,8 @@ fn write_jacobians(
     let none = lines.len() - 1;
     for (measurement, (p, found)) in measurements.iter_mut().zip(points.iter().zip(columns.points())) {
         let line = &lines[found.cell];
-        let (normal, foot) = (line.normal(), p - found.residual * line.normal());
+        let normal = line.normal();
+        let foot = p - (found.residual + line.at() - columns.own_lines[found.cell]) * normal;
         *measurement = Measurement {
             cell: if found.cell == none { NO_CELL } else { found.cell },
             residual: found.residual,

@@ -1,6 +1,6 @@
 //! The normal equations of a frame by sums over the points of each cell, where cells are lines in the image.
 //!
-//! The Jacobian of a point is that of its foot on the line of its cell, `a + t b` with the coordinate t along the line. The sums of the
+//! The Jacobian of a point is that of its foot on the line through its cell, `a + t b` with the coordinate t along the line. The sums of the
 //! weights w, of w t and of w t^2 say what all points of a cell tell of pose and offset, and those of w r and w t r what their residuals r ask
 //! for. The plain way is `accumulate`, point by point; a test compares the two.
 use freeform_riccati::{MotionModel, ParameterVector};
@@ -54,7 +54,7 @@ impl Frame {
         work.cells.resize_as(known);
         let (own, coupling) = work.cells.all_mut::<S>();
         let Self { right, shifts, columns, .. } = self;
-        let Columns { lines, by_offsets_of_cells, sums, rows_of_cells, .. } = columns;
+        let Columns { lines, own_lines, by_offsets_of_cells, sums, rows_of_cells, .. } = columns;
         rows_of_cells.resize(2 * P * shifts.len(), 0.0);
         let rows = pairs_mut::<P>(rows_of_cells);
         let known = known.own().iter().zip(known.rows::<S>());
@@ -62,9 +62,9 @@ impl Frame {
             #[inline(always)]
             || {
                 // Rows are written first: the sums after that run in vectors.
-                let of_lines = lines.iter().zip(by_offsets_of_cells.iter());
-                for (rows, ((line, by_offset), shift)) in rows.iter_mut().zip(of_lines.zip(shifts.iter())) {
-                    write_rows::<K, P>(rows, line, (by_offset * shift, &step), velocities);
+                let of_lines = lines.iter().zip(own_lines.iter()).zip(by_offsets_of_cells.iter());
+                for (rows, (((line, at), by_offset), shift)) in rows.iter_mut().zip(of_lines.zip(shifts.iter())) {
+                    write_rows::<K, P>(rows, (line, *at), (by_offset * shift, &step), velocities);
                 }
                 let mut total = [[0.0; P]; K];
                 let of_cells = rows.iter().zip(by_offsets_of_cells.iter().zip(sums.iter())).zip(known.clone());
@@ -134,11 +134,11 @@ fn pairs_mut<const P: usize>(rows: &mut [f64]) -> &mut [[[f64; P]; 2]] {
 #[inline(always)]
 fn write_rows<const K: usize, const P: usize>(
     [foot, further]: &mut [[f64; P]; 2],
-    line: &CellLine,
+    (line, at): (&CellLine, f64),
     (moved, step): (f64, &[f64; K]),
     velocities: impl Fn(&Point2<f64>, &Vector2<f64>) -> ParameterVector,
 ) {
-    let [at_foot, along] = line.jacobian::<K>(velocities);
+    let [at_foot, along] = line.jacobian::<K>(at, velocities);
     let (mut at, mut slope) = (moved, 0.0);
     for i in 0..K {
         (foot[i], further[i]) = (at_foot[i], along[i]);

@@ -8,6 +8,7 @@ mod filter_observability;
 mod filter_support;
 mod first_frames;
 mod gaps;
+mod kept_errors;
 mod known_outline;
 mod lost_objects;
 mod mask_rounding;
