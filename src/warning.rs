@@ -349,11 +349,14 @@ fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: M
             "the outlines are bent from the middle of the picture outwards, as by a lens: velocities may be off by some percent; \
              undistort the pictures with a calibration of the camera",
         ),
-        WrongFamily::Shape => write!(
-            f,
-            "the outlines change their shape in ways that no {motion} motion does: the object may bend, the camera look at it from \
-             aside (--rectify), its lens distort it, or light and shadow move the edges"
-        ),
+        WrongFamily::Shape => {
+            let wider = if motion == MotionModel::Affine { "" } else { ", --motion affine" };
+            write!(
+                f,
+                "the outlines change their shape in ways that no {motion} motion does: the object may bend, the camera look at it \
+                 from aside (--rectify{wider}), its lens distort it, or light and shadow move the edges"
+            )
+        }
     }
 }
 

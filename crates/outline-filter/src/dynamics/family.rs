@@ -1,12 +1,16 @@
 //! Whether the outlines move in ways that the family of motions does not have, and how much of them may be in the estimates.
 use std::sync::OnceLock;
 
+use freeform_riccati::MotionModel;
 use nalgebra::{DMatrix, DVector};
 
 use super::innovations::InnovationSeries;
 use crate::{
     tuning::family as tuning,
-    update::{UNMODELLED, UnmodelledMatrix, UnmodelledScore, UnmodelledVector},
+    update::{
+        EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR, UNMODELLED, UnmodelledMatrix, UnmodelledScore,
+        UnmodelledVector,
+    },
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
@@ -30,16 +34,32 @@ pub enum WrongFamily {
 
 /// Motions that go together, by their numbers: a lens whose middle is not known stretches and skews too.
 const GROUPS: [(WrongFamily, &[usize]); 5] = [
-    (WrongFamily::Growth, &[0]),
-    (WrongFamily::Shear, &[1, 2]),
-    (WrongFamily::Perspective, &[3, 4]),
-    (WrongFamily::RollingShutter, &[5]),
-    (WrongFamily::Lens, &[1, 2, 6, 7, 8]),
+    (WrongFamily::Growth, &[GROWTH]),
+    (WrongFamily::Shear, &SHEAR),
+    (WrongFamily::Perspective, &PERSPECTIVE),
+    (WrongFamily::RollingShutter, &[READ_OUT]),
+    (WrongFamily::Lens, &[SHEAR[0], SHEAR[1], LENS[0], LENS[1], LENS[2]]),
 ];
+
+/// The same where the model has growth and shear.
+const GROUPS_BESIDE_SHEAR: [(WrongFamily, &[usize]); 3] =
+    [(WrongFamily::Shape, &EDGES), (WrongFamily::Perspective, &PERSPECTIVE), (WrongFamily::Lens, &LENS)];
 
 /// Motions that pictures of a camera have now and then, a little: of pixels that are not square or a plane that is tilted, of perspective, of rows
 /// that are read one after the other, and of a lens.
-const OF_CAMERA: [&[usize]; 4] = [&[1, 2], &[3, 4], &[5], &[6]];
+const OF_CAMERA: [&[usize]; 4] = [&SHEAR, &PERSPECTIVE, &[READ_OUT], &[LENS[0]]];
+
+/// The same where the model has shear: edges that light displaces, perspective, a lens.
+const OF_CAMERA_BESIDE_SHEAR: [&[usize]; 3] = [&[EDGES[0], EDGES[1]], &PERSPECTIVE, &[LENS[0]]];
+
+/// What may be left out by a model: motions that go together, and those that pictures have now and then.
+fn left_out_by(model: MotionModel) -> (&'static [(WrongFamily, &'static [usize])], &'static [&'static [usize]]) {
+    match model {
+        MotionModel::Rigid | MotionModel::Similarity => (&GROUPS, &OF_CAMERA),
+        MotionModel::Affine => (&GROUPS_BESIDE_SHEAR, &OF_CAMERA_BESIDE_SHEAR),
+        MotionModel::Projective => (&[], &[]),
+    }
+}
 
 /// Tests of what a family of motions leaves out, over frames: generalised likelihood ratios.
 #[derive(Debug, Clone, Default)]
@@ -105,22 +125,23 @@ impl FamilyTests {
         self.squares += UnmodelledVector::from_fn(|i, _| square(i));
     }
 
-    /// What is told of them.
-    pub(crate) fn estimate(&self) -> &UnmodelledEstimate {
-        self.told.get_or_init(|| self.estimated())
+    /// What is told of them beside a model.
+    pub(crate) fn estimate(&self, model: MotionModel) -> &UnmodelledEstimate {
+        self.told.get_or_init(|| self.estimated(model))
     }
 
-    fn estimated(&self) -> UnmodelledEstimate {
+    fn estimated(&self, model: MotionModel) -> UnmodelledEstimate {
         let mut estimate = UnmodelledEstimate { family: None, displacement: 0.0, moments: UnmodelledMatrix::zeros() };
         if self.series.frames() < tuning::FEWEST_FRAMES || self.weight <= 0.0 {
             return estimate;
         }
+        let (groups, of_camera) = left_out_by(model);
         let least = tuning::MATTERS * self.sigma + tuning::OF_NOISE * self.sigma * self.sigma;
         let dependence = self.series.dependence();
         let mut known = self.fit(&[]);
         loop {
             let mut clearest: Option<(WrongFamily, Fit, f64, f64)> = None;
-            for (family, members) in GROUPS {
+            for (family, members) in groups.iter().copied() {
                 let Some((fit, squared, count)) = self.with(&known, members, &dependence) else { continue };
                 let gained = squared - tuning::PER_MOTION * count;
                 if clearest.as_ref().is_none_or(|(.., most)| gained > *most) {
@@ -145,7 +166,7 @@ impl FamilyTests {
                 estimate.moments[(*i, *j)] = known.sizes[a] * known.sizes[b] + known.covariance[(a, b)];
             }
         }
-        for members in OF_CAMERA {
+        for members in of_camera {
             if members.iter().all(|i| !known.numbers.contains(i)) {
                 self.add_possible(&mut estimate.moments, &known, members, &dependence);
             }
@@ -161,9 +182,9 @@ impl FamilyTests {
     /// Usual size of a motion that a camera brings in, where it does. The object is within the picture, which is no smaller than where it has been.
     fn usual_size(&self, number: usize) -> f64 {
         match number {
-            3 | 4 => tuning::USUAL_ERROR / self.reach,
-            5 => tuning::USUAL_READ_OUT * self.step / self.reach,
-            6 => tuning::USUAL_ERROR / self.reach.powi(2),
+            _ if PERSPECTIVE.contains(&number) => tuning::USUAL_ERROR / self.reach,
+            READ_OUT => tuning::USUAL_READ_OUT * self.step / self.reach,
+            _ if LENS.contains(&number) => tuning::USUAL_ERROR / self.reach.powi(2),
             _ => tuning::USUAL_ERROR,
         }
     }
@@ -292,6 +313,7 @@ mod tests {
     use super::*;
 
     const SIGMA: f64 = 0.01;
+    const RIGID: MotionModel = MotionModel::Rigid;
 
     /// Tests after so many frames that show motions of these sizes, noise included.
     fn after(frames: usize, sizes: &UnmodelledVector, seed: u64) -> FamilyTests {
@@ -310,8 +332,9 @@ mod tests {
 
     #[test]
     fn noise_alone_is_no_wrong_family() {
-        let found =
-            (0..200).filter(|seed| after(40, &UnmodelledVector::zeros(), *seed).estimate().family.is_some()).count();
+        let found = (0..200)
+            .filter(|seed| after(40, &UnmodelledVector::zeros(), *seed).estimate(RIGID).family.is_some())
+            .count();
         assert_eq!(found, 0);
     }
 
@@ -323,7 +346,7 @@ mod tests {
             let mut sizes = UnmodelledVector::zeros();
             sizes[member] = 0.02;
             let tests = after(40, &sizes, 7);
-            let UnmodelledEstimate { family: found, displacement, moments } = tests.estimate();
+            let UnmodelledEstimate { family: found, displacement, moments } = tests.estimate(RIGID);
             assert_eq!(*found, Some(family));
             let size = moments[(member, member)].sqrt();
             assert!((size / 0.02 - 1.0).abs() < 0.1, "{family:?}: {size}");
@@ -338,7 +361,7 @@ mod tests {
         // Information of about 9 in each of 40 frames: 3.5 deviations.
         sizes[0] = 3.5 * SIGMA / 360.0_f64.sqrt();
         let doubts = (0..40).map(|seed| after(40, &sizes, seed)).filter(|tests| {
-            let estimate = tests.estimate();
+            let estimate = tests.estimate(RIGID);
             estimate.family.is_none() && estimate.moments[(0, 0)] > 0.0
         });
         assert!(doubts.count() > 20);
@@ -358,7 +381,7 @@ mod tests {
                 };
                 tests.add(&score, (1.0, 0.1), (noise, noise * noise));
             }
-            tests.estimate().moments[(6, 6)]
+            tests.estimate(RIGID).moments[(6, 6)]
         };
         // At a reach of two radii a lens has a quarter of the usual error, one time in ten.
         let beforehand = 0.1 * (tuning::USUAL_ERROR / 4.0).powi(2);

@@ -61,7 +61,7 @@ impl Track {
 
     /// What the outlines do beside their motion, as far as it is told.
     pub(super) fn unmodelled_estimate(&self) -> UnmodelledEstimate {
-        let mut estimate = *self.family.estimate();
+        let mut estimate = *self.family.estimate(self.belief.model);
         if estimate.family.is_none()
             && let Some(displacement) = self.change_of_shape()
         {

@@ -20,5 +20,7 @@ pub(crate) use normal_equations::accumulate;
 pub(crate) use pose_measurement::PoseMeasurement;
 pub(crate) use sensitivity::Sensitivity;
 pub(crate) use solve::Proposal;
-pub(crate) use unmodelled_displacement::{UNMODELLED, UnmodelledMatrix, UnmodelledVector};
+pub(crate) use unmodelled_displacement::{
+    EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR, UNMODELLED, UnmodelledMatrix, UnmodelledVector,
+};
 pub(crate) use unmodelled_score::UnmodelledScore;

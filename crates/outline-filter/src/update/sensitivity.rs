@@ -62,8 +62,8 @@ impl Sensitivity {
             return;
         };
         let k = belief.parameter_count();
-        for (cell, offset) in map.cells().iter().zip(&belief.offsets).skip(self.offsets.len()) {
-            let (displacement, p, n) = at.displacement(cell, *offset);
+        for cell in map.cells().iter().skip(self.offsets.len()) {
+            let (displacement, p, n) = at.displacement(cell);
             let mut displacement = UnmodelledVector::from(displacement);
             let by_pose = belief.model.normal_velocities(&p, &n);
             (0..k).for_each(|i| displacement -= self.state.row(i).transpose() * by_pose[i]);
@@ -102,8 +102,7 @@ impl Sensitivity {
         let [with, before] = [&frame.cells_with_frame, &belief.information.cells];
         let mut left = std::mem::take(&mut frame.values);
         left.resize(with.len() * UNMODELLED, 0.0);
-        let cells = (map.cells(), belief.offsets.as_slice());
-        let sums = self.sums::<K, S>(&at, cells, ([with, before], &frame.right), &mut left, repeats);
+        let sums = self.sums::<K, S>(&at, map.cells(), ([with, before], &frame.right), &mut left, repeats);
         // The estimates move as such residuals would move them.
         let right =
             SMatrix::<f64, STATE, UNMODELLED>::from_fn(|i, l| if i < S { repeats * sums.right[i][l] } else { 0.0 });
@@ -122,7 +121,7 @@ impl Sensitivity {
     fn sums<const K: usize, const S: usize>(
         &self,
         at: &Instant,
-        (cells, offsets): (&[Cell], &[f64]),
+        cells: &[Cell],
         ([with, before], right): ([&OffsetInformation; 2], &[f64]),
         left: &mut [f64],
         repeats: f64,
@@ -134,16 +133,16 @@ impl Sensitivity {
         vectorised(
             #[inline(always)]
             || {
-                let of_cells = cells.iter().zip(offsets).zip(&self.offsets);
+                let of_cells = cells.iter().zip(&self.offsets);
                 let known = with.iter().zip(before).zip(coupling.iter().zip(coupling_before)).zip(right);
                 let left = left.as_chunks_mut::<UNMODELLED>().0;
-                for ((((cell, offset), taken_in), left), (((with, before), (coupling, coupling_before)), right)) in
+                for (((cell, taken_in), left), (((with, before), (coupling, coupling_before)), right)) in
                     of_cells.zip(left).zip(known)
                 {
                     let own = with - before;
                     *left = [0.0; UNMODELLED];
                     if own > 0.0 {
-                        let whole = at.displacement(cell, *offset).0;
+                        let whole = at.displacement(cell).0;
                         let mut added = [0.0; K];
                         for i in 0..K {
                             added[i] = coupling[i] - coupling_before[i];

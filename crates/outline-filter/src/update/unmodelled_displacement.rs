@@ -7,19 +7,47 @@ use crate::{
     map::{Cell, OutlineMap},
 };
 
-/// Motions that may be left out: growth, stretch, skew, two of perspective, that of rows which are read one after the other, and three of a
-/// lens.
+/// Number of motions that may be left out.
 pub(crate) const UNMODELLED: usize = 9;
+
+/// Their numbers: the object grows or shrinks about its centroid.
+pub(crate) const GROWTH: usize = 0;
+/// Stretch and skew of the picture.
+pub(crate) const SHEAR: [usize; 2] = [1, 2];
+pub(crate) const PERSPECTIVE: [usize; 2] = [3, 4];
+/// Rows that are read one after the other.
+pub(crate) const READ_OUT: usize = 5;
+/// A lens: outwards from the origin, and what that becomes where its middle is elsewhere.
+pub(crate) const LENS: [usize; 3] = [6, 7, 8];
+/// Edges that are displaced by the direction they face, as light and shadows displace them. Of a displacement `max(0, n . l)` the
+/// harmonics of even order are left beside a shift: here the second and the fourth of the angle of the normal n in the image. Where the model has
+/// growth and shear, edges have their numbers; elsewhere shear stands for them.
+pub(crate) const EDGES: [usize; 4] = [1, 2, 0, 5];
 
 pub(crate) type UnmodelledVector = SVector<f64, UNMODELLED>;
 pub(crate) type UnmodelledMatrix = SMatrix<f64, UNMODELLED, UNMODELLED>;
 
-/// Which of them a model has.
-fn has(model: MotionModel) -> [bool; UNMODELLED] {
-    let (growth, shear, perspective) =
-        (model != MotionModel::Rigid, model >= MotionModel::Affine, model >= MotionModel::Projective);
-    // The slant of a rolling shutter is a shear.
-    [growth, shear, shear, perspective, perspective, shear, perspective, perspective, perspective]
+/// How a model leaves motions out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum LeftOut {
+    /// All of them.
+    All,
+    /// All but growth.
+    AllButGrowth,
+    /// It has growth and shear, and what a rolling shutter does, which is a shear: edges have their numbers.
+    Edges,
+}
+
+impl LeftOut {
+    /// `None` of a model beside which nothing is looked for.
+    fn by(model: MotionModel) -> Option<Self> {
+        match model {
+            MotionModel::Rigid => Some(Self::All),
+            MotionModel::Similarity => Some(Self::AllButGrowth),
+            MotionModel::Affine => Some(Self::Edges),
+            MotionModel::Projective => None,
+        }
+    }
 }
 
 /// A pose and motion that displacements are taken at.
@@ -32,15 +60,15 @@ pub(super) struct Instant {
     centroid: Point2<f64>,
     generator: Matrix3<f64>,
     elapsed: f64,
-    is_had: [bool; UNMODELLED],
+    left_out: LeftOut,
 }
 
 impl Instant {
-    /// `elapsed` is the time since the first frame. `None` where the model has all of the motions, or the pose has collapsed.
+    /// `elapsed` is the time since the first frame. `None` where nothing is looked for, or the pose has collapsed.
     pub(super) fn new(belief: &Belief, pose: &Matrix3<f64>, map: &OutlineMap, elapsed: f64) -> Option<Self> {
-        let is_had = has(belief.model);
+        let left_out = LeftOut::by(belief.model)?;
         let linear = pose.fixed_view::<2, 2>(0, 0).into_owned();
-        if is_had.iter().all(|had| *had) || linear.determinant() <= 0.0 {
+        if linear.determinant() <= 0.0 {
             return None;
         }
         Some(Self {
@@ -49,14 +77,14 @@ impl Instant {
             centroid: map_point(pose, &map.centroid()),
             generator: belief.model.generator(&belief.motion[..belief.parameter_count()]),
             elapsed,
-            is_had,
+            left_out,
         })
     }
 
     /// Displacement of a cell along its normal in the body frame by a unit of each motion, and how far an error of the pose moves it.
     #[inline(always)]
-    pub(super) fn displacement(&self, cell: &Cell, offset: f64) -> ([f64; UNMODELLED], Point2<f64>, Vector2<f64>) {
-        let p = map_point(&self.pose, &(cell.centre + offset * cell.normal));
+    pub(super) fn displacement(&self, cell: &Cell) -> ([f64; UNMODELLED], Point2<f64>, Vector2<f64>) {
+        let p = map_point(&self.pose, &cell.centre);
         // A step of the image along n moves the body point by as much along the normal of the cell.
         let n = self.of_normals * cell.normal;
         let along = n.dot(&p.coords);
@@ -75,9 +103,24 @@ impl Instant {
             2.0 * p.x * along + square * n.x,
             2.0 * p.y * along + square * n.y,
         ];
-        for (displacement, is_had) in all.iter_mut().zip(self.is_had) {
-            *displacement = if is_had { 0.0 } else { *displacement };
+        match self.left_out {
+            LeftOut::All => {}
+            LeftOut::AllButGrowth => all[GROWTH] = 0.0,
+            LeftOut::Edges => {
+                for (number, displacement) in EDGES.into_iter().zip(displacements_of_edges(&n)) {
+                    all[number] = displacement;
+                }
+            }
         }
         (all, p, n)
     }
+}
+
+/// Of unit displacements by the cosine and sine of twice and of four times the angle of the normal.
+#[inline(always)]
+fn displacements_of_edges(n: &Vector2<f64>) -> [f64; 4] {
+    // A unit along the unit normal is as many along n as n is long.
+    let size = n.norm();
+    let [cos, sin] = [(n.x * n.x - n.y * n.y) / (size * size), 2.0 * n.x * n.y / (size * size)];
+    [cos, sin, cos * cos - sin * sin, 2.0 * cos * sin].map(|harmonic| size * harmonic)
 }

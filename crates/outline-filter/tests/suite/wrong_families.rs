@@ -2,9 +2,12 @@
 use crate::filter_support::{frames_of, settings};
 use freeform_curve_fit::Outline;
 use freeform_outline_filter::{FilterSettings, MotionFilter, WrongFamily};
-use freeform_riccati::RigidMotion;
+use freeform_riccati::{MotionModel, RigidMotion};
 use freeform_sim_camera::BuiltInShape;
-use nalgebra::Point2;
+use nalgebra::{Point2, Rotation2, Vector2};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 
 #[test]
 fn growth_is_told_where_it_moves_points_by_more_than_the_edges_may_lie_off() {
@@ -24,4 +27,46 @@ fn growth_is_told_where_it_moves_points_by_more_than_the_edges_may_lie_off() {
         filter.wrong_family()
     });
     assert_eq!(told, [Some(WrongFamily::Growth), Some(WrongFamily::Growth), None]);
+}
+
+/// A body with bends that turns by 3 rad in 60 frames, whose edges light displaces outwards by up to `depth` where they face it; affine motion.
+/// What is said to be left out, and the largest error of a rate in its standard deviations.
+fn lit(depth: f64, seed: u64) -> (Option<WrongFamily>, f64) {
+    const FRAMES_PER_SECOND: f64 = 30.0;
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let light = Rotation2::new(random.random_range(0.0..std::f64::consts::TAU)) * Vector2::x();
+    let body = |angle: f64| {
+        let radius = 1.0 + 0.2 * (2.0 * angle).cos() + 0.15 * (3.0 * angle + 1.0).sin() + 0.1 * (5.0 * angle).cos();
+        Point2::from(radius * Vector2::new(angle.cos(), angle.sin()))
+    };
+    let settings = FilterSettings { model: MotionModel::Affine, ..FilterSettings::default() };
+    let mut filter = MotionFilter::new(settings).expect("settings");
+    for frame in 0..60_u8 {
+        let pose = Rotation2::new(-0.05 * f64::from(frame));
+        let mut point = |i: u16| {
+            let angle = std::f64::consts::TAU * (f64::from(i) + random.random::<f64>()) / 300.0;
+            let tangent = pose * (body(angle + 1e-4) - body(angle - 1e-4));
+            let normal = Vector2::new(tangent.y, -tangent.x).normalize();
+            let noise = Vector2::from_fn(|_, _| 0.005 * random.sample::<f64, _>(StandardNormal));
+            pose * body(angle) + depth * normal.dot(&light).max(0.0) * normal + noise
+        };
+        let outline = Outline::closed((0..300).map(&mut point).collect()).expect("an outline");
+        filter.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
+    }
+    let estimate = filter.estimate().expect("an estimate");
+    let omega = 0.05 * FRAMES_PER_SECOND;
+    let errors = estimate.parameters().zip([0.0, omega, -omega, 0.0]).map(|(rate, truth)| {
+        (rate.value.expect("a value") - truth).abs() / rate.standard_deviation.expect("a deviation")
+    });
+    (filter.wrong_family(), errors.fold(0.0, f64::max))
+}
+
+#[test]
+fn edges_that_light_displaces_are_told_from_an_affine_motion_and_its_rates_stay_within_their_deviations() {
+    for seed in 0..4 {
+        let (told, error) = lit(0.06, seed);
+        assert!(told == Some(WrongFamily::Shape) && error < 4.0, "{seed}: {told:?} {error}");
+        let (told, error) = lit(0.0, seed);
+        assert!(told.is_none() && error < 4.0, "{seed}, no light: {told:?} {error}");
+    }
 }
