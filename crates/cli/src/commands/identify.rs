@@ -202,7 +202,10 @@ impl<'a> Outcome<'a> {
                 let table = write_identify_table(&mut sink, results, self.truth.as_ref(), b);
                 table.and_then(|()| if self.says_b() { writeln!(sink, "b: {b}") } else { Ok(()) })
             }
-            IdentifyFormat::Json => write_identify_json(&mut sink, results, b, &self.left_out),
+            IdentifyFormat::Json => {
+                let warnings = self.input.pictures().map(PictureInput::tracing_warnings).unwrap_or_default();
+                write_identify_json(&mut sink, results, b, &self.left_out, &warnings)
+            }
             IdentifyFormat::Csv => write_results(&mut sink, results),
         };
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
