@@ -8,6 +8,7 @@ use freeform_motion::outline_io::{
 use freeform_motion::short;
 
 use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
+use crate::progress::Progress;
 
 /// The options that look for what moves.
 const MOVING: &str = "--background whole --objects moving --min-area PIXELS";
@@ -64,6 +65,7 @@ pub(crate) fn choose(
     preview: &PicturePreview,
     base: &PictureSettings,
     given: &PictureOptions,
+    quiet: bool,
 ) -> (PictureOptions, Option<Chosen>) {
     let unchanged = (given.clone(), None);
     if given.has_way() {
@@ -71,7 +73,10 @@ pub(crate) fn choose(
     }
     let all = [Channel::Luminance, Channel::Red, Channel::Green, Channel::Blue, Channel::Saturation];
     let channels = given.channel.map_or(all.to_vec(), |channel| vec![channel.channel()]);
-    let Some(choice) = preview.choose_tracing(&channels, base) else { return unchanged };
+    let progress = Progress::of_choice(quiet);
+    let choice = preview.choose_tracing(&channels, base);
+    drop(progress);
+    let Some(choice) = choice else { return unchanged };
     let Some(best) = choice.best() else { return unchanged };
     let mut options = given.clone();
     take(&mut options, &best.tracing);

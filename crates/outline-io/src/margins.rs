@@ -40,21 +40,23 @@ impl Margins {
     }
 
     /// The even bars at the sides of pictures, as video has them that was fitted into another shape: of one grey value in all pictures, and
-    /// beside it something else all along.
+    /// beside it something else all along. None where a bar goes on into the picture, as between two pictures side by side: what is left of it
+    /// would be taken for a body.
     #[must_use]
     pub fn of_bars(pictures: &[Arc<GrayImage>]) -> Self {
         let Some((columns, rows)) = pictures.first().map(|picture| picture.dimensions()) else {
             return Self::default();
         };
-        let all = Self::default();
-        let top = bar(pictures, (rows, columns), |row, column| (column, row));
-        let bottom = bar(pictures, (rows, columns), |row, column| (column, rows - 1 - row));
-        // The bars above and below take nothing from those at the sides.
-        let within = Self { top, bottom, ..all };
-        let height = rows.saturating_sub(top + bottom);
-        let left = bar(pictures, (columns, height), |column, row| (column, top + row));
-        let right = bar(pictures, (columns, height), |column, row| (columns - 1 - column, top + row));
-        Self { left, right, ..within }
+        let sides = || {
+            let top = bar(pictures, (rows, columns), |row, column| (column, row))?;
+            let bottom = bar(pictures, (rows, columns), |row, column| (column, rows - 1 - row))?;
+            // The bars above and below take nothing from those at the sides.
+            let height = rows.saturating_sub(top + bottom);
+            let left = bar(pictures, (columns, height), |column, row| (column, top + row))?;
+            let right = bar(pictures, (columns, height), |column, row| (columns - 1 - column, top + row))?;
+            Some(Self { left, top, right, bottom })
+        };
+        sides().unwrap_or_default()
     }
 
     /// The same in pictures of which so many pixels are one along rows and columns, and more rather than less.
@@ -80,11 +82,11 @@ impl Margins {
     }
 }
 
-/// Rows of an even bar at the first side of pictures with so many rows and columns, whose pixels `at` gives by row and column; none where there
-/// is no bar.
-fn bar(pictures: &[Arc<GrayImage>], (rows, columns): (u32, u32), at: impl Fn(u32, u32) -> (u32, u32)) -> u32 {
+/// Rows of an even bar at the first side of pictures with so many rows and columns, whose pixels `at` gives by row and column; 0 where there
+/// is no bar, `None` where it goes on into the picture.
+fn bar(pictures: &[Arc<GrayImage>], (rows, columns): (u32, u32), at: impl Fn(u32, u32) -> (u32, u32)) -> Option<u32> {
     if columns == 0 || rows < 2 * (FEWEST + MIXED) {
-        return 0;
+        return Some(0);
     }
     let grey = |picture: &GrayImage, row: u32, column: u32| {
         let (x, y) = at(row, column);
@@ -98,9 +100,16 @@ fn bar(pictures: &[Arc<GrayImage>], (rows, columns): (u32, u32), at: impl Fn(u32
     let even = (0..rows / 2).take_while(is_even).count() as u32;
     let beside = even + MIXED;
     if even < FEWEST || beside >= rows / 2 {
-        return 0;
+        return Some(0);
     }
     let ends = |picture: &&Arc<GrayImage>| differs(picture, beside, OTHER) as f64 >= ALONG * f64::from(columns);
     let is_seen = 8 * pictures.iter().filter(ends).count() >= OF_EIGHT * pictures.len();
-    if is_seen { beside } else { 0 }
+    if !is_seen {
+        return Some(0);
+    }
+    // But for those at the ends, which are of other bars.
+    let is_bar = |column: &u32| pictures.iter().all(|picture| grey(picture, beside, *column).abs_diff(level) <= EVEN);
+    let first = (0..columns).find(|column| !is_bar(column))?;
+    let last = (0..columns).rev().find(|column| !is_bar(column))?;
+    if (first..last).any(|column| is_bar(&column)) { None } else { Some(beside) }
 }

@@ -30,7 +30,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
     // Options are refused before an input is waited for.
     let mut tracker = tracker(args, None)?;
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted)?;
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, args.quiet)?;
     if let Some(uncertainty) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         tracker = self::tracker(args, Some(uncertainty))?;
     }

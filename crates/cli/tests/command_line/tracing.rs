@@ -97,7 +97,7 @@ fn bars_at_the_sides_of_pictures_are_no_bodies_and_are_named_as_margins() {
     std::fs::create_dir(&frames).expect("a folder");
     for frame in 0..12_u32 {
         let value = |x: u32, y: u32| match y {
-            20..90 if (x as f64 - 30.0 - 5.0 * f64::from(frame)).hypot(y as f64 - 50.0) < 15.0 => 20,
+            20..90 if (f64::from(x) - 30.0 - 5.0 * f64::from(frame)).hypot(f64::from(y) - 50.0) < 15.0 => 20,
             20..90 => 120 + ((x * 31 + y * 17 + frame * 7) % 5) as u8,
             _ => 0,
         };

@@ -184,13 +184,15 @@ fn moving(trial: &Trial, tracing: Tracing, pictures: &[Vec<Sight>], beside: &Bes
         .into_iter()
         .zip(bursts)
         .map(|(mut chains, burst)| {
-            chains.retain(|chain| is_clear(chain));
-            let least = chains.iter().map(|chain| chance(chain, burst, trial.picture_area())).fold(1.0, f64::min);
-            (chains, least)
+            chains.retain(is_clear);
+            let expected = chains.iter().map(|chain| as_straight(chain, burst, trial.picture_area()));
+            // That there is one or more.
+            let chance = 1.0 - (-expected.fold(f64::INFINITY, f64::min)).exp();
+            (chains, chance)
         })
         .collect();
     let fast_chains: Vec<Vec<Chain>> = fast.iter().map(|(chains, _)| chains.clone()).collect();
-    let chance: f64 = fast.iter().map(|(_, chance)| chance).product();
+    let chance = together(fast.iter().map(|(_, chance)| *chance));
     let groups = fast_chains.iter().flatten().map(|chain| like(chain, &fast_chains));
     let (group, _) = groups.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let found = if chance < BY_CHANCE && is_one_thing(&group) { seen(group)? } else { return None };
@@ -204,15 +206,30 @@ fn is_clear(chain: &Chain) -> bool {
     step > CLEAR * b.size()
 }
 
-/// How many chains that go as straight on as this one are expected of things that lie anywhere near each other, at most 1.
-fn chance(chain: &Chain, burst: &[Vec<Sight>], picture_area: f64) -> f64 {
+/// How likely chances have at most the product that they have, if all are by chance (R. A. Fisher, *Statistical Methods for Research Workers*).
+fn together(chances: impl Iterator<Item = f64>) -> f64 {
+    let (mut count, mut logarithm) = (0_u32, 0.0);
+    for chance in chances {
+        count += 1;
+        logarithm -= chance.max(1e-12).ln();
+    }
+    let (mut term, mut sum) = ((-logarithm).exp(), 0.0);
+    for k in 1..=count {
+        sum += term;
+        term *= logarithm / f64::from(k);
+    }
+    sum
+}
+
+/// How many chains that go as straight on as this one are expected of things that lie anywhere near each other.
+fn as_straight(chain: &Chain, burst: &[Vec<Sight>], picture_area: f64) -> f64 {
     let [a, b, c] = chain;
     let bend = (a.centre.coords - 2.0 * b.centre.coords + c.centre.coords).norm() + BEND[2];
     let alike = |of: &[Sight], b: &Sight| of.iter().filter(|a| is_like(a, b)).count();
     let triples: usize = burst[1].iter().map(|b| alike(&burst[0], b) * alike(&burst[2], b)).sum();
     let disc = |radius: f64| std::f64::consts::PI * radius * radius;
     let room = disc(LARGEST_STEP * b.size()).min(picture_area);
-    (triples as f64 * disc(bend) / room).min(1.0)
+    triples as f64 * disc(bend) / room
 }
 
 /// Of every burst the chain that is most like a given one, where any is; and how like they are, all together.
@@ -292,4 +309,18 @@ fn is_like(a: &Sight, b: &Sight) -> bool {
 fn lies_on(sight: &Sight, still: &Sight) -> bool {
     let to = |point: &Point2<f64>| -> Vector2<f64> { point - sight.centre };
     still.points.iter().any(|point| to(point).norm() < sight.size())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::together;
+
+    #[test]
+    fn chances_together_are_likely_where_they_are_by_chance_and_not_where_all_are_small() {
+        assert!((together([0.3].into_iter()) - 0.3).abs() < 1e-12);
+        // 1/2 - 1/2 ln 1/2 and the like: the area below a hyperbola in the unit square.
+        assert!((together([0.5, 1.0].into_iter()) - 0.5 * (1.0 + 2_f64.ln())).abs() < 1e-12);
+        assert!(together((1..=22).map(|k| f64::from(k) / 23.0)) > 0.3);
+        assert!(together([0.01; 6].into_iter()) < 1e-6);
+    }
 }

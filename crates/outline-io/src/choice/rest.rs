@@ -45,12 +45,12 @@ fn is_where_it_was(sights: &[Sight], hardly: f64) -> bool {
         let shape = a.invariants.zip(b.invariants).map_or(f64::INFINITY, |(a, b)| a.distance(&b));
         (a.area / b.area).ln().abs() < SAME_AREA && shape < SAME_SHAPE
     };
-    let (mut same, mut farthest) = (0, 0.0_f64);
+    let (mut same, mut farthest) = (0_u32, 0.0_f64);
     for (a, b) in far_apart().filter(looks_same) {
         same += 1;
         farthest = farthest.max(moved(a, b));
     }
-    same as f64 >= LEAST_SAME * far_apart().count() as f64 && same > 0 && farthest < FAR * hardly
+    f64::from(same) >= LEAST_SAME * far_apart().count() as f64 && same > 0 && farthest < FAR * hardly
 }
 
 /// Farthest movement of the middle or of the outline about it, in pixels of the trial.

@@ -188,3 +188,42 @@ fn an_outline_has_the_same_points_with_margins_and_is_clipped_by_them() {
     assert!(whole.iter().zip(&within).all(|(p, q)| (p - q).norm() < 1e-9));
     assert!(traced(Margins { top: 80, ..Margins::default() }).touches_border);
 }
+
+#[test]
+fn bars_between_pictures_side_by_side_are_left_as_they_are() {
+    for between in [0, 8] {
+        let pictures: Vec<GrayImage> = (0..24)
+            .map(|frame| {
+                let place = [60.0 + 2.0 * f64::from(frame), 90.0, 21.0];
+                let picture = picture(frame, |x, y| disc(x, y, place));
+                let is_bar =
+                    |x: u32, y: u32| x.min(319 - x) < 14 || y.min(239 - y) < 14 || (200..200 + between).contains(&x);
+                GrayImage::from_fn(320, 240, |x, y| if is_bar(x, y) { Luma([2]) } else { *picture.get_pixel(x, y) })
+            })
+            .collect();
+        let margins =
+            if between == 0 { Margins { left: 16, top: 16, right: 16, bottom: 16 } } else { Margins::default() };
+        assert_eq!(choice(&pictures).margins, margins);
+    }
+}
+
+#[test]
+fn specks_at_random_places_do_not_go_straight_on_so_often_that_they_are_followed_for_that_alone() {
+    let mut followed = 0;
+    for seed in 0..12_u32 {
+        let mut state = 1 + u64::from(seed);
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / f64::from(1_u32 << 31)
+        };
+        let pictures = (0..24).map(|frame| {
+            let specks: Vec<[f64; 3]> =
+                (0..8).map(|_| [10.0 + 300.0 * random(), 10.0 + 220.0 * random(), 4.8 + 2.0 * random()]).collect();
+            picture(frame, |x, y| specks.iter().map(|speck| disc(x, y, *speck)).fold(ruler(x, y), f64::min))
+        });
+        let best = chosen(&pictures.collect::<Vec<_>>());
+        // Some happen to be alike in area and shape too, which the score tells.
+        followed += u32::from(matches!(best.tracing.way, TracingWay::Median(_)) && best.score < 0.005);
+    }
+    assert_eq!(followed, 0);
+}
