@@ -26,7 +26,8 @@ impl Chosen {
     pub(crate) fn note(&self) -> String {
         let best = self.choice.best();
         let found = best.map_or_else(String::new, |TracingEvidence { found, pictures, score, .. }| {
-            let score = short((score * 1000.0).round() / 1000.0);
+            let score = (score * 1000.0).round() / 1000.0;
+            let score = if score > 0.0 { short(score) } else { "below 0.001".to_owned() };
             format!(", {found} of {pictures} pictures tried show an object, score {score} of 1")
         });
         let is_warned =
