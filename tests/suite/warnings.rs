@@ -4,12 +4,14 @@ use std::collections::BTreeSet;
 use freeform_motion::Warning;
 use freeform_motion::estimate::PlaneEstimate;
 use freeform_motion::outline_filter::{Ambiguity, PlaneAmbiguity, PlaneSolution, Rejection, WrongFamily};
+use freeform_motion::outline_io::TracingWarning;
 use freeform_motion::riccati::{MotionModel, PlaneMotion};
 use freeform_motion::tracker::{FrameRejection, RejectionCause};
 use nalgebra::SMatrix;
 
 const PAGE: &str = include_str!("../../docs/warnings.md");
 const SOURCE: &str = include_str!("../../src/warning.rs");
+const TRACING_SOURCE: &str = include_str!("../../crates/outline-io/src/choice/warning.rs");
 
 /// One example of each warning.
 fn examples() -> Vec<Warning> {
@@ -61,6 +63,13 @@ fn examples() -> Vec<Warning> {
     ]
 }
 
+/// One example of each warning of how pictures are traced.
+const TRACING_EXAMPLES: [TracingWarning; 3] = [
+    TracingWarning::Doubtful,
+    TracingWarning::MovesBesideRest { seen: 12, pictures: 24 },
+    TracingWarning::MovesBeside { seen: 9, pictures: 24 },
+];
+
 /// Code and example of every section of the page: the lines that begin with `>`, as one.
 fn sections() -> Vec<(String, String)> {
     let sections = PAGE.split("\n### `").skip(1);
@@ -76,19 +85,23 @@ fn sections() -> Vec<(String, String)> {
 #[test]
 fn every_warning_stands_on_the_page_with_its_message() {
     let written: BTreeSet<_> = sections().into_iter().collect();
-    let expected: BTreeSet<_> =
-        examples().iter().map(|warning| (warning.code().to_owned(), warning.to_string())).collect();
+    let of_objects = examples();
+    let of_objects = of_objects.iter().map(|warning| (warning.code().to_owned(), warning.to_string()));
+    let of_tracing = TRACING_EXAMPLES.iter().map(|warning| (warning.code().to_owned(), warning.to_string()));
+    let expected: BTreeSet<_> = of_objects.chain(of_tracing).collect();
     assert_eq!(written, expected);
 }
 
 #[test]
 fn there_is_an_example_of_every_code_of_the_enum() {
-    let body =
-        SOURCE.split("pub const fn code").nth(1).and_then(|rest| rest.split("\n    }\n").next()).expect("a body");
-    let codes: BTreeSet<&str> =
-        body.lines().filter_map(|line| line.split_once("=> \"")?.1.strip_suffix("\",")).collect();
+    fn codes(source: &str) -> BTreeSet<&str> {
+        let body = source.split("pub const fn code").nth(1).and_then(|rest| rest.split("\n    }\n").next());
+        let lines = body.expect("a body").lines();
+        lines.filter_map(|line| line.split_once("=> \"")?.1.strip_suffix("\",")).collect()
+    }
     let shown: Vec<Warning> = examples();
-    assert_eq!(codes, shown.iter().map(Warning::code).collect());
+    assert_eq!(codes(SOURCE), shown.iter().map(Warning::code).collect());
+    assert_eq!(codes(TRACING_SOURCE), TRACING_EXAMPLES.iter().map(TracingWarning::code).collect());
 }
 
 #[test]

@@ -50,8 +50,14 @@ enum Source {
 }
 
 impl Input {
-    /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with.
-    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions, waiting: Waiting) -> Result<Self, Failure> {
+    /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with. Unless it is `quiet`, a terminal
+    /// shows that pictures are looked at.
+    pub(crate) fn open(
+        paths: &[PathBuf],
+        options: &PictureOptions,
+        waiting: Waiting,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
         let name = match paths {
             [path] if path.as_os_str() == "-" => "<stdin>".to_owned(),
             [path] => path.display().to_string(),
@@ -65,17 +71,20 @@ impl Input {
         if let Some(files) = labelme_files(paths).map_err(Failure::unusable)? {
             return Self::of_polygons(|settings| OutlineFile::open_polygons(&files, settings), name, options);
         }
-        let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options)?, name) };
+        let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options, quiet)?, name) };
         if path.as_os_str() == "-" {
-            return Ok(Self { is_stream: true, ..Self::from_source(Awaited::stdin(), name, options, waiting)? });
+            return Ok(Self {
+                is_stream: true,
+                ..Self::from_source(Awaited::stdin(), name, options, (waiting, quiet))?
+            });
         }
         // A pipe can be read once, whatever its name says.
         if fs::metadata(path).is_ok_and(|place| !place.is_file() && !place.is_dir()) {
-            let piped = Self::from_source(Awaited::open(path.clone()), name, options, waiting)?;
+            let piped = Self::from_source(Awaited::open(path.clone()), name, options, (waiting, quiet))?;
             return Ok(Self { is_stream: true, ..piped });
         }
         if PictureSequence::is_named_by(path) {
-            return Self::of_pictures(PictureInput::open(paths, options)?, name);
+            return Self::of_pictures(PictureInput::open(paths, options, quiet)?, name);
         }
         match File::open(path) {
             Ok(file) => {
@@ -85,7 +94,7 @@ impl Input {
                     refuse_options(&options.given(), &name, "Parquet")?;
                     return Self::of_file(OutlineFile::open_parquet(path), name);
                 }
-                Self::from_source(source, name, options, waiting)
+                Self::from_source(source, name, options, (waiting, quiet))
             }
             Err(error) => Err(Failure::unusable(format_args!("{name}: {}", plain(&error)))),
         }
@@ -126,7 +135,7 @@ impl Input {
         mut source: impl BufRead + 'static,
         name: String,
         options: &PictureOptions,
-        waiting: Waiting,
+        (waiting, quiet): (Waiting, bool),
     ) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::unusable(format_args!("{name}: {}", plain(&error)));
         let start = source.fill_buf().map_err(failed)?;
@@ -134,7 +143,7 @@ impl Input {
             return Err(Failure::unusable(format_args!("{name}: empty, neither outlines (CSV) nor pictures")));
         }
         if PictureSequence::begins_with(start) {
-            let pictures = PictureInput::from_stream(source, &name, options, waiting)?;
+            let pictures = PictureInput::from_stream(source, &name, options, (waiting, quiet))?;
             return Self::of_pictures(pictures, name);
         }
         if OutlineFile::begins_like_polygons(start) {

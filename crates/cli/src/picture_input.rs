@@ -10,7 +10,8 @@ use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
     Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineUncertainty, PictureError,
     PictureErrorKind, PicturePreview, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold,
-    TraceError, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, read_ahead, read_picture_channel,
+    TraceError, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, TracingWarning, read_ahead,
+    read_picture_channel,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -53,7 +54,7 @@ pub(crate) struct PictureInput {
 
 impl PictureInput {
     /// Pictures in files, folders and patterns.
-    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions) -> Result<Self, Failure> {
+    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions, quiet: bool) -> Result<Self, Failure> {
         let inputs = paths.to_owned();
         let open = |options: &PictureOptions| {
             // One that nobody writes to must not keep Ctrl-C from ending the work.
@@ -65,7 +66,7 @@ impl PictureInput {
         let preview = PicturePreview::of_paths(paths, &sequence);
         let base = picture_settings(options, sequence.pixel_aspect(), None)?;
         base.check().map_err(Failure::unusable)?;
-        let (options, chosen) = choose(&preview, &base, options);
+        let (options, chosen) = choose(&preview, &base, options, quiet);
         draw_candidates(options.candidates.as_deref(), &preview, &base, chosen.as_ref())?;
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
@@ -87,7 +88,7 @@ impl PictureInput {
         mut source: impl BufRead + 'static,
         name: &str,
         options: &PictureOptions,
-        waiting: Waiting,
+        (waiting, quiet): (Waiting, bool),
     ) -> Result<Self, Failure> {
         let inputs = vec![PathBuf::from(name)];
         if (options.has_way() || waiting == Waiting::None) && !options.compares_with_whole() {
@@ -109,7 +110,7 @@ impl PictureInput {
         }
         let preview = PicturePreview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
-        let (options, chosen) = choose(&preview, &settings, options);
+        let (options, chosen) = choose(&preview, &settings, options, quiet);
         draw_candidates(options.candidates.as_deref(), &preview, &settings, chosen.as_ref())?;
         let rest = source.take(if is_over { 0 } else { u64::MAX });
         let sequence =
@@ -172,12 +173,18 @@ impl PictureInput {
         ))
     }
 
+    /// Why the way of tracing is not to be trusted, with the codes.
+    pub(crate) fn tracing_warnings(&self) -> Vec<(TracingWarning, String)> {
+        let drawn = self.options.candidates.as_deref();
+        self.chosen.iter().flat_map(|chosen| chosen.warnings(drawn)).collect()
+    }
+
     /// Why the way of tracing is not to be trusted.
     pub(crate) fn doubts(&self) -> Vec<String> {
         let drawn = self.options.candidates.as_deref();
         let undrawn = drawn.filter(|_| self.chosen.is_none());
         let undrawn = undrawn.map(|path| format!("{}: not written, as no way of tracing was chosen", path.display()));
-        self.chosen.iter().filter_map(|chosen| chosen.warning(drawn)).chain(undrawn).collect()
+        self.tracing_warnings().into_iter().map(|(_, warning)| warning).chain(undrawn).collect()
     }
 
     /// What may be wrong with how they are read and traced.
@@ -297,7 +304,8 @@ fn draw_candidates(
 ) -> Result<(), Failure> {
     let Some((path, Chosen { choice, .. })) = path.zip(chosen) else { return Ok(()) };
     let name = |candidate: &TracingEvidence| options_of(&candidate.tracing).join(" ");
-    let sheet = candidate_sheet(preview, base, &choice.candidates, name);
+    let base = PictureSettings { trace: TraceSettings { margins: choice.margins, ..base.trace }, ..base.clone() };
+    let sheet = candidate_sheet(preview, &base, &choice.candidates, name);
     let mut bytes = Cursor::new(Vec::new());
     let written = sheet.write_to(&mut bytes, ImageFormat::Png);
     written.map_err(|error| Failure::unusable(format_args!("{}: {error}", path.display())))?;
@@ -380,6 +388,7 @@ fn picture_settings(
         ring: options.ring.map(|ring| Ring { contrast: ring.contrast(), width: options.ring_width }),
         pixel_size: options.pixel_size,
         pixel_aspect: options.pixel_aspect.or(aspect).unwrap_or(1.0),
+        margins: options.margins.unwrap_or_default(),
     };
     Ok(PictureSettings { trace, selection: options.objects().selection(), background, difference })
 }

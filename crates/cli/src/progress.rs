@@ -21,18 +21,27 @@ impl Progress {
         if quiet { Self { bar: None } } else { Self::of(total, "frames") }
     }
 
+    /// Of pictures that are looked at before they are read, to choose how they are traced.
+    pub(crate) fn of_choice(quiet: bool) -> Self {
+        if quiet { Self { bar: None } } else { Self::shown(None, "{spinner} looking for a way to trace the pictures") }
+    }
+
     /// Of a number of Monte Carlo runs.
     pub(crate) fn of_runs(total: u64) -> Self {
         Self::of(Some(total), "runs, {eta} left")
     }
 
     fn of(total: Option<u64>, what: &str) -> Self {
+        let count = if total.is_some() { "{bar:40} {pos}/{len}" } else { "{spinner} {pos}" };
+        Self::shown(total, &format!("{count} {what}"))
+    }
+
+    fn shown(total: Option<u64>, template: &str) -> Self {
         if !stderr().is_terminal() {
             return Self { bar: None };
         }
         let bar = total.map_or_else(ProgressBar::new_spinner, ProgressBar::new);
-        let count = if total.is_some() { "{bar:40} {pos}/{len}" } else { "{spinner} {pos}" };
-        if let Ok(style) = ProgressStyle::with_template(&format!("{count} {what}")) {
+        if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
         bar.enable_steady_tick(Duration::from_millis(100));

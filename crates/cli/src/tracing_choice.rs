@@ -2,12 +2,16 @@
 use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
-    Channel, Difference, PicturePreview, PictureSettings, Selection, Smoothing, Tracing, TracingChoice,
-    TracingEvidence, TracingWay,
+    Channel, Difference, Margins, PicturePreview, PictureSettings, Selection, Smoothing, Tracing, TracingChoice,
+    TracingEvidence, TracingWarning, TracingWay,
 };
 use freeform_motion::short;
 
 use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
+use crate::progress::Progress;
+
+/// The options that look for what moves.
+const MOVING: &str = "--background whole --objects moving --min-area PIXELS";
 
 /// How tracing was chosen.
 #[derive(Debug)]
@@ -22,30 +26,38 @@ impl Chosen {
     pub(crate) fn note(&self) -> String {
         let best = self.choice.best();
         let found = best.map_or_else(String::new, |TracingEvidence { found, pictures, score, .. }| {
-            format!(", {found} of {pictures} pictures tried show an object, score {}", short(*score))
+            let score = (score * 1000.0).round() / 1000.0;
+            let score = if score > 0.0 { short(score) } else { "below 0.001".to_owned() };
+            format!(", {found} of {pictures} pictures tried show an object, score {score} of 1")
         });
+        let is_warned =
+            || self.choice.warnings().any(|warning| matches!(warning, TracingWarning::MovesBesideRest { .. }));
         let still = match best {
-            Some(best) if best.rests => {
-                "; it rests: what moves and is smaller may be found by --background whole --objects moving --min-area PIXELS"
+            Some(best) if best.rests && !is_warned() => {
+                format!("; it rests: what moves and is smaller may be found by {MOVING}")
             }
-            _ => "",
+            _ => String::new(),
         };
         format!("traced with {} (chosen among {} ways{found}){still}", self.options, self.choice.candidates.len())
     }
 
-    /// What is said where nothing stands out.
-    pub(crate) fn warning(&self, drawn: Option<&Path>) -> Option<String> {
-        if self.choice.is_convincing() {
-            return None;
-        }
+    /// What is said of it where it is not to be trusted, by the codes.
+    pub(crate) fn warnings(&self, drawn: Option<&Path>) -> Vec<(TracingWarning, String)> {
         let others = self.choice.candidates.iter().skip(1).take(2).map(|other| options_of(&other.tracing).join(" "));
         let others: Vec<String> = others.collect();
         let next = if others.is_empty() { String::new() } else { format!("; next best: {}", others.join(", or ")) };
-        let doubt = "no way of tracing tells an object from the ground beyond doubt";
-        Some(match drawn {
-            Some(path) => format!("{doubt}; choose one by {}, where they are drawn{next}", path.display()),
-            None => format!("{doubt}; draw them with --candidates FILE.png and choose one{next}"),
-        })
+        let told = |warning: TracingWarning| match (warning, drawn) {
+            (TracingWarning::Doubtful, Some(path)) => {
+                format!("{warning}; choose one by {}, where they are drawn{next}", path.display())
+            }
+            (TracingWarning::Doubtful, None) => {
+                format!("{warning}; draw them with --candidates FILE.png and choose one{next}")
+            }
+            (TracingWarning::MovesBesideRest { .. } | TracingWarning::MovesBeside { .. }, _) => {
+                format!("{warning}; {MOVING} may find it")
+            }
+        };
+        self.choice.warnings().map(|warning| (warning, told(warning))).collect()
     }
 }
 
@@ -54,6 +66,7 @@ pub(crate) fn choose(
     preview: &PicturePreview,
     base: &PictureSettings,
     given: &PictureOptions,
+    quiet: bool,
 ) -> (PictureOptions, Option<Chosen>) {
     let unchanged = (given.clone(), None);
     if given.has_way() {
@@ -61,11 +74,20 @@ pub(crate) fn choose(
     }
     let all = [Channel::Luminance, Channel::Red, Channel::Green, Channel::Blue, Channel::Saturation];
     let channels = given.channel.map_or(all.to_vec(), |channel| vec![channel.channel()]);
-    let Some(choice) = preview.choose_tracing(&channels, base) else { return unchanged };
+    let progress = Progress::of_choice(quiet);
+    let choice = preview.choose_tracing(&channels, base);
+    drop(progress);
+    let Some(choice) = choice else { return unchanged };
     let Some(best) = choice.best() else { return unchanged };
     let mut options = given.clone();
     take(&mut options, &best.tracing);
     let mut parts = options_of(&best.tracing);
+    let margins = choice.margins;
+    if given.margins.is_none() && !margins.are_none() {
+        options.margins = Some(margins);
+        let Margins { left, top, right, bottom } = margins;
+        parts.push(format!("--margins {left},{top},{right},{bottom}"));
+    }
     let objects = match best.selection {
         Selection::All => Some((ObjectsChoice::All, "--objects all")),
         Selection::Moving => Some((ObjectsChoice::Moving, "--objects moving")),

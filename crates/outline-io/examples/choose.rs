@@ -24,7 +24,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..PictureSettings::default()
     };
     let choice = choose_tracing(&sample, &base, &[]);
-    println!("read in {read:?}, chosen in {:?}; convincing: {}", started.elapsed() - read, choice.is_convincing());
+    println!(
+        "read in {read:?}, chosen in {:?}; warnings: {:?}",
+        started.elapsed() - read,
+        choice.warnings().collect::<Vec<_>>()
+    );
     println!("score found steady even contrast smooth moved rests clipped area objects");
     for c in choice.candidates.iter().take(14) {
         println!(

@@ -59,6 +59,7 @@ mod labelme;
 mod labelme_files;
 mod labels;
 mod latest_frames;
+mod margins;
 mod morphology;
 mod natural_order;
 mod not_csv;
@@ -115,7 +116,9 @@ mod y4m;
 pub use affine_moment_invariants::AffineMomentInvariants;
 pub use background::{Background, Difference, median_picture};
 pub use channel::Channel;
-pub use choice::{PictureSample, SamplePlan, Tracing, TracingChoice, TracingEvidence, TracingWay, choose_tracing};
+pub use choice::{
+    PictureSample, SamplePlan, Tracing, TracingChoice, TracingEvidence, TracingWarning, TracingWay, choose_tracing,
+};
 pub use column::Column;
 pub use contrast::Contrast;
 pub use csv_comments::read_comments;
@@ -129,6 +132,7 @@ pub use identity::{Identities, Selection};
 pub use image::GrayImage;
 pub use labelme_files::labelme_files;
 pub use labels::{LabelMask, TracedLabel};
+pub use margins::Margins;
 pub use outline_columns::{ColumnOutlines, OutlineColumns};
 pub use outline_file::{FilePoints, OutlineFile, TableFormat, TableWriter};
 pub use outline_lists::{ListChunk, ListOutlines, Lists, Marks, OutlineLists};

@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -12,7 +13,7 @@ use crate::ground_surface::ground_surface;
 use crate::identity::{Identities, Selection};
 use crate::picture_error::{PictureError, TraceError};
 use crate::picture_sequence::PictureFrame;
-use crate::trace::{TracedOutline, trace_objects};
+use crate::trace::{TracedOutline, trace_within};
 use crate::trace_settings::TraceSettings;
 
 /// Pixels of the pictures that are traced side by side, at most: two pictures of 1920 x 1080, or one that is larger. What is worked with is some
@@ -125,16 +126,17 @@ impl View {
     }
 
     fn traced(&self, settings: &PictureSettings, limit: usize) -> Traced {
-        let picture = &*self.picture;
-        let surface = match settings.background {
-            Some(Background::Surface) => Some(ground_surface(picture)),
-            _ => None,
+        let (margins, rows) = (settings.trace.margins, self.picture.height());
+        let picture = margins.within(&self.picture);
+        let ground = match settings.background {
+            Some(Background::Surface) => Some(Cow::Owned(ground_surface(&picture))),
+            _ => self.ground.as_deref().map(|ground| margins.within(ground)),
         };
-        let Some(ground) = surface.as_ref().or(self.ground.as_deref()) else {
-            return trace_objects(picture, &settings.trace, limit);
+        let Some(ground) = ground else {
+            return trace_within(&picture, rows, &settings.trace, limit);
         };
         let trace = TraceSettings { contrast: Contrast::LightOnDark, ..settings.trace };
-        trace_objects(&checked_difference(settings.difference, picture, ground)?, &trace, limit)
+        trace_within(&checked_difference(settings.difference, &picture, &ground)?, rows, &trace, limit)
     }
 }
 

@@ -84,10 +84,20 @@ pub fn trace_objects(
     settings: &TraceSettings,
     limit: usize,
 ) -> Result<Vec<TracedOutline>, TraceError> {
+    trace_within(&settings.margins.within(picture), picture.height(), settings, limit)
+}
+
+/// Like [`trace_objects`], in what the margins leave of a picture of so many rows.
+pub(crate) fn trace_within(
+    picture: &GrayImage,
+    rows: u32,
+    settings: &TraceSettings,
+    limit: usize,
+) -> Result<Vec<TracedOutline>, TraceError> {
     settings.check()?;
     let traced = match settings.ring {
-        Some(ring) => ring_outlines(picture, settings, ring, limit)?,
-        None => mask_outlines(picture, settings, limit)?,
+        Some(ring) => ring_outlines((picture, rows), settings, ring, limit)?,
+        None => mask_outlines((picture, rows), settings, limit)?,
     };
     let mut outlines = Vec::new();
     let (mut refused, mut points) = (None, 0);
@@ -114,7 +124,7 @@ pub fn trace_objects(
 type Traced<'a> = Box<dyn Iterator<Item = Result<TracedOutline, TraceError>> + 'a>;
 
 fn ring_outlines<'a>(
-    picture: &'a GrayImage,
+    (picture, rows): (&'a GrayImage, u32),
     settings: &'a TraceSettings,
     ring: Ring,
     limit: usize,
@@ -129,14 +139,14 @@ fn ring_outlines<'a>(
     let object_count = objects.len();
     let traced = objects.into_iter().map(move |object| {
         let window = Window { left: object.left, top: object.top, field: &object.field, level: 0.5, edges: None };
-        let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::NoRing)?;
+        let seen = window.outline(rows, settings)?.ok_or(TraceError::NoRing)?;
         Ok(seen.traced(object.pixel_count, object_count, 0.5))
     });
     Ok(Box::new(traced))
 }
 
 fn mask_outlines<'a>(
-    picture: &'a GrayImage,
+    (picture, rows): (&'a GrayImage, u32),
     settings: &'a TraceSettings,
     limit: usize,
 ) -> Result<Traced<'a>, TraceError> {
@@ -172,7 +182,7 @@ fn mask_outlines<'a>(
             field.blur(sigma);
         }
         let window = Window { left: mask.left, top: mask.top, field: &field, level: levels.threshold, edges };
-        let seen = window.outline(picture.height(), settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
+        let seen = window.outline(rows, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
         Ok(seen.traced(mask.pixel_count, object_count, threshold))
     });
     Ok(Box::new(traced))
@@ -225,7 +235,7 @@ impl Seen {
 }
 
 impl Window<'_> {
-    /// The longest outer outline in the window of a picture of this height; `None` where nothing passes the level.
+    /// The longest outer outline in the window of what the margins leave of a picture of this height; `None` where nothing passes the level.
     pub(crate) fn outline(&self, picture_height: u32, settings: &TraceSettings) -> Result<Option<Seen>, TraceError> {
         let count = match settings.contours {
             Contours::Boundary => 0,
@@ -240,9 +250,10 @@ impl Window<'_> {
             inner.iter_mut().map(|line| self.edges.and_then(|source| source.refine(line, place))).collect();
         let grid = settings.pixel_grid(picture_height);
         let touches_border = line.iter().any(|crossing| crossing.at_edge);
-        let to_point = |crossing: &Crossing| {
-            grid.to_plane(self.left as f64 + crossing.x + 0.5, self.top as f64 + crossing.y + 0.5)
-        };
+        // Whole numbers, so that a sum has them exactly.
+        let left = (self.left + settings.margins.left as usize) as f64;
+        let top = (self.top + settings.margins.top as usize) as f64;
+        let to_point = |crossing: &Crossing| grid.to_plane(left + crossing.x + 0.5, top + crossing.y + 0.5);
         let mut points: Vec<(Point2<f64>, bool)> =
             line.iter().map(|crossing| (to_point(crossing), crossing.at_edge)).collect();
         let mut inner: Vec<Vec<Point2<f64>>> = inner.iter().map(|line| line.iter().map(to_point).collect()).collect();

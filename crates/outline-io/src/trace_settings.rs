@@ -2,6 +2,7 @@ use freeform_curve_fit::PixelGrid;
 use nalgebra::{Point2, Vector2};
 
 use crate::contrast::Contrast;
+use crate::margins::Margins;
 use crate::picture_error::TraceError;
 use crate::ring::Ring;
 use crate::threshold::{Levels, Threshold};
@@ -88,6 +89,9 @@ pub struct TraceSettings {
     pub pixel_size: f64,
     /// Width of a pixel over its height.
     pub pixel_aspect: f64,
+    /// What of the pictures is not looked at. Objects are clipped there as at the edge of a picture.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub margins: Margins,
 }
 
 impl Default for TraceSettings {
@@ -105,6 +109,7 @@ impl Default for TraceSettings {
             ring: None,
             pixel_size: 1.0,
             pixel_aspect: 1.0,
+            margins: Margins::default(),
         }
     }
 }

@@ -1,7 +1,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use freeform_motion::outline_io::{Channel, Contrast, Selection};
+use freeform_motion::outline_io::{Channel, Contrast, Margins, Selection, TracingChoice};
 
 use super::values::{not_negative, positive};
 
@@ -15,8 +15,11 @@ pub(crate) fn picture_inputs(command: &str) -> String {
          pattern, in natural order (frame-9 before frame-10). Convert any other video through a pipe:\n  {}\nA picture that cannot be \
          read, differs in size from the first, or shows no object is left out with a warning.\n\nWithout --light, --dark, --threshold, \
          --background or --ring, the ways are tried on pictures of the sequence, and the one that tells an object from the ground best \
-         is taken and printed as the options that give it again. Of a stream 60 pictures are read ahead for that; 'track' does not.",
-        through_ffmpeg("video.mp4", &format!("freeform {command} -"))
+         is taken and printed as the options that give it again. Its score is from 0 to 1, the product of how often something is found, how \
+         steady its area and shape are, how clear its edge, how smooth its path; {} is needed not to be in doubt. Of a stream 60 pictures \
+         are read ahead for that; 'track' does not.",
+        through_ffmpeg("video.mp4", &format!("freeform {command} -")),
+        TracingChoice::LEAST_SCORE
     )
 }
 
@@ -83,6 +86,10 @@ pub(crate) struct PictureOptions {
     #[arg(long, value_name = "PIXELS", default_value_t = SMALLEST_OBJECT)]
     pub(crate) min_area: u64,
 
+    /// Pixels at the sides of the pictures that are not looked at [default: even bars, which are seen while the way of tracing is chosen]
+    #[arg(long, value_name = "LEFT,TOP,RIGHT,BOTTOM", value_parser = margins)]
+    pub(crate) margins: Option<Margins>,
+
     /// Which objects are taken [default: all where several are seen while the way of tracing is chosen, else largest]
     #[arg(long, value_enum)]
     pub(crate) objects: Option<ObjectsChoice>,
@@ -104,6 +111,15 @@ pub(crate) struct PictureOptions {
     pub(crate) y_down: bool,
 }
 
+/// Four numbers of pixels.
+fn margins(text: &str) -> Result<Margins, String> {
+    let pixels: Result<Vec<u32>, _> = text.split(',').map(str::parse).collect();
+    match pixels.as_deref() {
+        Ok([left, top, right, bottom]) => Ok(Margins { left: *left, top: *top, right: *right, bottom: *bottom }),
+        _ => Err("four numbers of pixels such as 0,60,0,60".to_owned()),
+    }
+}
+
 impl PictureOptions {
     /// Names of the options that differ from the defaults.
     pub(crate) fn given(&self) -> Vec<&'static str> {
@@ -121,6 +137,7 @@ impl PictureOptions {
             ("--contours", self.contours.is_some()),
             ("--candidates", self.candidates.is_some()),
             ("--min-area", self.min_area != SMALLEST_OBJECT),
+            ("--margins", self.margins.is_some()),
             ("--objects", self.objects.is_some()),
             ("--pixel-size", self.pixel_size != 1.0),
             ("--pixel-aspect", self.pixel_aspect.is_some()),
@@ -181,7 +198,11 @@ impl PictureOptions {
         let name = |value: Option<clap::builder::PossibleValue>| {
             value.map_or_else(String::new, |value| value.get_name().to_owned())
         };
-        vec![
+        let left_out = self.margins.filter(|margins| !margins.are_none());
+        let left_out = left_out.map(|Margins { left, top, right, bottom }| {
+            ("Margins", format!("{left}, {top}, {right}, {bottom} pixels (left, top, right, bottom)"))
+        });
+        let listed = vec![
             ("Objects found", found),
             (
                 "Objects taken",
@@ -190,7 +211,8 @@ impl PictureOptions {
             ("Channel", name(self.channel().to_possible_value())),
             ("Pixel height", self.pixel_size.to_string()),
             ("y", if self.y_down { "downwards" } else { "upwards" }.to_owned()),
-        ]
+        ];
+        listed.into_iter().chain(left_out).collect()
     }
 }
 

@@ -27,7 +27,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = args.svg.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
     refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed, false)?;
     let name = input.name.clone();
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
     input.tell_tracing();

@@ -30,7 +30,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
     // Options are refused before an input is waited for.
     let mut tracker = tracker(args, None)?;
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted)?;
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, args.quiet)?;
     if let Some(uncertainty) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         tracker = self::tracker(args, Some(uncertainty))?;
     }
@@ -202,7 +202,10 @@ impl<'a> Outcome<'a> {
                 let table = write_identify_table(&mut sink, results, self.truth.as_ref(), b);
                 table.and_then(|()| if self.says_b() { writeln!(sink, "b: {b}") } else { Ok(()) })
             }
-            IdentifyFormat::Json => write_identify_json(&mut sink, results, b, &self.left_out),
+            IdentifyFormat::Json => {
+                let warnings = self.input.pictures().map(PictureInput::tracing_warnings).unwrap_or_default();
+                write_identify_json(&mut sink, results, b, &self.left_out, &warnings)
+            }
             IdentifyFormat::Csv => write_results(&mut sink, results),
         };
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))

@@ -23,7 +23,7 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
     // A pipe that nobody reads is waited for here, which the first signal ends.
     let mut sink = Sink::open(&args.output)?;
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted)?.with_corners_alone();
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, args.quiet)?.with_corners_alone();
     if !input.has_pictures() && args.overlay.is_some() {
         return Err(Failure::unusable(format_args!("{}: not a picture, there is nothing to draw on", input.name)));
     }

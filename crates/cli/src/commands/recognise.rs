@@ -20,7 +20,7 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     refuse_overwriting(&read, &candidates)?;
     refuse_standard_output(&candidates)?;
     let recogniser = learnt(args)?;
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed, false)?;
     let name = input.name.clone();
     input.tell_tracing();
     let mut sink = Sink::stdout();

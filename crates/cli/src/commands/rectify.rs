@@ -52,7 +52,7 @@ fn of_outline(args: &RectifyArgs, known: &Path) -> Result<(Projective2<f64>, Str
     refuse_overwriting(&read, &candidates)?;
     refuse_standard_output(&candidates)?;
     let known = read_shape(known).map_err(Failure::unusable)?;
-    let input = Input::open(&args.seen, &args.pictures, Waiting::Allowed)?;
+    let input = Input::open(&args.seen, &args.pictures, Waiting::Allowed, false)?;
     let name = input.name.clone();
     input.tell_tracing();
     let (mut seen, mut object, mut warnings) = (Vec::<Outline>::new(), None::<String>, MissingWarnings::default());

@@ -18,7 +18,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     refuse_standard_output(&outputs)?;
     args.options.check()?;
     let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None)?;
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None, args.quiet)?;
     if let Some(error) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         let settings = args.options.tracker_settings_for(error);
         tracker = Tracker::new(settings).map_err(Failure::unusable)?;

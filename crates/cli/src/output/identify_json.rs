@@ -4,6 +4,7 @@ use freeform_drawing::MeaningOfB;
 use freeform_motion::Warning;
 use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
+use freeform_motion::outline_io::TracingWarning;
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::tracker::{MotionFamily, ObjectPhase, ObjectResult, Observation};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
@@ -19,12 +20,15 @@ pub(crate) fn write_identify_json(
     results: &[ObjectResult],
     b: &MeaningOfB,
     left_out: &LeftOut,
+    warnings: &[(TracingWarning, String)],
 ) -> io::Result<()> {
     let objects: Vec<_> = results.iter().map(ObjectJson).collect();
     let pictures = left_out.pictures.iter().map(|(frame, reason)| PictureJson { frame: *frame, reason }).collect();
     let left_out = LeftOutJson { count: left_out.count, pictures };
     let b = MeaningJson { point: b.point, unit: &b.unit, scale: b.scale.map(CameraScale::value) };
-    let document = Document { schema: "freeform.identify/2", objects, b, left_out };
+    let warnings =
+        warnings.iter().map(|(warning, message)| InputWarningJson { code: warning.code(), message }).collect();
+    let document = Document { schema: "freeform.identify/2", objects, b, left_out, warnings };
     serde_json::to_writer_pretty(&mut *sink, &document)?;
     writeln!(sink)
 }
@@ -70,6 +74,15 @@ struct Document<'a> {
     objects: Vec<ObjectJson<'a>>,
     b: MeaningJson<'a>,
     left_out: LeftOutJson<'a>,
+    /// Of how the pictures are traced; left out where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<InputWarningJson<'a>>,
+}
+
+#[derive(serde::Serialize)]
+struct InputWarningJson<'a> {
+    code: &'static str,
+    message: &'a str,
 }
 
 /// Which point b is the velocity of, in which unit, and what f/Z0 it was divided by.
@@ -285,7 +298,7 @@ mod tests {
         };
         let mut text = Vec::new();
         let b = MeaningOfB::in_coordinates(None);
-        write_identify_json(&mut text, &[result], &b, &LeftOut::default()).expect("memory");
+        write_identify_json(&mut text, &[result], &b, &LeftOut::default(), &[]).expect("memory");
         let document: Value = serde_json::from_slice(&text).expect("JSON");
         let object = &document["objects"][0];
         let nothing = json!({

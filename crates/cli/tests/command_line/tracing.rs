@@ -89,3 +89,53 @@ fn deviations_of_points_are_written_where_they_are_asked_for_and_weigh_the_point
     let from_parquet = json(&succeed(&format!("identify {parquet} --json --quiet"), ""));
     assert_eq!(from_parquet["objects"], identified(&with_deviations));
 }
+
+#[test]
+fn bars_at_the_sides_of_pictures_are_no_bodies_and_are_named_as_margins() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    std::fs::create_dir(&frames).expect("a folder");
+    for frame in 0..12_u32 {
+        let value = |x: u32, y: u32| match y {
+            20..90 if (f64::from(x) - 30.0 - 5.0 * f64::from(frame)).hypot(f64::from(y) - 50.0) < 15.0 => 20,
+            20..90 => 120 + ((x * 31 + y * 17 + frame * 7) % 5) as u8,
+            _ => 0,
+        };
+        let picture = GrayImage::from_fn(160, 120, |x, y| Luma([value(x, y)]));
+        picture.save(frames.join(format!("{frame:02}.png"))).expect("a picture");
+    }
+    let output = run(&format!("identify {} --fps 30 --json", frames.display()), "");
+    assert!(stderr(&output).contains("--dark --margins 0,22,0,32 ("), "{}", stderr(&output));
+    let document = json(&stdout(&output));
+    assert_eq!(document["objects"].as_array().map(Vec::len), Some(1), "{document}");
+    let velocity = &document["objects"][0]["velocity"];
+    let [vx, y] = [&velocity["value"][0], &velocity["point"][1]].map(|value| value.as_f64().expect("a number"));
+    // In the coordinates of the whole picture.
+    assert!((vx - 150.0).abs() < 1.0 && (y - 69.5).abs() < 0.5, "{velocity}");
+    assert!(document.get("warnings").is_none(), "{document}");
+    let refused = run(&format!("outline {} --margins 0,22,0", frames.display()), "");
+    assert!(stderr(&refused).contains("four numbers of pixels such as 0,60,0,60"), "{}", stderr(&refused));
+}
+
+#[test]
+fn changes_beside_what_rests_are_warned_of_by_a_code() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let frames = folder.path().join("frames");
+    std::fs::create_dir(&frames).expect("a folder");
+    for frame in 0..12_u32 {
+        let is_speck =
+            |x: u32, y: u32| frame % 2 == 0 && x.abs_diff(20 + 7 * (frame * 5 % 9)) < 6 && y.abs_diff(100 - frame) < 6;
+        let value =
+            |x: u32, y: u32| if (60..100).contains(&x) && (20..60).contains(&y) || is_speck(x, y) { 180 } else { 60 };
+        let noise = |x: u32, y: u32| ((x * 31 + y * 17 + frame * 7) % 5) as u8;
+        let picture = GrayImage::from_fn(160, 120, |x, y| Luma([value(x, y) + noise(x, y)]));
+        picture.save(frames.join(format!("{frame:02}.png"))).expect("a picture");
+    }
+    let output = run(&format!("identify {} --fps 30 --json", frames.display()), "");
+    assert!(
+        stderr(&output).contains("warning: what is traced rests, and something else changes in 6 of 12"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(json(&stdout(&output))["warnings"][0]["code"], "moves_beside_rest");
+}

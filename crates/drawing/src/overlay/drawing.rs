@@ -6,7 +6,7 @@ use image::{Rgb, RgbImage};
 use nalgebra::{Matrix3, Point2};
 
 use super::canvas::Canvas;
-use super::lettering::write_words;
+use super::lettering::{write_words, write_words_below};
 
 pub(super) const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
 const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);
@@ -176,20 +176,32 @@ fn size_in_pixels([a, b]: [[f64; 2]; 2]) -> f64 {
     (a[0] - b[0]).abs().max((a[1] - b[1]).abs())
 }
 
-/// The velocity at points around the outline. The longest arrow is a share of the object, no longer than [`MOST_PIXELS`].
+/// The velocity at points around the outline: the way in a time that is written below the object, and so long that the longest arrow has at most a
+/// share of the object, and no more than [`MOST_PIXELS`].
 fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &Rectangle, generator: &Matrix3<f64>) {
     let motion = ProjectiveMotion::of_generator(generator);
     let velocity = |p: &Point2<f64>| motion.velocity(p);
-    let size = size_in_pixels([area.low, area.high].map(|corner| grid.to_pixels(&corner)));
+    let corners = [area.low, area.high].map(|corner| grid.to_pixels(&corner));
+    let size = size_in_pixels(corners);
     let places = arrow_places(outline, size);
     let fastest = places.iter().map(|p| velocity(p).norm()).fold(0.0, f64::max);
     let longest = if size < SMALL_OBJECT { 1.0 } else { LONGEST_ARROW.min(MOST_PIXELS / size) };
-    let seconds = longest * area.size().max() / fastest;
-    if seconds.is_finite() {
-        for p in places {
-            canvas.arrow(grid.to_pixels(&p), grid.to_pixels(&(p + seconds * velocity(&p))), MOTION);
-        }
+    let Some(seconds) = round_time(longest * area.size().max() / fastest) else { return };
+    for p in places {
+        canvas.arrow(grid.to_pixels(&p), grid.to_pixels(&(p + seconds * velocity(&p))), MOTION);
     }
+    let lower_left = [corners[0][0].min(corners[1][0]), corners[0][1].max(corners[1][1])];
+    write_words_below(canvas, lower_left, &format!("{seconds} s"), MOTION);
+}
+
+/// The longest of 1, 2 or 5 times a power of ten seconds that is no longer than a time, so that arrows of neighbouring pictures are alike; `None`
+/// where nothing moves at a time worth to be said.
+fn round_time(seconds: f64) -> Option<f64> {
+    let steps = (-4..=3).flat_map(|power: i32| [1_u32, 2, 5].map(|step| (power, f64::from(step))));
+    // Quotients of whole numbers are those that are written.
+    let times =
+        steps.map(|(power, step)| if power < 0 { step / 10_f64.powi(-power) } else { step * 10_f64.powi(power) });
+    times.take_while(|time| *time <= seconds).last()
 }
 
 /// Where arrows begin on an outline of some size in pixels: at points evenly spread along it, or in its middle.
@@ -206,6 +218,14 @@ fn arrow_places(outline: &Outline, size: f64) -> Vec<Point2<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn arrows_show_the_way_in_a_round_time_no_longer_than_they_may_be() {
+        let rounded = [0.0, 0.00012, 0.03, 0.0999, 0.2, 7.0, 49.9, 1e9, f64::INFINITY, f64::NAN].map(round_time);
+        let expected = [None, Some(0.0001), Some(0.02), Some(0.05), Some(0.2), Some(5.0), Some(20.0)];
+        assert_eq!(rounded[..7], expected);
+        assert_eq!(rounded[7..], [Some(5000.0), Some(5000.0), None]);
+    }
 
     #[test]
     fn a_small_object_has_few_arrows_and_a_large_one_no_more_than_can_be_told_apart() {

@@ -53,13 +53,23 @@ const LETTERS: [(char, [u8; 7]); 38] = [
 /// Writes words above a position, or as near to it as the picture allows. What is none of [`LETTERS`] is a space.
 pub(super) fn write_words(canvas: &mut Canvas, [column, row]: [f64; 2], words: &str, colour: Rgb<u8>) {
     let (width, height) = canvas.size();
-    // Whole pixels to a dot, so that letters stay sharp.
-    let dot = (height / (LINES * SIZE[1] as u32)).max(1);
+    let dot = dot(height);
     let length = words.chars().count() as u32 * (SIZE[0] as u32 + 1) * dot;
     let within = |wanted: f64, size: u32, needed: u32| wanted.clamp(0.0, f64::from(size.saturating_sub(needed))) as u32;
     let left = within(column, width, length) + dot;
     let top = within(row - f64::from((SIZE[1] as u32 + 3) * dot), height, (SIZE[1] as u32 + 2) * dot) + dot;
     write_at(canvas, [left, top], dot, words, colour);
+}
+
+/// Writes words below a position, or as near to it as the picture allows.
+pub(super) fn write_words_below(canvas: &mut Canvas, [column, row]: [f64; 2], words: &str, colour: Rgb<u8>) {
+    let below = f64::from((SIZE[1] as u32 + 5) * dot(canvas.size().1));
+    write_words(canvas, [column, row + below], words, colour);
+}
+
+/// Whole pixels to a dot of a letter in a picture of this height, so that letters stay sharp.
+fn dot(height: u32) -> u32 {
+    (height / (LINES * SIZE[1] as u32)).max(1)
 }
 
 /// A line of text on a sheet of pictures.

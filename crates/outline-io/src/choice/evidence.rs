@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use image::GrayImage;
 
+use super::rest::{movement, rests};
 use super::scaled::{factor_for, scaled};
 use super::sight::Sight;
 use super::{LINE, PictureSample, Tracing, TracingWay, ground_of};
@@ -11,6 +12,7 @@ use crate::contrast::Contrast;
 use crate::edges::median;
 use crate::ground_surface::ground_surface;
 use crate::identity::Selection;
+use crate::margins::Margins;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
 use crate::trace::{TracedOutline, blurred, trace_objects};
@@ -27,12 +29,6 @@ const FINE_PICTURES: usize = 15;
 
 /// Objects looked at in a picture.
 const OBJECTS: usize = 6;
-
-/// Pictures so far from each other show whether something moves.
-const FAR_APART: u64 = 5;
-
-/// What rests is nowhere so many times farther from where it was first than it may move from picture to picture.
-const FAR: f64 = 3.0;
 
 /// A level lies so many standard deviations of the ground beyond it, and at least so many grey values.
 const BEYOND_NOISE: f64 = 6.0;
@@ -144,6 +140,11 @@ impl Trial {
         self.pictures.len()
     }
 
+    /// Pixels of a picture.
+    pub(super) fn picture_area(&self) -> f64 {
+        self.pictures.first().map_or(0.0, |picture| picture.as_raw().len() as f64)
+    }
+
     fn settings(&self, tracing: &Tracing) -> PictureSettings {
         let ground = match tracing.way {
             TracingWay::Median(_) => self.ground.get_or_init(|| ground_of(&self.all)).clone(),
@@ -165,6 +166,7 @@ impl Trial {
             y_up: false,
             pixel_size: 1.0,
             pixel_aspect: 1.0,
+            margins: Margins::default(),
             ..*trace
         };
         settings
@@ -266,7 +268,7 @@ pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence>
 pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> Option<TracingEvidence> {
     let factor = f64::from(trial.factor);
     let (found, pictures) = (sights.len(), trial.count());
-    let picture_area = trial.pictures.first().map(|p| f64::from(p.width()) * f64::from(p.height()))?;
+    let picture_area = trial.picture_area();
     let of = |value: &dyn Fn(&Sight) -> f64| median(sights.iter().map(value));
     let area = of(&|sight| sight.area)?;
     let contrast = of(&|sight| sight.contrast)?;
@@ -365,26 +367,4 @@ fn smoothness(sights: &[Sight]) -> f64 {
         (w[0].centre.coords - 2.0 * w[1].centre.coords + w[2].centre.coords).norm() / (w[1].size() + 2.0 * step)
     }));
     bend.map_or(0.5, |bend| 1.0 / (1.0 + (bend / 0.05).powi(2)))
-}
-
-/// Whether what is seen rests: from picture to picture it hardly moves, pictures far from each other show it where it was, and none shows it
-/// far from where it was first: what swings slowly comes back too.
-fn rests(sights: &[Sight], factor: f64) -> bool {
-    let moved = |a: &Sight, b: &Sight| (a.centre - b.centre).norm().max(a.unlike(b));
-    let near = median(sights.windows(2).filter(|w| w[0].frame + 1 == w[1].frame).map(|w| moved(&w[0], &w[1])));
-    let Some(near) = near else { return false };
-    let again = median(sights.iter().step_by(2).filter_map(|a| {
-        let far = sights.iter().filter(|b| a.frame.abs_diff(b.frame) >= FAR_APART);
-        far.map(|b| moved(a, b)).min_by(f64::total_cmp)
-    }));
-    let hardly = (1.0 / factor).max(0.02 * median(sights.iter().map(Sight::size)).unwrap_or(0.0));
-    again.is_some_and(|again| near < hardly && again < 1.5 * near + 0.5 / factor) && movement(sights) < FAR * hardly
-}
-
-/// Farthest movement of the middle or of the outline about it, in pixels of the trial.
-fn movement(sights: &[Sight]) -> f64 {
-    let Some(first) = sights.first() else { return 0.0 };
-    let step = (sights.len() / 6).max(1);
-    let far = |sight: &Sight| (sight.centre - first.centre).norm().max(sight.unlike(first));
-    sights.iter().skip(1).step_by(step).chain(sights.last()).map(far).fold(0.0, f64::max)
 }

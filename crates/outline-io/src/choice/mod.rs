@@ -1,9 +1,11 @@
 //! How objects are best found in a sequence: every way is tried on some of its pictures and judged by what tells a body from ground.
 mod evidence;
 mod moving;
+mod rest;
 mod sample;
 mod scaled;
 mod sight;
+mod warning;
 
 use std::sync::Arc;
 
@@ -12,14 +14,16 @@ use image::GrayImage;
 use crate::background::{Background, Difference, median_picture};
 use crate::channel::Channel;
 use crate::contrast::Contrast;
+use crate::margins::Margins;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
 use crate::threshold::Threshold;
 use crate::trace_settings::{Smoothing, TraceSettings};
 pub use evidence::TracingEvidence;
 use evidence::{Trial, judged};
-use moving::what_moves;
+use moving::{Motion, what_moves};
 pub use sample::{PictureSample, SamplePlan};
+pub use warning::TracingWarning;
 
 /// A way to tell objects from the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +61,10 @@ pub struct Tracing {
 pub struct TracingChoice {
     /// All that found something in at least one picture.
     pub candidates: Vec<TracingEvidence>,
+    /// What moves beside what the best finds, where that has been looked for.
+    beside: Option<TracingWarning>,
+    /// What of the pictures is not looked at: the margins given, or else even bars at their sides.
+    pub margins: Margins,
 }
 
 /// Least score of a way that is worth to be trusted: of 662 simulated sequences 20 were below it, 8 of them right, and of those above it 1 % wrong.
@@ -150,6 +158,9 @@ impl Tracing {
 }
 
 impl TracingChoice {
+    /// Score that a way needs not to be in doubt.
+    pub const LEAST_SCORE: f64 = CONVINCING;
+
     /// The best way, if any found something.
     #[must_use]
     pub fn best(&self) -> Option<&TracingEvidence> {
@@ -160,6 +171,12 @@ impl TracingChoice {
     #[must_use]
     pub fn is_convincing(&self) -> bool {
         self.best().is_some_and(|best| best.score >= CONVINCING)
+    }
+
+    /// What should be known of the best way.
+    pub fn warnings(&self) -> impl Iterator<Item = TracingWarning> {
+        let doubtful = (!self.is_convincing()).then_some(TracingWarning::Doubtful);
+        doubtful.into_iter().chain(self.beside)
     }
 }
 
@@ -172,11 +189,28 @@ impl TracingChoice {
 ///
 /// Where what the best way finds rests, or is in doubt, a way that shows something that moves is preferred to it, even if its score is less. It
 /// is looked for in the first channel, where the pictures are not two-valued and at least eight.
+///
+/// Even bars at the sides of the pictures are no bodies, and are left out, unless `base` has margins.
 #[must_use]
 pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: &[Channel]) -> TracingChoice {
+    let given = base.trace.margins;
+    let margins = if given.are_none() && !sample.is_two_valued() { sample.bars() } else { given };
+    let within = (!margins.are_none()).then(|| sample.within(margins));
+    let (candidates, beside) = choose_within(within.as_ref().unwrap_or(sample), base, channels);
+    TracingChoice { candidates, beside, margins }
+}
+
+/// The ways, the best first, in pictures without margins, and what moves besides.
+fn choose_within(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    channels: &[Channel],
+) -> (Vec<TracingEvidence>, Option<TracingWarning>) {
     let channels: Vec<Channel> =
         sample.channels().filter(|channel| channels.is_empty() || channels.contains(channel)).collect();
-    let Some((first, others)) = channels.split_first() else { return TracingChoice { candidates: Vec::new() } };
+    let Some((first, others)) = channels.split_first() else {
+        return (Vec::new(), None);
+    };
     let mut coarse = tried(sample, base, *first);
     let (mut fine, mut looked_at) = (Vec::new(), Vec::new());
     let is_good = |candidates: &[TracingEvidence]| candidates.iter().any(|candidate| candidate.score >= GOOD);
@@ -186,12 +220,12 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
     // Where the best rests beyond doubt, other channels would show that it rests.
     let best = if is_good(&fine) { fine.iter() } else { coarse.iter() }.max_by(|a, b| a.score.total_cmp(&b.score));
     let resting = best.filter(|best| best.rests && best.score >= CONVINCING).map(|best| best.tracing);
-    let mut early = resting.and_then(|tracing| moving_instead(sample, base, *first, Some(&tracing)));
-    if let Some(moving) = early.take_if(|moving| moving.score >= CONVINCING) {
+    let mut early = resting.and_then(|tracing| motion_beside(sample, base, *first, Some(&tracing), None));
+    if let Some(moving) = early.as_mut().and_then(|early| early.moving.take_if(|moving| moving.score >= CONVINCING)) {
         sort(&mut coarse);
         coarse.retain(|candidate| candidate.tracing != moving.tracing);
         coarse.insert(0, moving);
-        return TracingChoice { candidates: coarse };
+        return (coarse, None);
     }
     // Scaled down, a picture has less noise than as it is.
     if !is_good(&fine) && !others.is_empty() {
@@ -213,27 +247,51 @@ pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: 
     sort(&mut fine);
     coarse.retain(|candidate| !looked_at.iter().any(|tracing| tracing.is_like(&candidate.tracing)));
     fine.extend(coarse);
-    let best = fine.first();
-    let is_in_doubt = best.is_none_or(|best| best.rests || best.score < CONVINCING);
-    let rests = best.filter(|best| best.rests).map(|best| best.tracing);
-    let is_known = resting.is_some() && rests == resting;
-    let moving = || if is_known { early } else { moving_instead(sample, base, *first, rests.as_ref()) };
-    if is_in_doubt && let Some(moving) = moving() {
-        fine.retain(|candidate| candidate.tracing != moving.tracing);
-        fine.insert(0, moving);
-    }
-    TracingChoice { candidates: fine }
+    let beside = preferring_what_moves(sample, base, *first, &mut fine, resting.zip(early));
+    (fine, beside)
 }
 
-/// What moves, in place of a way that finds what `rests`, or nothing for sure.
-fn moving_instead(
+/// Puts what moves in front of what rests, or is in doubt; says what else moves where it does not. `known` is what has been found to move in place of
+/// a way.
+fn preferring_what_moves(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    channel: Channel,
+    candidates: &mut Vec<TracingEvidence>,
+    known: Option<(Tracing, Motion)>,
+) -> Option<TracingWarning> {
+    let best = candidates.first().map(|best| (best.tracing, best.rests, best.score));
+    let rests = best.filter(|(_, rests, _)| *rests).map(|(tracing, ..)| tracing);
+    let is_in_doubt = rests.is_some() || best.is_none_or(|(.., score)| score < CONVINCING);
+    if !is_in_doubt {
+        let (tracing, _, score) = best?;
+        let moving = || motion_beside(sample, base, channel, None, Some(&tracing))?.moving;
+        let moving = if score < GOOD { moving() } else { None };
+        return moving.map(|moving| TracingWarning::MovesBeside { seen: moving.found, pictures: moving.pictures });
+    }
+    let motion = match known {
+        Some((tracing, motion)) if Some(tracing) == rests => motion,
+        _ => motion_beside(sample, base, channel, rests.as_ref(), None)?,
+    };
+    if let Some(moving) = motion.moving {
+        candidates.retain(|candidate| candidate.tracing != moving.tracing);
+        candidates.insert(0, moving);
+        return None;
+    }
+    let changes = motion.changes.filter(|changes| changes.are_many())?;
+    Some(TracingWarning::MovesBesideRest { seen: changes.seen, pictures: changes.pictures })
+}
+
+/// What moves beside what `rests`, or beside `others`, where the pictures can show it.
+fn motion_beside(
     sample: &PictureSample,
     base: &PictureSettings,
     channel: Channel,
     rests: Option<&Tracing>,
-) -> Option<TracingEvidence> {
+    others: Option<&Tracing>,
+) -> Option<Motion> {
     let may_show = !sample.is_two_valued() && sample.len() >= FEWEST_FOR_MEDIAN;
-    if may_show { what_moves(sample, base, channel, rests) } else { None }
+    may_show.then(|| what_moves(sample, base, channel, rests, others))
 }
 
 /// The best ways once more, in more pictures as they are, with their variants. `looked_at` are those that have been looked at so.

@@ -4,6 +4,7 @@ use image::GrayImage;
 
 use super::scaled::{factor_for, scaled};
 use crate::channel::Channel;
+use crate::margins::Margins;
 use crate::picture_error::PictureError;
 use crate::picture_sequence::PictureFrame;
 use crate::trace::is_two_valued;
@@ -157,6 +158,33 @@ impl PictureSample {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
+    }
+
+    /// The even bars at the sides of the pictures of the sequence.
+    pub(super) fn bars(&self) -> Margins {
+        // In what is smaller, less than a pixel may be left of a bar.
+        self.channels
+            .first()
+            .map_or_else(Margins::default, |(_, pictures)| Margins::of_bars(pictures))
+            .times(self.factor)
+    }
+
+    /// What is left within margins, which are those of the sequence.
+    pub(super) fn within(&self, margins: Margins) -> Self {
+        let (columns, rows) = self.size;
+        let of_sample = margins.scaled(self.factor);
+        let within = |pictures: &Vec<Arc<GrayImage>>| -> Vec<Arc<GrayImage>> {
+            pictures.iter().map(|picture| Arc::new(of_sample.within(picture).into_owned())).collect()
+        };
+        Self {
+            channels: self.channels.iter().map(|(channel, pictures)| (*channel, within(pictures))).collect(),
+            size: (
+                columns.saturating_sub(margins.left + margins.right),
+                rows.saturating_sub(margins.top + margins.bottom),
+            ),
+            frames: self.frames.clone(),
+            factor: self.factor,
+        }
     }
 
     /// Numbers of the pictures, and what a channel shows.

@@ -1,7 +1,7 @@
 //! What is chosen to be followed where no option says it.
 use freeform_outline_io::{
-    Channel, GrayImage, PictureError, PictureFrame, PictureSample, PictureSettings, Selection, TraceSettings,
-    TracingEvidence, TracingWay, choose_tracing,
+    Channel, GrayImage, Margins, PictureError, PictureFrame, PictureSample, PictureSettings, Selection, TraceSettings,
+    TracedOutline, TracingChoice, TracingEvidence, TracingWarning, TracingWay, choose_tracing, trace_objects,
 };
 use image::Luma;
 
@@ -31,6 +31,10 @@ fn ruler(x: f64, y: f64) -> f64 {
 }
 
 fn chosen(pictures: &[GrayImage]) -> TracingEvidence {
+    choice(pictures).best().expect("a way").clone()
+}
+
+fn choice(pictures: &[GrayImage]) -> TracingChoice {
     let sample = PictureSample::read(&[Channel::Luminance], |_| {
         let frame = |(frame, picture): (u64, GrayImage)| {
             let time = frame as f64 / 30.0;
@@ -39,8 +43,7 @@ fn chosen(pictures: &[GrayImage]) -> TracingEvidence {
         Some((0..).zip(pictures.to_vec()).map(frame))
     });
     let trace = TraceSettings { minimum_area: 64, ..TraceSettings::default() };
-    let choice = choose_tracing(&sample, &PictureSettings { trace, ..PictureSettings::default() }, &[]);
-    choice.best().expect("a way").clone()
+    choose_tracing(&sample, &PictureSettings { trace, ..PictureSettings::default() }, &[])
 }
 
 #[test]
@@ -90,4 +93,137 @@ fn a_disc_that_swings_slowly_does_not_rest() {
         let best = chosen(&(0..24).map(swinging).collect::<Vec<_>>());
         assert_eq!(best.rests, amplitude == 0.0, "{best:?}");
     }
+}
+
+/// A ruler, to which something beside it is joined in some of the pictures, as a threshold between them joins things.
+fn joined_ruler(x: f64, y: f64, frame: u32) -> f64 {
+    let beside = ((x - 190.0).abs() - 36.0).max((y - 200.0).abs() - 9.0);
+    if frame < 8 { ruler(x, y).min(beside) } else { ruler(x, y) }
+}
+
+#[test]
+fn what_has_more_around_it_in_some_pictures_rests_where_it_lies_in_one_place_whenever_it_looks_the_same() {
+    for step in [0.0, 1.5] {
+        let moved = |frame: u32| picture(frame, |x, y| joined_ruler(x - step * f64::from(frame), y, frame));
+        let best = chosen(&(0..24).map(moved).collect::<Vec<_>>());
+        assert!(!matches!(best.tracing.way, TracingWay::Median(_)), "{step}: {best:?}");
+        assert!(best.movement > 5.0, "{step}: {best:?}");
+        assert_eq!(best.rests, step == 0.0, "{best:?}");
+    }
+}
+
+#[test]
+fn a_fast_thing_whose_area_is_never_the_same_is_followed_where_something_larger_rests() {
+    let pictures = (0..24).map(|frame| {
+        // To and fro, as a pendulum does.
+        let along = 110.0 * (0.5 + 0.35 * f64::from(frame)).sin();
+        let radius = [4.9, 5.88][frame as usize % 2];
+        let place = [150.0 + along, 215.0 - 0.0009 * along * along, radius];
+        picture(frame, |x, y| (ruler(x, y + 25.0)).min(disc(x, y, place)))
+    });
+    let best = chosen(&pictures.collect::<Vec<_>>());
+    assert!(matches!(best.tracing.way, TracingWay::Median(_)) && !best.rests, "{best:?}");
+    assert!(best.movement > 100.0, "{best:?}");
+    // It is not told by its score, which is that of clutter.
+    assert!(best.score < 0.005, "{best:?}");
+}
+
+#[test]
+fn changes_beside_what_rests_are_warned_of_and_noise_is_not() {
+    for changing in [false, true] {
+        let pictures = (0..24).map(|frame| {
+            // Here and there, in no way that goes on.
+            let at = |k: u32| f64::from(frame * 7919 + k * 104_729).sin().abs();
+            let place =
+                [20.0 + 100.0 * at(1), 20.0 + 190.0 * at(2), if changing && frame % 2 == 0 { 9.0 } else { -9.0 }];
+            picture(frame, |x, y| ruler(x - 60.0, y).min(disc(x, y, place)))
+        });
+        let choice = choice(&pictures.collect::<Vec<_>>());
+        assert!(choice.best().is_some_and(|best| best.rests), "{choice:?}");
+        let warned: Vec<TracingWarning> = choice.warnings().collect();
+        let expected = if changing { vec![TracingWarning::MovesBesideRest { seen: 12, pictures: 24 }] } else { vec![] };
+        assert_eq!(warned, expected);
+    }
+}
+
+/// A picture between even bars above and below, as of a video that was fitted into another shape.
+fn between_bars(frame: u32, of_picture: &GrayImage, [above, below]: [u32; 2]) -> GrayImage {
+    GrayImage::from_fn(320, 240, |x, y| {
+        let is_bar = y < above || y >= 240 - below;
+        if is_bar { Luma([(3.0 + 0.3 * noise(x, y, frame)).round() as u8]) } else { *of_picture.get_pixel(x, y) }
+    })
+}
+
+#[test]
+fn even_bars_at_the_sides_of_pictures_are_left_out_and_a_plain_ground_is_not() {
+    for bars in [[0, 0], [30, 0], [24, 37]] {
+        let frame = |frame: u32| {
+            let place = [60.0 + 8.0 * f64::from(frame), 90.0, 21.0];
+            between_bars(frame, &picture(frame, |x, y| disc(x, y, place)), bars)
+        };
+        let pictures: Vec<GrayImage> = (0..24).map(frame).collect();
+        let choice = choice(&pictures);
+        // With the rows in which bar and picture may be mixed.
+        let [top, bottom] = bars.map(|rows| if rows > 0 { rows + 2 } else { 0 });
+        assert_eq!(choice.margins, Margins { top, bottom, ..Margins::default() });
+        let best = choice.best().expect("a way");
+        assert_eq!((best.tracing.way, best.objects, best.clipped), (TracingWay::Lighter, 1, 0.0), "{best:?}");
+        assert!(best.movement > 100.0, "{best:?}");
+    }
+}
+
+#[test]
+fn an_outline_has_the_same_points_with_margins_and_is_clipped_by_them() {
+    let picture = picture(0, |x, y| disc(x, y, [120.0, 90.0, 30.0]));
+    let traced = |margins: Margins| {
+        let trace = TraceSettings { margins, pixel_size: 0.5, ..TraceSettings::default() };
+        trace_objects(&picture, &trace, 2).expect("a disc").remove(0)
+    };
+    let [whole, within] = [Margins::default(), Margins { left: 40, top: 30, right: 60, bottom: 25 }].map(traced);
+    assert!(!within.touches_border);
+    let points = |traced: &TracedOutline| traced.outline.pieces().next().expect("a piece").points.to_vec();
+    let [whole, within] = [whole, within].map(|traced| points(&traced));
+    assert_eq!(within.len(), whole.len());
+    // Up to rounding.
+    assert!(whole.iter().zip(&within).all(|(p, q)| (p - q).norm() < 1e-9));
+    assert!(traced(Margins { top: 80, ..Margins::default() }).touches_border);
+}
+
+#[test]
+fn bars_between_pictures_side_by_side_are_left_as_they_are() {
+    for between in [0, 8] {
+        let pictures: Vec<GrayImage> = (0..24)
+            .map(|frame| {
+                let place = [60.0 + 2.0 * f64::from(frame), 90.0, 21.0];
+                let picture = picture(frame, |x, y| disc(x, y, place));
+                let is_bar =
+                    |x: u32, y: u32| x.min(319 - x) < 14 || y.min(239 - y) < 14 || (200..200 + between).contains(&x);
+                GrayImage::from_fn(320, 240, |x, y| if is_bar(x, y) { Luma([2]) } else { *picture.get_pixel(x, y) })
+            })
+            .collect();
+        let margins =
+            if between == 0 { Margins { left: 16, top: 16, right: 16, bottom: 16 } } else { Margins::default() };
+        assert_eq!(choice(&pictures).margins, margins);
+    }
+}
+
+#[test]
+fn specks_at_random_places_do_not_go_straight_on_so_often_that_they_are_followed_for_that_alone() {
+    let mut followed = 0;
+    for seed in 0..12_u32 {
+        let mut state = 1 + u64::from(seed);
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / f64::from(1_u32 << 31)
+        };
+        let pictures = (0..24).map(|frame| {
+            let specks: Vec<[f64; 3]> =
+                (0..8).map(|_| [10.0 + 300.0 * random(), 10.0 + 220.0 * random(), 4.8 + 2.0 * random()]).collect();
+            picture(frame, |x, y| specks.iter().map(|speck| disc(x, y, *speck)).fold(ruler(x, y), f64::min))
+        });
+        let best = chosen(&pictures.collect::<Vec<_>>());
+        // Some happen to be alike in area and shape too, which the score tells.
+        followed += u32::from(matches!(best.tracing.way, TracingWay::Median(_)) && best.score < 0.005);
+    }
+    assert_eq!(followed, 0);
 }
