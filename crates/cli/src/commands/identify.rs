@@ -72,7 +72,13 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 /// A tracker with all options, for outlines that may lie off as pictures say.
 fn tracker(args: &IdentifyArgs, by_pictures: Option<OutlineUncertainty>) -> Result<Tracker, Failure> {
     let tracker = Tracker::new(args.tracker_settings(by_pictures)?).map_err(Failure::unusable)?;
-    Ok(if args.report.is_some() { tracker.with_known_outlines(OBJECTS_PLAYED) } else { tracker })
+    // A report plays few objects, drawings show all of them.
+    let objects = match (&args.overlay, &args.report) {
+        (Some(_), _) => usize::MAX,
+        (None, Some(_)) => OBJECTS_PLAYED,
+        (None, None) => 0,
+    };
+    Ok(tracker.with_known_outlines(objects))
 }
 
 /// The truth that results are shown beside: that of the options, or of the file where it is that of what is identified.

@@ -1,5 +1,5 @@
 //! Where drawings of pictures go, and where not.
-use image::{GrayImage, ImageFormat};
+use image::{GrayImage, ImageFormat, Luma};
 
 use crate::pears::{encoded, names, pear, pears};
 use crate::support::{file, run, stderr, stdout, succeed};
@@ -89,4 +89,31 @@ fn drawings_do_not_go_among_the_pictures_of_the_input() {
         }
     }
     assert_eq!(names(&frames).len(), 3);
+}
+
+/// Pixels of a drawing in the colour of what the method knows, from some column on.
+fn blue_pixels(path: &str, from: u32) -> usize {
+    let picture = image::open(path).expect("a drawing").to_rgb8();
+    picture.enumerate_pixels().filter(|(column, _, p)| *column >= from && p.0[2] > p.0[0].saturating_add(60)).count()
+}
+
+#[test]
+fn a_drawing_shows_the_known_outline_also_where_a_part_is_hidden_and_no_curve_that_the_filter_does_not_fit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = pears(folder.path(), "frames", 14);
+    // The end of the last pear is covered.
+    let covered = pear(13);
+    let covered = GrayImage::from_fn(160, 120, |x, y| if x < 97 { *covered.get_pixel(x, y) } else { Luma([30]) });
+    covered.save(format!("{frames}/13.png")).expect("a picture");
+    for command in ["identify", "track"] {
+        for (method, hidden) in [("filter", 40..250), ("adaptive", 0..10)] {
+            let drawn = format!("{base}/{command}-{method}");
+            succeed(&format!("{command} {frames} --fps 10 --method {method} --quiet --overlay {drawn}"), "");
+            let blue = blue_pixels(&format!("{drawn}/000013.png"), 103);
+            assert!(hidden.contains(&blue), "{command} {method}: {blue}");
+        }
+        // In the first frame all is seen: the known outline lies below what was traced.
+        let blue = blue_pixels(&format!("{base}/{command}-filter/000000.png"), 0);
+        assert!(blue < 40, "{command}: {blue}");
+    }
 }
