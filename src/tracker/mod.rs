@@ -47,7 +47,7 @@ pub use self::{
     result::ObjectResult,
     result_csv::{AdaptiveColumns, TraceWriter, write_results},
     settings::{Method, MethodSettings, TrackerError, TrackerSettings},
-    trajectory::{PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
+    trajectory::{NotSmoothed, PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
     trajectory_csv::write_trajectory,
 };
 pub use crate::{
@@ -182,6 +182,13 @@ impl Tracker {
     #[must_use]
     pub fn motion_changed(&self) -> bool {
         self.objects.list.iter().any(TrackedObject::motion_changed)
+    }
+
+    /// Whether the motion of an object changed; not that of one that the tracker does not know.
+    #[must_use]
+    pub fn motion_of_object_changed(&self, object: &str) -> bool {
+        let position = self.objects.positions.get(object);
+        position.is_some_and(|position| self.objects.list[*position].motion_changed())
     }
 
     fn object(&mut self, name: &str) -> &mut TrackedObject {

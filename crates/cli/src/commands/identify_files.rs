@@ -4,7 +4,7 @@ use std::path::Path;
 use freeform_drawing::{Histories, Purpose, parameter_figure};
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::tracker::{
-    AdaptiveColumns, ObjectResult, Observation, SmoothingError, TraceWriter, Trajectory, write_trajectory,
+    AdaptiveColumns, ObjectResult, Observation, TraceWriter, Trajectory, write_trajectory,
 };
 use freeform_motion::{Tracker, Truth};
 
@@ -12,6 +12,9 @@ use crate::args::{IdentifyArgs, IdentifyMethod};
 use crate::failure::{Failure, file_failure, warn};
 use crate::output::WholeFile;
 use crate::overlay::curves;
+
+/// Objects that are named where their poses are not smoothed.
+const NOT_SMOOTHED_TOLD: usize = 5;
 
 /// What is written frame by frame, or kept for figures. Files are begun before the work, which is not to be lost where there
 /// is no place for them.
@@ -87,11 +90,11 @@ impl<'a> Files<'a> {
         }
         if let Some((path, mut file, mut trajectory)) = trajectory {
             if args.smooth {
-                match trajectory.smooth(tracker) {
-                    Err(changed @ SmoothingError::MotionChanged) => {
-                        warn(&format!("--smooth: {changed}; the poses are not smoothed"));
-                    }
-                    smoothed => smoothed.map_err(Failure::unusable)?,
+                let not_smoothed = trajectory.smooth(tracker);
+                let told = not_smoothed.len().min(NOT_SMOOTHED_TOLD);
+                not_smoothed[..told].iter().for_each(|object| warn(&format!("--smooth: {object}")));
+                if told < not_smoothed.len() {
+                    warn(&format!("--smooth: nor are those of {} more object(s)", not_smoothed.len() - told));
                 }
             }
             let written = write_trajectory(&mut file, &trajectory, model, args.options.scale);

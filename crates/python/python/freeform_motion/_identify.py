@@ -173,6 +173,7 @@ def track(
         As of `identify`.
     smooth : bool
         Whether later frames take part in the poses of earlier ones, for a constant motion; `adaptive=False` says that it is one.
+        The poses of an object whose motion was seen to change stay as they are, and a `UserWarning` says so.
 
     Returns
     -------
@@ -186,7 +187,7 @@ def track(
     Raises
     ------
     ValueError, TypeError
-        As `identify`; also a motion that changes, if it is to be smoothed.
+        As `identify`.
     """
     kind = kind_of(data)
     tracer, tracker = _split(options, data, kind, times, columns, motion=motion, method=method, scale=scale)
