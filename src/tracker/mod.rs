@@ -9,6 +9,7 @@ mod contour_order;
 mod edge_seeker;
 mod family;
 mod identifier;
+mod not_stated;
 mod object;
 mod observation;
 mod plane_object;
@@ -42,9 +43,10 @@ pub use self::{
     attendance::{Attendance, Sighting},
     edge_seeker::EdgeSeeker,
     family::MotionFamily,
+    not_stated::NotStated,
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
-    result::ObjectResult,
+    result::{ObjectResult, VELOCITY_NAMES},
     result_csv::{AdaptiveColumns, TraceWriter, write_results},
     settings::{Method, MethodSettings, TrackerError, TrackerSettings},
     trajectory::{NotSmoothed, PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},

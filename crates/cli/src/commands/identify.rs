@@ -3,7 +3,7 @@ use std::io::Write as _;
 use freeform_drawing::{Findings, MeaningOfB, OBJECTS_PLAYED, Report, write_report};
 use freeform_motion::outline_io::OutlineUncertainty;
 use freeform_motion::riccati::MotionModel;
-use freeform_motion::tracker::{ObjectResult, write_results};
+use freeform_motion::tracker::{NotStated, ObjectResult, write_results};
 use freeform_motion::{Tracker, Truth, Warning};
 
 use super::identify_files::Files;
@@ -27,6 +27,9 @@ const STATES_IN_MEMORY: usize = 1024;
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
+/// Where more is found than the motion at the end.
+const POSES_OVER_TIME: &str = "poses over time: --trajectory FILE";
+
     check(args)?;
     // Options are refused before an input is waited for.
     let mut tracker = tracker(args, None)?;
@@ -62,8 +65,8 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     outcome.warn_of_objects_not_drawn(&files);
     let report = files.report.take().filter(|_| outcome.is_anything_read());
     let reported = report.map_or(Ok(()), |file| outcome.report(file, &files));
-    let printed = outcome.print();
-    files.finish(&tracker, outcome.truth.as_ref(), &outcome.results)?;
+    let printed = outcome.print(files.has_poses);
+    files.finish(&tracker, outcome.truth.as_ref(), &outcome.results, &outcome.b)?;
     printed?;
     reported?;
     outcome.failure.map_or(Ok(()), Err)
@@ -193,7 +196,7 @@ impl<'a> Outcome<'a> {
     }
 
     /// Prints the results and what they warn of, or only what the failure does not say.
-    fn print(&self) -> Result<(), Failure> {
+    fn print(&self, has_poses: bool) -> Result<(), Failure> {
         if !self.is_found {
             self.warn_of_order();
             return Ok(());
@@ -206,7 +209,10 @@ impl<'a> Outcome<'a> {
         let written = match if args.json { IdentifyFormat::Json } else { args.format } {
             IdentifyFormat::Table => {
                 let table = write_identify_table(&mut sink, results, self.truth.as_ref(), b);
-                table.and_then(|()| if self.says_b() { writeln!(sink, "b: {b}") } else { Ok(()) })
+                let table = table.and_then(|()| if self.says_b() { writeln!(sink, "b: {b}") } else { Ok(()) });
+                // The motion at the end is not all that is known.
+                let is_pointed_to = has_poses && args.trajectory.is_none() && self.lacks_motion();
+                table.and_then(|()| if is_pointed_to { writeln!(sink, "{POSES_OVER_TIME}") } else { Ok(()) })
             }
             IdentifyFormat::Json => write_identify_json(&mut sink, results, b, &self.left_out),
             IdentifyFormat::Csv => write_results(&mut sink, results),
@@ -224,6 +230,14 @@ impl<'a> Outcome<'a> {
     fn warn_of_order(&self) {
         for result in self.results.iter().filter(|_| !self.args.quiet) {
             let order = result.warnings.iter().filter(|warning| matches!(warning, Warning::PointsOutOfOrder { .. }));
+    /// Whether a parameter of any object is not known at the end that may have been known before.
+    fn lacks_motion(&self) -> bool {
+        self.results.iter().any(|result| {
+            let names = result.motion.parameter_names();
+            names.iter().any(|name| result.not_stated(name) == Some(NotStated::Unknown))
+        })
+    }
+
             order.for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
     }

@@ -1,11 +1,9 @@
 //! The files of `identify`.
 use std::path::Path;
 
-use freeform_drawing::{Histories, Purpose, parameter_figure};
+use freeform_drawing::{Histories, MeaningOfB, Purpose, parameter_figure};
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::tracker::{
-    AdaptiveColumns, ObjectResult, Observation, TraceWriter, Trajectory, write_trajectory,
-};
+use freeform_motion::tracker::{AdaptiveColumns, ObjectResult, Observation, TraceWriter, Trajectory, write_trajectory};
 use freeform_motion::{Tracker, Truth};
 
 use crate::args::{IdentifyArgs, IdentifyMethod};
@@ -25,6 +23,8 @@ pub(super) struct Files<'a> {
     svg: Option<WholeFile>,
     pub(super) report: Option<WholeFile>,
     pub(super) histories: Histories,
+    /// Whether a pose of any object was known in any frame.
+    pub(super) has_poses: bool,
 }
 
 impl<'a> Files<'a> {
@@ -47,7 +47,7 @@ impl<'a> Files<'a> {
         };
         let histories = Histories::new(purpose, curves(&args.options)?);
         let report = args.report.as_deref().map(WholeFile::create).transpose()?;
-        Ok(Self { args, trace, trajectory, svg, report, histories })
+        Ok(Self { args, trace, trajectory, svg, report, histories, has_poses: false })
     }
 
     /// Takes what a frame of an object gave.
@@ -55,6 +55,7 @@ impl<'a> Files<'a> {
         if let Some((path, trace)) = &mut self.trace {
             trace.write(observation).map_err(|error| file_failure(path, &error))?;
         }
+        self.has_poses |= observation.state.is_some();
         if let Some((_, _, trajectory)) = &mut self.trajectory {
             trajectory.take(observation);
         }
@@ -70,6 +71,7 @@ impl<'a> Files<'a> {
         tracker: &Tracker,
         truth: Option<&Truth>,
         results: &[ObjectResult],
+        b: &MeaningOfB,
     ) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
@@ -104,7 +106,7 @@ impl<'a> Files<'a> {
         if results.iter().all(|result| result.parameters().is_none()) {
             not_written(&[("--svg", svg.is_some())], "there is no motion to draw");
         } else if let Some(file) = svg {
-            file.finish_with(parameter_figure(&histories, args.options.motion.family(), truth).as_bytes())?;
+            file.finish_with(parameter_figure(&histories, args.options.motion.family(), truth, b).as_bytes())?;
         }
         Ok(())
     }

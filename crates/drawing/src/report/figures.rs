@@ -1,9 +1,11 @@
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::ParameterEstimate;
+use freeform_motion::riccati::ParameterKind;
 use freeform_motion::tracker::MotionFamily;
 use freeform_motion::{FittedOutline, Truth, short};
 use nalgebra::Point2;
 
+use super::meaning_of_b::MeaningOfB;
 use crate::figure::{Curve, Look, Panel};
 use crate::history::{Histories, History};
 use crate::plot::stacked_svg;
@@ -83,13 +85,14 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
     }
 }
 
-/// The parameters of all objects against time with 95 % bands, as an SVG file; beside them the truth, where it is known and constant.
+/// The parameters of all objects against time with 95 % bands, as an SVG file; beside them the truth, where it is known and constant. `b` says the
+/// unit of velocities.
 #[must_use]
-pub fn parameter_figure(histories: &Histories, family: MotionFamily, truth: Option<&Truth>) -> String {
+pub fn parameter_figure(histories: &Histories, family: MotionFamily, truth: Option<&Truth>, b: &MeaningOfB) -> String {
     let several = histories.list.len() > 1;
     let panels = histories.list.iter().flat_map(|history| {
         let prefix = if several { format!("Object {}: ", history.object) } else { String::new() };
-        parameter_panels(history, &prefix, family, truth)
+        parameter_panels(history, &prefix, family, truth, b)
     });
     stacked_svg(&panels.collect::<Vec<_>>(), 720.0, 270.0)
 }
@@ -103,9 +106,10 @@ pub(crate) fn parameter_panels(
 ) -> Vec<Panel> {
     // A level line would be wrong of a motion that changes.
     let truth = truth.and_then(|truth| truth.constant_parameters_in(family));
-    let names = family.parameter_names().iter().zip(family.units()).enumerate();
+    let names = family.parameter_names().iter().zip(family.units()).zip(family.parameter_kinds()).enumerate();
     names
-        .map(|(index, (name, unit))| {
+        .map(|(index, ((name, unit), kind))| {
+            let unit = if *kind == ParameterKind::Velocity { b.short_unit } else { unit };
             let mut curves = history.curves(index);
             if let (Some(truth), Some((first, last))) = (&truth, history.time_range()) {
                 let runs = vec![vec![[first, truth[index]], [last, truth[index]]]];
@@ -114,6 +118,7 @@ pub(crate) fn parameter_panels(
             Panel {
                 title: format!("{prefix}{}", meaning(name)),
                 x_label: "time (s)".to_owned(),
+    b: &MeaningOfB,
                 y_label: format!("{name} ({unit})"),
                 curves,
                 x_from: history.start,
@@ -219,3 +224,26 @@ mod tests {
         assert_eq!(history.time_range(), Some((1.0, 8.0)));
     }
 }
+
+    #[test]
+    fn a_few_wide_bands_do_not_make_a_flat_line_of_the_others_and_values_beyond_are_counted() {
+        let panel = |early: f64, frames: u32| {
+            let estimates = (0..frames).map(|frame| {
+                let (value, deviation) =
+                    if frame < 3 { (early, early) } else { (1.5 + 0.01 * f64::from(frame % 2), 0.02) };
+                let estimate =
+                    MotionEstimate::new(MotionModel::Rigid, &[value, 0.0, 0.0], Some(&[deviation, 0.1, 0.1]));
+                (f64::from(frame), Some(estimate.parameters().collect()))
+            });
+            let history = History { estimates: estimates.collect(), ..History::of("a".to_owned()) };
+            parameter_panels(&history, "", MotionModel::Rigid.into(), None, &MeaningOfB::default()).swap_remove(0)
+        };
+        let most = panel(40.0, 300);
+        let [low, high] = most.y_limits.expect("a range of most values");
+        assert!(low > 1.3 && low < 1.46 && high > 1.55 && high < 1.7, "{low} {high}");
+        assert!(most.title.ends_with(", 3 values beyond"), "{}", most.title);
+        // Where the others are seen all the same, all are, and so they are where they are many.
+        for all in [panel(1.55, 300), panel(40.0, 20)] {
+            assert!(all.y_limits.is_none() && !all.title.contains("beyond"), "{}", all.title);
+        }
+    }
