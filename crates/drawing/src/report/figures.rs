@@ -10,6 +10,16 @@ use crate::figure::{Curve, Look, Panel};
 use crate::history::{Histories, History};
 use crate::plot::stacked_svg;
 
+/// Share of the values and band edges at each end of their range that need not be within a figure of a parameter: the first frames tell little, and
+/// their bands would make a flat line of all that comes after them.
+const BEYOND: f64 = 0.04;
+
+/// A range of all values is kept if it is no wider than so many ranges of most of them.
+const RANGES_OF_MOST: f64 = 8.0;
+
+/// Room above and below the range of most values, as a share of it.
+const ROOM_AROUND_MOST: f64 = 0.5;
+
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
 
@@ -116,7 +126,7 @@ pub(crate) fn parameter_panels(
                 curves.push(Curve { name: "true value".to_owned(), look: Look::Truth, runs });
             }
             Panel {
-                title: format!("{prefix}{}", meaning(name)),
+                title: format!("{prefix}{}{note}", meaning(name)),
                 x_label: "time (s)".to_owned(),
     b: &MeaningOfB,
                 y_label: format!("{name} ({unit})"),
@@ -125,6 +135,7 @@ pub(crate) fn parameter_panels(
                 ..Panel::default()
             }
         })
+                y_limits: limits,
         .collect()
 }
 
@@ -202,6 +213,27 @@ impl History {
 mod tests {
     use freeform_motion::estimate::MotionEstimate;
     use freeform_motion::riccati::MotionModel;
+/// The y axis of a parameter where few of its values and band edges would hide how the others go: the range of most of them, and a true value.
+fn limits_of_most(curves: &[Curve], truth: Option<f64>) -> Option<[f64; 2]> {
+    let points = curves.iter().flat_map(|curve| curve.runs.iter().flatten()).map(|point| point[1]);
+    let mut values: Vec<f64> = points.filter(|value| value.is_finite()).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let (first, last) = (*values.first()?, *values.last()?);
+    let left_out = (BEYOND * values.len() as f64) as usize;
+    let (low, high) = (values[left_out], values[values.len() - 1 - left_out]);
+    let (low, high) = truth.map_or((low, high), |truth| (low.min(truth), high.max(truth)));
+    let range = high - low;
+    let is_hidden = range > 0.0 && last.max(high) - first.min(low) > RANGES_OF_MOST * range;
+    is_hidden.then(|| [low - ROOM_AROUND_MOST * range, high + ROOM_AROUND_MOST * range])
+}
+
+/// Values of the line that are beyond the limits of its axis.
+fn values_beyond(curves: &[Curve], [low, high]: [f64; 2]) -> usize {
+    let lines = curves.iter().filter(|curve| curve.look == Look::Line);
+    let values = lines.flat_map(|curve| curve.runs.iter().flatten()).map(|point| point[1]);
+    values.filter(|value| !(low..=high).contains(value)).count()
+}
+
 
     use super::*;
 
