@@ -16,7 +16,8 @@ use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::LeftOut;
 use crate::output::{
-    Sink, WholeFile, refuse_overwriting, refuse_standard_output, write_identify_json, write_identify_table,
+    Sink, WholeFile, refuse_other_format, refuse_overwriting, refuse_standard_output, write_identify_json,
+    write_identify_table,
 };
 use crate::overlay::InputOverlay;
 use crate::picture_input::PictureInput;
@@ -116,6 +117,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
         warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
     }
     if args.options.dynamics != DynamicsChoice::Auto
+    refuse_other_format(args.svg.as_deref())?;
         && args.options.motion.model() == MotionModel::Projective
         && !args.quiet
     {

@@ -19,13 +19,10 @@ fn a_file_that_has_no_place_is_told_before_the_work_and_not_after_it() {
         "fit --svg",
         "outline --output",
     ] {
-        let output = run(&format!("{arguments} {base}/no/file.gif {frames}"), "");
+        let name = if arguments.ends_with("--svg") { "file.svg" } else { "file.gif" };
+        let output = run(&format!("{arguments} {base}/no/{name} {frames}"), "");
         assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{arguments}");
-        assert_eq!(
-            stderr(&output),
-            format!("freeform: {base}/no/file.gif: No such file or directory\n"),
-            "{arguments}"
-        );
+        assert_eq!(stderr(&output), format!("freeform: {base}/no/{name}: No such file or directory\n"), "{arguments}");
     }
     assert_eq!(names(&base), ["frames"]);
 }
@@ -116,4 +113,21 @@ fn a_drawing_shows_the_known_outline_also_where_a_part_is_hidden_and_no_curve_th
         let blue = blue_pixels(&format!("{base}/{command}-filter/000000.png"), 0);
         assert!(blue < 40, "{command}: {blue}");
     }
+}
+
+#[test]
+fn a_figure_whose_name_says_another_format_is_refused_and_one_of_any_other_name_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = pears(folder.path(), "frames", 4);
+    for command in ["identify", "fit"] {
+        for name in ["x.png", "x.JPG", "x.pdf"] {
+            let output = run(&format!("{command} {frames} --svg {base}/{name}"), "");
+            let reason = format!("freeform: {base}/{name}: --svg writes SVG, give a name that ends in .svg\n");
+            assert_eq!((output.status.code(), stderr(&output)), (Some(2), reason), "{command}");
+        }
+        assert_eq!(names(&base), ["frames"], "{command}");
+    }
+    succeed(&format!("fit {frames} --frame 1 --svg {base}/figure.v2"), "");
+    let figure = std::fs::read_to_string(format!("{base}/figure.v2")).expect("a figure");
+    assert!(figure.contains("degree 4, residual "), "{}", &figure[..figure.len().min(2000)]);
 }

@@ -2,7 +2,7 @@ use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::ParameterEstimate;
 use freeform_motion::riccati::ParameterKind;
 use freeform_motion::tracker::MotionFamily;
-use freeform_motion::{FittedOutline, Truth, short};
+use freeform_motion::{FittedOutline, Truth, short, significant};
 use nalgebra::Point2;
 
 use super::meaning_of_b::MeaningOfB;
@@ -41,13 +41,17 @@ pub(super) const BAND: f64 = 1.96;
 /// let frame = OutlineFrame { frame: 0, time: 0.0, object: DEFAULT_OBJECT.to_owned(), outline };
 /// let fit = Fitter::new(FitSettings::default())?.fit(&frame.outline)?;
 /// let svg = fit_figure(&[(FittedOutline::new(&frame, fit), frame.outline)]);
-/// assert!(svg.contains("fitted curve"));
+/// assert!(svg.contains("fitted curve") && svg.contains("residual 0.0"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use]
 pub fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
     let title = drawn.first().map_or_else(String::new, |(fitted, _)| {
-        format!("Frame {} at {} s, degree {}", fitted.frame, short(fitted.time), fitted.fit.working().degree())
+        let (time, degree) = (short(fitted.time), fitted.fit.working().degree());
+        let residuals = drawn.iter().map(|(fitted, _)| fitted.fit.diagnostics().geometric_residual);
+        let largest = significant(residuals.fold(0.0, f64::max), 3);
+        let up_to = if drawn.len() > 1 { "up to " } else { "" };
+        format!("Frame {} at {time} s, degree {degree}, residual {up_to}{largest}", fitted.frame)
     });
     stacked_svg(&[fit_panel(title, drawn)], 640.0, 640.0)
 }
@@ -113,6 +117,7 @@ pub(crate) fn parameter_panels(
     prefix: &str,
     family: MotionFamily,
     truth: Option<&Truth>,
+    b: &MeaningOfB,
 ) -> Vec<Panel> {
     // A level line would be wrong of a motion that changes.
     let truth = truth.and_then(|truth| truth.constant_parameters_in(family));
@@ -121,6 +126,9 @@ pub(crate) fn parameter_panels(
         .map(|(index, ((name, unit), kind))| {
             let unit = if *kind == ParameterKind::Velocity { b.short_unit } else { unit };
             let mut curves = history.curves(index);
+            let limits = limits_of_most(&curves, truth.as_ref().map(|truth| truth[index]));
+            let beyond = limits.map_or(0, |limits| values_beyond(&curves, limits));
+            let note = if beyond > 0 { format!(", {beyond} values beyond") } else { String::new() };
             if let (Some(truth), Some((first, last))) = (&truth, history.time_range()) {
                 let runs = vec![vec![[first, truth[index]], [last, truth[index]]]];
                 curves.push(Curve { name: "true value".to_owned(), look: Look::Truth, runs });
@@ -128,14 +136,13 @@ pub(crate) fn parameter_panels(
             Panel {
                 title: format!("{prefix}{}{note}", meaning(name)),
                 x_label: "time (s)".to_owned(),
-    b: &MeaningOfB,
                 y_label: format!("{name} ({unit})"),
                 curves,
+                y_limits: limits,
                 x_from: history.start,
                 ..Panel::default()
             }
         })
-                y_limits: limits,
         .collect()
 }
 
@@ -209,10 +216,6 @@ impl History {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use freeform_motion::estimate::MotionEstimate;
-    use freeform_motion::riccati::MotionModel;
 /// The y axis of a parameter where few of its values and band edges would hide how the others go: the range of most of them, and a true value.
 fn limits_of_most(curves: &[Curve], truth: Option<f64>) -> Option<[f64; 2]> {
     let points = curves.iter().flat_map(|curve| curve.runs.iter().flatten()).map(|point| point[1]);
@@ -234,6 +237,10 @@ fn values_beyond(curves: &[Curve], [low, high]: [f64; 2]) -> usize {
     values.filter(|value| !(low..=high).contains(value)).count()
 }
 
+#[cfg(test)]
+mod tests {
+    use freeform_motion::estimate::MotionEstimate;
+    use freeform_motion::riccati::MotionModel;
 
     use super::*;
 
@@ -255,7 +262,6 @@ fn values_beyond(curves: &[Curve], [low, high]: [f64; 2]) -> usize {
         assert_eq!(lengths(&history.curves(1)[1]), [4, 3]);
         assert_eq!(history.time_range(), Some((1.0, 8.0)));
     }
-}
 
     #[test]
     fn a_few_wide_bands_do_not_make_a_flat_line_of_the_others_and_values_beyond_are_counted() {
@@ -279,3 +285,4 @@ fn values_beyond(curves: &[Curve], [low, high]: [f64; 2]) -> usize {
             assert!(all.y_limits.is_none() && !all.title.contains("beyond"), "{}", all.title);
         }
     }
+}
