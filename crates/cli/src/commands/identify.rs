@@ -12,6 +12,7 @@ use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, 
 use crate::command_line::command_line;
 use crate::failure::{Failure, warn};
 use crate::handful::handful;
+use crate::hints::Hints;
 use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::LeftOut;
@@ -26,11 +27,11 @@ use crate::reader::{Event, follow};
 /// Objects whose states are kept in memory: 25 kB each where outlines are small, up to half a megabyte.
 const STATES_IN_MEMORY: usize = 1024;
 
-/// Identifies the motion of every object of a sequence.
-pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 /// Where more is found than the motion at the end.
 const POSES_OVER_TIME: &str = "poses over time: --trajectory FILE";
 
+/// Identifies the motion of every object of a sequence.
+pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
     // Options are refused before an input is waited for.
     let mut tracker = tracker(args, None)?;
@@ -46,13 +47,17 @@ const POSES_OVER_TIME: &str = "poses over time: --trajectory FILE";
         tracker.keep_states_in(file, STATES_IN_MEMORY);
     }
 
-    let mut left_out = LeftOut::default();
+    let (mut left_out, mut hints) = (LeftOut::default(), Hints::default());
     let failure = follow(&mut tracker, &mut input, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
             overlay.take(event)?;
         }
         match event {
-            Event::Object(observation, seen) => files.take(observation, seen.as_ref().map(|(frame, _)| frame)),
+            Event::Object(observation, seen) => {
+                let frame = seen.as_ref().map(|(frame, _)| frame);
+                hints.take(observation, frame);
+                files.take(observation, frame)
+            }
             Event::Gap(missing) => {
                 left_out.take(missing);
                 Ok(())
@@ -63,6 +68,9 @@ const POSES_OVER_TIME: &str = "poses over time: --trajectory FILE";
     files.histories.close();
 
     let outcome = Outcome::new(args, &input, &tracker, truth, left_out, failure);
+    if !args.quiet && !input.has_pictures() {
+        hints.told().iter().for_each(|hint| warn(hint));
+    }
     outcome.warn_of_objects_not_drawn(&files);
     let report = files.report.take().filter(|_| outcome.is_anything_read());
     let reported = report.map_or(Ok(()), |file| outcome.report(file, &files));
@@ -109,6 +117,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.options.files_read(&args.pictures, &args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
+    refuse_other_format(args.svg.as_deref())?;
     args.options.check()?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
         return Err(Failure::unusable("--trajectory: the adaptive method gives no poses; use --method filter"));
@@ -117,7 +126,6 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
         warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
     }
     if args.options.dynamics != DynamicsChoice::Auto
-    refuse_other_format(args.svg.as_deref())?;
         && args.options.motion.model() == MotionModel::Projective
         && !args.quiet
     {
@@ -222,6 +230,14 @@ impl<'a> Outcome<'a> {
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
     }
 
+    /// Whether a parameter of any object is not known at the end that may have been known before.
+    fn lacks_motion(&self) -> bool {
+        self.results.iter().any(|result| {
+            let names = result.motion.parameter_names();
+            names.iter().any(|name| result.not_stated(name) == Some(NotStated::Unknown))
+        })
+    }
+
     /// Whether the table needs to say what b is: that of a file is in its own coordinates.
     fn says_b(&self) -> bool {
         let is_in_picture = self.args.options.motion.family().model().is_some();
@@ -232,14 +248,6 @@ impl<'a> Outcome<'a> {
     fn warn_of_order(&self) {
         for result in self.results.iter().filter(|_| !self.args.quiet) {
             let order = result.warnings.iter().filter(|warning| matches!(warning, Warning::PointsOutOfOrder { .. }));
-    /// Whether a parameter of any object is not known at the end that may have been known before.
-    fn lacks_motion(&self) -> bool {
-        self.results.iter().any(|result| {
-            let names = result.motion.parameter_names();
-            names.iter().any(|name| result.not_stated(name) == Some(NotStated::Unknown))
-        })
-    }
-
             order.for_each(|warning| warn(&format!("object {}: {warning}", result.object)));
         }
     }
