@@ -100,7 +100,8 @@ def identify(
     ----------
     data : masks, outlines or table
         Masks: an array of shape (frames, height, width), bool or integer labels with 0 for the ground, or any iterable of arrays of shape
-        (height, width). Outlines: a list with an `Outline` for each frame, or with a dict of outlines by object, as from `outlines`. Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
+        (height, width). Outlines: a list with an `Outline` or an array of points, shape (n, 2), for each frame, or with a
+        dict of them by object, as from `outlines`. Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
         `frame`, `time`, `x`, `y` and optionally `object`, `arc` (the open piece of a partly hidden outline), `contour` (boundary, holes
         and marks of one body) and `deviation` (standard deviation of the point along the normal of the contour, in the unit of `x` and
         `y`). Either one row per point, the rows of one outline following each other in the order of the contour; or one row per
