@@ -1,5 +1,6 @@
 //! A known plane: from outlines as a perspective camera sees them to outlines in the plane that the objects move in.
 use freeform_curve_fit::{Outline, OutlineError};
+use freeform_riccati::map_point;
 use nalgebra::{Matrix3, Point2, Projective2};
 
 use crate::regular_map::is_regular;
@@ -94,5 +95,11 @@ impl Rectification {
     #[must_use]
     pub fn generator_in_picture(&self, plane: &Matrix3<f64>) -> Matrix3<f64> {
         self.picture_from_plane * plane * self.plane_from_picture
+    }
+
+    /// A point of the plane where it is seen in the picture. Not finite on the line that the picture shows at infinity.
+    #[must_use]
+    pub fn point_in_picture(&self, plane: &Point2<f64>) -> Point2<f64> {
+        map_point(&self.picture_from_plane, plane)
     }
 }

@@ -266,9 +266,10 @@ fn write_reacquiring(f: &mut fmt::Formatter<'_>, last_known: f64) -> fmt::Result
 const fn change_of_motion(dynamics: Option<Dynamics>) -> &'static str {
     match dynamics {
         Some(Dynamics::Velocity) => {
-            "the middle of the object moves at a constant velocity, not about a fixed point, so that b changes: the values are those at the end"
+            "the middle of the object moves at a constant velocity, not about a fixed point, so that b changes: the values are those at the end, --trajectory and --trace \
+             have them over time"
         }
-        _ => "the motion changed: the values are those at the end",
+        _ => "the motion changed: the values are those at the end, --trajectory and --trace have them over time",
     }
 }
 

@@ -48,6 +48,8 @@ pub(super) struct FilteredObject {
 pub(super) struct Step {
     pub(super) phase: Option<ObjectPhase>,
     pub(super) estimate: Option<MotionEstimate>,
+    pub(super) hidden: Vec<&'static str>,
+    pub(super) velocity: Option<PointVelocity>,
     pub(super) plane: Option<Box<PlaneEstimate>>,
     pub(super) plane_ambiguity: Option<Box<PlaneAmbiguity>>,
     pub(super) fit: Option<Fit>,
@@ -84,7 +86,8 @@ impl Identifier {
                     let phase = if result.estimate.is_some() { ObjectPhase::Adapt } else { ObjectPhase::Start };
                     let residual = Some(result.fit.diagnostics().geometric_residual);
                     let (estimate, fit, progress) = (result.estimate, Some(result.fit), result.progress);
-                    Step { phase: Some(phase), estimate, fit, progress, residual, ..Step::default() }
+                    let hidden = estimate.as_ref().map_or_else(Vec::new, |estimate| unstated_of(estimate).collect());
+                    Step { phase: Some(phase), estimate, hidden, fit, progress, residual, ..Step::default() }
                 }
                 Err(error) => Step { rejected_because: Some(RejectionCause::Pipeline(error)), ..Step::default() },
             },
@@ -238,7 +241,9 @@ impl FilteredObject {
         }
         Step {
             phase: Some(step.phase.into()),
+            hidden: estimate.as_ref().map_or_else(Vec::new, |estimate| self.hidden(estimate)),
             estimate,
+            velocity: estimate.and_then(|_| self.filter.velocity()),
             residual: step.measurement.and_then(|measurement| measurement.noise),
             innovation: step.measurement.map(|measurement| measurement.innovation),
             state: self.filter.state(),
@@ -247,6 +252,16 @@ impl FilteredObject {
             rejected_because: step.rejection.map(RejectionCause::NotAccepted),
             ..Step::default()
         }
+    }
+
+    /// Parameters of an estimate that the outlines do not show.
+    fn hidden(&self, estimate: &MotionEstimate) -> Vec<&'static str> {
+        // Mostly all is stated.
+        if unstated_of(estimate).next().is_none() {
+            return Vec::new();
+        }
+        let parameters = estimate.parameters().zip(self.filter.hidden_parameters());
+        parameters.filter(|(p, is_hidden)| p.value.is_none() && *is_hidden).map(|(p, _)| p.name).collect()
     }
 
     fn warnings(&self) -> Vec<Warning> {
@@ -289,6 +304,11 @@ impl FilteredObject {
         warnings.sort_by_key(Warning::order);
         warnings
     }
+}
+
+/// Names of the parameters of an estimate that are not stated.
+fn unstated_of(estimate: &MotionEstimate) -> impl Iterator<Item = &'static str> {
+    estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name)
 }
 
 /// What is to be said of how an object was followed: it is lost, it was begun anew, or many of its frames do not fit.

@@ -9,6 +9,7 @@ mod contour_order;
 mod edge_seeker;
 mod family;
 mod identifier;
+mod not_stated;
 mod object;
 mod observation;
 mod plane_object;
@@ -42,12 +43,13 @@ pub use self::{
     attendance::{Attendance, Sighting},
     edge_seeker::EdgeSeeker,
     family::MotionFamily,
+    not_stated::NotStated,
     observation::{ObjectPhase, Observation},
     recording::{Followed, ReadAhead, Recorded},
-    result::ObjectResult,
+    result::{ObjectResult, VELOCITY_NAMES},
     result_csv::{AdaptiveColumns, TraceWriter, write_results},
     settings::{Method, MethodSettings, TrackerError, TrackerSettings},
-    trajectory::{PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
+    trajectory::{NotSmoothed, PoseAndMotion, SmoothingError, Trajectory, TrajectoryRow},
     trajectory_csv::write_trajectory,
 };
 pub use crate::{
@@ -182,6 +184,13 @@ impl Tracker {
     #[must_use]
     pub fn motion_changed(&self) -> bool {
         self.objects.list.iter().any(TrackedObject::motion_changed)
+    }
+
+    /// Whether the motion of an object changed; not that of one that the tracker does not know.
+    #[must_use]
+    pub fn motion_of_object_changed(&self, object: &str) -> bool {
+        let position = self.objects.positions.get(object);
+        position.is_some_and(|position| self.objects.list[*position].motion_changed())
     }
 
     fn object(&mut self, name: &str) -> &mut TrackedObject {

@@ -1,5 +1,5 @@
 //! One object of a sequence.
-use freeform_estimate::MotionEstimate;
+use freeform_estimate::{MotionEstimate, PointVelocity};
 use freeform_outline_io::OutlineFrame;
 use freeform_riccati::CameraScale;
 
@@ -90,6 +90,8 @@ impl TrackedObject {
             time: Some(frame.time),
             phase: step.phase,
             estimate: step.estimate.and_then(|estimate| self.reported(estimate)),
+            hidden: step.hidden,
+            velocity: step.velocity.and_then(|velocity| self.velocity_reported(velocity)),
             plane: step.plane,
             state: step.state,
             fit: step.fit,
@@ -141,6 +143,8 @@ impl TrackedObject {
             time: None,
             phase: None,
             estimate: None,
+            hidden: Vec::new(),
+            velocity: None,
             plane: None,
             state: None,
             fit: None,
@@ -174,6 +178,11 @@ impl TrackedObject {
     fn reported(&self, estimate: MotionEstimate) -> Option<MotionEstimate> {
         let estimate = self.scale.map_or(estimate, |scale| estimate.in_space(scale));
         estimate.is_finite().then_some(estimate)
+    }
+
+    /// A velocity as it is handed out; `None` where a number is not finite.
+    fn velocity_reported(&self, velocity: PointVelocity) -> Option<PointVelocity> {
+        Some(self.scale.map_or(velocity, |scale| velocity.in_space(scale))).filter(PointVelocity::is_finite)
     }
 
     /// Whether its motion was seen to change.
@@ -210,8 +219,7 @@ impl TrackedObject {
             let count = self.rejected - self.rejections.len();
             warnings.push(Warning::MoreFramesRejected { count, frames: self.rejected_later.clone() });
         }
-        let velocity = identifier.velocity();
-        let velocity = velocity.map(|velocity| self.scale.map_or(velocity, |scale| velocity.in_space(scale)));
+        let velocity = identifier.velocity().and_then(|velocity| self.velocity_reported(velocity));
         ObjectResult {
             object: self.name.clone(),
             method: settings.method(),
@@ -228,7 +236,7 @@ impl TrackedObject {
                 })
             }),
             plane: identifier.plane().map(Box::new),
-            velocity: velocity.filter(freeform_estimate::PointVelocity::is_finite),
+            velocity,
             ambiguity: identifier.ambiguity(),
             plane_ambiguity: identifier.plane_ambiguity().map(Box::new),
             aliases: identifier.aliases(),

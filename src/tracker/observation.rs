@@ -1,7 +1,7 @@
 use std::fmt;
 
 use freeform_curve_fit::Fit;
-use freeform_estimate::{MotionEstimate, MotionState, ParameterEstimate, PlaneEstimate};
+use freeform_estimate::{MotionEstimate, MotionState, ParameterEstimate, PlaneEstimate, PointVelocity};
 use freeform_outline_filter::{Ambiguity, KnownOutline, Phase, PlaneAmbiguity};
 
 use super::result::parameters_of;
@@ -22,6 +22,11 @@ pub struct Observation {
     pub phase: Option<ObjectPhase>,
     /// The motion estimated after the frame, in space if a camera scale is given. All numbers are finite. `None` if it is not known.
     pub estimate: Option<MotionEstimate>,
+    /// Names of the parameters that the outlines do not show, as far as that is known after the frame. Others that are not stated are not known well
+    /// enough, or [ambiguous](Self::ambiguity).
+    pub hidden: Vec<&'static str>,
+    /// Velocity of the middle of the object, as [`ObjectResult::velocity`](super::ObjectResult::velocity), as known after the frame.
+    pub velocity: Option<PointVelocity>,
     /// The motion of a plane in space as known after the frame.
     pub plane: Option<Box<PlaneEstimate>>,
     /// Pose and motion with their joint covariance, in the image (motion filter). The state is the last one known: while the object is lost,

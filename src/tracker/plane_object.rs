@@ -31,6 +31,13 @@ impl PlaneObject {
         self.last_known = estimate.or(self.last_known);
         Step {
             phase: Some(step.phase.into()),
+            hidden: match self.filter.unknown() {
+                Some(PlaneUnknown::HardlyMoves) => {
+                    let parameters = estimate.iter().flat_map(PlaneEstimate::parameters);
+                    parameters.filter(|p| p.value.is_none()).map(|p| p.name).collect()
+                }
+                _ => Vec::new(),
+            },
             plane: estimate.map(Box::new),
             residual: step.measurement.and_then(|measurement| measurement.noise),
             innovation: step.measurement.map(|measurement| measurement.innovation),

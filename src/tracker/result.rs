@@ -76,12 +76,21 @@ impl ObjectResult {
         }
     }
 
+    /// Whether the method gives a velocity of the middle, where it is known: the motion filter does, but not of a plane in space.
+    #[must_use]
+    pub fn has_velocity(&self) -> bool {
+        self.method == Method::Filter && self.motion != MotionFamily::Plane
+    }
+
     /// The parameters of the motion, whichever family it is of; none where no motion was found.
     #[must_use]
     pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {
         parameters_of(self.estimate.as_ref(), self.plane.as_deref())
     }
 }
+
+/// Names of the components of the velocity of the middle of an object.
+pub const VELOCITY_NAMES: [&str; 2] = ["v1", "v2"];
 
 /// The parameters of whichever is known.
 pub(super) fn parameters_of(

@@ -5,8 +5,9 @@ use freeform_identify::AdaptiveDiagnostics;
 
 use super::{
     family::MotionFamily,
+    not_stated::NotStated,
     observation::{ObjectPhase, Observation},
-    result::ObjectResult,
+    result::{ObjectResult, VELOCITY_NAMES},
 };
 use crate::adaptive_progress::AdaptiveProgress;
 
@@ -118,37 +119,67 @@ fn optional(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// Writes results as CSV with one row per object and parameter.
+/// Writes results as CSV with one row per object and parameter, then `v1` and `v2`, the velocity of the middle of the object (motion filter). The column
+/// `reason` says why there is no value: `ambiguous`, `unobservable` or `unknown`.
 ///
 /// # Errors
 ///
 /// Those of the sink.
 pub fn write_results(sink: &mut impl Write, results: &[ObjectResult]) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
-    let header =
-        ["object", "method", "motion", "frames", "frames_rejected", "parameter", "value", "std", "unit", "observable"];
+    let header = [
+        "object",
+        "method",
+        "motion",
+        "frames",
+        "frames_rejected",
+        "parameter",
+        "value",
+        "std",
+        "unit",
+        "observable",
+        "reason",
+    ];
     writer.write_record(header).map_err(io::Error::from)?;
     for result in results {
         let found = result.parameters().unwrap_or_default();
         for (index, (name, unit)) in result.motion.parameter_names().iter().zip(result.motion.units()).enumerate() {
-            let value = found.get(index).and_then(|p| p.value);
-            let deviation = found.get(index).and_then(|p| p.standard_deviation);
-            let row = [
-                text_cell(&result.object),
-                result.method.name().to_owned(),
-                result.motion.to_string(),
-                result.frames.to_string(),
-                result.frames_rejected.to_string(),
-                (*name).to_owned(),
-                optional(value),
-                optional(deviation),
-                (*unit).to_owned(),
-                value.is_some().to_string(),
-            ];
-            writer.write_record(&row).map_err(io::Error::from)?;
+            let known = found.get(index).map(|p| [p.value, p.standard_deviation]).unwrap_or_default();
+            write_row(&mut writer, result, [*name, *unit], known, result.not_stated(name))?;
+        }
+        if !result.has_velocity() && result.velocity.is_none() {
+            continue;
+        }
+        for (index, name) in VELOCITY_NAMES.iter().enumerate() {
+            let velocity = result.velocity.as_ref();
+            let known = velocity.map(|v| [v.velocity[index], v.standard_deviations()[index]].map(Some));
+            write_row(&mut writer, result, [*name, "1/s"], known.unwrap_or_default(), result.velocity_not_stated())?;
         }
     }
     writer.flush()
+}
+
+fn write_row(
+    writer: &mut csv::Writer<impl Write>,
+    result: &ObjectResult,
+    [name, unit]: [&str; 2],
+    [value, deviation]: [Option<f64>; 2],
+    reason: Option<NotStated>,
+) -> io::Result<()> {
+    let row = [
+        text_cell(&result.object),
+        result.method.name().to_owned(),
+        result.motion.to_string(),
+        result.frames.to_string(),
+        result.frames_rejected.to_string(),
+        name.to_owned(),
+        optional(value),
+        optional(deviation),
+        unit.to_owned(),
+        value.is_some().to_string(),
+        reason.map_or("", NotStated::name).to_owned(),
+    ];
+    writer.write_record(&row).map_err(io::Error::from)
 }
 
 #[cfg(test)]

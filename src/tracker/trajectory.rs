@@ -21,7 +21,9 @@ use super::{MethodSettings, Tracker, observation::Observation};
 /// let outlines = frames.map(|(frame, seen)| OutlineFrame { frame, time: seen.time, object: "bird".into(), outline: seen.outline });
 /// tracker.follow(outlines, |observation| trajectory.take(&observation));
 /// // Later frames say more of the first ones.
-/// trajectory.smooth(&tracker)?;
+/// for not_smoothed in trajectory.smooth(&tracker) {
+///     println!("{not_smoothed}");
+/// }
 /// let poses = trajectory.poses(tracker.settings().scale);
 /// assert!(poses.iter().all(|pose| pose.is_some()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -58,10 +60,20 @@ pub struct PoseAndMotion {
     pub motion: MotionEstimate,
 }
 
-/// Why a trajectory cannot be smoothed.
+/// An object whose poses are not smoothed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("the poses of object {object} are not smoothed: {reason}")]
+pub struct NotSmoothed {
+    /// Its name.
+    pub object: String,
+    /// Why they are not.
+    pub reason: SmoothingError,
+}
+
+/// Why the poses of an object cannot be smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SmoothingError {
-    /// The motion of an object changed.
+    /// The motion of the object changed.
     #[error("the motion changed, and the smoother assumes a constant one")]
     MotionChanged,
     /// The states do not form one sequence.
@@ -124,36 +136,61 @@ impl Trajectory {
         rows.collect()
     }
 
-    /// Lets later frames take part, within each run of frames through which an object was followed. The frame that such a run
+    /// Lets later frames take part, object by object, within each run of frames through which an object was followed. The frame that such a run
     /// began with, when the motion was not known yet, gets its pose from the ones after it. `tracker` is the one that followed the objects.
     ///
-    /// # Errors
-    /// The motion was seen to change, and the smoother assumes a constant one; the rows stay as filtered.
-    pub fn smooth(&mut self, tracker: &Tracker) -> Result<(), SmoothingError> {
-        if tracker.motion_changed() {
-            return Err(SmoothingError::MotionChanged);
-        }
+    /// Returns the objects that are not smoothed, in the order of their first rows: above all those whose motion was seen to change, as the
+    /// smoother assumes a constant one. Their rows stay as filtered.
+    #[must_use = "some objects may not be smoothed"]
+    pub fn smooth(&mut self, tracker: &Tracker) -> Vec<NotSmoothed> {
         let noise = match &tracker.settings().method {
             MethodSettings::Filter(settings) | MethodSettings::Plane(_, settings) => settings.process_noise,
             MethodSettings::Adaptive(_) => ProcessNoise::default(),
         };
-        let mut objects: HashMap<String, Vec<&mut TrajectoryRow>> = HashMap::new();
+        let mut positions: HashMap<String, usize> = HashMap::new();
+        let mut objects: Vec<Vec<&mut TrajectoryRow>> = Vec::new();
         for row in &mut self.rows {
-            objects.entry(row.object.clone()).or_default().push(row);
-        }
-        for rows in objects.values_mut() {
-            let followed: Vec<bool> = rows.iter().map(|row| row.state.is_some()).collect();
-            let mut start = 0;
-            for run in followed.chunk_by(|a, b| a == b) {
-                if run[0] {
-                    let (before, from) = rows.split_at_mut(start);
-                    smooth_run(&mut from[..run.len()], before.last_mut().map(|row| &mut **row), &noise)?;
-                }
-                start += run.len();
+            let position = *positions.entry(row.object.clone()).or_insert(objects.len());
+            if position == objects.len() {
+                objects.push(Vec::new());
             }
+            objects[position].push(row);
         }
-        Ok(())
+        let not_smoothed = objects.into_iter().filter_map(|mut rows| {
+            let object = rows.first()?.object.clone();
+            let smoothed = if tracker.motion_of_object_changed(&object) {
+                Err(SmoothingError::MotionChanged)
+            } else {
+                smooth_object(&mut rows, &noise)
+            };
+            smoothed.err().map(|reason| NotSmoothed { object, reason })
+        });
+        not_smoothed.collect()
     }
+}
+
+/// Smooths the rows of an object, or none of them.
+fn smooth_object(rows: &mut [&mut TrajectoryRow], noise: &ProcessNoise) -> Result<(), SmoothingError> {
+    let followed: Vec<bool> = rows.iter().map(|row| row.state.is_some()).collect();
+    let (mut start, mut smoothed) = (0, Vec::new());
+    for run in followed.chunk_by(|a, b| a == b) {
+        if run[0] {
+            let filtered: Vec<MotionState> =
+                rows[start..start + run.len()].iter().filter_map(|row| row.state().cloned()).collect();
+            smoothed.push((start, run.len(), smooth(&filtered, noise)?));
+        }
+        start += run.len();
+    }
+    for (start, count, states) in smoothed {
+        let (before, from) = rows.split_at_mut(start);
+        let before = before.last_mut().filter(|row| row.accepted);
+        if let (Some(before), Some(first)) = (before, states.first()) {
+            before.state = before.time.map(|time| first.predicted(time, noise));
+        }
+        let known = from[..count].iter_mut().filter(|row| row.state().is_some());
+        known.zip(states).for_each(|(row, state)| row.state = Some(state));
+    }
+    Ok(())
 }
 
 /// Changes a number of a pose to how it is reported; `last_angle` is that of the row before.
@@ -171,19 +208,4 @@ fn report(parameter: &mut PoseParameter, scale: Option<CameraScale>, last_angle:
         }
         _ => {}
     }
-}
-
-fn smooth_run(
-    rows: &mut [&mut TrajectoryRow],
-    before: Option<&mut TrajectoryRow>,
-    noise: &ProcessNoise,
-) -> Result<(), SmootherError> {
-    let filtered: Vec<MotionState> = rows.iter().filter_map(|row| row.state().cloned()).collect();
-    let smoothed = smooth(&filtered, noise)?;
-    if let (Some(before), Some(first)) = (before.filter(|row| row.accepted), smoothed.first()) {
-        before.state = before.time.map(|time| first.predicted(time, noise));
-    }
-    let known = rows.iter_mut().filter(|row| row.state().is_some());
-    known.zip(smoothed).for_each(|(row, state)| row.state = Some(state));
-    Ok(())
 }

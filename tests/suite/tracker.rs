@@ -176,7 +176,10 @@ fn a_frame_that_cannot_be_used_says_why_and_counts_as_rejected() {
     let late = FilterError::TimeNotIncreasing(TimeNotIncreasing { previous: 0.2, time: 0.1 });
     let rejection = FrameRejection { object: "egg".to_owned(), frame: 1, cause: RejectionCause::Filter(late) };
     assert_eq!((again.phase, again.rejection.as_ref()), (None, Some(&rejection)));
-    assert_eq!(rejection.to_string(), "frame 1 of object \"egg\": a frame at 0.1 s after one at 0.2 s");
+    assert_eq!(
+        rejection.to_string(),
+        "frame 1 of object \"egg\": times must increase: a frame at 0.1 s after one at 0.2 s"
+    );
     let far = tracker.push(&OutlineFrame { outline: egg(3, 0.3, 40.0).outline, ..egg(3, 0.3, 0.0) });
     assert!(matches!(far.rejection.expect("40 lengths away").cause, RejectionCause::NotAccepted(_)));
     let torn = tracker.reject("egg", 4, "line 7: torn".to_owned());

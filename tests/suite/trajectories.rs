@@ -7,7 +7,7 @@ use freeform_motion::{
     outline_io::OutlineFrame,
     riccati::RigidMotion,
     sim_camera::BuiltInShape,
-    tracker::{Method, Observation, SmoothingError, Trajectory},
+    tracker::{Method, NotSmoothed, Observation, SmoothingError, Trajectory},
 };
 use nalgebra::Rotation2;
 
@@ -33,7 +33,7 @@ fn angles_of_a_trajectory_go_on_beyond_half_a_turn() {
 fn smoothing_fills_the_first_frame_and_leaves_no_pose_less_certain() {
     let (tracker, filtered) = followed(seen(BuiltInShape::Bird, "bird", 200, 30).into_iter());
     let mut smoothed = filtered.clone();
-    smoothed.smooth(&tracker).expect("a constant motion");
+    assert_eq!(smoothed.smooth(&tracker), []);
     let (before, after) = (filtered.poses(None), smoothed.poses(None));
     assert!(before[0].is_none() && after.iter().all(Option::is_some));
     for (before, after) in before.iter().zip(&after).skip(1) {
@@ -45,14 +45,19 @@ fn smoothing_fills_the_first_frame_and_leaves_no_pose_less_certain() {
 }
 
 #[test]
-fn a_trajectory_of_a_motion_that_changed_is_not_smoothed() {
+fn objects_whose_motion_changed_are_not_smoothed_and_the_others_are() {
     let still = seen_as("bird", (BuiltInShape::Bird, RigidMotion::default()), 120, 150);
-    let (tracker, mut trajectory) = followed(still.into_iter().map(|frame| {
+    let swinging = still.into_iter().map(|frame| {
         let turn = Rotation2::new(0.5 * frame.time + 0.5 * (1.5 * frame.time).sin());
         let points = frame.outline.points().map(|point| turn * point).collect();
         OutlineFrame { outline: Outline::closed(points).expect("a turned outline"), ..frame }
-    }));
-    let filtered = trajectory.clone();
-    assert_eq!(trajectory.smooth(&tracker), Err(SmoothingError::MotionChanged));
-    assert_eq!(trajectory, filtered);
+    });
+    let constant = (0..120).map(|frame| egg(frame, 0.05 * frame as f64, 0.0));
+    let (tracker, filtered) = followed(swinging.zip(constant).flat_map(|(swinging, egg)| [swinging, egg]));
+    let mut smoothed = filtered.clone();
+    let changed = NotSmoothed { object: "bird".into(), reason: SmoothingError::MotionChanged };
+    assert_eq!(smoothed.smooth(&tracker), [changed]);
+    for (before, after) in filtered.rows().iter().zip(smoothed.rows()).take(100) {
+        assert_eq!(before == after, before.object == "bird", "{before:?}");
+    }
 }

@@ -5,6 +5,7 @@ mod command_line;
 mod commands;
 mod failure;
 mod handful;
+mod hints;
 mod input;
 mod interrupt;
 mod left_out;

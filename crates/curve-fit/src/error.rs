@@ -2,6 +2,9 @@ use thiserror::Error;
 
 use crate::degree::Degree;
 
+/// Smallest extent of an outline, so that squares of its lengths are no less precise than others.
+pub(crate) const SMALLEST_EXTENT: f64 = 1e-150;
+
 /// Largest absolute coordinate accepted, so that squares never overflow.
 pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
 
@@ -35,6 +38,13 @@ pub enum OutlineError {
     Coincident {
         /// Points given.
         count: usize,
+    },
+    /// The outline is so small that squares of its lengths are lost.
+    #[error("the outline is too small, its points lie within {extent:e} of their middle, less than {limit:e}; use another unit of length",
+            limit = SMALLEST_EXTENT)]
+    TooSmall {
+        /// Largest difference of a coordinate from that of the middle.
+        extent: f64,
     },
     /// All points of an outline lie on one line, to rounding.
     #[error("all {count} points lie on one line")]

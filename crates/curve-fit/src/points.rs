@@ -1,7 +1,7 @@
 //! What holds for the points of any outline.
 use nalgebra::{Matrix2, Point2, Vector2};
 
-use crate::error::{COORDINATE_LIMIT, OutlineError};
+use crate::error::{COORDINATE_LIMIT, OutlineError, SMALLEST_EXTENT};
 
 /// Two principal radii whose ratio is at most this are taken for points on one line.
 const COLLINEAR_RATIO: f64 = 1e-9;
@@ -36,13 +36,17 @@ pub(crate) fn check_not_collinear<'a>(
     let spread = Spread::of(points.clone());
     let axis = spread.axis();
     // From the distances themselves: the determinant of the scatter would lose half the digits to cancellation.
-    let (mut count, mut length, mut width, mut largest) = (0, 0.0, 0.0, 0.0_f64);
+    let (mut count, mut length, mut width, mut largest, mut extent) = (0, 0.0, 0.0, 0.0_f64, 0.0_f64);
     for p in points {
         let from_centroid = p - spread.centroid;
         count += 1;
         length += axis.dot(&from_centroid).powi(2);
         width += axis.perp(&from_centroid).powi(2);
         largest = largest.max(p.coords.amax());
+        extent = extent.max(from_centroid.amax());
+    }
+    if extent > 0.0 && extent < SMALLEST_EXTENT {
+        return Err(OutlineError::TooSmall { extent });
     }
     let (length, width) = ((length / f64::from(count)).sqrt(), (width / f64::from(count)).sqrt());
     if width <= (COLLINEAR_RATIO * length).max(f64::EPSILON * largest) {

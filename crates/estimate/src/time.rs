@@ -1,6 +1,6 @@
 /// Times of frames must be finite and increase.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("a frame at {time} s after one at {previous} s")]
+#[error("times must increase: a frame at {time} s after one at {previous} s")]
 pub struct TimeNotIncreasing {
     /// Time of the frame before in seconds, or negative infinity.
     pub previous: f64,

@@ -175,7 +175,7 @@ pub enum ReadErrorKind {
     #[error("the file is empty, expected a header such as frame,time,x,y")]
     Empty,
     /// The header lacks a column.
-    #[error("missing column(s) {}, the header is {header:?}{}", comma_separated(missing), separator_hint(header))]
+    #[error("missing column(s) {}, the header is {header:?}{}", comma_separated(missing), header_hint(missing, header))]
     MissingColumns {
         /// The columns that are not there.
         missing: Vec<Column>,
@@ -344,6 +344,12 @@ pub enum ReadErrorKind {
 
 fn comma_separated(columns: &[Column]) -> String {
     columns.iter().map(Column::name).collect::<Vec<_>>().join(", ")
+}
+
+/// What may be wrong with a header: its letters, or what separates its names.
+fn header_hint(missing: &[Column], header: &str) -> &'static str {
+    let is_there = |column: &Column| header.split(',').any(|name| name.trim().eq_ignore_ascii_case(column.name()));
+    if missing.iter().any(is_there) { "; names of columns are in lower case" } else { separator_hint(header) }
 }
 
 /// What to say of a header that lacks columns since something else than commas separates them.

@@ -191,7 +191,7 @@ pub enum TraceError {
     },
     /// Light and dark pixels are no further apart than the ground itself varies.
     #[error(
-        "no object stands out from the ground: {difference:.1} grey values apart, the ground varies by {spread:.1}"
+        "no object stands out from the ground: object and ground differ by {difference:.1} grey values, the ground itself varies by {spread:.1}"
     )]
     NoContrast {
         /// Difference of the median grey values of the two classes.

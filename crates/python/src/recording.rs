@@ -1,5 +1,6 @@
 //! Whole recordings from a table, and what becomes of every frame as columns again.
 use std::collections::HashMap;
+use std::ffi::CString;
 use std::sync::{Mutex, PoisonError};
 
 use freeform_motion::estimate::MotionEstimate;
@@ -7,11 +8,10 @@ use freeform_motion::outline_io::{OutlineFrame, ReadError, ReadErrorKind, Span};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{Followed, Method, Observation, ReadAhead, Recorded, Trajectory};
 use numpy::{IntoPyArray as _, PyArray1};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::value_error;
 use crate::estimate::or_nan;
 use crate::outline::PyOutline;
 use crate::table_arrays::{TableArrays, TableOutlines};
@@ -183,7 +183,16 @@ impl Recording {
         // The picture of a plane in space moves by projective maps.
         let model = tracker.settings().motion().model().unwrap_or(MotionModel::Projective);
         if smooth {
-            self.trajectory.smooth(&tracker).map_err(value_error)?;
+            let not_smoothed: Vec<String> = self.trajectory.smooth(&tracker).iter().map(ToString::to_string).collect();
+            if let Some(first) = not_smoothed.first() {
+                let others = match not_smoothed.len() - 1 {
+                    0 => String::new(),
+                    others => format!("; nor are those of {others} more object(s)"),
+                };
+                let message = CString::new(format!("{first}{others}").replace('\0', " "))?;
+                // Level 2 is the line that calls `track`.
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, 2)?;
+            }
         }
         let rows = self.trajectory.rows();
         let table = PyDict::new(py);

@@ -2,14 +2,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::tracker::{MethodSettings, ObjectPhase, Observation};
+use freeform_motion::tracker::{MethodSettings, NotStated, ObjectPhase, Observation};
 use freeform_motion::{Tracker, TrackerSettings, Warning};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde::{Deserialize, Serialize};
 
 use crate::errors::{value_error, whole};
-use crate::estimate::{PyEstimate, PyMotionState, motion_covariance};
+use crate::estimate::{PyEstimate, PyMotionState, PyPointVelocity, motion_covariance};
 use crate::motion_filter::FilterArguments;
 use crate::names::{camera_scale, method, motion_model, object_name};
 use crate::object_result::PyObjectResult;
@@ -348,6 +348,18 @@ impl PyObservation {
             });
             PyEstimate::new(estimate, covariance)
         })
+    }
+
+    /// Why a parameter is not stated, as known after the frame: `unobservable` (the outlines do not show it), `ambiguous` (two turns explain
+    /// them) or `unknown` (not known well enough); None where it is stated.
+    fn not_stated(&self, name: &str) -> Option<&'static str> {
+        self.inner.not_stated(name).map(NotStated::name)
+    }
+
+    /// Velocity of the middle of the object, in space if a camera scale is given (motion filter); None where it is not known.
+    #[getter]
+    fn velocity(&self) -> Option<PyPointVelocity> {
+        self.inner.velocity.map(|inner| PyPointVelocity { inner })
     }
 
     /// Pose and motion in the image with their joint covariance (motion filter), the last known ones.

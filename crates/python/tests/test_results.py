@@ -93,12 +93,31 @@ def test_a_list_of_outlines_is_a_recording(bird):
     assert ff.recognise(outlines, known)["0"].name == "bird"
 
 
+def test_an_observation_has_the_velocity_of_the_middle_and_says_why_a_parameter_is_not_stated():
+    tracker = ff.Tracker()
+    for frame in ff.simulate("circle", b=(0.3, 0.0), seconds=1.0):
+        last = tracker.push("a", frame.index, frame.time, frame.outline)
+    result = ff.Identification(tracker.results())["a"]
+    np.testing.assert_array_equal(last.velocity.velocity, result.velocity.velocity)
+    assert (last.not_stated("omega"), last.not_stated("nothing of this name")) == ("unobservable", "unknown")
+
+
+def test_arrays_of_points_are_outlines_as_for_the_motion_filter(bird):
+    outlines = [frame.outline for frame in bird]
+    of_points = ff.identify([outline.points for outline in outlines], fps=30)
+    np.testing.assert_array_equal(of_points[0].estimate.values, ff.identify(outlines, fps=30)[0].estimate.values)
+    named = ff.identify([{"a": outline.points.astype(np.float32)} for outline in outlines], fps=30)
+    np.testing.assert_allclose(named["a"].estimate.values, of_points[0].estimate.values, atol=1e-4)
+
+
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
         (lambda o: ff.identify(o), ValueError, "a positive number of frames per second"),
         (lambda o: ff.identify(o, fps=30, smoothing=2.0), TypeError, "smoothing: only for masks, but the data are outlines"),
-        (lambda o: ff.identify([{"a": 1}], fps=30), TypeError, "frame 0, object a: an Outline is needed, this is int"),
+        (lambda o: ff.identify([{"a": 1}], fps=30), TypeError, "frame 0, object a: an Outline or an array of points"),
+        (lambda o: ff.identify("rigid.csv"), TypeError, "read_csv\\('rigid.csv', comment='#'\\) reads a table"),
+        (lambda o: ff.identify([o[0].points, np.full((5, 2), np.nan)], fps=30), ValueError, "frame 1, object 0: "),
         (lambda o: ff.identify(iter(o), fps=30), TypeError, "a recording of outlines is a list of them"),
         (lambda o: ff.identify(o[:3], times=[0.0, 0.1, 0.1]), ValueError, "0.1 of frame 2 does not follow 0.1 of frame 1"),
         (lambda o: ff.identify(o[:3], times=[0.0, np.nan, 0.1]), ValueError, "that of frame 1 is not finite"),

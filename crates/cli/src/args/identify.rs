@@ -83,8 +83,13 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m
-    /// (uncompressed video, which ffmpeg and others read)
+    /// Draw outlines and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m (uncompressed video, which ffmpeg
+    /// and others read)
+    ///
+    /// Yellow is the outline as it was traced, red one that was not used. Blue is the outline that the filter knows, where it takes the object
+    /// to be; it lies below the yellow one and shows where this is hidden or elsewhere. With --method adaptive blue is the fitted curve, and
+    /// pink crosses are its related points. Green arrows are the velocities of points of the outline, the longest a third of the object long:
+    /// they compare within a picture only. There are none while the motion is not known.
     ///
     /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
     /// drawings that freeform did not draw.
@@ -152,8 +157,13 @@ pub(crate) struct TrackArgs {
     #[command(flatten)]
     pub(crate) options: TrackOptions,
 
-    /// Draw outline, fitted curve, related points and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m
-    /// (uncompressed video, which ffmpeg and others read)
+    /// Draw outlines and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m (uncompressed video, which ffmpeg
+    /// and others read)
+    ///
+    /// Yellow is the outline as it was traced, red one that was not used. Blue is the outline that the filter knows, where it takes the object
+    /// to be; it lies below the yellow one and shows where this is hidden or elsewhere. With --method adaptive blue is the fitted curve, and
+    /// pink crosses are its related points. Green arrows are the velocities of points of the outline, the longest a third of the object long:
+    /// they compare within a picture only. There are none while the motion is not known.
     ///
     /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
     /// drawings that freeform did not draw.

@@ -10,14 +10,14 @@ use crate::failure::Failure;
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct PerspectiveArgs {
     /// Focal length of the camera in pixels, for --motion plane
-    #[arg(long, value_name = "PIXELS", value_parser = positive, allow_hyphen_values = true, required_if_eq("motion", "plane"),
-          requires = "principal")]
+    #[arg(long, value_name = "PIXELS", value_parser = positive, allow_hyphen_values = true,
+          required_if_eq("motion", "plane"))]
     focal: Option<f64>,
 
     /// Where the optical axis meets the picture, in the coordinates of the outlines, for --motion plane: mostly the middle of the
     /// picture
     #[arg(long, value_name = "X,Y", value_parser = numbers::<2>("X,Y"), allow_hyphen_values = true,
-          required_if_eq("motion", "plane"), requires = "focal")]
+          required_if_eq("motion", "plane"))]
     principal: Option<[f64; 2]>,
 }
 
@@ -30,10 +30,12 @@ impl PerspectiveArgs {
 
     /// Refuses a camera where no motion in space is asked for.
     pub(crate) fn check(&self, is_plane: bool) -> Result<(), Failure> {
-        if self.focal.is_some() && !is_plane {
-            return Err(Failure::unusable("--focal and --principal are for --motion plane"));
+        match (is_plane, self.focal, self.principal) {
+            (false, Some(_), _) | (false, _, Some(_)) => {
+                Err(Failure::unusable("--focal and --principal are for --motion plane"))
+            }
+            _ => Ok(()),
         }
-        Ok(())
     }
 }
 

@@ -183,7 +183,8 @@ impl Identification {
         let Self { options, tracker, trace, trace_path, mut histories } = self;
         histories.close();
         trace.into_inner().map_err(|error| file_failure(&trace_path, &error))?.finish()?;
-        WholeFile::write(figure, &parameter_figure(&histories, options.motion.family(), Some(truth)))?;
+        let b = MeaningOfB::in_coordinates(options.scale);
+        WholeFile::write(figure, &parameter_figure(&histories, options.motion.family(), Some(truth), &b))?;
         let results = tracker.results();
         for warning in results.iter().flat_map(|result| &result.warnings) {
             warn(&format!("{} method: {warning}", tracker.settings().method()));

@@ -11,7 +11,9 @@ use crate::args::{FitArgs, FitFormat};
 use crate::failure::{Failure, warn};
 use crate::input::{Input, Waiting};
 use crate::left_out::MissingWarnings;
-use crate::output::{FitsJson, Sink, WholeFile, refuse_overwriting, refuse_standard_output, write_fit_table};
+use crate::output::{
+    FitsJson, Sink, WholeFile, refuse_other_format, refuse_overwriting, refuse_standard_output, write_fit_table,
+};
 use crate::progress::Progress;
 use crate::seen::{Item, Missing};
 
@@ -27,6 +29,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = args.svg.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
     refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
+    refuse_other_format(args.svg.as_deref())?;
     let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed, false)?;
     let name = input.name.clone();
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;

@@ -3,7 +3,7 @@ use std::io::Write as _;
 use freeform_drawing::{Findings, MeaningOfB, OBJECTS_PLAYED, Report, write_report};
 use freeform_motion::outline_io::OutlineUncertainty;
 use freeform_motion::riccati::MotionModel;
-use freeform_motion::tracker::{ObjectResult, write_results};
+use freeform_motion::tracker::{NotStated, ObjectResult, write_results};
 use freeform_motion::{Tracker, Truth, Warning};
 
 use super::identify_files::Files;
@@ -12,11 +12,13 @@ use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, 
 use crate::command_line::command_line;
 use crate::failure::{Failure, warn};
 use crate::handful::handful;
+use crate::hints::Hints;
 use crate::input::{Input, Waiting};
 use crate::interrupt;
 use crate::left_out::LeftOut;
 use crate::output::{
-    Sink, WholeFile, refuse_overwriting, refuse_standard_output, write_identify_json, write_identify_table,
+    Sink, WholeFile, refuse_other_format, refuse_overwriting, refuse_standard_output, write_identify_json,
+    write_identify_table,
 };
 use crate::overlay::InputOverlay;
 use crate::picture_input::PictureInput;
@@ -24,6 +26,9 @@ use crate::reader::{Event, follow};
 
 /// Objects whose states are kept in memory: 25 kB each where outlines are small, up to half a megabyte.
 const STATES_IN_MEMORY: usize = 1024;
+
+/// Where more is found than the motion at the end.
+const POSES_OVER_TIME: &str = "poses over time: --trajectory FILE";
 
 /// Identifies the motion of every object of a sequence.
 pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
@@ -42,13 +47,17 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
         tracker.keep_states_in(file, STATES_IN_MEMORY);
     }
 
-    let mut left_out = LeftOut::default();
+    let (mut left_out, mut hints) = (LeftOut::default(), Hints::default());
     let failure = follow(&mut tracker, &mut input, args.quiet, |event| {
         if let Some(overlay) = &mut overlay {
             overlay.take(event)?;
         }
         match event {
-            Event::Object(observation, seen) => files.take(observation, seen.as_ref().map(|(frame, _)| frame)),
+            Event::Object(observation, seen) => {
+                let frame = seen.as_ref().map(|(frame, _)| frame);
+                hints.take(observation, frame);
+                files.take(observation, frame)
+            }
             Event::Gap(missing) => {
                 left_out.take(missing);
                 Ok(())
@@ -59,11 +68,14 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     files.histories.close();
 
     let outcome = Outcome::new(args, &input, &tracker, truth, left_out, failure);
+    if !args.quiet && !input.has_pictures() {
+        hints.told().iter().for_each(|hint| warn(hint));
+    }
     outcome.warn_of_objects_not_drawn(&files);
     let report = files.report.take().filter(|_| outcome.is_anything_read());
     let reported = report.map_or(Ok(()), |file| outcome.report(file, &files));
-    let printed = outcome.print();
-    files.finish(&tracker, outcome.truth.as_ref(), &outcome.results)?;
+    let printed = outcome.print(files.has_poses);
+    files.finish(&tracker, outcome.truth.as_ref(), &outcome.results, &outcome.b)?;
     printed?;
     reported?;
     outcome.failure.map_or(Ok(()), Err)
@@ -72,7 +84,13 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 /// A tracker with all options, for outlines that may lie off as pictures say.
 fn tracker(args: &IdentifyArgs, by_pictures: Option<OutlineUncertainty>) -> Result<Tracker, Failure> {
     let tracker = Tracker::new(args.tracker_settings(by_pictures)?).map_err(Failure::unusable)?;
-    Ok(if args.report.is_some() { tracker.with_known_outlines(OBJECTS_PLAYED) } else { tracker })
+    // A report plays few objects, drawings show all of them.
+    let objects = match (&args.overlay, &args.report) {
+        (Some(_), _) => usize::MAX,
+        (None, Some(_)) => OBJECTS_PLAYED,
+        (None, None) => 0,
+    };
+    Ok(tracker.with_known_outlines(objects))
 }
 
 /// The truth that results are shown beside: that of the options, or of the file where it is that of what is identified.
@@ -99,6 +117,7 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.options.files_read(&args.pictures, &args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
+    refuse_other_format(args.svg.as_deref())?;
     args.options.check()?;
     if args.trajectory.is_some() && args.options.method == IdentifyMethod::Adaptive {
         return Err(Failure::unusable("--trajectory: the adaptive method gives no poses; use --method filter"));
@@ -187,7 +206,7 @@ impl<'a> Outcome<'a> {
     }
 
     /// Prints the results and what they warn of, or only what the failure does not say.
-    fn print(&self) -> Result<(), Failure> {
+    fn print(&self, has_poses: bool) -> Result<(), Failure> {
         if !self.is_found {
             self.warn_of_order();
             return Ok(());
@@ -200,7 +219,10 @@ impl<'a> Outcome<'a> {
         let written = match if args.json { IdentifyFormat::Json } else { args.format } {
             IdentifyFormat::Table => {
                 let table = write_identify_table(&mut sink, results, self.truth.as_ref(), b);
-                table.and_then(|()| if self.says_b() { writeln!(sink, "b: {b}") } else { Ok(()) })
+                let table = table.and_then(|()| if self.says_b() { writeln!(sink, "b: {b}") } else { Ok(()) });
+                // The motion at the end is not all that is known.
+                let is_pointed_to = has_poses && args.trajectory.is_none() && self.lacks_motion();
+                table.and_then(|()| if is_pointed_to { writeln!(sink, "{POSES_OVER_TIME}") } else { Ok(()) })
             }
             IdentifyFormat::Json => {
                 let warnings = self.input.pictures().map(PictureInput::tracing_warnings).unwrap_or_default();
@@ -209,6 +231,14 @@ impl<'a> Outcome<'a> {
             IdentifyFormat::Csv => write_results(&mut sink, results),
         };
         written.and_then(|()| sink.flush()).map_err(|error| sink.failure(&error))
+    }
+
+    /// Whether a parameter of any object is not known at the end that may have been known before.
+    fn lacks_motion(&self) -> bool {
+        self.results.iter().any(|result| {
+            let names = result.motion.parameter_names();
+            names.iter().any(|name| result.not_stated(name) == Some(NotStated::Unknown))
+        })
     }
 
     /// Whether the table needs to say what b is: that of a file is in its own coordinates.

@@ -1,17 +1,18 @@
 //! The files of `identify`.
 use std::path::Path;
 
-use freeform_drawing::{Histories, Purpose, parameter_figure};
+use freeform_drawing::{Histories, MeaningOfB, Purpose, parameter_figure};
 use freeform_motion::outline_io::OutlineFrame;
-use freeform_motion::tracker::{
-    AdaptiveColumns, ObjectResult, Observation, SmoothingError, TraceWriter, Trajectory, write_trajectory,
-};
+use freeform_motion::tracker::{AdaptiveColumns, ObjectResult, Observation, TraceWriter, Trajectory, write_trajectory};
 use freeform_motion::{Tracker, Truth};
 
 use crate::args::{IdentifyArgs, IdentifyMethod};
 use crate::failure::{Failure, file_failure, warn};
 use crate::output::WholeFile;
 use crate::overlay::curves;
+
+/// Objects that are named where their poses are not smoothed.
+const NOT_SMOOTHED_TOLD: usize = 5;
 
 /// What is written frame by frame, or kept for figures. Files are begun before the work, which is not to be lost where there
 /// is no place for them.
@@ -22,6 +23,8 @@ pub(super) struct Files<'a> {
     svg: Option<WholeFile>,
     pub(super) report: Option<WholeFile>,
     pub(super) histories: Histories,
+    /// Whether a pose of any object was known in any frame.
+    pub(super) has_poses: bool,
 }
 
 impl<'a> Files<'a> {
@@ -44,7 +47,7 @@ impl<'a> Files<'a> {
         };
         let histories = Histories::new(purpose, curves(&args.options)?);
         let report = args.report.as_deref().map(WholeFile::create).transpose()?;
-        Ok(Self { args, trace, trajectory, svg, report, histories })
+        Ok(Self { args, trace, trajectory, svg, report, histories, has_poses: false })
     }
 
     /// Takes what a frame of an object gave.
@@ -52,6 +55,7 @@ impl<'a> Files<'a> {
         if let Some((path, trace)) = &mut self.trace {
             trace.write(observation).map_err(|error| file_failure(path, &error))?;
         }
+        self.has_poses |= observation.state.is_some();
         if let Some((_, _, trajectory)) = &mut self.trajectory {
             trajectory.take(observation);
         }
@@ -67,6 +71,7 @@ impl<'a> Files<'a> {
         tracker: &Tracker,
         truth: Option<&Truth>,
         results: &[ObjectResult],
+        b: &MeaningOfB,
     ) -> Result<(), Failure> {
         let Self { args, trace, trajectory, svg, histories, .. } = self;
         let model = args.options.motion.model();
@@ -87,11 +92,11 @@ impl<'a> Files<'a> {
         }
         if let Some((path, mut file, mut trajectory)) = trajectory {
             if args.smooth {
-                match trajectory.smooth(tracker) {
-                    Err(changed @ SmoothingError::MotionChanged) => {
-                        warn(&format!("--smooth: {changed}; the poses are not smoothed"));
-                    }
-                    smoothed => smoothed.map_err(Failure::unusable)?,
+                let not_smoothed = trajectory.smooth(tracker);
+                let told = not_smoothed.len().min(NOT_SMOOTHED_TOLD);
+                not_smoothed[..told].iter().for_each(|object| warn(&format!("--smooth: {object}")));
+                if told < not_smoothed.len() {
+                    warn(&format!("--smooth: nor are those of {} more object(s)", not_smoothed.len() - told));
                 }
             }
             let written = write_trajectory(&mut file, &trajectory, model, args.options.scale);
@@ -101,7 +106,7 @@ impl<'a> Files<'a> {
         if results.iter().all(|result| result.parameters().is_none()) {
             not_written(&[("--svg", svg.is_some())], "there is no motion to draw");
         } else if let Some(file) = svg {
-            file.finish_with(parameter_figure(&histories, args.options.motion.family(), truth).as_bytes())?;
+            file.finish_with(parameter_figure(&histories, args.options.motion.family(), truth, b).as_bytes())?;
         }
         Ok(())
     }

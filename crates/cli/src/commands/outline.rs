@@ -151,7 +151,7 @@ impl Drawings {
 
     fn draw(&mut self, source: &SourcePicture, frame: &OutlineFrame) -> Result<(), Failure> {
         let name = self.names.then_some(frame.object.as_str());
-        let drawn = Drawn { outline: &frame.outline, name, accepted: true, fit: None, generator: None };
+        let drawn = Drawn { outline: &frame.outline, name, accepted: true, known: &[], fit: None, generator: None };
         self.pictures.take(self.overlay.draw(source, &drawn))
     }
 

@@ -17,11 +17,13 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     refuse_overwriting(&args.options.files_read(&args.pictures, &args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
     args.options.check()?;
-    let mut tracker = Tracker::new(args.options.tracker_settings()).map_err(Failure::unusable)?;
+    let shown = if args.overlay.is_some() { usize::MAX } else { 0 };
+    let tracker = |settings| Tracker::new(settings).map(|tracker| tracker.with_known_outlines(shown));
+    let mut following = tracker(args.options.tracker_settings()).map_err(Failure::unusable)?;
     let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None, args.quiet)?;
     if let Some(error) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         let settings = args.options.tracker_settings_for(error);
-        tracker = Tracker::new(settings).map_err(Failure::unusable)?;
+        following = tracker(settings).map_err(Failure::unusable)?;
     }
     let mut overlay = InputOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
@@ -29,7 +31,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
-    let failure = follow_stream(&mut tracker, &mut input, args.quiet, |event| {
+    let failure = follow_stream(&mut following, &mut input, args.quiet, |event| {
         let event = match event {
             Ok(event) => event,
             Err(left) => return write_line(&mut sink, &closing_line(left).map_err(Failure::unusable)?),

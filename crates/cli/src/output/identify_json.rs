@@ -6,7 +6,7 @@ use freeform_motion::estimate::{MotionEstimate, ParameterEstimate};
 use freeform_motion::outline_filter::{Ambiguity, DynamicsWeights, PlaneAmbiguity};
 use freeform_motion::outline_io::TracingWarning;
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::tracker::{MotionFamily, ObjectPhase, ObjectResult, Observation};
+use freeform_motion::tracker::{MotionFamily, NotStated, ObjectPhase, ObjectResult, Observation};
 use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 
 use super::plane_json::{NormalJson, PlanesJson};
@@ -43,8 +43,11 @@ pub(crate) fn track_line(observation: &Observation) -> serde_json::Result<String
         time: observation.time,
         phase: observation.phase.map(ObjectPhase::name),
         accepted: observation.is_accepted(),
-        parameters: observation.parameters().map(|found| Parameters(found, &observation.aliases)),
+        parameters: observation
+            .parameters()
+            .map(|found| Parameters::new(found, &observation.aliases, |name| observation.not_stated(name))),
         generator: estimate.and_then(generator_rows),
+        velocity: observation.velocity.as_ref().map(VelocityJson),
         normal: observation.plane.as_deref().map(NormalJson::from),
         reason: observation.rejection.as_ref().map(ToString::to_string),
         ambiguity: ambiguity_json(observation.ambiguity.as_ref(), observation.plane_ambiguity.as_deref()),
@@ -60,8 +63,11 @@ pub(crate) fn closing_line(Left { seen, result }: &Left) -> serde_json::Result<S
         time: seen.time,
         phase: Some("closed"),
         accepted: false,
-        parameters: result.parameters().map(|found| Parameters(found, &result.aliases)),
+        parameters: result
+            .parameters()
+            .map(|found| Parameters::new(found, &result.aliases, |name| result.not_stated(name))),
         generator: result.estimate.as_ref().and_then(generator_rows),
+        velocity: result.velocity.as_ref().map(VelocityJson),
         normal: result.plane.as_deref().map(NormalJson::from),
         reason: Some("not seen for long, and forgotten".to_owned()),
         ambiguity: ambiguity_json(result.ambiguity.as_ref(), result.plane_ambiguity.as_deref()),
@@ -116,6 +122,7 @@ struct TrackLine<'a> {
     accepted: bool,
     parameters: Option<Parameters<'a>>,
     generator: Option<[[f64; 3]; 3]>,
+    velocity: Option<VelocityJson<'a>>,
     /// Of a plane in space alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     normal: Option<NormalJson>,
@@ -164,7 +171,10 @@ impl Serialize for ObjectJson<'_> {
         object.serialize_field("frames", &result.frames)?;
         object.serialize_field("frames_rejected", &result.frames_rejected)?;
         match result.parameters() {
-            Some(found) => object.serialize_field("parameters", &Parameters(found, &result.aliases))?,
+            Some(found) => {
+                let parameters = Parameters::new(found, &result.aliases, |name| result.not_stated(name));
+                object.serialize_field("parameters", &parameters)?;
+            }
             None => object.serialize_field("parameters", &NoParameters(result))?,
         }
         object.serialize_field("generator", &result.estimate.as_ref().and_then(generator_rows))?;
@@ -222,18 +232,29 @@ struct ParameterJson<'a> {
     std_systematic: Option<f64>,
     unit: &'static str,
     observable: bool,
+    /// The word of the table where there is no value.
+    reason: Option<&'static str>,
     /// Of omega alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     aliases: Option<&'a [f64]>,
 }
 
-/// An estimate, and other angular velocities that explain the outlines as well.
-struct Parameters<'a>(Vec<ParameterEstimate>, &'a [f64]);
+/// An estimate, with why a parameter is not stated, and other angular velocities that explain the outlines as well.
+struct Parameters<'a> {
+    found: Vec<(ParameterEstimate, Option<NotStated>)>,
+    aliases: &'a [f64],
+}
+
+impl<'a> Parameters<'a> {
+    fn new(found: Vec<ParameterEstimate>, aliases: &'a [f64], why: impl Fn(&str) -> Option<NotStated>) -> Self {
+        Self { found: found.into_iter().map(|parameter| (parameter, why(parameter.name))).collect(), aliases }
+    }
+}
 
 impl Serialize for Parameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
-        for parameter in &self.0 {
+        for (parameter, reason) in &self.found {
             let value = parameter.value;
             let json = ParameterJson {
                 value,
@@ -242,7 +263,8 @@ impl Serialize for Parameters<'_> {
                 std_systematic: parameter.systematic_deviation,
                 unit: parameter.unit,
                 observable: value.is_some(),
-                aliases: (parameter.name == "omega").then_some(self.1),
+                reason: reason.map(NotStated::name),
+                aliases: (parameter.name == "omega").then_some(self.aliases),
             };
             map.serialize_entry(parameter.name, &json)?;
         }
@@ -265,6 +287,7 @@ impl Serialize for NoParameters<'_> {
                 std_systematic: None,
                 unit,
                 observable: false,
+                reason: self.0.not_stated(name).map(NotStated::name),
                 aliases: (*name == "omega").then_some(&[]),
             };
             map.serialize_entry(name, &nothing)?;
@@ -303,14 +326,14 @@ mod tests {
         let object = &document["objects"][0];
         let nothing = json!({
             "value": null, "std": null, "std_random": null, "std_systematic": null, "unit": "rad/s", "observable": false,
-            "aliases": [],
+            "reason": "unknown", "aliases": [],
         });
         assert_eq!(object["parameters"]["omega"], nothing);
         assert_eq!(
             object["parameters"]["b2"],
             json!({
                 "value": 0.4 / 0.1, "std": 0.3 / 0.1, "std_random": 0.3 / 0.1, "std_systematic": 0.0, "unit": "1/s",
-                "observable": true,
+                "observable": true, "reason": null,
             })
         );
         assert_eq!(

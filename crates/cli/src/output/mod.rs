@@ -30,7 +30,7 @@ pub(crate) use fit_table::write_fit_table;
 pub(crate) use identify_json::{closing_line, track_line, write_identify_json};
 pub(crate) use identify_table::write_identify_table;
 pub(crate) use recognised::{RecognisedObject, write_recognised_json, write_recognised_table};
-pub(crate) use refusal::{refuse_overwriting, refuse_standard_output};
+pub(crate) use refusal::{refuse_other_format, refuse_overwriting, refuse_standard_output};
 pub(crate) use section_files::write_section_files;
 pub(crate) use stress_json::{write_kinds_json, write_stress_json};
 pub(crate) use stress_table::{write_kinds, write_kinds_markdown, write_stress_markdown, write_stress_table};

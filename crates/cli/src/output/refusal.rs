@@ -2,7 +2,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use freeform_motion::outline_io::picture_files;
+use freeform_motion::outline_io::{has_picture_extension, picture_files};
 
 use super::destination::{folder_of, is_same_file};
 use crate::failure::Failure;
@@ -46,6 +46,24 @@ pub(crate) fn refuse_overwriting(read: &[PathBuf], outputs: &[&Path]) -> Result<
         }
     }
     Ok(())
+}
+
+/// Formats of figures that are asked for by a name, but not written.
+const OTHER_FIGURES: [&str; 6] = ["pdf", "eps", "ps", "webp", "html", "htm"];
+
+/// Refuses a name of a figure that says another format than SVG.
+pub(crate) fn refuse_other_format(svg: Option<&Path>) -> Result<(), Failure> {
+    let is_other = |path: &&Path| {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let is_among = |extension: &str| OTHER_FIGURES.iter().any(|other| other.eq_ignore_ascii_case(extension));
+        has_picture_extension(path) || extension.is_some_and(is_among)
+    };
+    match svg.filter(is_other) {
+        Some(path) => {
+            Err(Failure::unusable(format_args!("{}: --svg writes SVG, give a name that ends in .svg", path.display())))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Refuses outputs that are standard output by another name, where the result goes.

@@ -1,7 +1,7 @@
 use crate::support::{json, run, sequence, stderr, stdout};
 
 /// Bad inputs, the exit status, and what the message names.
-const CASES: [(&str, &str, i32, &str); 21] = [
+const CASES: [(&str, &str, i32, &str); 23] = [
     ("empty file", "", 2, "<stdin>: "),
     ("only comments", "# nothing\n", 2, "<stdin>: "),
     ("only a header", "frame,time,x,y\n", 1, "<stdin>: "),
@@ -22,6 +22,8 @@ const CASES: [(&str, &str, i32, &str); 21] = [
     ("text for a number", "frame,time,x,y\n0,0,abc,1\n", 2, "<stdin>:2: column x: \"abc\" is not a number"),
     ("text for a time", "frame,time,x,y\n0,soon,0,1\n", 2, "<stdin>:2: column time"),
     ("a negative frame", "frame,time,x,y\n-1,0,0,1\n", 2, "<stdin>:2: column frame"),
+    ("names in upper case", "Frame,Time,X,Y\n0,0,0,0\n", 2, "names of columns are in lower case"),
+    ("a tiny outline", "frame,time,x,y\n0,0,0,0\n0,0,1e-200,0\n0,0,0,1e-200\n", 1, "the outline is too small"),
     ("a missing column", "frame,time,x\n0,0,1\n", 2, "missing column(s) y"),
     ("time running backwards", "frame,time,x,y\n0,1,0,0\n0,1,1,0\n0,1,0,1\n1,0.5,0,0\n", 2, "<stdin>:5: column time"),
     ("two outlines in one frame", "frame,time,x,y,object\n0,0,0,0,a\n0,0,1,0,b\n0,0,0,1,a\n", 2, "<stdin>:4"),
@@ -140,4 +142,29 @@ fn tiny_far_and_flat_outlines_give_an_answer_or_a_reason_but_no_panic() {
             }
         }
     }
+}
+
+#[test]
+fn a_file_of_two_contours_in_one_and_one_in_milliseconds_are_told_of() {
+    let of = |options: &str| -> Vec<Vec<f64>> {
+        let csv = sequence(options);
+        let rows = csv.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+        rows.map(|row| row.split(',').map(|field| field.parse().expect("a number")).collect()).collect()
+    };
+    let (one, other) = (of("--noise 0.001"), of("--noise 0.001 --shape van"));
+    let row = |row: &Vec<f64>, shift: f64, factor: f64| {
+        format!("{},{},{},{}\n", row[0], factor * row[1], row[2] + shift, row[3])
+    };
+    let mixed = one.chunks(120).zip(other.chunks(120)).flat_map(|(one, other)| {
+        let one = one.iter().map(|fields| row(fields, 0.0, 1.0));
+        one.chain(other.iter().map(|fields| row(fields, 7.0, 1.0))).collect::<Vec<_>>()
+    });
+    let told = stderr(&run("identify -", &("frame,time,x,y\n".to_owned() + &mixed.collect::<String>())));
+    assert!(told.contains("the points of frame 0 seem to be two contours"), "{told}");
+
+    let slow: String = one.iter().map(|fields| row(fields, 0.0, 1000.0)).collect();
+    let told = stderr(&run("identify -", &format!("frame,time,x,y\n{slow}")));
+    assert!(told.contains("one frame every 33.3 s: times and rates are in seconds"), "{told}");
+    let told = stderr(&run("identify -", &sequence("--noise 0.001")));
+    assert!(!told.contains("one frame every") && !told.contains("two contours"), "{told}");
 }

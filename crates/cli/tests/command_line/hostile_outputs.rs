@@ -135,14 +135,16 @@ fn wherever_writing_fails_old_files_stay_and_nothing_half_done_does() {
     let input = tempfile::tempdir().expect("a folder");
     let csv = file(input.path(), "o.csv", sequence(""));
     let pictures = small_pictures(input.path(), 3);
-    let target = folder.path().join("target.gif").display().to_string();
+    // Of an overlay the name says the format; a figure takes none that says another.
+    let of = |name: &str| folder.path().join(name).display().to_string();
+    let (target, figure) = (of("target.gif"), of("target.svg"));
     let commands = [
         format!("simulate --seconds 0.2 --output {target}"),
         format!("identify {csv} --trace {target}"),
         format!("identify {csv} --trajectory {target}"),
-        format!("identify {csv} --svg {target}"),
+        format!("identify {csv} --svg {figure}"),
         format!("identify {csv} --report {target}"),
-        format!("fit {csv} --svg {target}"),
+        format!("fit {csv} --svg {figure}"),
         format!("outline {pictures} --output {target}"),
         format!("outline {pictures} --overlay {target}"),
         format!("track {pictures} --overlay {target}"),
@@ -155,22 +157,26 @@ fn wherever_writing_fails_old_files_stay_and_nothing_half_done_does() {
         shell.args(command.split_whitespace()).output().expect("a shell")
     };
     for command in commands {
-        fs::write(&target, "old").expect("a file");
+        let target = if command.ends_with(&figure) { &figure } else { &target };
+        fs::write(target, "old").expect("a file");
         succeed(&command, "");
-        let blocks = fs::metadata(&target).expect("the file").len().div_ceil(512);
+        let blocks = fs::metadata(target).expect("the file").len().div_ceil(512);
         // A shell may count in blocks of twice the size, so that some of the last places are beyond the end.
         let step = (blocks / 12).max(1);
         let mut failures = 0;
         for limit in (0..blocks).step_by(step as usize) {
-            fs::write(&target, "old").expect("a file");
+            fs::write(target, "old").expect("a file");
             let output = failing_after(limit, &command);
-            let content = fs::read(&target).expect("the file");
+            let content = fs::read(target).expect("the file");
             match output.status.code() {
                 Some(2) => {
                     failures += 1;
                     assert!(content == b"old", "{command}, {limit} blocks: the old file is gone");
                     let message = stderr(&output);
-                    assert!(message.contains("target.gif: File too large"), "{command}, {limit} blocks: {message}");
+                    assert!(
+                        message.contains(&format!("{target}: File too large")),
+                        "{command}, {limit} blocks: {message}"
+                    );
                 }
                 code => assert!(code == Some(0) && content.len() as u64 > 512 * limit, "{command}, {limit}: {code:?}"),
             }
@@ -178,6 +184,7 @@ fn wherever_writing_fails_old_files_stay_and_nothing_half_done_does() {
             assert_eq!(entries, 1, "{command}, {limit} blocks: something is left");
         }
         assert!(failures * 2 >= blocks.div_ceil(step), "{command}: {failures} failures of {blocks} blocks");
+        fs::remove_file(target).expect("the file");
     }
     // A folder of drawings keeps those that are whole.
     let drawn = folder.path().join("drawn").display().to_string();

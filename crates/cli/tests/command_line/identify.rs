@@ -28,10 +28,11 @@ fn the_json_has_the_fields_of_the_contract_and_says_what_b_is_and_what_was_left_
     assert_eq!(keys(&object["parameters"]), ["b1", "b2", "omega"]);
     for (name, unit) in [("omega", "rad/s"), ("b1", "1/s"), ("b2", "1/s")] {
         let parameter = &object["parameters"][name];
-        let fields = ["observable", "std", "std_random", "std_systematic", "unit", "value"];
-        let with_aliases = ["aliases", "observable", "std", "std_random", "std_systematic", "unit", "value"];
+        let fields = ["observable", "reason", "std", "std_random", "std_systematic", "unit", "value"];
+        let with_aliases = ["aliases", "observable", "reason", "std", "std_random", "std_systematic", "unit", "value"];
         assert_eq!(keys(parameter), if name == "omega" { &with_aliases[..] } else { &fields[..] });
         assert!(parameter["value"].is_f64() && parameter["observable"] == true && parameter["unit"] == unit);
+        assert!(parameter["reason"].is_null());
     }
     let generator = &object["generator"];
     assert_eq!(generator[0][1], object["parameters"]["omega"]["value"]);
@@ -83,9 +84,65 @@ fn every_object_has_its_own_result() {
 fn the_csv_has_one_row_per_object_and_parameter() {
     let csv = succeed("identify - --method adaptive --format csv", &sequence(""));
     let lines: Vec<&str> = csv.lines().collect();
-    assert_eq!(lines[0], "object,method,motion,frames,frames_rejected,parameter,value,std,unit,observable");
+    assert_eq!(lines[0], "object,method,motion,frames,frames_rejected,parameter,value,std,unit,observable,reason");
     assert_eq!(lines.len(), 4);
-    assert!(lines[1].starts_with("0,adaptive,rigid,15,0,omega,") && lines[1].ends_with(",,rad/s,true"), "{}", lines[1]);
+    assert!(
+        lines[1].starts_with("0,adaptive,rigid,15,0,omega,") && lines[1].ends_with(",,rad/s,true,"),
+        "{}",
+        lines[1]
+    );
+}
+
+#[test]
+fn the_velocity_of_the_middle_is_in_every_format_and_so_is_why_it_or_a_parameter_is_not_stated() {
+    let circle = sequence("--shape circle --seconds 1");
+    let csv = succeed("identify - --format csv", &circle);
+    let rows: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    let names: Vec<&str> = rows[1..].iter().map(|row| row[5]).collect();
+    assert_eq!(names, ["omega", "b1", "b2", "v1", "v2"]);
+    assert_eq!((rows[1][6], rows[1][9], rows[1][10]), ("", "false", "unobservable"));
+    assert_eq!((rows[4][9], rows[4][10]), ("true", ""));
+    let whole = json(&succeed("identify - --format json", &circle));
+    assert_eq!(whole["objects"][0]["parameters"]["omega"]["reason"], "unobservable");
+    assert_eq!(whole["objects"][0]["velocity"]["value"][0].as_f64(), rows[4][6].parse().ok());
+    let last = json(succeed("track", &circle).lines().last().expect("a line"));
+    assert_eq!(last["velocity"], whole["objects"][0]["velocity"]);
+    assert_eq!(last["parameters"], whole["objects"][0]["parameters"]);
+
+    // Another outline in every second frame, so that the others are not to be trusted.
+    let (one, other) = (sequence(""), sequence("--shape van --omega -1"));
+    let rows = |csv: &str| -> Vec<String> {
+        csv.lines()
+            .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
+            .map(|line| format!("{line}\n"))
+            .collect()
+    };
+    let (one, other) = (rows(&one), rows(&other));
+    let frames = one.chunks(120).zip(other.chunks(120)).enumerate();
+    let turns: String =
+        frames.map(|(frame, (one, other))| if frame % 2 == 0 { one.concat() } else { other.concat() }).collect();
+    let lost = format!("frame,time,x,y\n{turns}");
+    let table = succeed("identify -", &lost);
+    for name in ["omega", "v1", "v2"] {
+        let row = table.lines().find(|line| line.trim_start().starts_with(name)).expect("a row");
+        assert!(row.contains("unknown"), "{table}");
+    }
+    assert!(table.contains("poses over time: --trajectory FILE"), "{table}");
+    let lost_json = json(&succeed("identify - --json", &lost));
+    assert_eq!(lost_json["objects"][0]["parameters"]["b1"]["reason"], "unknown");
+    let folder = tempfile::tempdir().expect("a folder");
+    let with = succeed(&format!("identify - --trajectory {}/t.csv", folder.path().display()), &lost);
+    assert!(!with.contains("poses over time"), "{with}");
+    assert!(!succeed("identify -", &sequence("")).contains("poses over time"));
+}
+
+#[test]
+fn velocities_in_the_table_are_in_lengths_per_second_and_in_json_in_the_unit_of_the_contract() {
+    let table = succeed("identify -", &sequence(""));
+    let unit = |name: &str| {
+        table.lines().find(|line| line.trim_start().starts_with(name)).expect("a row").contains(" lengths/s ")
+    };
+    assert!(unit("b1") && unit("v2") && !unit("omega"), "{table}");
 }
 
 #[test]

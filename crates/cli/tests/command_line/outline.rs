@@ -84,7 +84,9 @@ fn pictures_are_identified_directly_and_drawn_on() {
     let names = drawn(&folder.path().join("drawn"));
     assert_eq!((names.len(), names[11].as_str()), (12, "000011.png"));
     let picture = image::open(folder.path().join("drawn/000011.png")).expect("a picture").into_rgb8();
-    assert!(picture.pixels().any(|pixel| pixel.0[1] > pixel.0[0].saturating_add(60)), "green arrows");
+    assert!(picture.pixels().any(|pixel| pixel.0[0] > pixel.0[2].saturating_add(60)), "a yellow outline");
+    let is_green = |pixel: &image::Rgb<u8>| pixel.0[1] > pixel.0[0].saturating_add(60);
+    assert!(!picture.pixels().any(is_green), "no arrows and no curve: neither motion nor a curve is known");
 
     let lines = succeed(&format!("track {frames}/*.png --fps 10 --overlay {base}/drawn.gif"), "");
     assert_eq!(lines.lines().count(), 12);

@@ -1,5 +1,5 @@
 //! Where drawings of pictures go, and where not.
-use image::{GrayImage, ImageFormat};
+use image::{GrayImage, ImageFormat, Luma};
 
 use crate::pears::{encoded, names, pear, pears};
 use crate::support::{file, run, stderr, stdout, succeed};
@@ -19,13 +19,10 @@ fn a_file_that_has_no_place_is_told_before_the_work_and_not_after_it() {
         "fit --svg",
         "outline --output",
     ] {
-        let output = run(&format!("{arguments} {base}/no/file.gif {frames}"), "");
+        let name = if arguments.ends_with("--svg") { "file.svg" } else { "file.gif" };
+        let output = run(&format!("{arguments} {base}/no/{name} {frames}"), "");
         assert_eq!((output.status.code(), stdout(&output).as_str()), (Some(2), ""), "{arguments}");
-        assert_eq!(
-            stderr(&output),
-            format!("freeform: {base}/no/file.gif: No such file or directory\n"),
-            "{arguments}"
-        );
+        assert_eq!(stderr(&output), format!("freeform: {base}/no/{name}: No such file or directory\n"), "{arguments}");
     }
     assert_eq!(names(&base), ["frames"]);
 }
@@ -89,4 +86,48 @@ fn drawings_do_not_go_among_the_pictures_of_the_input() {
         }
     }
     assert_eq!(names(&frames).len(), 3);
+}
+
+/// Pixels of a drawing in the colour of what the method knows, from some column on.
+fn blue_pixels(path: &str, from: u32) -> usize {
+    let picture = image::open(path).expect("a drawing").to_rgb8();
+    picture.enumerate_pixels().filter(|(column, _, p)| *column >= from && p.0[2] > p.0[0].saturating_add(60)).count()
+}
+
+#[test]
+fn a_drawing_shows_the_known_outline_also_where_a_part_is_hidden_and_no_curve_that_the_filter_does_not_fit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = pears(folder.path(), "frames", 14);
+    // The end of the last pear is covered.
+    let covered = pear(13);
+    let covered = GrayImage::from_fn(160, 120, |x, y| if x < 97 { *covered.get_pixel(x, y) } else { Luma([30]) });
+    covered.save(format!("{frames}/13.png")).expect("a picture");
+    for command in ["identify", "track"] {
+        for (method, hidden) in [("filter", 40..250), ("adaptive", 0..10)] {
+            let drawn = format!("{base}/{command}-{method}");
+            succeed(&format!("{command} {frames} --fps 10 --method {method} --quiet --overlay {drawn}"), "");
+            let blue = blue_pixels(&format!("{drawn}/000013.png"), 103);
+            assert!(hidden.contains(&blue), "{command} {method}: {blue}");
+        }
+        // In the first frame all is seen: the known outline lies below what was traced.
+        let blue = blue_pixels(&format!("{base}/{command}-filter/000000.png"), 0);
+        assert!(blue < 40, "{command}: {blue}");
+    }
+}
+
+#[test]
+fn a_figure_whose_name_says_another_format_is_refused_and_one_of_any_other_name_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = pears(folder.path(), "frames", 4);
+    for command in ["identify", "fit"] {
+        for name in ["x.png", "x.JPG", "x.pdf"] {
+            let output = run(&format!("{command} {frames} --svg {base}/{name}"), "");
+            let reason = format!("freeform: {base}/{name}: --svg writes SVG, give a name that ends in .svg\n");
+            assert_eq!((output.status.code(), stderr(&output)), (Some(2), reason), "{command}");
+        }
+        assert_eq!(names(&base), ["frames"], "{command}");
+    }
+    succeed(&format!("fit {frames} --frame 1 --svg {base}/figure.v2"), "");
+    let figure = std::fs::read_to_string(format!("{base}/figure.v2")).expect("a figure");
+    assert!(figure.contains("degree 4, residual "), "{}", &figure[..figure.len().min(2000)]);
 }

@@ -74,6 +74,8 @@ fn a_camera_that_is_missing_or_cannot_be_is_wrong_usage() {
             ("--motion plane --focal 900 --principal 320", "expected X,Y"),
             ("--motion plane --focal 900 --principal inf,240", "not a finite number"),
             ("--focal 900 --principal 320,240", "are for --motion plane"),
+            ("--focal 900", "are for --motion plane"),
+            ("--principal 320,240", "are for --motion plane"),
             ("--motion plane --focal 900 --principal 320,240 --method adaptive", "cannot be combined"),
             ("--motion plane --focal 900 --principal 320,240 --scale 0.1", "cannot be combined"),
             ("--motion plane --focal 900 --principal 320,240 --edge-uncertainty 1", "cannot be combined"),

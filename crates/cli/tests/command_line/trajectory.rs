@@ -93,6 +93,31 @@ fn every_object_is_smoothed_by_itself() {
 }
 
 #[test]
+fn poses_of_an_object_whose_motion_changed_are_not_smoothed_and_a_warning_names_it() {
+    let constant = sequence("--seconds 6 --points 60");
+    let stopping = sequence("--dynamics stop-and-go --shape bird --seconds 6 --points 60");
+    let rows = |csv: &str, name: &str| -> Vec<String> {
+        csv.lines()
+            .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
+            .map(|line| format!("{line},{name}\n"))
+            .collect()
+    };
+    let (first, second) = (rows(&constant, "a"), rows(&stopping, "b"));
+    let mixed: String = first.chunks(60).zip(second.chunks(60)).flat_map(|(a, b)| [a.concat(), b.concat()]).collect();
+    let csv = format!("frame,time,x,y,object\n{mixed}");
+    let (filtered, smoothed) = (trajectory("--quiet", &csv), trajectory("--quiet --smooth", &csv));
+    for (before, after) in filtered.iter().zip(&smoothed).skip(1).take(100) {
+        assert_eq!(before == after, before[0] == "b", "{before:?}");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = run(&format!("identify - --smooth --trajectory {}/t.csv", folder.path().display()), &csv);
+    let reason =
+        "--smooth: the poses of object b are not smoothed: the motion changed, and the smoother assumes a constant one";
+    assert!(output.status.success() && stderr(&output).contains(reason), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("poses of object a"));
+}
+
+#[test]
 fn what_cannot_be_had_is_wrong_usage() {
     for (options, reason) in
         [("--method adaptive --trajectory t.csv", "the adaptive method gives no poses"), ("--smooth", "--trajectory")]

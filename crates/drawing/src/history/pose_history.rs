@@ -1,8 +1,7 @@
 //! Where an object was over time, kept for figures.
 use std::f64::consts::TAU;
 
-use freeform_motion::estimate::{MotionEstimate, MotionState};
-use freeform_motion::riccati::ParameterKind;
+use freeform_motion::estimate::MotionState;
 use freeform_motion::tracker::Observation;
 
 use super::thinned::{Kept, Thinned};
@@ -42,7 +41,8 @@ impl PoseHistory {
             self.samples.break_off();
         }
         let Some(state) = present_state(observation) else { return self.samples.skip() };
-        let shows_turn = observation.estimate.as_ref().is_some_and(shows_turn);
+        // Of the turns that the outlines leave open none is drawn.
+        let is_ambiguous = observation.ambiguity.is_some();
         let mut parameters = Vec::new();
         for parameter in state.pose_parameters() {
             let mut value = parameter.value;
@@ -50,7 +50,7 @@ impl PoseHistory {
                 value += TAU * ((self.last_angle - value) / TAU).round();
                 self.last_angle = value;
             }
-            let is_stated = shows_turn && value.is_finite() || matches!(parameter.name, "x" | "y");
+            let is_stated = value.is_finite() && !(is_ambiguous && parameter.name == "angle");
             parameters.push(is_stated.then_some([value, parameter.standard_deviation]));
         }
         self.samples.push(PoseSample { time: state.time(), parameters });
@@ -65,8 +65,39 @@ pub(crate) fn present_state(observation: &Observation) -> Option<&MotionState> {
     observation.state.as_ref().filter(|state| observation.time == Some(state.time()))
 }
 
-/// Whether all but the velocity of the origin is stated, without which the turn of the object is not known either.
-fn shows_turn(estimate: &MotionEstimate) -> bool {
-    let kinds = estimate.model().parameter_kinds().iter();
-    kinds.zip(estimate.parameters()).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some())
+#[cfg(test)]
+mod tests {
+    use freeform_motion::curve_fit::Outline;
+    use freeform_motion::outline_io::OutlineFrame;
+    use freeform_motion::{Tracker, TrackerSettings};
+    use nalgebra::Point2;
+
+    use super::*;
+
+    /// What is stated in the last of some frames of an ellipse that turns, of which the motion is forgotten.
+    fn last_pose(width: f64) -> Vec<bool> {
+        let frames = (0..12).map(|frame| {
+            let time = f64::from(frame) / 10.0;
+            let points = (0..120).map(|i| {
+                let (sin, cos) = (TAU * f64::from(i) / 120.0).sin_cos();
+                nalgebra::Rotation2::new(time) * Point2::new(cos + width * cos * cos, (1.0 - width) * sin)
+            });
+            let outline = Outline::closed(points.collect()).expect("an outline");
+            OutlineFrame { frame: frame as u64, time, object: "a".to_owned(), outline }
+        });
+        let mut poses = PoseHistory::default();
+        let mut tracker = Tracker::new(TrackerSettings::default()).expect("settings");
+        tracker.follow(frames, |mut observation| {
+            observation.estimate = None;
+            poses.take(&observation);
+        });
+        let last = poses.samples().last().expect("poses");
+        last.value.parameters.iter().map(Option::is_some).collect()
+    }
+
+    #[test]
+    fn a_pose_is_kept_also_where_the_motion_is_not_known_and_an_angle_only_where_the_outline_shows_it() {
+        assert_eq!(last_pose(0.3), [true; 3]);
+        assert_eq!(last_pose(0.0), [false, true, true], "a circle shows no turn");
+    }
 }

@@ -1,5 +1,6 @@
 use freeform_motion::CurveParts;
 use freeform_motion::curve_fit::{Fit, Outline, PixelGrid, Rectangle};
+use freeform_motion::outline_filter::KnownPiece;
 use freeform_motion::outline_io::SourcePicture;
 use freeform_motion::riccati::ProjectiveMotion;
 use image::{Rgb, RgbImage};
@@ -43,6 +44,8 @@ pub struct Drawn<'a> {
     pub name: Option<&'a str>,
     /// Whether the frame was used; an outline that was not is red.
     pub accepted: bool,
+    /// What is known of its outline, where it is in this frame; empty where nothing is.
+    pub known: &'a [KnownPiece],
     /// The curve fitted to the outline and what it consists of.
     pub fit: Option<(&'a Fit, Option<&'a CurveParts>)>,
     /// The generator of the motion in image lengths.
@@ -72,7 +75,7 @@ pub struct DrawnPicture {
 /// use nalgebra::Point2;
 ///
 /// let outline = Outline::closed([[5.0, 5.0], [25.0, 5.0], [15.0, 20.0]].map(Point2::from).to_vec())?;
-/// let drawn = Drawn { outline: &outline, name: None, accepted: true, fit: None, generator: None };
+/// let drawn = Drawn { outline: &outline, name: None, accepted: true, known: &[], fit: None, generator: None };
 /// let (mut overlay, mut done) = (Overlay::default(), Vec::new());
 /// for frame in 0..3 {
 ///     let (picture, grid) = (Arc::new(GrayImage::new(30, 30)), TraceSettings::default().pixel_grid(30));
@@ -150,13 +153,10 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
             canvas.polyline(run.iter().map(pixel), CURVE);
         }
     }
+    // Below the outline, so that it is seen where the outline is not, or is elsewhere.
+    drawn.known.iter().for_each(|piece| draw_piece(canvas, grid, &piece.points, piece.closed, CURVE));
     let colour = if drawn.accepted { OUTLINE } else { REJECTED };
-    for piece in drawn.outline.pieces() {
-        canvas.polyline(piece.points.iter().map(pixel), colour);
-        if let (true, Some(first), Some(last)) = (piece.closed, piece.points.first(), piece.points.last()) {
-            canvas.line(pixel(last), pixel(first), colour);
-        }
-    }
+    drawn.outline.pieces().for_each(|piece| draw_piece(canvas, grid, piece.points, piece.closed, colour));
     let words: Vec<&str> = drawn.name.into_iter().chain((!drawn.accepted).then_some("rejected")).collect();
     let corners = [area.low, area.high].map(|corner| pixel(&corner));
     let upper_left = [0, 1].map(|axis| corners[0][axis].min(corners[1][axis]));
@@ -169,6 +169,12 @@ fn draw(canvas: &mut Canvas, grid: &PixelGrid, drawn: &Drawn<'_>) {
     if let Some(generator) = drawn.generator {
         draw_motion(canvas, grid, drawn.outline, &area, &generator);
     }
+}
+
+/// A line along a piece of an outline, back to its beginning where it is closed.
+fn draw_piece(canvas: &mut Canvas, grid: &PixelGrid, points: &[Point2<f64>], closed: bool, colour: Rgb<u8>) {
+    let closing = points.first().filter(|_| closed);
+    canvas.polyline(points.iter().chain(closing).map(|point| grid.to_pixels(point)), colour);
 }
 
 /// The longer side of a box, of which two opposite corners are given.

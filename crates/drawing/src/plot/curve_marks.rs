@@ -32,3 +32,18 @@ pub(super) fn crosses(pixels: &[[f64; 2]]) -> String {
 pub(super) fn marks(pixels: &[[f64; 2]], from: f64, to: f64) -> String {
     pixels.iter().map(|[x, _]| format!("M{x:.2} {from:.2}V{to:.2}")).collect()
 }
+
+/// Half the width of the mark of a single value, and of its band, in pixels.
+const RING: f64 = 2.5;
+const BAR: f64 = 2.0;
+
+/// A ring about a point.
+pub(super) fn ring([x, y]: [f64; 2]) -> String {
+    format!("M{:.2} {y:.2}a{RING} {RING} 0 1 0 {w} 0a{RING} {RING} 0 1 0 -{w} 0", x - RING, w = 2.0 * RING)
+}
+
+/// A bar from the lower to the upper end of the band of one value.
+pub(super) fn bar([x, lower]: [f64; 2], [_, upper]: [f64; 2]) -> String {
+    let (left, right) = (x - BAR, x + BAR);
+    format!("M{left:.2} {lower:.2}H{right:.2}V{upper:.2}H{left:.2}Z")
+}

@@ -2,7 +2,7 @@ use std::fmt::Write as _;
 
 use crate::figure::{Curve, Look, Panel};
 
-use super::curve_marks::{class, crosses, dots, marks};
+use super::curve_marks::{bar, class, crosses, dots, marks, ring};
 use super::legend::{LEGEND_ROW, draw_legend_row, legend_rows};
 use super::text::{escape, text_width};
 use super::ticks::Ticks;
@@ -218,12 +218,9 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Axis, y: &Axis) {
         path.push_str(&match curve.look {
             Look::Line | Look::Truth | Look::Reference | Look::Faint | Look::Series(_) | Look::Dashed(_) => {
                 // A line of one point has no length, and would not be seen.
-                if let [[x, y]] = pixels[..] {
-                    format!("M{:.2} {y:.2}h3", x - 1.5)
-                } else {
-                    connected(&thinned(&pixels), "")
-                }
+                if let [point] = pixels[..] { ring(point) } else { connected(&thinned(&pixels), "") }
             }
+            Look::Band if pixels.len() == 2 => bar(pixels[0], pixels[1]),
             // Its lower edge, then its upper one backwards.
             Look::Band => {
                 let (lower, upper) = pixels.split_at(pixels.len() / 2);
@@ -276,12 +273,15 @@ mod tests {
     }
 
     #[test]
-    fn a_line_of_one_point_is_seen() {
+    fn a_value_without_neighbours_and_its_band_are_seen() {
         let axis = |from, to| Axis { low: 0.0, high: 2.0, from, to, logarithmic: false };
         let curve = Curve { name: String::new(), look: Look::Line, runs: vec![vec![[1.0, 1.0]]] };
         let mut svg = String::new();
         draw_curve(&mut svg, &curve, &axis(0.0, 100.0), &axis(100.0, 0.0));
-        assert!(svg.contains("M48.50 50.00h3\""), "{svg}");
+        assert!(svg.contains("M47.50 50.00a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0\""), "{svg}");
+        let band = Curve { name: String::new(), look: Look::Band, runs: vec![vec![[1.0, 0.5], [1.0, 1.5]]] };
+        draw_curve(&mut svg, &band, &axis(0.0, 100.0), &axis(100.0, 0.0));
+        assert!(svg.contains("M48.00 75.00H52.00V25.00H48.00Z"), "{svg}");
     }
 
     #[test]

@@ -1,12 +1,24 @@
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::ParameterEstimate;
+use freeform_motion::riccati::ParameterKind;
 use freeform_motion::tracker::MotionFamily;
-use freeform_motion::{FittedOutline, Truth, short};
+use freeform_motion::{FittedOutline, Truth, short, significant};
 use nalgebra::Point2;
 
+use super::meaning_of_b::MeaningOfB;
 use crate::figure::{Curve, Look, Panel};
 use crate::history::{Histories, History};
 use crate::plot::stacked_svg;
+
+/// Share of the values and band edges at each end of their range that need not be within a figure of a parameter: the first frames tell little, and
+/// their bands would make a flat line of all that comes after them.
+const BEYOND: f64 = 0.04;
+
+/// A range of all values is kept if it is no wider than so many ranges of most of them.
+const RANGES_OF_MOST: f64 = 8.0;
+
+/// Room above and below the range of most values, as a share of it.
+const ROOM_AROUND_MOST: f64 = 0.5;
 
 /// What is seen around the points, as a share of their extent.
 const SURROUNDINGS: f64 = 0.15;
@@ -29,13 +41,17 @@ pub(super) const BAND: f64 = 1.96;
 /// let frame = OutlineFrame { frame: 0, time: 0.0, object: DEFAULT_OBJECT.to_owned(), outline };
 /// let fit = Fitter::new(FitSettings::default())?.fit(&frame.outline)?;
 /// let svg = fit_figure(&[(FittedOutline::new(&frame, fit), frame.outline)]);
-/// assert!(svg.contains("fitted curve"));
+/// assert!(svg.contains("fitted curve") && svg.contains("residual 0.0"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use]
 pub fn fit_figure(drawn: &[(FittedOutline, Outline)]) -> String {
     let title = drawn.first().map_or_else(String::new, |(fitted, _)| {
-        format!("Frame {} at {} s, degree {}", fitted.frame, short(fitted.time), fitted.fit.working().degree())
+        let (time, degree) = (short(fitted.time), fitted.fit.working().degree());
+        let residuals = drawn.iter().map(|(fitted, _)| fitted.fit.diagnostics().geometric_residual);
+        let largest = significant(residuals.fold(0.0, f64::max), 3);
+        let up_to = if drawn.len() > 1 { "up to " } else { "" };
+        format!("Frame {} at {time} s, degree {degree}, residual {up_to}{largest}", fitted.frame)
     });
     stacked_svg(&[fit_panel(title, drawn)], 640.0, 640.0)
 }
@@ -83,13 +99,14 @@ pub(crate) fn fit_panel(title: String, drawn: &[(FittedOutline, Outline)]) -> Pa
     }
 }
 
-/// The parameters of all objects against time with 95 % bands, as an SVG file; beside them the truth, where it is known and constant.
+/// The parameters of all objects against time with 95 % bands, as an SVG file; beside them the truth, where it is known and constant. `b` says the
+/// unit of velocities.
 #[must_use]
-pub fn parameter_figure(histories: &Histories, family: MotionFamily, truth: Option<&Truth>) -> String {
+pub fn parameter_figure(histories: &Histories, family: MotionFamily, truth: Option<&Truth>, b: &MeaningOfB) -> String {
     let several = histories.list.len() > 1;
     let panels = histories.list.iter().flat_map(|history| {
         let prefix = if several { format!("Object {}: ", history.object) } else { String::new() };
-        parameter_panels(history, &prefix, family, truth)
+        parameter_panels(history, &prefix, family, truth, b)
     });
     stacked_svg(&panels.collect::<Vec<_>>(), 720.0, 270.0)
 }
@@ -100,22 +117,28 @@ pub(crate) fn parameter_panels(
     prefix: &str,
     family: MotionFamily,
     truth: Option<&Truth>,
+    b: &MeaningOfB,
 ) -> Vec<Panel> {
     // A level line would be wrong of a motion that changes.
     let truth = truth.and_then(|truth| truth.constant_parameters_in(family));
-    let names = family.parameter_names().iter().zip(family.units()).enumerate();
+    let names = family.parameter_names().iter().zip(family.units()).zip(family.parameter_kinds()).enumerate();
     names
-        .map(|(index, (name, unit))| {
+        .map(|(index, ((name, unit), kind))| {
+            let unit = if *kind == ParameterKind::Velocity { b.short_unit } else { unit };
             let mut curves = history.curves(index);
+            let limits = limits_of_most(&curves, truth.as_ref().map(|truth| truth[index]));
+            let beyond = limits.map_or(0, |limits| values_beyond(&curves, limits));
+            let note = if beyond > 0 { format!(", {beyond} values beyond") } else { String::new() };
             if let (Some(truth), Some((first, last))) = (&truth, history.time_range()) {
                 let runs = vec![vec![[first, truth[index]], [last, truth[index]]]];
                 curves.push(Curve { name: "true value".to_owned(), look: Look::Truth, runs });
             }
             Panel {
-                title: format!("{prefix}{}", meaning(name)),
+                title: format!("{prefix}{}{note}", meaning(name)),
                 x_label: "time (s)".to_owned(),
                 y_label: format!("{name} ({unit})"),
                 curves,
+                y_limits: limits,
                 x_from: history.start,
                 ..Panel::default()
             }
@@ -193,6 +216,27 @@ impl History {
     }
 }
 
+/// The y axis of a parameter where few of its values and band edges would hide how the others go: the range of most of them, and a true value.
+fn limits_of_most(curves: &[Curve], truth: Option<f64>) -> Option<[f64; 2]> {
+    let points = curves.iter().flat_map(|curve| curve.runs.iter().flatten()).map(|point| point[1]);
+    let mut values: Vec<f64> = points.filter(|value| value.is_finite()).collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let (first, last) = (*values.first()?, *values.last()?);
+    let left_out = (BEYOND * values.len() as f64) as usize;
+    let (low, high) = (values[left_out], values[values.len() - 1 - left_out]);
+    let (low, high) = truth.map_or((low, high), |truth| (low.min(truth), high.max(truth)));
+    let range = high - low;
+    let is_hidden = range > 0.0 && last.max(high) - first.min(low) > RANGES_OF_MOST * range;
+    is_hidden.then(|| [low - ROOM_AROUND_MOST * range, high + ROOM_AROUND_MOST * range])
+}
+
+/// Values of the line that are beyond the limits of its axis.
+fn values_beyond(curves: &[Curve], [low, high]: [f64; 2]) -> usize {
+    let lines = curves.iter().filter(|curve| curve.look == Look::Line);
+    let values = lines.flat_map(|curve| curve.runs.iter().flatten()).map(|point| point[1]);
+    values.filter(|value| !(low..=high).contains(value)).count()
+}
+
 #[cfg(test)]
 mod tests {
     use freeform_motion::estimate::MotionEstimate;
@@ -217,5 +261,28 @@ mod tests {
         assert_eq!((lengths(&curves[0]), lengths(&curves[1])), (vec![2, 4, 6], vec![1, 2, 3]));
         assert_eq!(lengths(&history.curves(1)[1]), [4, 3]);
         assert_eq!(history.time_range(), Some((1.0, 8.0)));
+    }
+
+    #[test]
+    fn a_few_wide_bands_do_not_make_a_flat_line_of_the_others_and_values_beyond_are_counted() {
+        let panel = |early: f64, frames: u32| {
+            let estimates = (0..frames).map(|frame| {
+                let (value, deviation) =
+                    if frame < 3 { (early, early) } else { (1.5 + 0.01 * f64::from(frame % 2), 0.02) };
+                let estimate =
+                    MotionEstimate::new(MotionModel::Rigid, &[value, 0.0, 0.0], Some(&[deviation, 0.1, 0.1]));
+                (f64::from(frame), Some(estimate.parameters().collect()))
+            });
+            let history = History { estimates: estimates.collect(), ..History::of("a".to_owned()) };
+            parameter_panels(&history, "", MotionModel::Rigid.into(), None, &MeaningOfB::default()).swap_remove(0)
+        };
+        let most = panel(40.0, 300);
+        let [low, high] = most.y_limits.expect("a range of most values");
+        assert!(low > 1.3 && low < 1.46 && high > 1.55 && high < 1.7, "{low} {high}");
+        assert!(most.title.ends_with(", 3 values beyond"), "{}", most.title);
+        // Where the others are seen all the same, all are, and so they are where they are many.
+        for all in [panel(1.55, 300), panel(40.0, 20)] {
+            assert!(all.y_limits.is_none() && !all.title.contains("beyond"), "{}", all.title);
+        }
     }
 }

@@ -2,6 +2,9 @@ use std::fmt;
 
 use freeform_motion::riccati::CameraScale;
 
+/// The unit of a velocity where lengths have no name: of the coordinates of a file, of a plane, of space, of pixels of a stated size.
+const LENGTHS: &str = "lengths/s";
+
 /// The meaning of b: the velocity of the moving frame at a point, in a unit.
 ///
 /// ```
@@ -16,8 +19,8 @@ pub struct MeaningOfB {
     pub point: &'static str,
     /// The unit, before it was divided by a camera scale.
     pub unit: String,
-    /// The unit in a table; `None` for the unit of the motion model.
-    pub short_unit: Option<&'static str>,
+    /// The unit in a table, after it was divided.
+    pub short_unit: &'static str,
     /// The camera scale by which b was divided.
     pub scale: Option<CameraScale>,
 }
@@ -26,7 +29,7 @@ impl MeaningOfB {
     /// In the coordinates of a file.
     #[must_use]
     pub fn in_coordinates(scale: Option<CameraScale>) -> Self {
-        Self { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), short_unit: None, scale }
+        Self { point: "the origin of the coordinates", unit: "lengths/s".to_owned(), short_unit: LENGTHS, scale }
     }
 
     /// In the plane that pictures are rectified to.
@@ -35,7 +38,7 @@ impl MeaningOfB {
         Self {
             point: "the origin of the plane",
             unit: "lengths of the plane/s".to_owned(),
-            short_unit: None,
+            short_unit: LENGTHS,
             scale: None,
         }
     }
@@ -50,7 +53,11 @@ impl MeaningOfB {
             1.0 => "pixels/s".to_owned(),
             size => format!("lengths/s, a pixel {size} high"),
         };
-        let short_unit = (scale.is_none() && unit == "pixels/s").then_some("px/s");
+        let short_unit = match unit.as_str() {
+            "pixels/s" if scale.is_none() => "px/s",
+            "pixel heights/s" if scale.is_none() => "pixel heights/s",
+            _ => LENGTHS,
+        };
         Self { point, unit, short_unit, scale }
     }
 

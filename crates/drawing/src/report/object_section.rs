@@ -47,7 +47,7 @@ impl ObjectSection<'_> {
         let Some(history) = history else { return };
         self.write_player(body, history, players);
         self.write_poses(body, history);
-        let panels = parameter_panels(history, "", result.motion, self.truth);
+        let panels = parameter_panels(history, "", result.motion, self.truth, self.b);
         write_panels(body, "How it moved", PARAMETERS, &panels);
         self.write_deviations(body, history);
         write_residuals(body, history);
@@ -104,7 +104,7 @@ impl ObjectSection<'_> {
                 format!("{DEVIATIONS} The least possible standard deviation (Cramer-Rao bound) is not drawn: {reason}.")
             }
         };
-        let panels = deviation_panels(history, self.result.motion, bound.as_deref().unwrap_or_default());
+        let panels = deviation_panels(history, self.result.motion, bound.as_deref().unwrap_or_default(), self.b);
         write_panels(body, "How well that is known", &text, &panels);
     }
 }

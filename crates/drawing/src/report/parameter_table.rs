@@ -1,27 +1,26 @@
-use freeform_motion::estimate::{PlaneEstimate, PointVelocity};
+use freeform_motion::estimate::{ParameterEstimate, PlaneEstimate, PointVelocity};
 use freeform_motion::riccati::{ParameterKind, PlaneMotion};
-use freeform_motion::tracker::{MotionFamily, ObjectResult};
-use freeform_motion::{Truth, Warning, significant, with_deviation};
+use freeform_motion::tracker::{MotionFamily, NotStated, ObjectResult, VELOCITY_NAMES};
+use freeform_motion::{Truth, significant, with_deviation};
 
 use super::meaning_of_b::MeaningOfB;
 
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub const PARAMETER_COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
 
-/// The parameters of an object as text, one row each, and the velocity of its middle where that is known.
+/// The parameters of an object as text, one row each, and the velocity of its middle where the method gives one.
 #[must_use]
 pub fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningOfB) -> Vec<Vec<String>> {
     let model = result.motion;
     let truth = truth.and_then(|truth| Some((truth, truth.parameters_in(model)?)));
     let found = result.parameters().unwrap_or_default();
-    let unit_of_b = |unit: &'static str| b.short_unit.unwrap_or(unit);
     let names = model.parameter_names().iter().zip(model.units()).zip(model.parameter_kinds());
     let mut rows: Vec<Vec<String>> = names
         .enumerate()
         .map(|(index, ((name, unit), kind))| {
             let parameter = found.get(index);
             let unknown = parameter.map_or("-", |_| in_place_of_value(result, name));
-            let unit = if *kind == ParameterKind::Velocity { unit_of_b(unit) } else { unit };
+            let unit = if *kind == ParameterKind::Velocity { b.short_unit } else { unit };
             let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
             row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
         })
@@ -29,46 +28,43 @@ pub fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningO
     if result.motion == MotionFamily::Plane {
         rows.extend(normal_rows(result, truth.as_ref().and_then(|(truth, _)| truth.plane)));
     }
-    if let Some(velocity) = &result.velocity {
-        let deviations = velocity.standard_deviations();
-        // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
-        // middle is only near that centre, and the true velocity differs between the two by the turn times their distance.
-        let kinds = model.parameter_kinds().iter();
-        let turn_is_known = kinds.zip(&found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
-        let (is_told, true_velocity) = match truth {
-            Some((truth, _)) if turn_is_known => (true, Some(truth.velocity_at(&velocity.point))),
-            Some((truth, _)) => (true, truth.middle_velocity),
-            None => (false, None),
-        };
-        rows.extend(VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
-            let known = Some((velocity.velocity[i], Some(deviations[i])));
-            let mut row = row([name, "-", unit_of_b("1/s")], known, true_velocity.map(|truth| truth[i]));
-            if is_told && true_velocity.is_none() {
-                row.extend(["-", "-"].map(str::to_owned));
-            }
-            row
-        }));
+    if result.velocity.is_some() || (result.has_velocity() && result.parameters().is_some()) {
+        rows.extend(velocity_rows(result, truth.as_ref().map(|(truth, _)| *truth), &found, b.short_unit));
     }
     rows
 }
 
-/// What stands in place of a value that is not stated: `ambiguous`; `unobservable` where the outlines do not show it; `unknown` where they do, but
-/// it is not known well enough, or no longer.
-fn in_place_of_value(result: &ObjectResult, name: &str) -> &'static str {
-    let names = |parameters: &[&str]| parameters.contains(&name);
-    let is_ambiguous = result.ambiguity.as_ref().is_some_and(|turns| names(&turns.parameters))
-        || result.plane_ambiguity.as_ref().is_some_and(|planes| names(&planes.parameters));
-    let is_hidden = result.warnings.iter().any(|warning| match warning {
-        Warning::NotObservable { parameters }
-        | Warning::RotationNotObservable { parameters }
-        | Warning::PlaneHardlyMoves { parameters } => names(parameters),
-        _ => false,
+/// The velocity of the middle, two rows.
+fn velocity_rows(
+    result: &ObjectResult,
+    truth: Option<&Truth>,
+    found: &[ParameterEstimate],
+    unit: &str,
+) -> Vec<Vec<String>> {
+    // Without a known turn the velocity is that of the centre of symmetry, such as the centre of a circle. The estimated
+    // middle is only near that centre, and the true velocity differs between the two by the turn times their distance.
+    let kinds = result.motion.parameter_kinds().iter();
+    let turn_is_known = kinds.zip(found).all(|(kind, p)| *kind == ParameterKind::Velocity || p.value.is_some());
+    let true_velocity = match (truth, &result.velocity) {
+        (Some(truth), Some(velocity)) if turn_is_known => Some(truth.velocity_at(&velocity.point)),
+        (Some(truth), _) => truth.middle_velocity,
+        (None, _) => None,
+    };
+    let unknown = result.velocity_not_stated().map_or("-", NotStated::name);
+    let rows = VELOCITY_NAMES.iter().enumerate().map(|(i, name)| {
+        let known = result.velocity.as_ref().map(|v| (v.velocity[i], Some(v.standard_deviations()[i])));
+        let mut row = row([name, unknown, unit], known, true_velocity.map(|truth| truth[i]));
+        if truth.is_some() && true_velocity.is_none() {
+            row.extend(["-", "-"].map(str::to_owned));
+        }
+        row
     });
-    match (is_ambiguous, is_hidden) {
-        (true, _) => "ambiguous",
-        (_, true) => "unobservable",
-        _ => "unknown",
-    }
+    rows.collect()
+}
+
+/// What stands in place of a value that is not stated.
+fn in_place_of_value(result: &ObjectResult, name: &str) -> &'static str {
+    result.not_stated(name).map_or("-", NotStated::name)
 }
 
 /// The normal of a plane at the first frame, two rows; its z is 1.
@@ -106,9 +102,6 @@ fn error_text(value: f64, truth: f64) -> String {
     format!("{difference} ({} %)", significant(100.0 * ((value - truth) / truth).abs(), 2))
 }
 
-/// Names of its components in a table.
-const VELOCITY_NAMES: [&str; 2] = ["v1", "v2"];
-
 /// What v is in a table, on one line.
 #[must_use]
 pub fn meaning_of_v(velocity: &PointVelocity) -> String {
@@ -119,6 +112,7 @@ pub fn meaning_of_v(velocity: &PointVelocity) -> String {
 #[cfg(test)]
 mod tests {
     use freeform_motion::estimate::{MotionEstimate, PointVelocity};
+    use freeform_motion::outline_filter::Ambiguity;
     use freeform_motion::riccati::{MotionModel, RigidMotion};
     use freeform_motion::tracker::Method;
     use nalgebra::{Matrix2, Point2, Vector2};
@@ -151,5 +145,24 @@ mod tests {
         let truth = Truth { middle_velocity: Some([0.3125, 0.4]), ..truth };
         assert_eq!(truth_of_v1(&rows_beside(estimate.with_unobservable(0), &truth))[0], "0.312500");
         assert_eq!(truth_of_v1(&rows_beside(estimate, &truth))[0], "0.300000");
+    }
+
+    #[test]
+    fn a_velocity_that_is_not_stated_has_the_reason_in_its_place() {
+        let estimate = MotionEstimate::new(MotionModel::Rigid, &[0.0, 0.3, 0.4], Some(&[0.1, 0.01, 0.01]));
+        let unknown =
+            ObjectResult { estimate: Some(estimate), ..ObjectResult::unknown("0", Method::Filter, MotionModel::Rigid) };
+        let ambiguity = Ambiguity { turn: 0.3, rival_turns: vec![-0.3], parameters: vec!["omega"] };
+        let ambiguous = ObjectResult { ambiguity: Some(ambiguity), ..unknown.clone() };
+        let adaptive = ObjectResult { method: Method::Adaptive, ..unknown.clone() };
+        let b = MeaningOfB::in_pictures(false, 1.0, 1.0, None);
+        for (result, word) in [(unknown, "unknown"), (ambiguous, "ambiguous")] {
+            let rows = parameter_rows(&result, None, &b);
+            assert_eq!(
+                rows[3..],
+                [["v1", word, "-", "px/s"], ["v2", word, "-", "px/s"]].map(|row| row.map(str::to_owned))
+            );
+        }
+        assert_eq!(parameter_rows(&adaptive, None, &b).len(), 3, "the method gives no velocity");
     }
 }

@@ -67,7 +67,11 @@ fn columns_that_are_separated_by_something_else_than_commas_are_told_so() {
 fn missing_columns_are_named_with_the_header_found() {
     refused("frame,x,y\n0,1,2\n", &[], "in.csv:1: missing column(s) time, the header is \"frame,x,y\"");
     refused("# a\n\nhello\n", &[], "in.csv:3: missing column(s) frame, time, x, y, the header is \"hello\"");
-    refused("Frame,time,x,y\n", &[], "in.csv:1: missing column(s) frame, the header is \"Frame,time,x,y\"");
+    refused(
+        "Frame,time,x,y\n",
+        &[],
+        "in.csv:1: missing column(s) frame, the header is \"Frame,time,x,y\"; names of columns are in lower case",
+    );
     let long = format!("{}\n", "abc,".repeat(100));
     let start = "abc,".repeat(10);
     refused(long, &[], &format!("in.csv:1: missing column(s) frame, time, x, y, the header is \"{start}...\""));

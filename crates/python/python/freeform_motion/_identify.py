@@ -100,7 +100,8 @@ def identify(
     ----------
     data : masks, outlines or table
         Masks: an array of shape (frames, height, width), bool or integer labels with 0 for the ground, or any iterable of arrays of shape
-        (height, width). Outlines: a list with an `Outline` for each frame, or with a dict of outlines by object, as from `outlines`. Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
+        (height, width). Outlines: a list with an `Outline` or an array of points, shape (n, 2), for each frame, or with a
+        dict of them by object, as from `outlines`. Table: a pandas or polars DataFrame, a pyarrow Table or RecordBatch, or a mapping of arrays, with the columns
         `frame`, `time`, `x`, `y` and optionally `object`, `arc` (the open piece of a partly hidden outline), `contour` (boundary, holes
         and marks of one body) and `deviation` (standard deviation of the point along the normal of the contour, in the unit of `x` and
         `y`). Either one row per point, the rows of one outline following each other in the order of the contour; or one row per
@@ -173,6 +174,7 @@ def track(
         As of `identify`.
     smooth : bool
         Whether later frames take part in the poses of earlier ones, for a constant motion; `adaptive=False` says that it is one.
+        The poses of an object whose motion was seen to change stay as they are, and a `UserWarning` says so.
 
     Returns
     -------
@@ -186,7 +188,7 @@ def track(
     Raises
     ------
     ValueError, TypeError
-        As `identify`; also a motion that changes, if it is to be smoothed.
+        As `identify`.
     """
     kind = kind_of(data)
     tracer, tracker = _split(options, data, kind, times, columns, motion=motion, method=method, scale=scale)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -41,6 +42,8 @@ NativeTable = tuple[
 
 def kind_of(data: object) -> str | None:
     """The library that a table is of, `mapping`, `arrow` for what streams it, or None for what no table is made of."""
+    if isinstance(data, (str, bytes, os.PathLike)):
+        raise TypeError(f"data, not a path, are needed: pandas.read_csv({str(data)!r}, comment='#') reads a table of outlines")
     library = library_of(data)
     # Columns of a LazyFrame are not looked at: polars warns of what that may cost.
     if library in ("pandas", "polars", "pyarrow") and (type(data).__name__ == "LazyFrame" or hasattr(data, "columns")):

@@ -1,0 +1,84 @@
+use super::{observation::Observation, result::ObjectResult};
+use crate::Warning;
+
+/// Why a value is not stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NotStated {
+    /// Several turns, or motions of a plane, explain the outlines.
+    Ambiguous,
+    /// The outlines do not show it.
+    Unobservable,
+    /// The outlines show it, but it is not known well enough, or no longer.
+    Unknown,
+}
+
+impl NotStated {
+    /// The word that stands in its place: `ambiguous`, `unobservable` or `unknown`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ambiguous => "ambiguous",
+            Self::Unobservable => "unobservable",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    const fn of(is_ambiguous: bool, is_hidden: bool) -> Self {
+        match (is_ambiguous, is_hidden) {
+            (true, _) => Self::Ambiguous,
+            (_, true) => Self::Unobservable,
+            _ => Self::Unknown,
+        }
+    }
+}
+
+impl ObjectResult {
+    /// Why a parameter is not stated, or `normal`, that of a plane; `None` where it is. Of the velocity of the middle ask
+    /// [`velocity_not_stated`](Self::velocity_not_stated).
+    ///
+    /// ```
+    /// use freeform_motion::{riccati::MotionModel, tracker::{Method, NotStated, ObjectResult}};
+    ///
+    /// let nothing = ObjectResult::unknown("left", Method::Filter, MotionModel::Rigid);
+    /// assert_eq!(nothing.not_stated("omega"), Some(NotStated::Unknown));
+    /// ```
+    #[must_use]
+    pub fn not_stated(&self, name: &str) -> Option<NotStated> {
+        let is_stated = match name {
+            "normal" => self.plane.as_ref().is_some_and(|plane| plane.normal().is_some()),
+            _ => self.parameters().is_some_and(|found| found.iter().any(|p| p.name == name && p.value.is_some())),
+        };
+        if is_stated {
+            return None;
+        }
+        let is_ambiguous = self.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(&name))
+            || self.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&name));
+        let is_hidden = self.warnings.iter().any(|warning| match warning {
+            Warning::NotObservable { parameters }
+            | Warning::RotationNotObservable { parameters }
+            | Warning::PlaneHardlyMoves { parameters } => parameters.contains(&name),
+            _ => false,
+        });
+        Some(NotStated::of(is_ambiguous, is_hidden))
+    }
+
+    /// Why the velocity of the middle is not stated; `None` where it is. Every outline shows it, but among turns that it leaves open it is not known
+    /// either.
+    #[must_use]
+    pub fn velocity_not_stated(&self) -> Option<NotStated> {
+        self.velocity.is_none().then(|| NotStated::of(self.ambiguity.is_some(), false))
+    }
+}
+
+impl Observation {
+    /// As [`ObjectResult::not_stated`], as known after the frame.
+    #[must_use]
+    pub fn not_stated(&self, name: &str) -> Option<NotStated> {
+        if self.parameters().is_some_and(|found| found.iter().any(|p| p.name == name && p.value.is_some())) {
+            return None;
+        }
+        let is_ambiguous = self.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(&name))
+            || self.plane_ambiguity.as_ref().is_some_and(|planes| planes.parameters.contains(&name));
+        Some(NotStated::of(is_ambiguous, self.hidden.contains(&name)))
+    }
+}
