@@ -103,7 +103,7 @@ fn a_drawing_shows_the_known_outline_also_where_a_part_is_hidden_and_no_curve_th
     let covered = GrayImage::from_fn(160, 120, |x, y| if x < 97 { *covered.get_pixel(x, y) } else { Luma([30]) });
     covered.save(format!("{frames}/13.png")).expect("a picture");
     for command in ["identify", "track"] {
-        for (method, hidden) in [("filter", 40..250), ("adaptive", 0..10)] {
+        for (method, hidden) in [("filter", 60..250), ("adaptive", 0..50)] {
             let drawn = format!("{base}/{command}-{method}");
             succeed(&format!("{command} {frames} --fps 10 --method {method} --quiet --overlay {drawn}"), "");
             let blue = blue_pixels(&format!("{drawn}/000013.png"), 103);

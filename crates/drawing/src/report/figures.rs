@@ -265,10 +265,10 @@ mod tests {
 
     #[test]
     fn a_few_wide_bands_do_not_make_a_flat_line_of_the_others_and_values_beyond_are_counted() {
-        let panel = |early: f64, frames: u32| {
+        let panel = |early: [f64; 2], frames: u32| {
             let estimates = (0..frames).map(|frame| {
-                let (value, deviation) =
-                    if frame < 3 { (early, early) } else { (1.5 + 0.01 * f64::from(frame % 2), 0.02) };
+                let later = [1.5 + 0.01 * f64::from(frame % 2), 0.02];
+                let [value, deviation] = if frame < 3 { early } else { later };
                 let estimate =
                     MotionEstimate::new(MotionModel::Rigid, &[value, 0.0, 0.0], Some(&[deviation, 0.1, 0.1]));
                 (f64::from(frame), Some(estimate.parameters().collect()))
@@ -276,12 +276,12 @@ mod tests {
             let history = History { estimates: estimates.collect(), ..History::of("a".to_owned()) };
             parameter_panels(&history, "", MotionModel::Rigid.into(), None, &MeaningOfB::default()).swap_remove(0)
         };
-        let most = panel(40.0, 300);
+        let most = panel([40.0, 40.0], 300);
         let [low, high] = most.y_limits.expect("a range of most values");
         assert!(low > 1.3 && low < 1.46 && high > 1.55 && high < 1.7, "{low} {high}");
         assert!(most.title.ends_with(", 3 values beyond"), "{}", most.title);
         // Where the others are seen all the same, all are, and so they are where they are many.
-        for all in [panel(1.55, 300), panel(40.0, 20)] {
+        for all in [panel([1.6, 0.1], 300), panel([40.0, 40.0], 20)] {
             assert!(all.y_limits.is_none() && !all.title.contains("beyond"), "{}", all.title);
         }
     }
