@@ -356,11 +356,12 @@ mod tests {
                 let middle = sequence.place_in_picture(recipe.time(recipe.frames - 2)) * recipe.length_unit;
                 let seen = sequence.frames(recipe.frames, &mut rng);
                 let [.., before, between, last] = &seen[..] else { panic!("frames") };
-                let points =
-                    |frame: &SeenFrame| frame.outline.as_ref().expect("an outline").points().collect::<Vec<_>>();
+                let points = |frame: &SeenFrame| {
+                    frame.outline.as_ref().expect("an outline").points().copied().collect::<Vec<_>>()
+                };
                 let [first, second, third] = [before, between, last].map(points);
                 for ((p, q), r) in first.iter().zip(&second).zip(&third) {
-                    let velocity = (**r - **p) / (last.time - before.time);
+                    let velocity = (r - p) / (last.time - before.time);
                     let by_truth = truth.linear * q.coords + truth.b;
                     assert!((velocity - by_truth).norm() < 1e-4 * by_truth.norm(), "{model} {velocity} {by_truth}");
                 }
