@@ -268,7 +268,7 @@ mod tests {
         let panel = |early: f64, frames: u32| {
             let estimates = (0..frames).map(|frame| {
                 let (value, deviation) =
-                    if frame < 3 { (early, early) } else { (1.5 + 0.01 * f64::from(frame % 2), 0.02) };
+                    if frame < 3 { (early, early / 30.0) } else { (1.5 + 0.01 * f64::from(frame % 2), 0.02) };
                 let estimate =
                     MotionEstimate::new(MotionModel::Rigid, &[value, 0.0, 0.0], Some(&[deviation, 0.1, 0.1]));
                 (f64::from(frame), Some(estimate.parameters().collect()))
