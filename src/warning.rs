@@ -351,7 +351,7 @@ fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: M
              undistort the pictures with a calibration of the camera",
         ),
         WrongFamily::Shape => {
-            let wider = if motion == MotionModel::Affine { "" } else { ", --motion affine" };
+            let wider = if motion >= MotionModel::Affine { "" } else { ", --motion affine" };
             write!(
                 f,
                 "the outlines change their shape in ways that no {motion} motion does: the object may bend, the camera look at it \

@@ -304,7 +304,7 @@ fn draw_candidates(
 ) -> Result<(), Failure> {
     let Some((path, Chosen { choice, .. })) = path.zip(chosen) else { return Ok(()) };
     let name = |candidate: &TracingEvidence| options_of(&candidate.tracing).join(" ");
-    let base = PictureSettings { trace: TraceSettings { margins: choice.margins, ..base.trace }, ..base.clone() };
+    let base = PictureSettings { trace: TraceSettings { margins: Some(choice.margins), ..base.trace }, ..base.clone() };
     let sheet = candidate_sheet(preview, &base, &choice.candidates, name);
     let mut bytes = Cursor::new(Vec::new());
     let written = sheet.write_to(&mut bytes, ImageFormat::Png);
@@ -388,7 +388,7 @@ fn picture_settings(
         ring: options.ring.map(|ring| Ring { contrast: ring.contrast(), width: options.ring_width }),
         pixel_size: options.pixel_size,
         pixel_aspect: options.pixel_aspect.or(aspect).unwrap_or(1.0),
-        margins: options.margins.unwrap_or_default(),
+        margins: options.margins,
     };
     Ok(PictureSettings { trace, selection: options.objects().selection(), background, difference })
 }

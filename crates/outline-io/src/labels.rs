@@ -143,7 +143,9 @@ impl<'a> LabelMask<'a> {
                 field.blur(sigma);
             }
             let window = Window { left: left + mask.left, top: top + mask.top, field: &field, level: 0.5, edges: None };
-            let seen = window.outline(self.height as u32, settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
+            // Labels are those of the whole picture.
+            let settings = TraceSettings { margins: None, ..*settings };
+            let seen = window.outline(self.height as u32, &settings)?.ok_or(TraceError::SmoothedAway { sigma })?;
             Ok(seen.traced(mask.pixel_count, object_count, 0.5))
         };
         TracedLabel { label, outline: of_largest(), next_part }

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use image::{GenericImageView as _, GrayImage};
 
+use crate::TraceError;
+
 /// Grey values of a bar differ by no more than this from its middle one, as compression has it.
 const EVEN: u8 = 8;
 
@@ -41,12 +43,15 @@ impl Margins {
 
     /// The even bars at the sides of pictures, as video has them that was fitted into another shape: of one grey value in all pictures, and
     /// beside it something else all along. None where a bar goes on into the picture, as between two pictures side by side: what is left of it
-    /// would be taken for a body.
+    /// would be taken for a body. None in pictures of several sizes.
     #[must_use]
     pub fn of_bars(pictures: &[Arc<GrayImage>]) -> Self {
         let Some((columns, rows)) = pictures.first().map(|picture| picture.dimensions()) else {
             return Self::default();
         };
+        if pictures.iter().any(|picture| picture.dimensions() != (columns, rows)) {
+            return Self::default();
+        }
         let sides = || {
             let top = bar(pictures, (rows, columns), |row, column| (column, row))?;
             let bottom = bar(pictures, (rows, columns), |row, column| (column, rows - 1 - row))?;
@@ -71,14 +76,20 @@ impl Margins {
         Self { left: of(self.left), top: of(self.top), right: of(self.right), bottom: of(self.bottom) }
     }
 
-    /// What is left of a picture; all of it where nothing would be.
-    pub(crate) fn within(self, picture: &GrayImage) -> Cow<'_, GrayImage> {
+    /// What is left of a picture.
+    ///
+    /// # Errors
+    /// [`TraceError::NothingLeft`].
+    pub(crate) fn within(self, picture: &GrayImage) -> Result<Cow<'_, GrayImage>, TraceError> {
         let (columns, rows) = picture.dimensions();
-        let (across, down) = (self.left.saturating_add(self.right), self.top.saturating_add(self.bottom));
-        if self.are_none() || across >= columns || down >= rows {
-            return Cow::Borrowed(picture);
+        if self.are_none() {
+            return Ok(Cow::Borrowed(picture));
         }
-        Cow::Owned(picture.view(self.left, self.top, columns - across, rows - down).to_image())
+        let (across, down) = (self.left.saturating_add(self.right), self.top.saturating_add(self.bottom));
+        if across >= columns || down >= rows {
+            return Err(TraceError::NothingLeft { margins: self, columns, rows });
+        }
+        Ok(Cow::Owned(picture.view(self.left, self.top, columns - across, rows - down).to_image()))
     }
 }
 

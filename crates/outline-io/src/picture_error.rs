@@ -6,6 +6,7 @@ use image::ImageError;
 use thiserror::Error;
 
 use crate::file_name::readable;
+use crate::margins::Margins;
 
 /// A picture could not be read. Displays as one line: file, frame where the file has several, and reason.
 #[derive(Debug, Error)]
@@ -154,6 +155,16 @@ pub enum TraceError {
         value: f64,
         /// The range accepted.
         expected: &'static str,
+    },
+    /// Margins that take all of a picture.
+    #[error("the margins leave nothing of a picture of {columns}x{rows} pixels")]
+    NothingLeft {
+        /// What is not looked at.
+        margins: Margins,
+        /// Columns of the picture.
+        columns: u32,
+        /// Its rows.
+        rows: u32,
     },
     /// A picture of no pixels.
     #[error("the picture has no pixels")]

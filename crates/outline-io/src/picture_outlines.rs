@@ -126,11 +126,11 @@ impl View {
     }
 
     fn traced(&self, settings: &PictureSettings, limit: usize) -> Traced {
-        let (margins, rows) = (settings.trace.margins, self.picture.height());
-        let picture = margins.within(&self.picture);
+        let (margins, rows) = (settings.trace.margins.unwrap_or_default(), self.picture.height());
+        let picture = margins.within(&self.picture)?;
         let ground = match settings.background {
             Some(Background::Surface) => Some(Cow::Owned(ground_surface(&picture))),
-            _ => self.ground.as_deref().map(|ground| margins.within(ground)),
+            _ => self.ground.as_deref().map(|ground| margins.within(ground)).transpose()?,
         };
         let Some(ground) = ground else {
             return trace_within(&picture, rows, &settings.trace, limit);

@@ -84,7 +84,9 @@ pub fn trace_objects(
     settings: &TraceSettings,
     limit: usize,
 ) -> Result<Vec<TracedOutline>, TraceError> {
-    trace_within(&settings.margins.within(picture), picture.height(), settings, limit)
+    let margins = settings.margins.unwrap_or_default();
+    let left = margins.within(picture)?;
+    trace_within(&left, picture.height(), settings, limit)
 }
 
 /// Like [`trace_objects`], in what the margins leave of a picture of so many rows.
@@ -251,8 +253,9 @@ impl Window<'_> {
         let grid = settings.pixel_grid(picture_height);
         let touches_border = line.iter().any(|crossing| crossing.at_edge);
         // Whole numbers, so that a sum has them exactly.
-        let left = (self.left + settings.margins.left as usize) as f64;
-        let top = (self.top + settings.margins.top as usize) as f64;
+        let margins = settings.margins.unwrap_or_default();
+        let left = (self.left + margins.left as usize) as f64;
+        let top = (self.top + margins.top as usize) as f64;
         let to_point = |crossing: &Crossing| grid.to_plane(left + crossing.x + 0.5, top + crossing.y + 0.5);
         let mut points: Vec<(Point2<f64>, bool)> =
             line.iter().map(|crossing| (to_point(crossing), crossing.at_edge)).collect();

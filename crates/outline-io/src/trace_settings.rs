@@ -89,9 +89,10 @@ pub struct TraceSettings {
     pub pixel_size: f64,
     /// Width of a pixel over its height.
     pub pixel_aspect: f64,
-    /// What of the pictures is not looked at. Objects are clipped there as at the edge of a picture.
+    /// What of the pictures is not looked at; objects are clipped there as at the edge of a picture. `None`: nothing is left out, and where a way
+    /// of tracing is chosen, even bars at the sides are.
     #[cfg_attr(feature = "serde", serde(default))]
-    pub margins: Margins,
+    pub margins: Option<Margins>,
 }
 
 impl Default for TraceSettings {
@@ -109,7 +110,7 @@ impl Default for TraceSettings {
             ring: None,
             pixel_size: 1.0,
             pixel_aspect: 1.0,
-            margins: Margins::default(),
+            margins: None,
         }
     }
 }

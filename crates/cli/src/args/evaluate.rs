@@ -53,8 +53,8 @@ pub(crate) struct EvaluateArgs {
     /// Family of motions to identify; it must contain the true motion [default: rigid, affine with --affine,
     /// projective with --projective]
     ///
-    /// With --suite stress rigid, similarity or affine: the objects grow or shrink as well, and for affine motion a camera looks at
-    /// their plane from aside.
+    /// With --suite stress rigid, similarity or affine: the picture grows or shrinks as well, what is at rest included, and for affine
+    /// motion a camera looks at the plane from aside.
     #[arg(long, value_enum)]
     pub(crate) motion: Option<MotionChoice>,
 

@@ -201,9 +201,13 @@ fn draw_motion(canvas: &mut Canvas, grid: &PixelGrid, outline: &Outline, area: &
 }
 
 /// The longest of 1, 2 or 5 times a power of ten seconds that is no longer than a time, so that arrows of neighbouring pictures are alike; `None`
-/// where nothing moves at a time worth to be said.
+/// where nothing moves.
 fn round_time(seconds: f64) -> Option<f64> {
-    let steps = (-4..=3).flat_map(|power: i32| [1_u32, 2, 5].map(|step| (power, f64::from(step))));
+    if !(seconds.is_normal() && seconds > 0.0) {
+        return None;
+    }
+    let power = seconds.log10().floor() as i32;
+    let steps = (power - 1..=power).flat_map(|power: i32| [1_u32, 2, 5].map(|step| (power, f64::from(step))));
     // Quotients of whole numbers are those that are written.
     let times =
         steps.map(|(power, step)| if power < 0 { step / 10_f64.powi(-power) } else { step * 10_f64.powi(power) });
@@ -227,10 +231,11 @@ mod tests {
 
     #[test]
     fn arrows_show_the_way_in_a_round_time_no_longer_than_they_may_be() {
-        let rounded = [0.0, 0.00012, 0.03, 0.0999, 0.2, 7.0, 49.9, 1e9, f64::INFINITY, f64::NAN].map(round_time);
-        let expected = [None, Some(0.0001), Some(0.02), Some(0.05), Some(0.2), Some(5.0), Some(20.0)];
-        assert_eq!(rounded[..7], expected);
-        assert_eq!(rounded[7..], [Some(5000.0), Some(5000.0), None]);
+        let rounded = [2.5e-9, 0.00012, 0.03, 0.0999, 0.2, 7.0, 49.9, 1e9].map(round_time);
+        let expected = [2e-9, 0.0001, 0.02, 0.05, 0.2, 5.0, 20.0, 1e9];
+        assert_eq!(rounded, expected.map(Some));
+        // Nothing moves, or nobody knows.
+        assert_eq!([0.0, f64::INFINITY, f64::NAN].map(round_time), [None; 3]);
     }
 
     #[test]

@@ -227,7 +227,7 @@ fn limits_of_most(curves: &[Curve], truth: Option<f64>) -> Option<[f64; 2]> {
     let (low, high) = truth.map_or((low, high), |truth| (low.min(truth), high.max(truth)));
     let range = high - low;
     let is_hidden = range > 0.0 && last.max(high) - first.min(low) > RANGES_OF_MOST * range;
-    is_hidden.then(|| [low - ROOM_AROUND_MOST * range, high + ROOM_AROUND_MOST * range])
+    is_hidden.then_some([low - ROOM_AROUND_MOST * range, high + ROOM_AROUND_MOST * range])
 }
 
 /// Values of the line that are beyond the limits of its axis.

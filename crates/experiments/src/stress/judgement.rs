@@ -273,6 +273,16 @@ mod tests {
     }
 
     #[test]
+    fn the_parameters_of_a_family_are_judged_in_their_order_and_its_aliases_by_the_mean_turn() {
+        let truth = Truth { growth: 0.1, linear: Matrix2::new(0.1, 3.0, -1.0, 0.2), ..TRUTH };
+        let names = |model| truth.parameters(model).into_iter().map(|(_, value)| value).collect::<Vec<f64>>();
+        assert_eq!(names(MotionModel::Similarity), [0.1, 2.0, 0.5, 0.0]);
+        assert_eq!(names(MotionModel::Affine), [0.1, 3.0, -1.0, 0.2, 0.5, 0.0]);
+        let turns = [MotionModel::Rigid, MotionModel::Similarity, MotionModel::Affine].map(|m| truth.mean_turn(m));
+        assert_eq!(turns, [2.0; 3]);
+    }
+
+    #[test]
     fn what_is_not_stated_is_not_wrong() {
         let mut none = result(99.0);
         none.estimate = none.estimate.map(|estimate| estimate.with_unobservable(0));

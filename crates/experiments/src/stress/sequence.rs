@@ -112,6 +112,12 @@ impl<'a> Sequence<'a> {
         }
     }
 
+    /// Where the middle of the object is in the picture.
+    #[cfg(test)]
+    fn place_in_picture(&self, time: f64) -> Vector2<f64> {
+        self.view.image(&self.stretch.image(time, &self.motion.middle(time))).coords
+    }
+
     /// The first so many frames in order.
     pub(super) fn frames(mut self, count: usize, rng: &mut impl Rng) -> Vec<SeenFrame> {
         let mut frames = Vec::with_capacity(count);
@@ -326,26 +332,51 @@ mod tests {
     }
 
     #[test]
-    fn the_truth_of_an_affine_motion_is_what_points_of_an_exact_outline_do_at_the_last_frame() {
-        let own = Recipe { noise: 0.0, sampling: Sampling::Same, frames: 401, fps: 400.0, ..Recipe::plain() };
-        for recipe in [
+    fn the_truth_of_every_family_is_what_points_of_an_exact_outline_do() {
+        let own =
+            Recipe { noise: 0.0, sampling: Sampling::Same, points: 600, frames: 401, fps: 400.0, ..Recipe::plain() };
+        let straight = Course { path: Path::Velocity, ..own.course };
+        let recipes = [
             own.clone(),
+            Recipe { course: straight, ..own.clone() },
             Recipe { length_unit: 10.0, time_unit: 0.1, ..own.clone() },
-            Recipe { deformation: Deformation::Growth(-0.2), ..own.clone() },
-            Recipe { view: View::Aspect(0.1), ..own },
+            Recipe { deformation: Deformation::Growth(-0.2), ..own },
+        ];
+        let aspect = Recipe { view: View::Aspect(0.1), ..recipes[0].clone() };
+        for (model, recipes) in [
+            (MotionModel::Similarity, &recipes[..]),
+            (MotionModel::Affine, &recipes[..]),
+            (MotionModel::Affine, std::slice::from_ref(&aspect)),
         ] {
-            let mut rng = ChaCha8Rng::seed_from_u64(8);
-            let sequence = Sequence::new(&recipe, MotionModel::Affine, &mut rng).expect("a sequence");
-            // Central differences about the last frame but one.
-            let truth = sequence.truth(recipe.frames - 2);
-            let seen = sequence.frames(recipe.frames, &mut rng);
-            let [.., before, between, last] = &seen[..] else { panic!("frames") };
-            let points = |frame: &SeenFrame| frame.outline.as_ref().expect("an outline").points().collect::<Vec<_>>();
-            let [first, middle, second] = [before, between, last].map(points);
-            for ((p, q), r) in first.iter().zip(&middle).zip(&second) {
-                let velocity = (r - p) / (last.time - before.time);
-                let by_truth = truth.linear * q.coords + truth.b;
-                assert!((velocity - by_truth).norm() < 1e-4 * by_truth.norm(), "{velocity} {by_truth}");
+            for recipe in recipes {
+                let mut rng = ChaCha8Rng::seed_from_u64(8);
+                let sequence = Sequence::new(recipe, model, &mut rng).expect("a sequence");
+                // Central differences about the last frame but one.
+                let truth = sequence.truth(recipe.frames - 2);
+                let middle = sequence.place_in_picture(recipe.time(recipe.frames - 2)) * recipe.length_unit;
+                let seen = sequence.frames(recipe.frames, &mut rng);
+                let [.., before, between, last] = &seen[..] else { panic!("frames") };
+                let points = |frame: &SeenFrame| {
+                    frame.outline.as_ref().expect("an outline").points().copied().collect::<Vec<_>>()
+                };
+                let [first, second, third] = [before, between, last].map(points);
+                for ((p, q), r) in first.iter().zip(&second).zip(&third) {
+                    let velocity = (r - p) / (last.time - before.time);
+                    let by_truth = truth.linear * q.coords + truth.b;
+                    assert!((velocity - by_truth).norm() < 1e-4 * by_truth.norm(), "{model} {velocity} {by_truth}");
+                }
+                let of_middle = truth.linear * middle + truth.b;
+                let own_growth = match recipe.deformation {
+                    Deformation::Growth(rate) => rate,
+                    _ => 0.0,
+                };
+                assert!((of_middle - truth.middle).norm() < 1e-9 * of_middle.norm(), "{model} {of_middle}");
+                let is_growing = truth.growth * recipe.time_unit - own_growth;
+                assert!(is_growing.abs() > 0.009 && is_growing.abs() < 0.11, "{model} {}", truth.growth);
+                if model == MotionModel::Similarity {
+                    let [half_trace, turn] = [truth.linear.trace() / 2.0, truth.linear.m12];
+                    assert!((half_trace - truth.growth).abs() < 1e-12 && (turn - truth.omega).abs() < 1e-12);
+                }
             }
         }
     }

@@ -34,9 +34,9 @@ impl Stretch {
     /// # Errors
     /// [`ExperimentError::NoStressOfFamily`] for projective motion.
     pub(super) fn draw(model: MotionModel, centre: Point2<f64>, rng: &mut impl Rng) -> Result<Self, ExperimentError> {
-        let growth = |rng: &mut dyn FnMut() -> f64| {
-            let sign = if rng() < 0.5 { -1.0 } else { 1.0 };
-            sign * (GROWTH.0 + (GROWTH.1 - GROWTH.0) * rng())
+        let growth = |unit: &mut dyn FnMut() -> f64| {
+            let sign = if unit() < 0.5 { -1.0 } else { 1.0 };
+            sign * (GROWTH.0 + (GROWTH.1 - GROWTH.0) * unit())
         };
         let mut unit = || rng.random::<f64>();
         match model {

@@ -18,7 +18,9 @@ use crate::ExperimentError;
 pub struct StressStudy {
     /// The kinds.
     pub kinds: Vec<Kind>,
-    /// The family of motions that is asked for, and of which the motions are but for what a kind adds: rigid, similarity or affine.
+    /// The family of motions that is asked for: rigid, similarity or affine. The motions of a kind become those of the family by a picture that grows
+    /// or shrinks, and a plane that is seen aslant. Constant generators stay constant: the picture grows about the point that they leave
+    /// where it is. Other motions, and what is at rest, grow about the origin.
     pub model: MotionModel,
     /// Sequences of each kind, at least 1.
     pub runs: usize,

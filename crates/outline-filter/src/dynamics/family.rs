@@ -32,8 +32,11 @@ pub enum WrongFamily {
     Shape,
 }
 
+/// Some of the motions, by their numbers.
+type Members = &'static [usize];
+
 /// Motions that go together, by their numbers: a lens whose middle is not known stretches and skews too.
-const GROUPS: [(WrongFamily, &[usize]); 5] = [
+const GROUPS: [(WrongFamily, Members); 5] = [
     (WrongFamily::Growth, &[GROWTH]),
     (WrongFamily::Shear, &SHEAR),
     (WrongFamily::Perspective, &PERSPECTIVE),
@@ -41,19 +44,19 @@ const GROUPS: [(WrongFamily, &[usize]); 5] = [
     (WrongFamily::Lens, &[SHEAR[0], SHEAR[1], LENS[0], LENS[1], LENS[2]]),
 ];
 
-/// The same where the model has growth and shear.
-const GROUPS_BESIDE_SHEAR: [(WrongFamily, &[usize]); 3] =
+/// Groups beside a model that has growth and shear, whose numbers edges have.
+const GROUPS_BESIDE_SHEAR: [(WrongFamily, Members); 3] =
     [(WrongFamily::Shape, &EDGES), (WrongFamily::Perspective, &PERSPECTIVE), (WrongFamily::Lens, &LENS)];
 
 /// Motions that pictures of a camera have now and then, a little: of pixels that are not square or a plane that is tilted, of perspective, of rows
 /// that are read one after the other, and of a lens.
-const OF_CAMERA: [&[usize]; 4] = [&SHEAR, &PERSPECTIVE, &[READ_OUT], &[LENS[0]]];
+const OF_CAMERA: [Members; 4] = [&SHEAR, &PERSPECTIVE, &[READ_OUT], &[LENS[0]]];
 
 /// The same where the model has shear: edges that light displaces, perspective, a lens.
-const OF_CAMERA_BESIDE_SHEAR: [&[usize]; 3] = [&[EDGES[0], EDGES[1]], &PERSPECTIVE, &[LENS[0]]];
+const OF_CAMERA_BESIDE_SHEAR: [Members; 3] = [&[EDGES[0], EDGES[1]], &PERSPECTIVE, &[LENS[0]]];
 
 /// What may be left out by a model: motions that go together, and those that pictures have now and then.
-fn left_out_by(model: MotionModel) -> (&'static [(WrongFamily, &'static [usize])], &'static [&'static [usize]]) {
+fn left_out_by(model: MotionModel) -> (&'static [(WrongFamily, Members)], &'static [Members]) {
     match model {
         MotionModel::Rigid | MotionModel::Similarity => (&GROUPS, &OF_CAMERA),
         MotionModel::Affine => (&GROUPS_BESIDE_SHEAR, &OF_CAMERA_BESIDE_SHEAR),
@@ -168,7 +171,7 @@ impl FamilyTests {
         }
         for members in of_camera {
             if members.iter().all(|i| !known.numbers.contains(i)) {
-                self.add_possible(&mut estimate.moments, &known, members, &dependence);
+                self.add_possible(&mut estimate.moments, &known, (members, model), &dependence);
             }
         }
         if estimate.family.is_none()
@@ -180,8 +183,9 @@ impl FamilyTests {
     }
 
     /// Usual size of a motion that a camera brings in, where it does. The object is within the picture, which is no smaller than where it has been.
-    fn usual_size(&self, number: usize) -> f64 {
+    fn usual_size(&self, number: usize, model: MotionModel) -> f64 {
         match number {
+            _ if model == MotionModel::Affine && EDGES.contains(&number) => tuning::USUAL_ERROR,
             _ if PERSPECTIVE.contains(&number) => tuning::USUAL_ERROR / self.reach,
             READ_OUT => tuning::USUAL_READ_OUT * self.step / self.reach,
             _ if LENS.contains(&number) => tuning::USUAL_ERROR / self.reach.powi(2),
@@ -195,10 +199,10 @@ impl FamilyTests {
         &self,
         moments: &mut UnmodelledMatrix,
         known: &Fit,
-        members: &[usize],
+        (members, model): (&[usize], MotionModel),
         dependence: &UnmodelledVector,
     ) {
-        let usual = self.usual_size(members[0]);
+        let usual = self.usual_size(members[0], model);
         let members: Vec<usize> = members.iter().copied().filter(|i| self.information[(*i, *i)] > 0.0).collect();
         let ratio = largest_of(dependence, &members);
         let n = known.numbers.len();

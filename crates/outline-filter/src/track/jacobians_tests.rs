@@ -43,7 +43,7 @@ fn jacobians_are_the_derivatives_of_the_residuals_by_the_pose_error_and_the_offs
     for model in MotionModel::ALL {
         let k = model.parameter_count();
         let mut track = oval(model, 0.6, &mut Frame::default());
-        // Jacobians are those at the cells, whatever their offsets.
+        // Jacobians are those at the cells: these are the derivatives where cells have no offsets.
         track.belief.offsets.fill(0.0);
         let pose = model.flow(&motion[..k], 1.0).into_inner();
         let points = points_on(&track, &pose, |_| 0.0);
@@ -66,6 +66,19 @@ fn jacobians_are_the_derivatives_of_the_residuals_by_the_pose_error_and_the_offs
             }
         }
         assert!(compared > k * points.len() / 2, "{model:?}: {compared}");
+        let mut other = track.clone();
+        other
+            .belief
+            .offsets
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, offset)| *offset = if i % 2 == 0 { 0.01 } else { -0.02 });
+        for (m, moved) in at.iter().zip(measured(&other, &points, &pose, &[])).filter(|(m, moved)| m.cell == moved.cell)
+        {
+            assert!(m.cell == NO_CELL || (m.residual - moved.residual).abs() > 1e-3, "{model:?}");
+            let apart = m.jacobian.iter().zip(&moved.jacobian).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-12, "{model:?}: an offset has moved a Jacobian by {apart}");
+        }
         let mut other = track.clone();
         other.belief.offsets.iter_mut().for_each(|offset| *offset += step);
         for (m, moved) in at.iter().zip(measured(&other, &points, &pose, &[])) {

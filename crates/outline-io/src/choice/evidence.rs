@@ -12,7 +12,6 @@ use crate::contrast::Contrast;
 use crate::edges::median;
 use crate::ground_surface::ground_surface;
 use crate::identity::Selection;
-use crate::margins::Margins;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
 use crate::trace::{TracedOutline, blurred, trace_objects};
@@ -166,7 +165,7 @@ impl Trial {
             y_up: false,
             pixel_size: 1.0,
             pixel_aspect: 1.0,
-            margins: Margins::default(),
+            margins: None,
             ..*trace
         };
         settings

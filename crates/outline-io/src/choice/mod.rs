@@ -193,8 +193,11 @@ impl TracingChoice {
 /// Even bars at the sides of the pictures are no bodies, and are left out, unless `base` has margins.
 #[must_use]
 pub fn choose_tracing(sample: &PictureSample, base: &PictureSettings, channels: &[Channel]) -> TracingChoice {
-    let given = base.trace.margins;
-    let margins = if given.are_none() && !sample.is_two_valued() { sample.bars() } else { given };
+    let margins = match base.trace.margins {
+        Some(given) => given,
+        None if sample.is_two_valued() => Margins::default(),
+        None => sample.bars(),
+    };
     let within = (!margins.are_none()).then(|| sample.within(margins));
     let (candidates, beside) = choose_within(within.as_ref().unwrap_or(sample), base, channels);
     TracingChoice { candidates, beside, margins }

@@ -8,8 +8,8 @@ const FAR_APART: u64 = 5;
 /// What rests is nowhere so many times farther from where it was first than it may move from picture to picture.
 const FAR: f64 = 3.0;
 
-/// A thing looks the same where the logarithm of the ratio of its areas and the distance of its affine moment invariants are less than this, and
-/// has been seen to do so often enough in this share of the pairs of pictures that are far from each other.
+/// A thing looks the same where the logarithm of the ratio of its areas and the distance of its affine moment invariants are less than this. So
+/// it must do in this share of the pairs of pictures that are far from each other, or nothing is said.
 const SAME_AREA: f64 = 0.05;
 const SAME_SHAPE: f64 = 0.1;
 const LEAST_SAME: f64 = 0.2;

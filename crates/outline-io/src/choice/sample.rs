@@ -162,7 +162,7 @@ impl PictureSample {
 
     /// The even bars at the sides of the pictures of the sequence.
     pub(super) fn bars(&self) -> Margins {
-        // In what is smaller, less than a pixel may be left of a bar.
+        // Bars are looked for in pictures that may have been made smaller: up to a pixel of these, `factor` of the sequence, is taken off too much.
         self.channels
             .first()
             .map_or_else(Margins::default, |(_, pictures)| Margins::of_bars(pictures))
@@ -174,13 +174,18 @@ impl PictureSample {
         let (columns, rows) = self.size;
         let of_sample = margins.scaled(self.factor);
         let within = |pictures: &Vec<Arc<GrayImage>>| -> Vec<Arc<GrayImage>> {
-            pictures.iter().map(|picture| Arc::new(of_sample.within(picture).into_owned())).collect()
+            pictures
+                .iter()
+                .map(|picture| {
+                    of_sample.within(picture).map_or_else(|_| picture.clone(), |left| Arc::new(left.into_owned()))
+                })
+                .collect()
         };
         Self {
             channels: self.channels.iter().map(|(channel, pictures)| (*channel, within(pictures))).collect(),
             size: (
-                columns.saturating_sub(margins.left + margins.right),
-                rows.saturating_sub(margins.top + margins.bottom),
+                columns.saturating_sub(margins.left.saturating_add(margins.right)),
+                rows.saturating_sub(margins.top.saturating_add(margins.bottom)),
             ),
             frames: self.frames.clone(),
             factor: self.factor,

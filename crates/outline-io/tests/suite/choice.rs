@@ -1,7 +1,10 @@
 //! What is chosen to be followed where no option says it.
+use std::sync::Arc;
+
 use freeform_outline_io::{
-    Channel, GrayImage, Margins, PictureError, PictureFrame, PictureSample, PictureSettings, Selection, TraceSettings,
-    TracedOutline, TracingChoice, TracingEvidence, TracingWarning, TracingWay, choose_tracing, trace_objects,
+    Channel, GrayImage, Margins, PictureError, PictureFrame, PictureSample, PictureSettings, Selection, TraceError,
+    TraceSettings, TracedOutline, TracingChoice, TracingEvidence, TracingWarning, TracingWay, choose_tracing,
+    trace_objects,
 };
 use image::Luma;
 
@@ -176,7 +179,7 @@ fn even_bars_at_the_sides_of_pictures_are_left_out_and_a_plain_ground_is_not() {
 fn an_outline_has_the_same_points_with_margins_and_is_clipped_by_them() {
     let picture = picture(0, |x, y| disc(x, y, [120.0, 90.0, 30.0]));
     let traced = |margins: Margins| {
-        let trace = TraceSettings { margins, pixel_size: 0.5, ..TraceSettings::default() };
+        let trace = TraceSettings { margins: Some(margins), pixel_size: 0.5, ..TraceSettings::default() };
         trace_objects(&picture, &trace, 2).expect("a disc").remove(0)
     };
     let [whole, within] = [Margins::default(), Margins { left: 40, top: 30, right: 60, bottom: 25 }].map(traced);
@@ -187,6 +190,21 @@ fn an_outline_has_the_same_points_with_margins_and_is_clipped_by_them() {
     // Up to rounding.
     assert!(whole.iter().zip(&within).all(|(p, q)| (p - q).norm() < 1e-9));
     assert!(traced(Margins { top: 80, ..Margins::default() }).touches_border);
+}
+
+#[test]
+fn margins_that_leave_nothing_are_refused_and_margins_of_nothing_leave_bars_where_they_are() {
+    let picture = picture(0, |x, y| disc(x, y, [120.0, 90.0, 30.0]));
+    for margins in [
+        Margins { left: 200, right: 120, ..Margins::default() },
+        Margins { top: u32::MAX, bottom: u32::MAX, ..Margins::default() },
+    ] {
+        let trace = TraceSettings { margins: Some(margins), ..TraceSettings::default() };
+        let refused = trace_objects(&picture, &trace, 2).expect_err("nothing is left");
+        assert!(matches!(refused, TraceError::NothingLeft { columns: 320, rows: 240, .. }), "{refused}");
+    }
+    let pictures = [picture, GrayImage::new(20, 30)].map(Arc::new);
+    assert_eq!(Margins::of_bars(&pictures), Margins::default());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Outlines of labelled masks.
 use freeform_curve_fit::Outline;
 use freeform_outline_io::{
-    Clipping, GrayImage, Identities, LabelMask, Selection, Smoothing, TraceError, TraceSettings, TracedLabel,
+    Clipping, GrayImage, Identities, LabelMask, Margins, Selection, Smoothing, TraceError, TraceSettings, TracedLabel,
     TracedOutline, trace_mask,
 };
 use image::Luma;
@@ -41,7 +41,9 @@ fn the_outline_of_a_label_is_that_of_a_mask_of_it_alone() {
     let gaussian = TraceSettings { smoothing: Smoothing::Gaussian(2.0), ..TraceSettings::default() };
     let scaled = TraceSettings { y_up: false, pixel_size: 0.1, pixel_aspect: 1.5, ..TraceSettings::default() };
     for settings in [TraceSettings::default(), gaussian, scaled] {
-        let traced = trace(&with_others, &settings);
+        // Labels know of no margins.
+        let margins = Some(Margins { left: 9, top: 5, right: 0, bottom: 0 });
+        let traced = trace(&with_others, &TraceSettings { margins, ..settings });
         assert_eq!(traced.iter().map(|(label, _)| *label).collect::<Vec<_>>(), [2, 7]);
         let (of_label, alone) = (&traced[1].1, trace_mask(&picture, &settings).expect("an egg"));
         assert_eq!(of_label.pixel_count, alone.pixel_count);

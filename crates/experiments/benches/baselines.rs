@@ -46,7 +46,7 @@ fn time_of_steps<E>(
     spent
 }
 
-fn rivals(c: &mut Criterion) {
+fn baselines(c: &mut Criterion) {
     let (list, model) = (frames(), MotionModel::Rigid);
     let mut group = c.benchmark_group("rigid, 400 points");
     group.bench_function("motion filter", |b| {
@@ -77,5 +77,5 @@ fn rivals(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, rivals);
+criterion_group!(benches, baselines);
 criterion_main!(benches);
