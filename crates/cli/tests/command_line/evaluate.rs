@@ -294,7 +294,7 @@ fn the_stress_suite_refuses_what_has_no_meaning_there() {
         ("--suite arc --frames 3", "--frames"),
         ("--suite arc --motion affine", "--motion"),
         ("--suite stress --motion projective", "affine"),
-        ("--suite stress --motion plane", "affine"),
+        ("--suite stress --motion plane --focal 900 --principal 320,240", "affine"),
         ("--list", "--list"),
     ] {
         let output = run(&format!("evaluate {arguments}"), "");

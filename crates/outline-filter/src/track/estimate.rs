@@ -11,6 +11,7 @@ use crate::{
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
     tuning::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
+        statement::ROUNDING_OF_CORRELATION,
         supervisor::STEPS_KNOWN,
         turn_hypotheses::DIFFERENT,
         update::SUDDEN,
@@ -99,7 +100,8 @@ impl Track {
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }
 
-    /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number.
+    /// Covariance of the motion parameters in the order of the model, image units; `None` where it is beyond any number, or where the motion is known so
+    /// little that rounding has left something that is no covariance.
     pub(crate) fn covariance_of(&self, summary: &Summary) -> Option<DMatrix<f64>> {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let to_image = self.reference.to_image();
@@ -109,7 +111,7 @@ impl Track {
         let covariance = &change * of_motion * change.transpose();
         // The products round apart where the image origin is far away.
         let symmetric = 0.5 * (&covariance + covariance.transpose());
-        symmetric.iter().all(|e| e.is_finite()).then_some(symmetric)
+        (symmetric.iter().all(|e| e.is_finite()) && is_positive(&symmetric)).then_some(symmetric)
     }
 
     /// Standard deviations of the motion parameters in the order of the model, image units.
@@ -291,6 +293,18 @@ fn hanging_velocities(estimate: &MotionEstimate, centroid: &Point2<f64>, deviati
     }
     let velocities = (0..k).filter(|j| kinds[*j] == ParameterKind::Velocity).zip(&carried);
     velocities.filter(|(j, carried)| **carried > HANGS_ON * deviations[*j]).map(|(j, _)| j).collect()
+}
+
+/// Whether no combination of what a matrix is the covariance of has a negative variance, beyond rounding, in units of its variances.
+fn is_positive(covariance: &DMatrix<f64>) -> bool {
+    let root = |i: usize| covariance[(i, i)].sqrt();
+    let scaled = DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |i, j| {
+        let rounding = if i == j { ROUNDING_OF_CORRELATION } else { 0.0 };
+        // What has no variance has no covariance either.
+        let scale = root(i) * root(j);
+        rounding + if scale > 0.0 { covariance[(i, j)] / scale } else { 0.0 }
+    });
+    scaled.cholesky().is_some()
 }
 
 /// Standard deviations of a covariance.

@@ -192,6 +192,9 @@ pub(crate) mod family {
 
 /// What is stated at all.
 pub(crate) mod statement {
+    /// How far below none the variance of a combination of parameters may be, in their variances: what rounding leaves where hardly anything is
+    /// known.
+    pub(crate) const ROUNDING_OF_CORRELATION: f64 = 1e-3;
     /// Standard deviation of a side of a mask, in pixels: that of rounding, 1 / sqrt(12), where the side lies along the rows or columns. Sides
     /// that lie across them are off by less.
     pub(crate) const ROUNDING: f64 = 0.289;

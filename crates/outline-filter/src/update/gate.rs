@@ -268,7 +268,8 @@ impl fmt::Display for Rejection {
                 write!(f, "does not fit the object, {:.0} % of the points lie on its outline", 100.0 * agreement)
             }
             Self::InnovationTooLarge { innovation, .. } => {
-                write!(f, "does not go on from the frames before it, squared innovation {innovation:.0}")
+                let deviations = innovation.sqrt();
+                write!(f, "jumps away from where it was expected ({deviations:.0} standard deviations)")
             }
             Self::NoiseTooLarge { noise } => {
                 let decimals = (1.0 - noise.log10().floor()).max(0.0) as usize;
