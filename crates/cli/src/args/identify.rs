@@ -88,8 +88,8 @@ pub(crate) struct IdentifyArgs {
     ///
     /// Yellow is the outline as it was traced, red one that was not used. Blue is the outline that the filter knows, where it takes the object
     /// to be; it lies below the yellow one and shows where this is hidden or elsewhere. With --method adaptive blue is the fitted curve, and
-    /// pink crosses are its related points. Green arrows are the velocities of points of the outline, the longest a third of the object long:
-    /// they compare within a picture only. There are none while the motion is not known.
+    /// pink crosses are its related points. Green arrows are the displacements of points of the outline in the time that is written below
+    /// the object, the longest a third of the object long. There are none while the motion is not known.
     ///
     /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
     /// drawings that freeform did not draw.
@@ -162,8 +162,8 @@ pub(crate) struct TrackArgs {
     ///
     /// Yellow is the outline as it was traced, red one that was not used. Blue is the outline that the filter knows, where it takes the object
     /// to be; it lies below the yellow one and shows where this is hidden or elsewhere. With --method adaptive blue is the fitted curve, and
-    /// pink crosses are its related points. Green arrows are the velocities of points of the outline, the longest a third of the object long:
-    /// they compare within a picture only. There are none while the motion is not known.
+    /// pink crosses are its related points. Green arrows are the displacements of points of the outline in the time that is written below
+    /// the object, the longest a third of the object long. There are none while the motion is not known.
     ///
     /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
     /// drawings that freeform did not draw.
