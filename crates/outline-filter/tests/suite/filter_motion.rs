@@ -172,7 +172,10 @@ fn a_frame_that_jumps_and_one_whose_points_scatter_are_rejected_for_that() {
     assert_eq!(rejection_of_last(|p, _| p), None);
     let jumped = rejection_of_last(|p, _| p + Vector2::new(0.02, 0.02)).expect("rejected");
     let Rejection::InnovationTooLarge { innovation, largest } = jumped else { panic!("{jumped}") };
-    assert!(innovation > largest && jumped.to_string().starts_with("jumps away from where it was expected"), "{jumped}");
+    assert!(
+        innovation > largest && jumped.to_string().starts_with("jumps away from where it was expected"),
+        "{jumped}"
+    );
     let scattered = rejection_of_last(|p, index| p * if index % 2 == 0 { 1.05 } else { 0.95 }).expect("rejected");
     let Rejection::NoiseTooLarge { noise } = scattered else { panic!("{scattered}") };
     assert!(noise > 0.01 && scattered.to_string().contains("scatter by 0.0"), "{scattered}");
