@@ -1,3 +1,5 @@
+use freeform_estimate::ParameterEstimate;
+
 use super::{observation::Observation, result::ObjectResult};
 use crate::Warning;
 
@@ -32,6 +34,11 @@ impl NotStated {
     }
 }
 
+/// Whether a parameter has a value.
+fn is_stated(found: Option<Vec<ParameterEstimate>>, name: &str) -> bool {
+    found.is_some_and(|found| found.iter().any(|p| p.name == name && p.value.is_some()))
+}
+
 impl ObjectResult {
     /// Why a parameter is not stated, or `normal`, that of a plane; `None` where it is. Of the velocity of the middle ask
     /// [`velocity_not_stated`](Self::velocity_not_stated).
@@ -46,7 +53,7 @@ impl ObjectResult {
     pub fn not_stated(&self, name: &str) -> Option<NotStated> {
         let is_stated = match name {
             "normal" => self.plane.as_ref().is_some_and(|plane| plane.normal().is_some()),
-            _ => self.parameters().is_some_and(|found| found.iter().any(|p| p.name == name && p.value.is_some())),
+            _ => is_stated(self.parameters(), name),
         };
         if is_stated {
             return None;
@@ -74,7 +81,7 @@ impl Observation {
     /// As [`ObjectResult::not_stated`], as known after the frame.
     #[must_use]
     pub fn not_stated(&self, name: &str) -> Option<NotStated> {
-        if self.parameters().is_some_and(|found| found.iter().any(|p| p.name == name && p.value.is_some())) {
+        if is_stated(self.parameters(), name) {
             return None;
         }
         let is_ambiguous = self.ambiguity.as_ref().is_some_and(|turns| turns.parameters.contains(&name))

@@ -19,7 +19,7 @@ pub(crate) fn picture_inputs(command: &str) -> String {
          steady its area and shape are, how clear its edge, how smooth its path; {} is needed not to be in doubt. Of a stream 60 pictures \
          are read ahead for that; 'track' does not.",
         through_ffmpeg("video.mp4", &format!("freeform {command} -")),
-        TracingChoice::LEAST_SCORE
+        TracingChoice::CONVINCING
     )
 }
 

@@ -30,12 +30,10 @@ impl PerspectiveArgs {
 
     /// Refuses a camera where no motion in space is asked for.
     pub(crate) fn check(&self, is_plane: bool) -> Result<(), Failure> {
-        match (is_plane, self.focal, self.principal) {
-            (false, Some(_), _) | (false, _, Some(_)) => {
-                Err(Failure::unusable("--focal and --principal are for --motion plane"))
-            }
-            _ => Ok(()),
+        if !is_plane && (self.focal.is_some() || self.principal.is_some()) {
+            return Err(Failure::unusable("--focal and --principal are for --motion plane"));
         }
+        Ok(())
     }
 }
 

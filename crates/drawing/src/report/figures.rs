@@ -1,6 +1,5 @@
 use freeform_motion::curve_fit::{Outline, Rectangle, stray_parts};
 use freeform_motion::estimate::ParameterEstimate;
-use freeform_motion::riccati::ParameterKind;
 use freeform_motion::tracker::MotionFamily;
 use freeform_motion::{FittedOutline, Truth, short, significant};
 use nalgebra::Point2;
@@ -124,7 +123,7 @@ pub(crate) fn parameter_panels(
     let names = family.parameter_names().iter().zip(family.units()).zip(family.parameter_kinds()).enumerate();
     names
         .map(|(index, ((name, unit), kind))| {
-            let unit = if *kind == ParameterKind::Velocity { b.short_unit } else { unit };
+            let unit = b.unit_of(*kind, unit);
             let mut curves = history.curves(index);
             let limits = limits_of_most(&curves, truth.as_ref().map(|truth| truth[index]));
             let beyond = limits.map_or(0, |limits| values_beyond(&curves, limits));

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use freeform_motion::riccati::CameraScale;
+use freeform_motion::riccati::{CameraScale, ParameterKind};
 
 /// The unit of a velocity where lengths have no name: of the coordinates of a file, of a plane, of space, of pixels of a stated size.
 const LENGTHS: &str = "lengths/s";
@@ -26,6 +26,11 @@ pub struct MeaningOfB {
 }
 
 impl MeaningOfB {
+    /// The unit of a parameter in a table, by what it is and the unit that its family of motions gives it.
+    pub(crate) fn unit_of(&self, kind: ParameterKind, unit: &'static str) -> &'static str {
+        if kind == ParameterKind::Velocity { self.short_unit } else { unit }
+    }
+
     /// In the coordinates of a file.
     #[must_use]
     pub fn in_coordinates(scale: Option<CameraScale>) -> Self {

@@ -20,7 +20,7 @@ pub fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningO
         .map(|(index, ((name, unit), kind))| {
             let parameter = found.get(index);
             let unknown = parameter.map_or("-", |_| in_place_of_value(result, name));
-            let unit = if *kind == ParameterKind::Velocity { b.short_unit } else { unit };
+            let unit = b.unit_of(*kind, unit);
             let known = parameter.and_then(|p| Some((p.value?, p.standard_deviation)));
             row([name, unknown, unit], known, truth.as_ref().map(|(_, values)| values[index]))
         })

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use freeform_motion::curve_fit::Rectangle;
 use freeform_motion::outline_filter::KnownPiece;
-use freeform_motion::riccati::{MotionModel, ParameterKind};
+use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::ObjectPhase;
 use freeform_motion::{short, significant, with_deviation};
 use nalgebra::{Matrix3, Point2};
@@ -145,7 +145,7 @@ impl Player<'_> {
         body.push_str("<div class=\"scroll\"><table class=\"values\">\n<tr><th>parameter</th><th>value</th><th>std</th><th>unit</th></tr>\n");
         let names = self.model.parameter_names().iter().zip(self.model.units()).zip(self.model.parameter_kinds());
         for ((name, unit), kind) in names {
-            let unit = if *kind == ParameterKind::Velocity { self.b.short_unit } else { unit };
+            let unit = self.b.unit_of(*kind, unit);
             let _ = writeln!(body, "<tr><td>{name}</td><td></td><td></td><td>{unit}</td></tr>");
         }
         body.push_str("</table></div>\n");

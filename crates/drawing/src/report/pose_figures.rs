@@ -1,5 +1,5 @@
 //! Figures of where an object was and how well its motion is known.
-use freeform_motion::riccati::{CameraScale, MotionModel, ParameterKind};
+use freeform_motion::riccati::{CameraScale, MotionModel};
 use freeform_motion::tracker::{MotionFamily, Trajectory};
 
 use super::bound_found::BoundAt;
@@ -72,7 +72,7 @@ pub(crate) fn deviation_panels(
 ) -> Vec<Panel> {
     let names = family.parameter_names().iter().zip(family.units()).zip(family.parameter_kinds()).enumerate();
     let panels = names.map(|(index, ((name, unit), kind))| {
-        let unit = if *kind == ParameterKind::Velocity { b.short_unit } else { unit };
+        let unit = b.unit_of(*kind, unit);
         let of_bound = bound.iter().map(|(time, list)| (*time, list.get(index).copied().flatten()));
         let of = |random: bool| {
             let estimates = history.estimates.iter().map(move |(time, estimate)| {

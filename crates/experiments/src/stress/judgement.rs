@@ -94,11 +94,9 @@ impl Outcome {
             (quantity, stated(index).map(|(value, std)| in_deviations(value - truth, std)))
         };
         let mut numbers: Vec<_> = truth.parameters(model).into_iter().enumerate().map(judged).collect();
-        let rates = || {
-            let rates = numbers.iter().zip(0..).filter(|((quantity, _), _)| *quantity != Quantity::B);
-            rates.map(|(_, index)| stated(index).map(|(value, _)| value)).collect::<Option<Vec<f64>>>()
-        };
-        let stated_rates = rates();
+        // The parameters of a motion begin with its rates.
+        let stated_rates: Option<Vec<f64>> =
+            (0..truth.rates(model).len()).map(|index| stated(index).map(|(value, _)| value)).collect();
         if judges_middle {
             let velocity = result.and_then(|result| result.velocity);
             // A stated turn belongs to the point that is stated with the velocity, not quite the middle.
@@ -161,21 +159,24 @@ fn mean_turn(rates: &[f64]) -> f64 {
 }
 
 impl Truth {
-    /// The parameters of a motion in the order of its family; none of a projective one.
-    fn parameters(&self, model: MotionModel) -> Vec<(Quantity, f64)> {
-        let rates = match model {
+    /// The rates of a motion in the order of its family; none of a projective one, which the suite does not have.
+    fn rates(&self, model: MotionModel) -> Vec<(Quantity, f64)> {
+        match model {
             MotionModel::Rigid => vec![(Quantity::Omega, self.omega)],
             MotionModel::Similarity => vec![(Quantity::Sigma, self.growth), (Quantity::Omega, self.omega)],
             MotionModel::Affine => self.linear.transpose().iter().map(|a| (Quantity::A, *a)).collect(),
-            MotionModel::Projective => return Vec::new(),
-        };
-        rates.into_iter().chain(self.b.iter().map(|b| (Quantity::B, *b))).collect()
+            MotionModel::Projective => Vec::new(),
+        }
+    }
+
+    /// The parameters of a motion in the order of its family.
+    fn parameters(&self, model: MotionModel) -> Vec<(Quantity, f64)> {
+        self.rates(model).into_iter().chain(self.b.iter().map(|b| (Quantity::B, *b))).collect()
     }
 
     /// Mean angular velocity of all directions in the picture.
     fn mean_turn(&self, model: MotionModel) -> f64 {
-        let rates = self.parameters(model).into_iter().filter(|(quantity, _)| *quantity != Quantity::B);
-        mean_turn(&rates.map(|(_, rate)| rate).collect::<Vec<f64>>())
+        mean_turn(&self.rates(model).into_iter().map(|(_, rate)| rate).collect::<Vec<f64>>())
     }
 }
 

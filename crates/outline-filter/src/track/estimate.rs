@@ -297,11 +297,11 @@ fn hanging_velocities(estimate: &MotionEstimate, centroid: &Point2<f64>, deviati
 
 /// Whether no combination of what a matrix is the covariance of has a negative variance, beyond rounding, in units of its variances.
 fn is_positive(covariance: &DMatrix<f64>) -> bool {
-    let root = |i: usize| covariance[(i, i)].sqrt();
+    let roots = roots(covariance);
     let scaled = DMatrix::from_fn(covariance.nrows(), covariance.ncols(), |i, j| {
         let rounding = if i == j { ROUNDING_OF_CORRELATION } else { 0.0 };
         // What has no variance has no covariance either.
-        let scale = root(i) * root(j);
+        let scale = roots[i] * roots[j];
         rounding + if scale > 0.0 { covariance[(i, j)] / scale } else { 0.0 }
     });
     scaled.cholesky().is_some()

@@ -81,7 +81,7 @@ pub(super) struct Motion {
     pub(super) changes: Option<Changes>,
 }
 
-/// Looks for what moves beside what another way finds, given as `still` where that rests: then its first sight stands for all, and changes
+/// Looks for what moves beside what another way finds, given as `rests` where that rests: then its first sight stands for all, and changes
 /// are counted; of one that moves, as `others`, where it is in every picture.
 pub(super) fn what_moves(
     sample: &PictureSample,
@@ -129,19 +129,19 @@ impl Beside {
     fn has(&self, chain: &Chain) -> bool {
         let same_picture = |sight: &&Sight| sight.frame == chain[1].frame;
         let in_picture = self.others.iter().flatten().flatten().filter(same_picture);
-        let is_part =
-            |other: &Sight| lies_on(&chain[1], other) || is_within(&chain[1].centre, &other.points.iter().copied());
-        self.still.as_ref().is_some_and(|still| lies_on(&chain[1], still)) || in_picture.into_iter().any(is_part)
+        self.still.as_ref().is_some_and(|still| lies_on(&chain[1], still))
+            || in_picture.into_iter().any(|other| is_part_of(&chain[1], other))
     }
+}
+
+/// Whether a thing lies on another or in it.
+fn is_part_of(sight: &Sight, other: &Sight) -> bool {
+    lies_on(sight, other) || is_within(&sight.centre, &other.points.iter().copied())
 }
 
 /// In how many pictures something differs from the ground beside what rests, that is not most of the picture, as light does.
 fn changes_beside(pictures: &[Vec<Sight>], still: &Sight, picture_area: f64) -> Changes {
-    let is_beside = |sight: &Sight| {
-        !lies_on(sight, still)
-            && !is_within(&sight.centre, &still.points.iter().copied())
-            && sight.area < LARGEST_CHANGE * picture_area
-    };
+    let is_beside = |sight: &Sight| !is_part_of(sight, still) && sight.area < LARGEST_CHANGE * picture_area;
     let seen = pictures.iter().filter(|sights| sights.iter().any(is_beside)).count();
     Changes { seen, pictures: pictures.len() }
 }

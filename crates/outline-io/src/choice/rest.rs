@@ -57,6 +57,5 @@ fn is_where_it_was(sights: &[Sight], hardly: f64) -> bool {
 pub(super) fn movement(sights: &[Sight]) -> f64 {
     let Some(first) = sights.first() else { return 0.0 };
     let step = (sights.len() / 6).max(1);
-    let far = |sight: &Sight| (sight.centre - first.centre).norm().max(sight.unlike(first));
-    sights.iter().skip(1).step_by(step).chain(sights.last()).map(far).fold(0.0, f64::max)
+    sights.iter().skip(1).step_by(step).chain(sights.last()).map(|sight| moved(sight, first)).fold(0.0, f64::max)
 }
