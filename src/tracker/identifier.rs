@@ -183,13 +183,13 @@ impl Identifier {
         }
     }
 
-    /// How often the object was given up and begun anew.
-    pub(super) fn restarts(&self) -> usize {
+    /// Counted up where poses no longer go back to the same first outline.
+    pub(super) fn segment(&self) -> usize {
         match self {
-            Self::Filter(object) => object.filter.restarts(),
-            Self::Plane(object) => object.filter.follower().restarts(),
+            Self::Filter(object) => object.filter.segment(),
+            Self::Plane(object) => object.filter.follower().segment(),
             #[cfg(feature = "serde")]
-            Self::Resting(state) => state.restarts,
+            Self::Resting(state) => state.segment,
             Self::Adaptive(_) => 0,
         }
     }

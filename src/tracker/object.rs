@@ -106,7 +106,7 @@ impl TrackedObject {
                 KnownOutlines::LeftOut => None,
             },
             rejection,
-            segment: self.identifier.restarts(),
+            segment: self.identifier.segment(),
             warning: self.contour_order.look_at(frame).cloned(),
         }
     }
@@ -156,7 +156,7 @@ impl TrackedObject {
             aliases: Vec::new(),
             known_outline: None,
             rejection,
-            segment: self.identifier.restarts(),
+            segment: self.identifier.segment(),
             warning: None,
         }
     }

@@ -42,7 +42,7 @@ pub(super) struct RestingFilter {
     /// Of these the state of the filter.
     filter_length: usize,
     /// What is asked for while it rests.
-    pub(super) restarts: usize,
+    pub(super) segment: usize,
     pub(super) motion_changed: bool,
 }
 
@@ -106,7 +106,7 @@ impl RestingFilter {
             file: Arc::clone(file),
             length: bytes.len(),
             filter_length,
-            restarts: object.filter.restarts(),
+            segment: object.filter.segment(),
             motion_changed: object.filter.motion_changed(),
         })
     }

@@ -10,7 +10,7 @@ use crate::{
     map::TurnEvent,
     measurement::{NegativeLogLikelihood, Tolerance},
     search::{Extent, Landmarks, RegisteredPose, Registration, symmetry_order},
-    track::{Comparison, Outcome, Track},
+    track::{Comparison, Doubt, Outcome, Track},
     tuning::{
         supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION},
         usual_agreement::ELSEWHERE,
@@ -58,12 +58,11 @@ impl MotionFilter {
         Some(expected)
     }
 
-    /// Where more points than usual of a frame that has been taken disagree, they may be those that tell the pose: the object is searched
-    /// for, and taken to be where that explains the frame significantly better.
+    /// Where more points than usual of a frame that has been taken disagree, or a turn that little tells is another than expected, they may be those
+    /// that tell the pose: the object is searched for, and taken to be where that explains the frame significantly better. A frame that shows no
+    /// turn has told none, so that others must tell it first.
     pub(super) fn look_elsewhere(&mut self, outcome: Outcome, time: f64, outline: &Outline) -> Outcome {
-        if !outcome.is_accepted() || !outcome.disagrees || !self.may_search() {
-            return outcome;
-        }
+        let Some(doubt) = outcome.doubt.filter(|_| outcome.is_accepted() && self.may_search()) else { return outcome };
         let mut other = self.clone();
         other.phase = Phase::Lost;
         // Turns are counted from where the step to this frame has led.
@@ -81,8 +80,11 @@ impl MotionFilter {
             }
             is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
         }
-        if !is_explained {
-            track.record_as_usual(outcome.measurement.agreement);
+        let pose = *track.body_pose();
+        match doubt {
+            Doubt::Points if !is_explained => track.record_as_usual(outcome.measurement.agreement),
+            Doubt::Turn if !track.shows_turn(outline, &pose, &mut self.frame) => track.ask_anew_for_turn(),
+            _ => {}
         }
         outcome
     }

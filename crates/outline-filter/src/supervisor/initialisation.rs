@@ -134,9 +134,16 @@ impl MotionFilter {
 
     /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
     /// one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that it is cut again unless
-    /// the pose has settled.
-    fn exchange(&mut self, Measured { begun, present, mut rivals }: Measured) -> Remapping {
-        let Some(track) = &self.track else { return Remapping::Idle };
+    /// the pose has settled. A track that has gone astray among the frames kept, and explains the last of them worse than where it was, is none to
+    /// be exchanged for.
+    fn exchange(&mut self, Measured { begun, mut present, mut rivals }: Measured) -> Remapping {
+        let Some((track, last)) = self.track.as_ref().zip(self.window.last()) else { return Remapping::Idle };
+        let poses = [*present.track.body_pose(), *track.body_pose()];
+        let likelihoods = present.track.compared(last, &poses, &mut self.frame);
+        if likelihoods[0].is_worse_than(&likelihoods[1]) {
+            return Remapping::Idle;
+        }
+        present.track.go_on_with_turn_profile_of(track);
         self.turn_hypotheses.remap(|turn| {
             let of_turn = rivals.iter_mut().find(|(of, _)| *of == turn);
             of_turn.and_then(|(_, rival)| rival.take()).map(|rival| rival.track)
@@ -167,6 +174,7 @@ impl MotionFilter {
         self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
         self.begin_window(self.last_time, outline, &new);
         self.replace(new, self.track_time, Phase::Acquiring);
+        self.counts.begun_with_turn += 1;
     }
 }
 

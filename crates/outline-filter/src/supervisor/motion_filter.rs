@@ -19,7 +19,7 @@ use crate::{
     dynamics::{DynamicsFilter, DynamicsWeights},
     measurement::Frame,
     search::Landmarks,
-    track::{KnownOutline, Outcome, Track},
+    track::{Doubt, KnownOutline, Outcome, Track},
     update::{FrameMeasurement, Rejection},
 };
 
@@ -71,6 +71,8 @@ pub(super) struct Counts {
     pub(super) accepted_by_track: usize,
     pub(super) rejected_by_track: usize,
     pub(super) restarts: usize,
+    /// Times that the map was begun anew with a frame that showed the turn at last.
+    pub(super) begun_with_turn: usize,
     /// Starts in a row after which the object was not found again.
     pub(super) fruitless_starts: usize,
 }
@@ -286,10 +288,14 @@ impl MotionFilter {
         let is_after_rejected = self.counts.rejected_in_a_row > 0;
         let (frame, comparison) = (&mut self.frame, self.turn_hypotheses.comparison());
         frame.load(outline, track.reference());
-        let outcome =
+        let (before, expected) = (*track.body_pose(), track.turn_in(seconds));
+        let mut outcome =
             advance(&self.settings, (track, frame), &mut self.history, seconds, is_after_rejected, comparison);
         self.motion_changed |= self.history.is_changing();
         track.record_spread(&outcome.measurement);
+        if outcome.is_accepted() && track.turn_leaps(&before, expected) {
+            outcome.doubt = Some(Doubt::Turn);
+        }
         let (turn, was_accepted) = (self.turn_hypotheses.present_turn(), outcome.is_accepted());
         let outcome = self.turn_hypotheses.decide(&self.settings, (track, frame), outcome, seconds);
         if self.turn_hypotheses.present_turn() != turn || outcome.is_accepted() != was_accepted {
@@ -391,5 +397,12 @@ impl MotionFilter {
     #[must_use]
     pub fn restarts(&self) -> usize {
         self.counts.restarts
+    }
+
+    /// Counted up from 0 where poses no longer go back to the same first outline: after a [restart](Self::restarts), and where a frame has shown the
+    /// turn of the object for the first time, since nobody knows how far it had turned until then.
+    #[must_use]
+    pub fn segment(&self) -> usize {
+        self.counts.restarts + self.counts.begun_with_turn
     }
 }

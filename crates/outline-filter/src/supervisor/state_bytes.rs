@@ -9,7 +9,7 @@ use crate::track::{SavedCells, Track};
 use crate::tuning::symmetry::LARGEST_ORDER;
 
 /// Version of the format: another one for every change of what is saved.
-const VERSION: u32 = 15;
+const VERSION: u32 = 16;
 
 /// The format of the bytes.
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
@@ -120,11 +120,12 @@ impl MotionFilter {
             accepted_by_track,
             rejected_by_track,
             restarts,
+            begun_with_turn,
             fruitless_starts,
         } = self.counts;
-        let of_recording =
-            [accepted_in_recording, rejected_in_recording, rejected_in_a_row, restarts, fruitless_starts];
-        of_recording.iter().chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
+        let of_recording = [accepted_in_recording, rejected_in_recording, rejected_in_a_row];
+        let of_starts = [restarts, begun_with_turn, fruitless_starts];
+        of_recording.iter().chain(&of_starts).chain(&[accepted_by_track, rejected_by_track]).all(|count| *count < most)
     }
 }
 

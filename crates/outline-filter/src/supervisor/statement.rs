@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 
 use super::motion_filter::{Counts, MotionFilter, Phase};
 use crate::{
+    belief::StateMatrix,
     dynamics::{CentredDeviations, Purpose, Summary, WrongFamily},
     track::TurnTold,
     tuning::statement as tuning,
@@ -53,9 +54,8 @@ impl MotionFilter {
             let summary = dynamics.combined((!dynamics.leads()).then_some(&own), Purpose::Statement).unwrap_or(own);
             random = summary.widened(model, &centroid, &dynamics.factors(), [&none, &none])?;
         }
-        if let Some(covariance) = self.history.contradicted(model.parameter_count()) {
-            random.covariance += covariance;
-        }
+        let doubts = [self.history.contradicted(model.parameter_count()), track.covariance_of_untold_turn()];
+        random.covariance += doubts.into_iter().flatten().sum::<StateMatrix>();
         let (unmodelled, moments) = track.unmodelled_motions();
         let mut all = random;
         all.covariance += moments;

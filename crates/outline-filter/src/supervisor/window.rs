@@ -155,6 +155,11 @@ impl InitialisationWindow {
         self.frames.first().map(|(_, outline)| outline)
     }
 
+    /// The frame kept last.
+    pub(super) fn last(&self) -> Option<&Outline> {
+        self.frames.last().map(|(_, outline)| outline)
+    }
+
     /// Whether there are frames to cut a map from.
     pub(super) fn are_several(&self) -> bool {
         self.frames.len() > 1

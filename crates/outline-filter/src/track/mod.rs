@@ -29,7 +29,7 @@ mod usual_agreement;
 
 pub(crate) use estimate::TurnTold;
 pub use known_outline::{KnownOutline, KnownPiece};
-pub(crate) use outcome::{Comparison, Outcome};
+pub(crate) use outcome::{Comparison, Doubt, Outcome};
 pub(crate) use remapping::PlacedFrame;
 #[cfg(feature = "serde")]
 pub(crate) use saved::SavedCells;

@@ -15,6 +15,15 @@ pub(crate) enum Comparison {
     NotAsked,
 }
 
+/// Why the object may lie elsewhere than where a frame that was taken has found it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Doubt {
+    /// More of the points than usual disagree with the outline.
+    Points,
+    /// A turn that few points or slight levers tell is another than it was to be.
+    Turn,
+}
+
 /// What became of a frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Outcome {
@@ -27,8 +36,8 @@ pub(crate) struct Outcome {
     pub(crate) rounding: CentredDeviations,
     /// Displacement of the whole outline by the frame, in the body frame.
     pub(crate) shift: SVector<f64, MAX_PARAMETERS>,
-    /// Whether more of its points than usual disagree with the outline.
-    pub(crate) disagrees: bool,
+    /// Why the object may lie elsewhere although the frame was taken.
+    pub(crate) doubt: Option<Doubt>,
     /// Of the frame, given the prediction; zero unless asked for.
     pub(crate) likelihood: NegativeLogLikelihood,
 }
@@ -43,7 +52,7 @@ impl Outcome {
             pose: None,
             rounding: CentredDeviations::zeros(),
             shift: SVector::zeros(),
-            disagrees: false,
+            doubt: None,
             likelihood: NegativeLogLikelihood::default(),
         }
     }

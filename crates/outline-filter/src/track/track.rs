@@ -6,7 +6,7 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
 use super::{
-    Comparison, Outcome, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile,
+    Comparison, Doubt, Outcome, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile,
     usual_agreement::UsualAgreement,
 };
 use crate::{
@@ -130,12 +130,13 @@ impl Track {
         let verdict = self.verdict(gate, &measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
-        let (mut shift, mut disagrees) = (SVector::zeros(), false);
+        let (mut shift, mut doubt) = (SVector::zeros(), None);
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
             self.frames += 1;
             self.look_for_unmodelled_motions(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
-            disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
+            let disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
+            doubt = disagrees.then_some(Doubt::Points);
             self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);
             self.learn_noise(frame, (noise.map(|noise| noise / radius), correlation), measurement.weight);
@@ -146,7 +147,7 @@ impl Track {
         }
         let pose = measured.map(|measured| measured.over(variance));
         let rounding = pose.as_ref().map_or_else(CentredDeviations::zeros, |_| self.rounding_of_pose());
-        Outcome { measurement, verdict, innovation, pose, rounding, shift, disagrees, likelihood }
+        Outcome { measurement, verdict, innovation, pose, rounding, shift, doubt, likelihood }
     }
 
     /// The verdict of a gate, whose limit on the noise is [`widened`](Self::widened) where outlines do what the motion model leaves out.
@@ -233,6 +234,7 @@ impl Track {
     /// Puts the object into a new pose some time later, and forgets motion and pose, keeping the outline.
     pub(crate) fn relocate(&mut self, pose: Matrix3<f64>, seconds: f64) {
         self.belief.relocate(pose);
+        self.turn_profile = TurnProfile::default();
         self.sensitivity.relocate(seconds, self.belief.parameter_count());
     }
 

@@ -5,10 +5,11 @@
 //! not: poses turned a little either way must be worse.
 use freeform_curve_fit::Outline;
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
-use nalgebra::SVector;
+use nalgebra::{Matrix3, SVector};
 
-use super::{Outcome, Track};
+use super::{Outcome, Track, wrapped};
 use crate::{
+    belief::StateMatrix,
     map::{CLOCKWISE, TurnEvent},
     measurement::{Frame, NegativeLogLikelihood},
     tuning::{likelihood::ENOUGH_POINTS, turn_profile as tuning},
@@ -22,6 +23,18 @@ pub(super) struct TurnProfile {
     /// Clockwise and anticlockwise.
     turned: [NegativeLogLikelihood; 2],
     frames: usize,
+    promise: Promise,
+}
+
+/// Whether a frame promises to tell a turn that can be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Promise {
+    #[default]
+    NotAsked,
+    /// What is stated says how little.
+    TooLittle,
+    Enough,
 }
 
 impl TurnProfile {
@@ -44,16 +57,63 @@ impl Track {
     /// Compares the pose of an accepted frame with turned ones, where the outline hardly shows its turn; whether the last frames do not tell it as
     /// well as is said. Not where the model may stretch the outline: what turns it then is told with what stretches it.
     pub(crate) fn add_to_turn_profile(&mut self, outline: &Outline, outcome: &Outcome, frame: &mut Frame) -> bool {
-        let is_weak = self.map.shows_turn_weakly() || self.map.turn_hangs_on_few();
-        if !is_weak || self.turn_is_unseen() || self.model() > MotionModel::Similarity {
+        if !self.must_tell_turn() {
             return false;
         }
-        let Some(turn) = self.turn_to_be_told(outcome, outline.point_count()) else { return false };
+        let Some(turn) = self.turn_to_be_told(outcome, outline.point_count()) else {
+            self.turn_profile.promise = Promise::TooLittle;
+            return false;
+        };
+        self.turn_profile.promise = Promise::Enough;
         let pose = self.belief.pose;
         let poses = [pose, self.turned(&pose, -turn), self.turned(&pose, turn)];
         let [as_told, clockwise, anticlockwise] = &self.compared(outline, &poses, frame)[..] else { return false };
         self.turn_profile.add(as_told, [clockwise, anticlockwise]);
         self.turn_profile.contradicts()
+    }
+
+    /// Whether frames are asked if they tell the turn.
+    fn must_tell_turn(&self) -> bool {
+        let is_weak = self.map.shows_turn_weakly() || self.map.turn_hangs_on_few();
+        is_weak && !self.turn_is_unseen() && self.model() <= MotionModel::Similarity
+    }
+
+    /// Whether a turn that must be told is, since a pose, another than expected; rad, anticlockwise where y points up.
+    pub(crate) fn turn_leaps(&self, before: &Matrix3<f64>, expected: f64) -> bool {
+        // By the turn back.
+        self.must_tell_turn() && wrapped(self.turn_to(before) + expected).abs() > tuning::LEAP
+    }
+
+    /// Forgets what frames have told of the turn.
+    pub(crate) fn ask_anew_for_turn(&mut self) {
+        self.turn_profile = TurnProfile::default();
+    }
+
+    /// Covariance of pose and motion, normalised, of a turn that is promised and that too few frames have told yet: of a radian, and of as much in the
+    /// time that the motion is known from. `None` where the turn is shown well, or told by enough frames.
+    pub(crate) fn covariance_of_untold_turn(&self) -> Option<StateMatrix> {
+        let TurnProfile { frames, promise, .. } = self.turn_profile;
+        if !self.must_tell_turn() || frames >= tuning::MEMORY || promise == Promise::TooLittle {
+            return None;
+        }
+        let (model, span) = (self.belief.model, self.span_of_motion(false));
+        let about_centroid = SVector::from(model.parameters_of(&CLOCKWISE));
+        let direction: SVector<f64, MAX_PARAMETERS> = self.centred_pose().about_origin(model)? * about_centroid;
+        let k = model.parameter_count();
+        let mut covariance = StateMatrix::zeros();
+        for i in 0..k {
+            for j in 0..k {
+                let square = direction[i] * direction[j];
+                covariance[(i, j)] = square;
+                covariance[(k + i, k + j)] = square / (span * span);
+            }
+        }
+        Some(covariance)
+    }
+
+    /// Takes what frames have told another track of the same poses.
+    pub(crate) fn go_on_with_turn_profile_of(&mut self, other: &Self) {
+        self.turn_profile = other.turn_profile;
     }
 
     /// The turn that frames like this one should tell from none beyond doubt, by the information that this one promises, rad; `None` where they

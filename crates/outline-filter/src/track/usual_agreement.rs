@@ -16,23 +16,37 @@ pub(super) struct UsualAgreement {
 
 impl UsualAgreement {
     /// Updates the usual share by a frame of so many points with a share that disagrees; whether that is significantly more than usual.
-    fn update(&mut self, disagreeing: f64, points: usize) -> bool {
+    fn update(&mut self, disagreeing: f64, points: usize, shown: TurnShown) -> bool {
+        let is_known = self.frames >= tuning::FEWEST_FRAMES;
         let usual = self.disagreeing;
         let points = points.max(1) as f64;
         let deviation = (usual.max(1.0 / points) * (1.0 - usual) / points).sqrt();
-        let is_known = self.frames >= tuning::FEWEST_FRAMES;
         self.frames += 1;
         // Frames in which a part has been missed must not become the usual ones.
         let gain = if disagreeing < usual { tuning::FALLS } else { tuning::RISES };
         self.disagreeing += gain.max(1.0 / self.frames as f64) * (disagreeing - usual);
-        is_known && disagreeing > usual + tuning::SIGNIFICANT * deviation
+        // Few marks are soon missed, in the very first frames as well.
+        let significant = match shown {
+            TurnShown::ByMany => tuning::SIGNIFICANT,
+            TurnShown::ByFew => tuning::SIGNIFICANT_OF_FEW,
+        };
+        (is_known || shown == TurnShown::ByFew) && disagreeing > usual + significant * deviation
     }
+}
+
+/// How much of an outline shows its turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TurnShown {
+    ByMany,
+    /// A pose that misses these few passes for one that shows it.
+    ByFew,
 }
 
 impl Track {
     /// Takes the share of the points of an accepted frame that agree; whether more than usual do not.
     pub(super) fn disagrees_more_than_usual(&mut self, agreement: f64, points: usize) -> bool {
-        self.usual.update(disagreeing(agreement), points)
+        let shown = if self.map.turn_hangs_on_few() { TurnShown::ByFew } else { TurnShown::ByMany };
+        self.usual.update(disagreeing(agreement), points, shown)
     }
 
     /// Records a share of points that agree as nearer to the usual one: nothing else explains them better.
@@ -63,7 +77,7 @@ mod tests {
     fn a_part_of_the_outline_that_is_missed_is_noticed_in_every_frame_and_usual_outliers_are_not() {
         let mut usual = UsualAgreement::default();
         let noticed = |usual: &mut UsualAgreement, share: f64, frames: i32| {
-            (0..frames).filter(|i| usual.update(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400)).count()
+            (0..frames).filter(|i| usual.update(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400, TurnShown::ByMany)).count()
         };
         assert_eq!(noticed(&mut usual, 0.05, 100), 0);
         assert_eq!(noticed(&mut usual, 0.15, 10), 10);

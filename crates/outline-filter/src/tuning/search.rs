@@ -130,6 +130,9 @@ pub(crate) mod turn_profile {
     pub(crate) const PROMISED: f64 = 2.0;
     /// Largest turn that is compared, rad. Where frames do not promise to tell one, the deviation that is stated says how little is known.
     pub(crate) const LARGEST: f64 = super::registration::NEAR;
+    /// Turn beside that expected, rad, from which on the object is looked for elsewhere: a search costs as much as fifty frames, and smaller ones are
+    /// put right by the next frame.
+    pub(crate) const LEAP: f64 = 0.1;
 }
 
 /// Hypotheses: turns that explain a frame alike.
