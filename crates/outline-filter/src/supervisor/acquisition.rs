@@ -60,7 +60,7 @@ impl MotionFilter {
 
     /// Where more points than usual of a frame that has been taken disagree, or a turn that little tells is another than expected, they may be those
     /// that tell the pose: the object is searched for, and taken to be where that explains the frame significantly better. A frame that shows no
-    /// turn has told none, so that others must tell it first.
+    /// turn, or another one no less well, has told none where little tells it, so that others must tell it first.
     pub(super) fn look_elsewhere(&mut self, outcome: Outcome, time: f64, outline: &Outline) -> Outcome {
         let Some(doubt) = outcome.doubt.filter(|_| outcome.is_accepted() && self.may_search()) else { return outcome };
         let mut other = self.clone();
@@ -70,7 +70,7 @@ impl MotionFilter {
         let found = other.search(time, seconds, outline).filter(Outcome::is_accepted);
         self.searches = other.searches;
         let Some(track) = &mut self.track else { return outcome };
-        let mut is_explained = false;
+        let (mut is_explained, mut turns_alike) = (false, false);
         if let (Some(found), Some(of_other)) = (found, &other.track) {
             let poses = [*track.body_pose(), *of_other.body_pose()];
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
@@ -79,12 +79,14 @@ impl MotionFilter {
                 return found;
             }
             is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
+            turns_alike = is_explained && track.leaps_to(of_other.body_pose());
+        }
+        if doubt == Doubt::Points && !is_explained {
+            track.record_as_usual(outcome.measurement.agreement);
         }
         let pose = *track.body_pose();
-        match doubt {
-            Doubt::Points if !is_explained => track.record_as_usual(outcome.measurement.agreement),
-            Doubt::Turn if !track.shows_turn(outline, &pose, &mut self.frame) => track.ask_anew_for_turn(),
-            _ => {}
+        if turns_alike || doubt == Doubt::Turn && !track.shows_turn(outline, &pose, &mut self.frame) {
+            track.ask_anew_for_turn();
         }
         outcome
     }

@@ -143,7 +143,9 @@ impl MotionFilter {
         if likelihoods[0].is_worse_than(&likelihoods[1]) {
             return Remapping::Idle;
         }
-        present.track.go_on_with_turn_profile_of(track);
+        if !present.track.leaps_to(&poses[1]) {
+            present.track.go_on_with_turn_profile_of(track);
+        }
         self.turn_hypotheses.remap(|turn| {
             let of_turn = rivals.iter_mut().find(|(of, _)| *of == turn);
             of_turn.and_then(|(_, rival)| rival.take()).map(|rival| rival.track)

@@ -4,7 +4,7 @@
 //! points are taken for outliers, and errors of the normals of all others promise that the turn is known well. The profile of the likelihood does
 //! not: poses turned a little either way must be worse.
 use freeform_curve_fit::Outline;
-use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind};
 use nalgebra::{Matrix3, SVector};
 
 use super::{Outcome, Track, wrapped};
@@ -84,6 +84,11 @@ impl Track {
         self.must_tell_turn() && wrapped(self.turn_to(before) + expected).abs() > tuning::LEAP
     }
 
+    /// Whether a pose that the frame does not tell from this one has another turn, where that must be told.
+    pub(crate) fn leaps_to(&self, pose: &Matrix3<f64>) -> bool {
+        self.turn_leaps(pose, 0.0)
+    }
+
     /// Forgets what frames have told of the turn.
     pub(crate) fn ask_anew_for_turn(&mut self) {
         self.turn_profile = TurnProfile::default();
@@ -101,10 +106,16 @@ impl Track {
         let direction: SVector<f64, MAX_PARAMETERS> = self.centred_pose().about_origin(model)? * about_centroid;
         let k = model.parameter_count();
         let mut covariance = StateMatrix::zeros();
+        // Half a circle takes the origin of the body to the other side of its centroid, which no step along the turn does.
+        let across = self.map.centroid().coords.norm_squared() * self.belief.scale().powi(2);
+        let kinds = model.parameter_kinds().iter().enumerate();
+        for (i, _) in kinds.filter(|(_, kind)| **kind == ParameterKind::Velocity) {
+            covariance[(i, i)] = across;
+        }
         for i in 0..k {
             for j in 0..k {
                 let square = direction[i] * direction[j];
-                covariance[(i, j)] = square;
+                covariance[(i, j)] += square;
                 covariance[(k + i, k + j)] = square / (span * span);
             }
         }
