@@ -245,6 +245,11 @@ impl OutlineMap {
         self.null_space.turn_without_most < tuning::TOLD_BY_REST * self.null_space.weakest_turn
     }
 
+    /// Whether the outline shows its turn hardly, or not without few of its cells: a disc with a slot, a ring with a gap, a shaft with a flat.
+    pub(crate) fn is_all_but_round(&self) -> bool {
+        self.shows_turn_weakly() || self.null_space.turn_without_most < tuning::DEGENERATE
+    }
+
     /// Deviation that directions of normals may have at most, in rad. Points slide along an outline that errs in its normals, and the
     /// levers that these errors make say that they do not: the less an outline shows of its turn, the better its normals must be.
     pub(crate) fn normal_noise(&self) -> f64 {

@@ -57,7 +57,8 @@ impl Track {
     /// Compares the pose of an accepted frame with turned ones, where the outline hardly shows its turn; whether the last frames do not tell it as
     /// well as is said. Not where the model may stretch the outline: what turns it then is told with what stretches it.
     pub(crate) fn add_to_turn_profile(&mut self, outline: &Outline, outcome: &Outcome, frame: &mut Frame) -> bool {
-        if !self.must_tell_turn() {
+        let is_asked = self.map.shows_turn_weakly() || self.map.turn_hangs_on_few();
+        if !is_asked || self.turn_is_unseen() || self.model() > MotionModel::Similarity {
             return false;
         }
         let Some(turn) = self.turn_to_be_told(outcome, outline.point_count()) else {
@@ -72,16 +73,15 @@ impl Track {
         self.turn_profile.contradicts()
     }
 
-    /// Whether frames are asked if they tell the turn.
-    fn must_tell_turn(&self) -> bool {
-        let is_weak = self.map.shows_turn_weakly() || self.map.turn_hangs_on_few();
-        is_weak && !self.turn_is_unseen() && self.model() <= MotionModel::Similarity
+    /// Whether frames must tell the turn before it is stated.
+    fn is_all_but_round(&self) -> bool {
+        self.map.is_all_but_round() && !self.turn_is_unseen() && self.model() <= MotionModel::Similarity
     }
 
-    /// Whether a turn that must be told is, since a pose, another than expected; rad, anticlockwise where y points up.
+    /// Whether the turn of an outline that is all but round is, since a pose, another than expected; rad, anticlockwise where y points up.
     pub(crate) fn turn_leaps(&self, before: &Matrix3<f64>, expected: f64) -> bool {
         // By the turn back.
-        self.must_tell_turn() && wrapped(self.turn_to(before) + expected).abs() > tuning::LEAP
+        self.is_all_but_round() && wrapped(self.turn_to(before) + expected).abs() > tuning::LEAP
     }
 
     /// Whether a pose that the frame does not tell from this one has another turn, where that must be told.
@@ -98,7 +98,7 @@ impl Track {
     /// time that the motion is known from. `None` where the turn is shown well, or told by enough frames.
     pub(crate) fn covariance_of_untold_turn(&self) -> Option<StateMatrix> {
         let TurnProfile { frames, promise, .. } = self.turn_profile;
-        if !self.must_tell_turn() || frames >= tuning::MEMORY || promise == Promise::TooLittle {
+        if !self.is_all_but_round() || frames >= tuning::MEMORY || promise == Promise::TooLittle {
             return None;
         }
         let (model, span) = (self.belief.model, self.span_of_motion(false));

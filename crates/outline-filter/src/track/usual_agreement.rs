@@ -45,7 +45,7 @@ enum TurnShown {
 impl Track {
     /// Takes the share of the points of an accepted frame that agree; whether more than usual do not.
     pub(super) fn disagrees_more_than_usual(&mut self, agreement: f64, points: usize) -> bool {
-        let shown = if self.map.turn_hangs_on_few() { TurnShown::ByFew } else { TurnShown::ByMany };
+        let shown = if self.map.is_all_but_round() { TurnShown::ByFew } else { TurnShown::ByMany };
         self.usual.update(disagreeing(agreement), points, shown)
     }
 
