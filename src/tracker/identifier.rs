@@ -183,7 +183,7 @@ impl Identifier {
         }
     }
 
-    /// Counted up where poses no longer go back to the same first outline.
+    /// As [`TrajectoryRow::segment`](super::TrajectoryRow::segment).
     pub(super) fn segment(&self) -> usize {
         match self {
             Self::Filter(object) => object.filter.segment(),

@@ -51,7 +51,7 @@ pub struct Observation {
     pub known_outline: Option<Box<KnownOutline>>,
     /// Why the frame was not used; `None` where it was.
     pub rejection: Option<FrameRejection>,
-    /// How often the object had been given up and begun anew.
+    /// As [`TrajectoryRow::segment`](super::TrajectoryRow::segment).
     pub segment: usize,
     /// An immediate warning: [`Warning::PointsOutOfOrder`], in the first such frame of an object.
     pub warning: Option<Warning>,

@@ -44,7 +44,8 @@ pub struct TrajectoryRow {
     pub time: Option<f64>,
     /// Whether the frame was used.
     pub accepted: bool,
-    /// Counted up from 0 where the object was given up and begun anew: poses of different segments have different first outlines.
+    /// Counted up from 0 where the object was given up and begun anew, and where a frame has shown its turn for the first time: nobody knows how far
+    /// the object had turned between poses of different segments.
     pub segment: usize,
     /// The state known then, at a time up to that of the frame.
     state: Option<MotionState>,

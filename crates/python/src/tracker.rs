@@ -380,7 +380,8 @@ impl PyObservation {
         self.inner.innovation
     }
 
-    /// How often the object had been given up and begun anew: poses of different segments have different first outlines.
+    /// Counted up where the object was given up and begun anew, and where a frame has shown its turn for the first time: nobody knows how far the
+    /// object had turned between poses of different segments.
     #[getter]
     fn segment(&self) -> usize {
         self.inner.segment

@@ -37,7 +37,7 @@ pub(crate) struct PlayedFrame {
     pub(crate) frame: u64,
     /// In seconds; `None` where the points are no outline.
     pub(crate) time: Option<f64>,
-    /// Counted up where the object was given up and begun anew.
+    /// Counted up where the object was given up and begun anew, and where a frame has shown its turn for the first time.
     pub(crate) segment: usize,
     pub(crate) phase: Option<ObjectPhase>,
     /// Why it was not used, if it was not.

@@ -77,7 +77,9 @@ mod tests {
     fn a_part_of_the_outline_that_is_missed_is_noticed_in_every_frame_and_usual_outliers_are_not() {
         let mut usual = UsualAgreement::default();
         let noticed = |usual: &mut UsualAgreement, share: f64, frames: i32| {
-            (0..frames).filter(|i| usual.update(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400, TurnShown::ByMany)).count()
+            (0..frames)
+                .filter(|i| usual.update(share + if i % 2 == 0 { 0.01 } else { -0.01 }, 400, TurnShown::ByMany))
+                .count()
         };
         assert_eq!(noticed(&mut usual, 0.05, 100), 0);
         assert_eq!(noticed(&mut usual, 0.15, 10), 10);

@@ -16,7 +16,7 @@ const NOISE: f64 = 0.006;
 const VELOCITY: Vector2<f64> = Vector2::new(0.4, -0.3);
 
 /// So many points on a closed polygon, evenly spread from anywhere on, with noise.
-fn points_on(
+pub(crate) fn points_on(
     polygon: &[Point2<f64>],
     count: u32,
     (turn, centre): (f64, Vector2<f64>),
@@ -40,7 +40,7 @@ fn points_on(
 }
 
 /// A flat ring of radii 1 and 3/4 with a gap, of so many radians.
-fn ring_with_gap(gap: f64) -> Vec<Point2<f64>> {
+pub(crate) fn ring_with_gap(gap: f64) -> Vec<Point2<f64>> {
     let point = |radius: f64, i: u32| {
         let angle = 0.5 * gap + (TAU - gap) * f64::from(i) / 400.0;
         Point2::new(radius * angle.cos(), radius * angle.sin())

@@ -181,8 +181,8 @@ def track(
     table
         Of the kind of `data`, a dict of arrays for masks and outlines. One row per object and frame, in the order of the data: `object`, `frame`,
         `time`, `phase`, `accepted`; the pose (motion filter), for a rigid motion `angle`, `x` and `y`, each with its `_std`; the motion, for
-        a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up where an object was given up and begun anew, with
-        another first outline. NaN where something is not known. Angles are in radians since the first frame and continuous; x and y say
+        a rigid one `omega`, `b1` and `b2`, each with its `_std`; `segment`, counted up where an object was given up and begun anew, or has
+        shown its turn for the first time: nobody knows how far it had turned until then. NaN where something is not known. Angles are in radians since the first frame and continuous; x and y say
         where the centre of the first outline is.
 
     Raises
