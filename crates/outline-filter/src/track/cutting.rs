@@ -5,7 +5,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::Matrix3;
 
 use super::{
-    Track, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile, usual_agreement::UsualAgreement,
+    Track, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile, usual_agreement::UsualAgreement,
 };
 use crate::{
     belief::Belief,
@@ -94,6 +94,7 @@ impl Track {
             early_shape: EarlyShape::default(),
             usual: UsualAgreement::default(),
             turn_profile: TurnProfile::default(),
+            body_frame: BodyFrame::default(),
             sensitivity: Sensitivity::new(),
             family: FamilyTests::default(),
             first_pose: FirstPose::default(),

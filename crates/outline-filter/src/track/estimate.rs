@@ -30,7 +30,9 @@ pub(crate) enum TurnTold {
 impl Track {
     /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
     pub(crate) fn summary(&self) -> Option<Summary> {
-        self.summary_by(&self.belief.marginal)
+        let mut summary = self.summary_by(&self.belief.marginal)?;
+        self.add_kept_error(&mut summary.covariance, &summary.pose);
+        Some(summary)
     }
 
     pub(super) fn summary_by(&self, marginal: &StateMatrix) -> Option<Summary> {
@@ -93,7 +95,8 @@ impl Track {
         let belief = &self.belief;
         let null = self.map.null_directions(belief.model, &belief.pose);
         let hold = hold(belief, &self.map, &null);
-        let summary = self.summary_by(&with_hold(&belief.marginal, hold.as_ref()))?;
+        let mut summary = self.summary_by(&with_hold(&belief.marginal, hold.as_ref()))?;
+        self.add_kept_error(&mut summary.covariance, &summary.pose);
         let given_outline = belief.information.with_outline_given();
         let given_outline = self.summary_by(&with_hold(&given_outline, hold.as_ref()))?.covariance;
         let place = (self.map.centroid(), null.as_slice());

@@ -3,7 +3,7 @@ use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::{Matrix3, SMatrix};
 
 use super::Track;
-use crate::belief::StateMatrix;
+use crate::{belief::StateMatrix, dynamics::Summary};
 
 type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 
@@ -26,8 +26,7 @@ impl Track {
     /// Takes the pose that it is in, and what is known of it, as that which it was begun in.
     pub(crate) fn begin_here(&mut self) {
         let k = self.belief.parameter_count();
-        let variance = self.noise.effective_variance();
-        let Some(covariance) = self.belief.covariance_of(&self.belief.marginal, variance) else { return };
+        let Some(Summary { covariance, .. }) = self.summary() else { return };
         let covariance = PoseMatrix::from_fn(|i, j| if i < k && j < k { covariance[(i, j)] } else { 0.0 });
         self.first_pose = FirstPose { pose: self.belief.pose, covariance };
     }

@@ -1,4 +1,5 @@
 //! A track: one object with its map, what is believed of it, and the noise; frames are taken, and the map grows or is cut anew.
+mod body_frame;
 mod common_shift;
 mod comparison;
 mod cutting;

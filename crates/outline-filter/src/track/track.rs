@@ -6,7 +6,7 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
 use super::{
-    Comparison, Doubt, Outcome, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile,
+    Comparison, Doubt, Outcome, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile,
     usual_agreement::UsualAgreement,
 };
 use crate::{
@@ -36,6 +36,7 @@ pub(crate) struct Track {
     pub(super) usual: UsualAgreement,
     /// Whether frames tell a turn that the outline hardly shows.
     pub(super) turn_profile: TurnProfile,
+    pub(super) body_frame: BodyFrame,
     /// What the model leaves out.
     pub(super) sensitivity: Sensitivity,
     pub(super) family: FamilyTests,
@@ -233,6 +234,7 @@ impl Track {
 
     /// Puts the object into a new pose some time later, and forgets motion and pose, keeping the outline.
     pub(crate) fn relocate(&mut self, pose: Matrix3<f64>, seconds: f64) {
+        self.keep_common_error();
         self.belief.relocate(pose);
         self.turn_profile = TurnProfile::default();
         self.sensitivity.relocate(seconds, self.belief.parameter_count());

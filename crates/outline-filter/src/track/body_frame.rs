@@ -1,0 +1,82 @@
+//! Where the body frame lies beside the outline of the first frame.
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::{Matrix3, SMatrix};
+
+use super::Track;
+use crate::{
+    belief::StateMatrix,
+    update::{hold, with_hold},
+};
+
+type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
+
+/// The first frame has shown the outline with an error that all of its cells have in common, and every pose with them. The information on the pose has it
+/// as long as the object is followed, in what couples pose and cells. That is forgotten where the object is lost, and the error is not.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct BodyFrame {
+    /// Of that error as far as it is no longer in the information on the pose: in the body frame, normalised.
+    covariance: PoseMatrix,
+}
+
+impl Default for BodyFrame {
+    fn default() -> Self {
+        Self { covariance: PoseMatrix::zeros() }
+    }
+}
+
+impl Track {
+    /// Takes the error that all cells have in common out of the information on the pose, which is to be forgotten.
+    pub(super) fn keep_common_error(&mut self) {
+        if let Some(common) = self.common_error() {
+            self.body_frame.covariance += common;
+        }
+    }
+
+    /// Its covariance as far as the information on the pose has it: what is not known of the pose, beyond what would not be if the outline were.
+    fn common_error(&self) -> Option<PoseMatrix> {
+        let belief = &self.belief;
+        let null = self.map.null_directions(belief.model, &belief.pose);
+        let hold = hold(belief, &self.map, &null);
+        let of_pose = |information: &StateMatrix| {
+            let covariance = self.summary_by(&with_hold(information, hold.as_ref()))?.covariance;
+            Some(covariance.fixed_view::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0).into_owned())
+        };
+        let added = of_pose(&belief.marginal)? - of_pose(&belief.information.with_outline_given())?;
+        let k = belief.parameter_count();
+        let added = PoseMatrix::from_fn(|i, j| if i < k && j < k { 0.5 * (added[(i, j)] + added[(j, i)]) } else { 0.0 });
+        let in_body = self.carried(&added, &belief.pose.try_inverse()?)?;
+        // Of two numbers that are large where the object has long been lost.
+        let mut eigen = in_body.symmetric_eigen();
+        eigen.eigenvalues.apply(|value| *value = value.max(0.0));
+        Some(eigen.recompose())
+    }
+
+    /// Adds the common error that has been kept to a covariance of pose and motion in a pose.
+    pub(super) fn add_kept_error(&self, covariance: &mut StateMatrix, pose: &Matrix3<f64>) {
+        if self.body_frame.covariance == PoseMatrix::zeros() {
+            return;
+        }
+        if let Some(in_image) = self.carried(&self.body_frame.covariance, pose) {
+            let mut of_pose = covariance.fixed_view_mut::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0);
+            of_pose += in_image;
+        }
+    }
+
+    /// A covariance of errors of a frame as one in the coordinates that a map takes it to.
+    fn carried(&self, covariance: &PoseMatrix, map: &Matrix3<f64>) -> Option<PoseMatrix> {
+        let (model, k) = (self.belief.model, self.belief.parameter_count());
+        let change = model.adjoint(map, &map.try_inverse()?);
+        let change = PoseMatrix::from_fn(|i, j| if i < k && j < k { change[i][j] } else { 0.0 });
+        let carried = change * covariance * change.transpose();
+        carried.iter().all(|entry| entry.is_finite()).then_some(carried)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl BodyFrame {
+    /// Whether every number is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.covariance.iter().all(|number| number.is_finite())
+    }
+}
