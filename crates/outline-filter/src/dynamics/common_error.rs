@@ -6,6 +6,9 @@ use super::centred::{CentredMatrix, CentredPose, LARGEST, as_map};
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 
+/// One entry for each two parameters of a pose.
+pub(crate) type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
+
 /// The outline as a whole lies where the first frame has shown it, with an error that all poses measured against it have in common: no
 /// number of frames takes it off a pose that is counted from the first. It goes along with the object.
 ///
@@ -81,6 +84,18 @@ impl CommonError {
     pub(super) fn of_outline_now(&self, pose: &Matrix3<f64>) -> Matrix3<f64> {
         let k = self.model.parameter_count();
         pose * self.model.flow(&(-self.shift).as_slice()[..k], 1.0).into_inner()
+    }
+
+    /// As the covariance of an error of the body frame, of one that has the outline as it is now: what all poses have in common, and what the outline has
+    /// been moved by since the hypotheses began.
+    pub(super) fn of_body_frame(&self, pose: &CentredPose) -> Option<PoseMatrix> {
+        let (model, k) = (self.model, self.model.parameter_count());
+        let common = self.covariance_in(pose)?;
+        let common = PoseMatrix::from_fn(|i, j| if i < k && j < k { common[(i, j)] } else { 0.0 });
+        let to_body = model.adjoint(&pose.pose.try_inverse()?, &pose.pose);
+        let to_body = PoseMatrix::from_fn(|i, j| if i < k && j < k { to_body[i][j] } else { 0.0 });
+        let change = to_body * pose.about_origin(model)?;
+        Some(change * common * change.transpose() + self.shift * self.shift.transpose())
     }
 
     #[cfg(feature = "serde")]

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Point2, SVector};
 use super::{
     centred::{CentredDeviations, CentredPose, Summary},
     combination::Purpose,
+    common_error::PoseMatrix,
     interacting::InteractingHypotheses,
     setting::{Dynamics, DynamicsWeights},
 };
@@ -76,6 +77,11 @@ impl DynamicsFilter {
     /// Adds a displacement of the whole outline in the body frame, which later poses are measured against.
     pub(crate) fn add_shift(&mut self, shift: &SVector<f64, MAX_PARAMETERS>) {
         of_any_size!(self, hypotheses => hypotheses.add_shift(shift));
+    }
+
+    /// Covariance of the error of the body frame that all poses have in common, as the outline is now.
+    pub(crate) fn common_error(&self) -> Option<PoseMatrix> {
+        of_any_size!(self, hypotheses => hypotheses.common_error())
     }
 
     /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point2, SVector};
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
     combination::centred,
-    common_error::CommonError,
+    common_error::{CommonError, PoseMatrix},
     correction::root_of,
     course::Course,
     hypothesis::{CentredMeasurement, Hypothesis},
@@ -290,6 +290,11 @@ impl<const N: usize> InteractingHypotheses<N> {
     pub(crate) fn widening(&self) -> f64 {
         let k = self.model.parameter_count();
         self.shaking * (0..k).map(|j| self.series.mean_square(j)).sum::<f64>().max(k as f64) / k as f64
+    }
+
+    /// Covariance of the error of the body frame that all poses have in common, as the outline is now.
+    pub(crate) fn common_error(&self) -> Option<PoseMatrix> {
+        self.common.of_body_frame(&self.reference)
     }
 
     /// The pose in which the outline as it is now lies where a pose of these hypotheses has it.

@@ -291,6 +291,7 @@ impl MotionFilter {
     fn moved(&self, found: &RegisteredPose, seconds: f64) -> Option<Track> {
         let mut track = self.track.clone()?;
         if self.phase == Phase::Lost {
+            track.keep_common_error(self.history.dynamics.as_ref());
             track.relocate(found.pose, seconds);
         } else {
             let change = found.pose * track.body_pose().try_inverse()?;

@@ -1,14 +1,13 @@
 //! Where the body frame lies beside the outline of the first frame.
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::Matrix3;
 
 use super::Track;
 use crate::{
     belief::StateMatrix,
+    dynamics::{DynamicsFilter, PoseMatrix},
     update::{hold, with_hold},
 };
-
-type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 
 /// The first frame has shown the outline with an error that all of its cells have in common, and every pose with them. The information on the pose has it
 /// as long as the object is followed, in what couples pose and cells. That is forgotten where the object is lost, and the error is not.
@@ -25,10 +24,19 @@ impl Default for BodyFrame {
     }
 }
 
+impl BodyFrame {
+    pub(super) fn of(covariance: PoseMatrix) -> Self {
+        Self { covariance }
+    }
+}
+
 impl Track {
-    /// Takes the error that all cells have in common out of the information on the pose, which is to be forgotten.
-    pub(super) fn keep_common_error(&mut self) {
-        if let Some(common) = self.common_error() {
+    /// Keeps the error that all cells have in common, before pose and motion are forgotten. Hypotheses of dynamics know it without the motion of a
+    /// constant generator, which may have moved the outline.
+    pub(crate) fn keep_common_error(&mut self, dynamics: Option<&DynamicsFilter>) {
+        if let Some(of_dynamics) = dynamics.and_then(DynamicsFilter::common_error) {
+            self.body_frame.covariance = of_dynamics;
+        } else if let Some(common) = self.common_error() {
             self.body_frame.covariance += common;
         }
     }
@@ -44,7 +52,8 @@ impl Track {
         };
         let added = of_pose(&belief.marginal)? - of_pose(&belief.information.with_outline_given())?;
         let k = belief.parameter_count();
-        let added = PoseMatrix::from_fn(|i, j| if i < k && j < k { 0.5 * (added[(i, j)] + added[(j, i)]) } else { 0.0 });
+        let added =
+            PoseMatrix::from_fn(|i, j| if i < k && j < k { 0.5 * (added[(i, j)] + added[(j, i)]) } else { 0.0 });
         let in_body = self.carried(&added, &belief.pose.try_inverse()?)?;
         // Of two numbers that are large where the object has long been lost.
         let mut eigen = in_body.symmetric_eigen();
@@ -64,7 +73,7 @@ impl Track {
     }
 
     /// A covariance of errors of a frame as one in the coordinates that a map takes it to.
-    fn carried(&self, covariance: &PoseMatrix, map: &Matrix3<f64>) -> Option<PoseMatrix> {
+    pub(super) fn carried(&self, covariance: &PoseMatrix, map: &Matrix3<f64>) -> Option<PoseMatrix> {
         let (model, k) = (self.belief.model, self.belief.parameter_count());
         let change = model.adjoint(map, &map.try_inverse()?);
         let change = PoseMatrix::from_fn(|i, j| if i < k && j < k { change[i][j] } else { 0.0 });

@@ -5,7 +5,8 @@ use freeform_riccati::MotionModel;
 use nalgebra::Matrix3;
 
 use super::{
-    Track, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile, usual_agreement::UsualAgreement,
+    Track, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile,
+    usual_agreement::UsualAgreement,
 };
 use crate::{
     belief::Belief,

@@ -105,9 +105,8 @@ impl Track {
     pub(crate) fn begin_as(&mut self, other: &Self, first: &Outline, buffers: &mut Frame) {
         buffers.load(first, self.reference);
         self.measure_draft(other.noise.rounding(), buffers);
-        self.first_pose = other.first_pose;
         self.noise.adopt_level_of(&other.noise);
-        self.doubt_first_pose();
+        self.begin_in_pose_of(other);
         self.belief.motion = other.belief.motion;
     }
 

@@ -6,8 +6,8 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
 use super::{
-    Comparison, Doubt, Outcome, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape, turn_profile::TurnProfile,
-    usual_agreement::UsualAgreement,
+    Comparison, Doubt, Outcome, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape,
+    turn_profile::TurnProfile, usual_agreement::UsualAgreement,
 };
 use crate::{
     belief::Belief,
@@ -234,7 +234,6 @@ impl Track {
 
     /// Puts the object into a new pose some time later, and forgets motion and pose, keeping the outline.
     pub(crate) fn relocate(&mut self, pose: Matrix3<f64>, seconds: f64) {
-        self.keep_common_error();
         self.belief.relocate(pose);
         self.turn_profile = TurnProfile::default();
         self.sensitivity.relocate(seconds, self.belief.parameter_count());

@@ -109,7 +109,7 @@ fn rings_with_a_gap_that_few_points_show_leave_their_turn_unknown_and_others_tel
 }
 
 /// A round body of radius 1 with so many teeth, but for one.
-fn gear_with_a_missing_tooth(teeth: u32) -> Vec<Point2<f64>> {
+pub(crate) fn gear_with_a_missing_tooth(teeth: u32) -> Vec<Point2<f64>> {
     let at = |tooth: u32, share: f64, radius: f64| {
         let angle = TAU * (f64::from(tooth) + share) / f64::from(teeth);
         Point2::new(radius * angle.cos(), radius * angle.sin())
