@@ -1,0 +1,107 @@
+//! What there is beside a thing that may move.
+use nalgebra::{Point2, Vector2};
+
+use super::chains::Chain;
+use super::sight::Sight;
+use crate::affine_moment_invariants::is_within;
+
+/// A change is no larger than this share of the picture, and is seen in one of so many pictures.
+const LARGEST_CHANGE: f64 = 0.25;
+const CHANGES_OFTEN: usize = 4;
+
+/// Fewest pictures that are enough to say that something goes on in most of them: four bursts.
+const FEWEST_OF_MOST: usize = 12;
+
+/// What moves by less than this share of the way of another thing stands still beside it.
+const STANDS: f64 = 0.2;
+
+/// What is seen to change besides what is traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Changes {
+    /// Pictures in which something changes elsewhere.
+    pub(super) seen: usize,
+    /// Pictures looked at.
+    pub(super) pictures: usize,
+}
+
+impl Changes {
+    /// Whether it is seen in half of the pictures, and in more than a few.
+    pub(super) fn are_most(self) -> bool {
+        self.seen >= FEWEST_OF_MOST && 2 * self.seen >= self.pictures
+    }
+
+    /// Whether it is seen often enough to be no speck of noise.
+    pub(super) fn are_many(self) -> bool {
+        self.seen > 2 && CHANGES_OFTEN * self.seen >= self.pictures
+    }
+}
+
+/// What else there is.
+pub(super) struct Beside {
+    /// What rests.
+    pub(super) still: Option<Sight>,
+    /// Picture for picture.
+    pub(super) others: Option<Vec<Vec<Sight>>>,
+}
+
+impl Beside {
+    /// Whether a thing is a part of what is known already, or changes with that.
+    pub(super) fn has(&self, chain: &Chain) -> bool {
+        let is_part = |other: &Sight| is_part_of(&chain[1], other) && !self.stands(other, chain);
+        self.still.as_ref().is_some_and(|still| lies_on(&chain[1], still))
+            || self.others_of(chain[1].frame).any(is_part)
+    }
+
+    /// Whether a thing goes around the middle of another, within its outline: then it is a part of that.
+    pub(super) fn turns_with(&self, group: &[&Chain]) -> bool {
+        let mut around =
+            self.still.iter().chain(group.first().into_iter().flat_map(|chain| self.others_of(chain[1].frame)));
+        around.any(|other| turns_with(group, other))
+    }
+
+    fn others_of(&self, frame: u64) -> impl Iterator<Item = &Sight> {
+        self.others.iter().flatten().flatten().filter(move |sight| sight.frame == frame)
+    }
+
+    /// Whether another thing stands still while this one moves, which then is no part of it.
+    fn stands(&self, other: &Sight, [before, _, after]: &Chain) -> bool {
+        let seen = |frame: u64| {
+            let far = |sight: &&Sight| (sight.centre - other.centre).norm();
+            self.others_of(frame).min_by(|a, b| far(a).total_cmp(&far(b)))
+        };
+        let way = (after.centre - before.centre).norm();
+        let moved = |(a, b): (&Sight, &Sight)| (a.centre - b.centre).norm().max(a.unlike(b));
+        seen(before.frame).zip(seen(after.frame)).is_some_and(|seen| moved(seen) < STANDS * way)
+    }
+}
+
+/// In how many pictures something differs from the ground beside the outline of what rests, that is not most of the picture, as light does. What
+/// changes within the outline counts: it may be what moves on it.
+pub(super) fn changes_beside(pictures: &[Vec<Sight>], still: &Sight, picture_area: f64) -> Changes {
+    let is_beside = |sight: &Sight| !lies_on(sight, still) && sight.area < LARGEST_CHANGE * picture_area;
+    let seen = pictures.iter().filter(|sights| sights.iter().any(is_beside)).count();
+    Changes { seen, pictures: pictures.len() }
+}
+
+/// Whether a thing lies on another or in it.
+fn is_part_of(sight: &Sight, other: &Sight) -> bool {
+    lies_on(sight, other) || surrounds(other, sight)
+}
+
+fn turns_with(group: &[&Chain], other: &Sight) -> bool {
+    let radius = |chain: &Chain| (chain[1].centre - other.centre).norm();
+    let Some(first) = group.first().map(|chain| radius(chain)) else { return false };
+    let is_part = |chain: &&Chain| surrounds(other, &chain[1]) && (radius(chain) - first).abs() < 0.5 * chain[1].size();
+    group.iter().all(is_part)
+}
+
+/// Whether the middle of a thing lies within the outline of another.
+fn surrounds(other: &Sight, sight: &Sight) -> bool {
+    is_within(&sight.centre, &other.points.iter().copied())
+}
+
+/// Whether a thing lies on the outline of another: what turns with it changes the picture there.
+fn lies_on(sight: &Sight, other: &Sight) -> bool {
+    let to = |point: &Point2<f64>| -> Vector2<f64> { point - sight.centre };
+    other.points.iter().any(|point| to(point).norm() < sight.size())
+}
