@@ -105,3 +105,64 @@ fn lies_on(sight: &Sight, other: &Sight) -> bool {
     let to = |point: &Point2<f64>| -> Vector2<f64> { point - sight.centre };
     other.points.iter().any(|point| to(point).norm() < sight.size())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is seen of a square of this half side.
+    fn square(frame: u64, centre: [f64; 2], half: f64) -> Sight {
+        let steps = 8 * half as usize;
+        let along = |k: usize| half * (2.0 * k as f64 / steps as f64 - 1.0);
+        let sides = |k: usize| [[along(k), -half], [half, along(k)], [-along(k), half], [-half, -along(k)]];
+        let centre = Point2::from(centre);
+        let points = (0..4).flat_map(|side| (0..steps).map(move |k| centre + Vector2::from(sides(k)[side]))).collect();
+        let (area, contrast, objects) = (4.0 * half * half, 1.0, [1, 1]);
+        let (invariants, is_clipped, inner, second) = (None, false, (0.0, 0), 0.0);
+        Sight { frame, centre, area, invariants, is_clipped, points, contrast, objects, inner, second }
+    }
+
+    fn small(along: impl Fn(f64) -> [f64; 2]) -> Chain {
+        [0, 1, 2].map(|frame| square(frame, along(frame as f64), 3.0))
+    }
+
+    fn beside(large: impl Fn(f64) -> [f64; 2]) -> Beside {
+        let pictures = (0..3).map(|frame| vec![square(frame, large(frame as f64), 40.0)]);
+        Beside { still: None, others: Some(pictures.collect()) }
+    }
+
+    #[test]
+    fn what_goes_on_within_something_is_a_part_of_it_where_that_goes_along_and_not_where_it_stands_still() {
+        let mark = small(|time| [110.0 + 4.0 * time, 90.0]);
+        assert!(!beside(|_| [100.0, 100.0]).has(&mark));
+        assert!(beside(|time| [100.0 + 4.0 * time, 100.0]).has(&mark));
+        // On its outline too.
+        let across = small(|time| [136.0 + 4.0 * time, 90.0]);
+        assert!(!beside(|_| [100.0, 100.0]).has(&across));
+        assert!(beside(|time| [100.0 + 4.0 * time, 100.0]).has(&across));
+    }
+
+    #[test]
+    fn a_mark_that_goes_around_the_middle_of_something_turns_with_it() {
+        let beside = beside(|_| [100.0, 100.0]);
+        let turning = |start: f64| {
+            small(move |time| [100.0 + 20.0 * (start + 0.3 * time).cos(), 100.0 + 20.0 * (start + 0.3 * time).sin()])
+        };
+        assert!(beside.turns_with(&[&turning(0.0), &turning(2.0)]));
+        let straight = |x: f64| small(move |time| [x + 4.0 * time, 105.0]);
+        assert!(!beside.turns_with(&[&straight(70.0), &straight(110.0)]));
+    }
+
+    #[test]
+    fn changes_within_what_rests_count_and_those_of_its_outline_do_not() {
+        let still = square(0, [100.0, 100.0], 40.0);
+        let seen = |place: [f64; 2]| {
+            let pictures: Vec<Vec<Sight>> =
+                (0..8).map(|frame| if frame % 2 == 0 { vec![square(frame, place, 3.0)] } else { vec![] }).collect();
+            changes_beside(&pictures, &still, 76_800.0)
+        };
+        assert_eq!(seen([110.0, 95.0]), Changes { seen: 4, pictures: 8 });
+        assert_eq!(seen([200.0, 95.0]).seen, 4);
+        assert_eq!(seen([139.0, 95.0]).seen, 0);
+    }
+}

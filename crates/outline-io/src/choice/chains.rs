@@ -182,7 +182,52 @@ fn is_like(a: &Sight, b: &Sight) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::together;
+    use nalgebra::Point2;
+
+    use super::*;
+
+    /// What is seen of something small.
+    fn speck(frame: u64, [x, y]: [f64; 2]) -> Sight {
+        let (centre, area, contrast, objects) = (Point2::new(x, y), 100.0, 1.0, [1, 1]);
+        let (invariants, is_clipped, points, inner, second) = (None, false, vec![], (0.0, 0), 0.0);
+        Sight { frame, centre, area, invariants, is_clipped, points, contrast, objects, inner, second }
+    }
+
+    /// Six bursts of pictures with a few specks at random places, and something that was thrown.
+    fn thrown(seed: u64, is_thrown: bool) -> Vec<Vec<Sight>> {
+        let mut state = seed;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as f64 / f64::from(1_u32 << 31)
+        };
+        let frames = (0..6_u64).flat_map(|burst| (0..3).map(move |k| 20 * burst + k));
+        let seen = |frame: u64| {
+            let time = (frame % 20) as f64;
+            let start = [60.0 + 30.0 * random(), 60.0 + 40.0 * random()];
+            let mut sights: Vec<Sight> = (0..3).map(|_| speck(frame, [300.0 * random(), 220.0 * random()])).collect();
+            let (burst, rises) = ((frame / 20) as f64, 14.0 - 9.0 * (frame / 20 % 3) as f64);
+            let place = [40.0 + 25.0 * burst + 12.0 * time, 120.0 + rises * time + 5.0 * time * time];
+            sights.extend(is_thrown.then(|| speck(frame, [place[0] + 0.01 * start[0], place[1] + 0.01 * start[1]])));
+            sights
+        };
+        frames.map(seen).collect()
+    }
+
+    #[test]
+    fn what_is_thrown_is_told_by_its_acceleration_and_specks_at_random_places_are_not() {
+        let pulled = |pictures: &[Vec<Sight>]| {
+            let bursts: Vec<&[Vec<Sight>]> = pictures.chunks(3).collect();
+            common_pull(&bursts, 76_800.0, |_| true)
+        };
+        for seed in 0..20 {
+            let with = pulled(&thrown(seed, true)).expect("chains");
+            assert!(with.chance < BY_CHANCE, "{seed}: {}", with.chance);
+            let of_thrown = |chain: &Chain| (bend(chain) - Vector2::new(0.0, 10.0)).norm() < 2.0;
+            assert!(with.chains.iter().all(|chains| chains.iter().any(of_thrown)), "{seed}");
+            let without = pulled(&thrown(seed, false)).map_or(1.0, |likely| likely.chance);
+            assert!(without > BY_CHANCE, "{seed}: {without}");
+        }
+    }
 
     #[test]
     fn chances_together_are_likely_where_they_are_by_chance_and_not_where_all_are_small() {
