@@ -9,6 +9,12 @@ const RENEWED_SHARE: usize = 5;
 /// Pixels of all pictures kept for the median.
 const PIXELS_KEPT: u64 = 1 << 28;
 
+/// Pixels whose medians are taken side by side: some registers full.
+const SIDE_BY_SIDE: usize = 64;
+
+/// Most pictures of which they are: the work grows with the square of their number.
+const MOST_SIDE_BY_SIDE: usize = 96;
+
 /// Fewest pictures that a median is taken of.
 const FEWEST_KEPT: usize = 3;
 
@@ -57,6 +63,41 @@ impl Difference {
             };
         }
         difference
+    }
+}
+
+/// The median of pictures, pixel by pixel; of an even number the upper one of the two in the middle.
+fn medians(pictures: &[&[u8]], medians: &mut [u8]) {
+    let middle = pictures.len() / 2;
+    if pictures.len() > MOST_SIDE_BY_SIDE {
+        let mut values = vec![0; pictures.len()];
+        for (index, median) in medians.iter_mut().enumerate() {
+            values.iter_mut().zip(pictures).for_each(|(value, picture)| *value = picture[index]);
+            *median = *values.select_nth_unstable(middle).1;
+        }
+        return;
+    }
+    // The smallest values are brought to the front one after the other, up to the middle, of many pixels at once.
+    let mut values = vec![[0; SIDE_BY_SIDE]; pictures.len()];
+    for (block, medians) in medians.chunks_mut(SIDE_BY_SIDE).enumerate() {
+        let (start, count) = (block * SIDE_BY_SIDE, medians.len());
+        for (values, picture) in values.iter_mut().zip(pictures) {
+            values[..count].copy_from_slice(&picture[start..start + count]);
+        }
+        for place in 0..=middle {
+            let (front, behind) = values.split_at_mut(place + 1);
+            for other in behind {
+                sort_pairs(&mut front[place], other);
+            }
+        }
+        medians.copy_from_slice(&values[middle][..count]);
+    }
+}
+
+/// Puts the smaller value of each pair into the first array.
+fn sort_pairs(first: &mut [u8; SIDE_BY_SIDE], second: &mut [u8; SIDE_BY_SIDE]) {
+    for (a, b) in first.iter_mut().zip(second) {
+        (*a, *b) = ((*a).min(*b), (*a).max(*b));
     }
 }
 
@@ -110,12 +151,34 @@ impl RunningMedian {
         }
         let mut median = GrayImage::clone(first);
         let pictures: Vec<&[u8]> = self.latest.iter().map(|picture| picture.as_raw().as_slice()).collect();
-        let mut values = vec![0; pictures.len()];
-        for (index, pixel) in median.iter_mut().enumerate() {
-            values.iter_mut().zip(&pictures).for_each(|(value, picture)| *value = picture[index]);
-            let middle = values.len() / 2;
-            *pixel = *values.select_nth_unstable(middle).1;
-        }
+        medians(&pictures, &mut median);
         Some(Arc::new(median))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_median_has_as_many_values_below_it_whatever_the_number_of_pictures_and_pixels(
+            count in prop_oneof![1..30_usize, 90..100_usize],
+            pixels in prop_oneof![1..70_usize, Just(64), Just(128)],
+            seed in any::<u32>(),
+        ) {
+            let value = |k: usize, p: usize| ((k * 7919 + p * 104_729) as u32 ^ seed).wrapping_mul(2_654_435_761).to_be_bytes()[0];
+            let pictures: Vec<Vec<u8>> =
+                (0..count).map(|k| (0..pixels).map(|p| value(k, p)).collect()).collect();
+            let slices: Vec<&[u8]> = pictures.iter().map(Vec::as_slice).collect();
+            let mut found = vec![0; pixels];
+            medians(&slices, &mut found);
+            for (pixel, median) in found.iter().enumerate() {
+                let mut values: Vec<u8> = pictures.iter().map(|picture| picture[pixel]).collect();
+                values.sort_unstable();
+                prop_assert_eq!(*median, values[count / 2]);
+            }
+        }
     }
 }

@@ -1,4 +1,6 @@
 //! How objects are best found in a sequence: every way is tried on some of its pictures and judged by what tells a body from ground.
+mod beside;
+mod chains;
 mod evidence;
 mod moving;
 mod rest;
@@ -267,9 +269,13 @@ fn preferring_what_moves(
     let is_in_doubt = rests.is_some() || best.is_none_or(|(.., score)| score < TracingChoice::CONVINCING);
     if !is_in_doubt {
         let (tracing, _, score) = best?;
-        let moving = || motion_beside(sample, base, channel, None, Some(&tracing))?.moving;
-        let moving = if score < GOOD { moving() } else { None };
-        return moving.map(|moving| TracingWarning::MovesBeside { seen: moving.found, pictures: moving.pictures });
+        let motion = (score < GOOD).then(|| motion_beside(sample, base, channel, None, Some(&tracing)))??;
+        let (seen, pictures) = match motion.moving {
+            Some(moving) => (moving.found, moving.pictures),
+            None if motion.goes_on.are_most() => (motion.goes_on.seen, motion.goes_on.pictures),
+            None => return None,
+        };
+        return Some(TracingWarning::MovesBeside { seen, pictures });
     }
     let motion = match known {
         Some((tracing, motion)) if Some(tracing) == rests => motion,

@@ -149,6 +149,25 @@ fn changes_beside_what_rests_are_warned_of_and_noise_is_not() {
     }
 }
 
+#[test]
+fn changes_within_the_outline_of_what_rests_are_warned_of() {
+    for changing in [false, true] {
+        let pictures = (0..24).map(|frame| {
+            // Here and there on a plate, in no way that goes on.
+            let at = |k: u32| f64::from(frame * 7919 + k * 104_729).sin().abs();
+            let radius = if changing && frame % 2 == 0 { 6.0 } else { -9.0 };
+            let place = [90.0 + 140.0 * at(1), 70.0 + 100.0 * at(2), radius];
+            let plate = |x: f64, y: f64| ((x - 160.0).abs() - 110.0).max((y - 120.0).abs() - 90.0);
+            picture(frame, |x, y| plate(x, y).max(-disc(x, y, place)))
+        });
+        let choice = choice(&pictures.collect::<Vec<_>>());
+        assert!(choice.best().is_some_and(|best| best.rests && best.area_share > 0.3), "{choice:?}");
+        let warned: Vec<TracingWarning> = choice.warnings().collect();
+        let expected = if changing { vec![TracingWarning::MovesBesideRest { seen: 12, pictures: 24 }] } else { vec![] };
+        assert_eq!(warned, expected);
+    }
+}
+
 /// A picture between even bars above and below, as of a video that was fitted into another shape.
 fn between_bars(frame: u32, of_picture: &GrayImage, [above, below]: [u32; 2]) -> GrayImage {
     GrayImage::from_fn(320, 240, |x, y| {
