@@ -13,8 +13,8 @@ use freeform_motion::{
     outline_io::{
         DEFAULT_OBJECT, GrayImage, OutlineFrame, OutlineReader, OutlineWriter, TraceSettings, WriterOptions, trace_mask,
     },
-    riccati::{MotionModel, RigidMotion},
-    sim_camera::{BuiltInShape, Camera, Mask, Motion, Scene, SequenceLength, Settings, Simulator},
+    riccati::MotionModel,
+    sim_camera::{Mask, PaperExperiment, SequenceLength, Settings, Simulator},
 };
 use std::{
     hint::black_box,
@@ -22,9 +22,7 @@ use std::{
 };
 
 fn frames(points: usize, count: usize) -> Vec<(f64, Outline)> {
-    let motion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -3.0, b2: 4.0 };
-    let camera = Camera::new(0.1).expect("a scale");
-    let scene = Scene::new(BuiltInShape::Bird.shape(), Motion::constant(motion), camera);
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scale");
     let settings = Settings { points, length: SequenceLength::Frames(count), ..Settings::default() };
     let simulator = Simulator::new(scene, settings).expect("settings");
     simulator.frames().map(|frame| (frame.time, frame.outline)).collect()

@@ -11,8 +11,8 @@ use std::error::Error;
 
 use freeform_motion::{
     outline_filter::{FilterSettings, MotionFilter},
-    riccati::{MotionModel, RigidMotion},
-    sim_camera::{BuiltInShape, Camera, Motion, Scene, SequenceLength, Settings, Simulator},
+    riccati::MotionModel,
+    sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator},
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -21,8 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let name = next()?;
     let model = MotionModel::ALL.into_iter().find(|model| model.to_string() == name).ok_or("no such model")?;
     let (points, frames) = (next()?.parse()?, next()?.parse()?);
-    let motion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -3.0, b2: 4.0 };
-    let scene = Scene::new(BuiltInShape::Bird.shape(), Motion::constant(motion), Camera::new(0.1)?);
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE)?;
     let settings = Settings { points, length: SequenceLength::Frames(frames), ..Settings::default() };
     let mut filter = MotionFilter::new(FilterSettings { model, ..FilterSettings::default() })?;
     for frame in Simulator::new(scene, settings)?.frames() {

@@ -8,6 +8,17 @@ use std::time::Duration;
 
 use crate::interrupt;
 
+/// Whether the beginning of a stream may be read before its first picture is dealt with, to choose how it is traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Waiting {
+    /// Every picture is dealt with as soon as it is there.
+    None,
+    /// Some pictures are waited for.
+    Allowed,
+    /// Some are, and Ctrl-C ends that: what has come by then is dealt with.
+    UntilInterrupted,
+}
+
 /// Bytes read at once.
 const CHUNK: usize = 1 << 16;
 

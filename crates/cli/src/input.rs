@@ -10,24 +10,14 @@ use freeform_motion::outline_io::{
 use freeform_motion::{SimulatedMotion, outline_of_polygon};
 
 use crate::args::PictureOptions;
-use crate::awaited::Awaited;
+use crate::awaited::{Awaited, Waiting};
 use crate::failure::{Failure, note, plain, warn};
 use crate::picture_input::{ASSUMED_RATE, PictureInput};
+use crate::progress::Verbosity;
 use crate::seen::Item;
 
 /// Options for pictures that hold for polygons in pictures too.
 const OPTIONS_OF_POLYGONS: [&str; 4] = ["--fps", "--pixel-size", "--y-up", "--y-down"];
-
-/// Whether the beginning of a stream may be read before its first picture is dealt with, to choose how it is traced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Waiting {
-    /// Every picture is dealt with as soon as it is there.
-    None,
-    /// Some pictures are waited for.
-    Allowed,
-    /// Some are, and Ctrl-C ends that: what has come by then is dealt with.
-    UntilInterrupted,
-}
 
 /// A sequence of outlines, open for reading.
 pub(crate) struct Input {
@@ -50,13 +40,13 @@ enum Source {
 }
 
 impl Input {
-    /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with. Unless it is `quiet`, a terminal
-    /// shows that pictures are looked at.
+    /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with. A terminal shows
+    /// that pictures are looked at, unless it is to be quiet.
     pub(crate) fn open(
         paths: &[PathBuf],
         options: &PictureOptions,
         waiting: Waiting,
-        quiet: bool,
+        verbosity: Verbosity,
     ) -> Result<Self, Failure> {
         let name = match paths {
             [path] if path.as_os_str() == "-" => "<stdin>".to_owned(),
@@ -71,20 +61,20 @@ impl Input {
         if let Some(files) = labelme_files(paths).map_err(Failure::unusable)? {
             return Self::of_polygons(|settings| OutlineFile::open_polygons(&files, settings), name, options);
         }
-        let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options, quiet)?, name) };
+        let [path] = paths else { return Self::of_pictures(PictureInput::open(paths, options, verbosity)?, name) };
         if path.as_os_str() == "-" {
             return Ok(Self {
                 is_stream: true,
-                ..Self::from_source(Awaited::stdin(), name, options, (waiting, quiet))?
+                ..Self::from_source(Awaited::stdin(), name, options, (waiting, verbosity))?
             });
         }
         // A pipe can be read once, whatever its name says.
         if fs::metadata(path).is_ok_and(|place| !place.is_file() && !place.is_dir()) {
-            let piped = Self::from_source(Awaited::open(path.clone()), name, options, (waiting, quiet))?;
+            let piped = Self::from_source(Awaited::open(path.clone()), name, options, (waiting, verbosity))?;
             return Ok(Self { is_stream: true, ..piped });
         }
         if PictureSequence::is_named_by(path) {
-            return Self::of_pictures(PictureInput::open(paths, options, quiet)?, name);
+            return Self::of_pictures(PictureInput::open(paths, options, verbosity)?, name);
         }
         match File::open(path) {
             Ok(file) => {
@@ -94,7 +84,7 @@ impl Input {
                     refuse_options(&options.given(), &name, "Parquet")?;
                     return Self::of_file(OutlineFile::open_parquet(path), name);
                 }
-                Self::from_source(source, name, options, (waiting, quiet))
+                Self::from_source(source, name, options, (waiting, verbosity))
             }
             Err(error) => Err(Failure::unusable(format_args!("{name}: {}", plain(&error)))),
         }
@@ -135,7 +125,7 @@ impl Input {
         mut source: impl BufRead + 'static,
         name: String,
         options: &PictureOptions,
-        (waiting, quiet): (Waiting, bool),
+        (waiting, verbosity): (Waiting, Verbosity),
     ) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::unusable(format_args!("{name}: {}", plain(&error)));
         let start = source.fill_buf().map_err(failed)?;
@@ -143,7 +133,7 @@ impl Input {
             return Err(Failure::unusable(format_args!("{name}: empty, neither outlines (CSV) nor pictures")));
         }
         if PictureSequence::begins_with(start) {
-            let pictures = PictureInput::from_stream(source, &name, options, (waiting, quiet))?;
+            let pictures = PictureInput::from_stream(source, &name, options, (waiting, verbosity))?;
             return Self::of_pictures(pictures, name);
         }
         if OutlineFile::begins_like_polygons(start) {

@@ -18,12 +18,12 @@ use freeform_motion::short;
 use image::ImageFormat;
 
 use crate::args::{PictureOptions, through_ffmpeg};
-use crate::awaited::Awaited;
+use crate::awaited::{Awaited, Waiting};
 use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
-use crate::input::Waiting;
 use crate::interrupt;
 use crate::output::WholeFile;
+use crate::progress::Verbosity;
 use crate::seen::{Item, Missing, MissingKind};
 use crate::tracing_choice::{Chosen, choose, options_of};
 
@@ -54,7 +54,7 @@ pub(crate) struct PictureInput {
 
 impl PictureInput {
     /// Pictures in files, folders and patterns.
-    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions, quiet: bool) -> Result<Self, Failure> {
+    pub(crate) fn open(paths: &[PathBuf], options: &PictureOptions, verbosity: Verbosity) -> Result<Self, Failure> {
         let inputs = paths.to_owned();
         let open = |options: &PictureOptions| {
             // One that nobody writes to must not keep Ctrl-C from ending the work.
@@ -66,7 +66,7 @@ impl PictureInput {
         let preview = PicturePreview::of_paths(paths, &sequence);
         let base = picture_settings(options, sequence.pixel_aspect(), None)?;
         base.check().map_err(Failure::unusable)?;
-        let (options, chosen) = choose(&preview, &base, options, quiet);
+        let (options, chosen) = choose(&preview, &base, options, verbosity);
         draw_candidates(options.candidates.as_deref(), &preview, &base, chosen.as_ref())?;
         if chosen.is_some() && options.channel().channel() != Channel::Luminance {
             sequence = open(&options)?;
@@ -88,7 +88,7 @@ impl PictureInput {
         mut source: impl BufRead + 'static,
         name: &str,
         options: &PictureOptions,
-        (waiting, quiet): (Waiting, bool),
+        (waiting, verbosity): (Waiting, Verbosity),
     ) -> Result<Self, Failure> {
         let inputs = vec![PathBuf::from(name)];
         if (options.has_way() || waiting == Waiting::None) && !options.compares_with_whole() {
@@ -110,7 +110,7 @@ impl PictureInput {
         }
         let preview = PicturePreview::Beginning(Arc::clone(&beginning));
         let settings = picture_settings(options, None, None)?;
-        let (options, chosen) = choose(&preview, &settings, options, quiet);
+        let (options, chosen) = choose(&preview, &settings, options, verbosity);
         draw_candidates(options.candidates.as_deref(), &preview, &settings, chosen.as_ref())?;
         let rest = source.take(if is_over { 0 } else { u64::MAX });
         let sequence =

@@ -9,6 +9,26 @@ pub(crate) fn would_stand_in_output() -> bool {
     stdout().is_terminal()
 }
 
+/// How much a command tells beside its results and errors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Verbosity {
+    /// Warnings and notes; a terminal shows how far it has come.
+    Usual,
+    /// Nothing.
+    Quiet,
+}
+
+impl Verbosity {
+    /// What the option `--quiet` says.
+    pub(crate) fn of_flag(quiet: bool) -> Self {
+        if quiet { Self::Quiet } else { Self::Usual }
+    }
+
+    pub(crate) fn is_quiet(self) -> bool {
+        self == Self::Quiet
+    }
+}
+
 /// What is shown of a running command, on a terminal only.
 #[derive(Debug)]
 pub(crate) struct Progress {
@@ -22,8 +42,11 @@ impl Progress {
     }
 
     /// Of pictures that are looked at before they are read, to choose how they are traced.
-    pub(crate) fn of_choice(quiet: bool) -> Self {
-        if quiet { Self { bar: None } } else { Self::shown(None, "{spinner} looking for a way to trace the pictures") }
+    pub(crate) fn of_choice(verbosity: Verbosity) -> Self {
+        match verbosity {
+            Verbosity::Usual => Self::shown(None, "{spinner} looking for a way to trace the pictures"),
+            Verbosity::Quiet => Self { bar: None },
+        }
     }
 
     /// Of a number of Monte Carlo runs.

@@ -1,24 +1,18 @@
 //! An input as it is gone through.
 use freeform_motion::Tracker;
 use freeform_motion::outline_io::{SourcePicture, readable};
-use freeform_motion::tracker::{Attendance, EdgeSeeker, Followed, ObjectResult, ReadAhead, Recorded, Sighting};
+use freeform_motion::tracker::{Attendance, EdgeSeeker, Followed, ReadAhead, Recorded};
 
 use crate::failure::{Failure, note, warn};
 use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
-use crate::progress::{Progress, would_stand_in_output};
-use crate::seen::{Item, Missing};
+use crate::progress::{Progress, Verbosity, would_stand_in_output};
+use crate::seen::{Item, Left, Missing};
 
 /// What comes of reading on: a frame of an object, as far as it could be read, with the picture that it was seen in, if it was; or a
 /// picture without an outline.
 pub(crate) type Event = Followed<Option<SourcePicture>, Missing>;
-
-/// An object of a stream that has left.
-pub(crate) struct Left {
-    pub(crate) seen: Sighting,
-    pub(crate) result: ObjectResult,
-}
 
 /// Has a tracker take all frames of an input, and hands on what each gave. Many rows of a file are read while those before are dealt with; a
 /// picture is dealt with before the next one is read, as what is known of an object helps to find it there.
@@ -26,12 +20,12 @@ pub(crate) struct Left {
 pub(crate) fn follow(
     tracker: &mut Tracker,
     input: &mut Input,
-    quiet: bool,
+    verbosity: Verbosity,
     mut observe: impl FnMut(&Event) -> Result<(), Failure>,
 ) -> Result<Option<Failure>, Failure> {
-    let progress = Progress::of_frames(input.frame_count(), quiet);
+    let progress = Progress::of_frames(input.frame_count(), verbosity.is_quiet());
     let has_pictures = input.has_pictures();
-    let mut reader = Reader::new(input, quiet, &progress);
+    let mut reader = Reader::new(input, verbosity, &progress);
     let mut first_missing = None;
     let mut hand_on = |event: Event| {
         observe(&event)?;
@@ -59,11 +53,11 @@ pub(crate) fn follow(
 pub(crate) fn follow_stream(
     tracker: &mut Tracker,
     input: &mut Input,
-    quiet: bool,
+    verbosity: Verbosity,
     mut observe: impl FnMut(Result<&Event, &Left>) -> Result<(), Failure>,
 ) -> Result<Option<Failure>, Failure> {
-    let progress = Progress::of_frames(input.frame_count(), quiet || would_stand_in_output());
-    let mut reader = Reader::new(input, quiet, &progress);
+    let progress = Progress::of_frames(input.frame_count(), verbosity.is_quiet() || would_stand_in_output());
+    let mut reader = Reader::new(input, verbosity, &progress);
     let (mut first_missing, mut is_any_seen) = (None, false);
     let mut present = Attendance::default();
     while let Some(item) = reader.next() {
@@ -97,7 +91,7 @@ pub(crate) fn follow_stream(
 /// Reads an input, and says what is missing in it.
 struct Reader<'a> {
     input: &'a mut Input,
-    quiet: bool,
+    verbosity: Verbosity,
     progress: &'a Progress,
     warnings: MissingWarnings,
     failure: Option<Failure>,
@@ -121,12 +115,12 @@ impl Iterator for Reader<'_> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(input: &'a mut Input, quiet: bool, progress: &'a Progress) -> Self {
-        if !quiet {
+    fn new(input: &'a mut Input, verbosity: Verbosity, progress: &'a Progress) -> Self {
+        if !verbosity.is_quiet() {
             progress.pause(|| input.tell());
         }
         let (warnings, seeker) = (MissingWarnings::default(), EdgeSeeker::default());
-        Self { input, quiet, progress, warnings, failure: None, seeker }
+        Self { input, verbosity, progress, warnings, failure: None, seeker }
     }
 
     /// What an item gives, and, after the last one of a picture, the objects that were not in it but are found by their edges.
@@ -158,7 +152,7 @@ impl<'a> Reader<'a> {
 
     fn tell(&mut self, missing: &Missing) {
         // The reason of a single picture is told in the end.
-        if self.quiet || self.input.frame_count() == Some(1) {
+        if self.verbosity.is_quiet() || self.input.frame_count() == Some(1) {
             return;
         }
         if let Some(warning) = self.warnings.take(missing) {
@@ -168,8 +162,8 @@ impl<'a> Reader<'a> {
 
     /// Says what has been left for the end of the reading, and why that came before its time, if it did.
     fn finish(self) -> Option<Failure> {
-        let Self { input, quiet, progress, warnings, failure, seeker } = self;
-        if !quiet {
+        let Self { input, verbosity, progress, warnings, failure, seeker } = self;
+        if !verbosity.is_quiet() {
             progress.pause(|| input.tell_in_the_end());
             edge_notes(&seeker).iter().for_each(|told| progress.pause(|| note(told)));
         }

@@ -4,13 +4,19 @@ use std::mem::{Discriminant, discriminant};
 
 use freeform_motion::curve_fit::OutlineError;
 use freeform_motion::outline_io::{PictureErrorKind, SourcePicture, TraceError};
-use freeform_motion::tracker::Recorded;
+use freeform_motion::tracker::{ObjectResult, Recorded, Sighting};
 
 use crate::failure::Failure;
 
 /// The next thing in an input: an outline, with the picture that it was seen in, if it was; or a picture without an object, or one that
 /// cannot be read.
 pub(crate) type Item = Recorded<Option<SourcePicture>, Missing>;
+
+/// An object of a stream that has left.
+pub(crate) struct Left {
+    pub(crate) seen: Sighting,
+    pub(crate) result: ObjectResult,
+}
 
 /// A picture without an outline.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use freeform_motion::outline_io::{
 use freeform_motion::short;
 
 use crate::args::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice};
-use crate::progress::Progress;
+use crate::progress::{Progress, Verbosity};
 
 /// The options that look for what moves.
 const MOVING: &str = "--background whole --objects moving --min-area PIXELS";
@@ -66,7 +66,7 @@ pub(crate) fn choose(
     preview: &PicturePreview,
     base: &PictureSettings,
     given: &PictureOptions,
-    quiet: bool,
+    verbosity: Verbosity,
 ) -> (PictureOptions, Option<Chosen>) {
     let unchanged = (given.clone(), None);
     if given.has_way() {
@@ -74,7 +74,7 @@ pub(crate) fn choose(
     }
     let all = [Channel::Luminance, Channel::Red, Channel::Green, Channel::Blue, Channel::Saturation];
     let channels = given.channel.map_or(all.to_vec(), |channel| vec![channel.channel()]);
-    let progress = Progress::of_choice(quiet);
+    let progress = Progress::of_choice(verbosity);
     let choice = preview.choose_tracing(&channels, base);
     drop(progress);
     let Some(choice) = choice else { return unchanged };

@@ -53,11 +53,16 @@ impl<S: Simd, const POWERS: usize, const MOMENTS: usize> MomentSums<S, POWERS, M
         // The last three rows have one to three products each, too few to keep the multipliers busy by themselves.
         macro_rules! rows {
             ($($j:literal)*) => { $(
-                if $j + 4 < POWERS {
+                // Constants, so that no tile is compiled that has no part in the sums.
+                if const { $j + 4 < POWERS } {
                     self.add_tile::<2, $j, 1>(simd, x_powers, y_powers);
-                    self.add_tile::<2, $j, { 1 + COLUMNS }>(simd, x_powers, y_powers);
-                    self.add_tile::<2, $j, { 1 + 2 * COLUMNS }>(simd, x_powers, y_powers);
-                } else if $j + 4 == POWERS {
+                    if const { $j + 1 + COLUMNS < POWERS } {
+                        self.add_tile::<2, $j, { 1 + COLUMNS }>(simd, x_powers, y_powers);
+                    }
+                    if const { $j + 1 + 2 * COLUMNS < POWERS } {
+                        self.add_tile::<2, $j, { 1 + 2 * COLUMNS }>(simd, x_powers, y_powers);
+                    }
+                } else if const { $j + 4 == POWERS } {
                     self.add_tile::<3, $j, 1>(simd, x_powers, y_powers);
                 }
             )* };
@@ -73,9 +78,6 @@ impl<S: Simd, const POWERS: usize, const MOMENTS: usize> MomentSums<S, POWERS, M
         x_powers: &[[S::f64s; POWERS]],
         y_powers: &[[S::f64s; POWERS]],
     ) {
-        if I + J >= POWERS {
-            return;
-        }
         let mut tile = [[simd.splat_f64s(0.0); COLUMNS]; ROWS];
         for (x_powers, y_powers) in x_powers.iter().zip(y_powers) {
             for row in 0..ROWS {

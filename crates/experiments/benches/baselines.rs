@@ -7,15 +7,14 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use freeform_curve_fit::Outline;
 use freeform_experiments::baseline::{AreaMomentEstimator, RegistrationEstimator};
 use freeform_outline_filter::{FilterSettings, MotionFilter};
-use freeform_riccati::{MotionModel, RigidMotion};
-use freeform_sim_camera::{BuiltInShape, Camera, Motion, Scene, SequenceLength, Settings, Simulator};
+use freeform_riccati::MotionModel;
+use freeform_sim_camera::{PaperExperiment, SequenceLength, Settings, Simulator};
 
 /// Frames before the timed ones, so that a filter has settled.
 const SETTLED: usize = 60;
 
 fn frames() -> Vec<(f64, Outline)> {
-    let motion = RigidMotion { omega: std::f64::consts::FRAC_PI_2, b1: -3.0, b2: 4.0 };
-    let scene = Scene::new(BuiltInShape::Bird.shape(), Motion::constant(motion), Camera::new(0.1).expect("a scale"));
+    let scene = PaperExperiment::FLIGHT_BIRD.scene(PaperExperiment::SCALE).expect("a scale");
     let settings = Settings { points: 400, length: SequenceLength::Frames(240), ..Settings::default() };
     let simulator = Simulator::new(scene, settings).expect("settings");
     simulator.frames().map(|frame| (frame.time, frame.outline)).collect()

@@ -83,18 +83,8 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
 
-    /// Draw outlines and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m (uncompressed video, which ffmpeg
-    /// and others read)
-    ///
-    /// Yellow is the outline as it was traced, red one that was not used. Blue is the outline that the filter knows, where it takes the object
-    /// to be; it lies below the yellow one and shows where this is hidden or elsewhere. With --method adaptive blue is the fitted curve, and
-    /// pink crosses are its related points. Green arrows are the displacements of points of the outline in the time that is written below
-    /// the object, the longest a third of the object long. There are none while the motion is not known.
-    ///
-    /// Drawings of an earlier run are removed from the folder. The folder is refused if it contains pictures with the names of
-    /// drawings that freeform did not draw.
-    #[arg(long, value_name = "DIR|FILE.gif|FILE.y4m")]
-    pub(crate) overlay: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) drawings: OverlayOption,
 
     /// Print only the result and errors
     #[arg(long, short)]
@@ -126,37 +116,9 @@ impl IdentifyArgs {
     }
 }
 
-const TRACK_EXAMPLES: &str = "\
-Examples:
-  freeform track outlines.csv
-  freeform track frames/ --ring dark --pixel-aspect 1.14
-  ffmpeg -loglevel error -i video.mp4 -f yuv4mpegpipe -pix_fmt yuv420p - | freeform track - --background median
-  camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
-
-Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
-generator and reason (why the frame was not accepted, or null). The phases are acquiring, tracking and lost for the \
-filter, start and adapt for the adaptive method. The last line of an object that was in none of the last 1000 frames has the \
-phase closed; the object is then forgotten.
-
-A line is written and flushed as soon as its frame is complete. At the end of the input the exit status is 0, or 1 if no \
-frame could be used. If the points of a frame are not an outline, its line has accepted false and the reason. A picture \
-without an object gives a warning. A malformed line of CSV ends the command with status 2, after the output for all \
-frames before it. Ctrl-C ends the command after the current line.";
-
-/// Identify the motion in a stream: one line of JSON per object and frame, as soon as the frame is complete.
-///
-/// A frame is complete when the row after it has been read. Memory does not grow with the number of frames.
-#[derive(Debug, Args)]
-#[command(after_help = TRACK_EXAMPLES, after_long_help = format!("{TRACK_EXAMPLES}\n\n{}", picture_inputs("track")))]
-pub(crate) struct TrackArgs {
-    /// Outlines as CSV, Parquet or polygons (COCO, labelme, TrackMate), or pictures: files, a folder, a quoted pattern; '-' is
-    /// standard input
-    #[arg(default_value = "-", value_name = "INPUT")]
-    pub(crate) inputs: Vec<PathBuf>,
-
-    #[command(flatten)]
-    pub(crate) options: TrackOptions,
-
+/// Where the pictures go that are drawn on those of the input.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct OverlayOption {
     /// Draw outlines and motion on every picture: a folder for PNG files, FILE.gif, or FILE.y4m (uncompressed video, which ffmpeg
     /// and others read)
     ///
@@ -169,13 +131,6 @@ pub(crate) struct TrackArgs {
     /// drawings that freeform did not draw.
     #[arg(long, value_name = "DIR|FILE.gif|FILE.y4m")]
     pub(crate) overlay: Option<PathBuf>,
-
-    /// Print only results and errors
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
-
-    #[command(flatten)]
-    pub(crate) pictures: PictureOptions,
 }
 
 /// Options of the identification, shared by several commands.

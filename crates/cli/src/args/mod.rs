@@ -12,6 +12,7 @@ mod reproduce;
 mod simulate;
 mod simulated;
 mod space;
+mod track;
 mod values;
 
 use std::path::PathBuf;
@@ -20,9 +21,7 @@ use clap::{Args, CommandFactory, FromArgMatches as _, Parser, Subcommand, error:
 
 pub(crate) use evaluate::{EvaluateArgs, EvaluateFormat};
 pub(crate) use fit::{FitArgs, FitFormat};
-pub(crate) use identify::{
-    DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackArgs, TrackOptions,
-};
+pub(crate) use identify::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice, TrackOptions};
 pub(crate) use outline::OutlineArgs;
 pub(crate) use pictures::{ChannelChoice, ContoursChoice, ObjectsChoice, PictureOptions, RingChoice, through_ffmpeg};
 pub(crate) use recognise::{RecogniseArgs, RecogniseFormat};
@@ -31,6 +30,7 @@ pub(crate) use reproduce::ReproduceArgs;
 pub(crate) use simulate::SimulateArgs;
 pub(crate) use simulated::DisturbanceArgs;
 pub(crate) use space::{PerspectiveArgs, PlaneBefore};
+pub(crate) use track::TrackArgs;
 
 use crate::failure::{Failure, plain};
 

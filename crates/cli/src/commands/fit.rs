@@ -8,13 +8,14 @@ use freeform_motion::tracker::FrameRanges;
 use rayon::prelude::*;
 
 use crate::args::{FitArgs, FitFormat};
+use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Waiting};
+use crate::input::Input;
 use crate::left_out::MissingWarnings;
 use crate::output::{
     FitsJson, Sink, WholeFile, refuse_other_format, refuse_overwriting, refuse_standard_output, write_fit_table,
 };
-use crate::progress::Progress;
+use crate::progress::{Progress, Verbosity};
 use crate::seen::{Item, Missing};
 
 /// Outlines that are fitted side by side at most.
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &FitArgs) -> Result<(), Failure> {
     refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
     refuse_other_format(args.svg.as_deref())?;
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed, false)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed, Verbosity::Usual)?;
     let name = input.name.clone();
     let svg = args.svg.as_deref().map(WholeFile::create).transpose()?;
     input.tell_tracing();

@@ -9,11 +9,12 @@ use freeform_motion::{Tracker, Truth, Warning};
 use super::identify_files::Files;
 use super::listed_settings::{settings, version};
 use crate::args::{DynamicsChoice, IdentifyArgs, IdentifyFormat, IdentifyMethod, MotionChoice};
+use crate::awaited::Waiting;
 use crate::command_line::command_line;
 use crate::failure::{Failure, warn};
 use crate::handful::handful;
 use crate::hints::Hints;
-use crate::input::{Input, Waiting};
+use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::LeftOut;
 use crate::output::{
@@ -22,6 +23,7 @@ use crate::output::{
 };
 use crate::overlay::InputOverlay;
 use crate::picture_input::PictureInput;
+use crate::progress::Verbosity;
 use crate::reader::{Event, follow};
 
 /// Objects whose states are kept in memory: 25 kB each where outlines are small, up to half a megabyte.
@@ -35,20 +37,21 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
     check(args)?;
     // Options are refused before an input is waited for.
     let mut tracker = tracker(args, None)?;
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, args.quiet)?;
+    let verbosity = Verbosity::of_flag(args.quiet);
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, verbosity)?;
     if let Some(uncertainty) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         tracker = self::tracker(args, Some(uncertainty))?;
     }
     let truth = true_motion(args, &input);
     let mut files = Files::create(args, truth.as_ref())?;
-    let mut overlay = InputOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
+    let mut overlay = InputOverlay::open(args.drawings.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     if let Ok(file) = tempfile::tempfile() {
         tracker.keep_states_in(file, STATES_IN_MEMORY);
     }
 
     let (mut left_out, mut hints) = (LeftOut::default(), Hints::default());
-    let failure = follow(&mut tracker, &mut input, args.quiet, |event| {
+    let failure = follow(&mut tracker, &mut input, verbosity, |event| {
         if let Some(overlay) = &mut overlay {
             overlay.take(event)?;
         }
@@ -85,7 +88,7 @@ pub(crate) fn run(args: &IdentifyArgs) -> Result<(), Failure> {
 fn tracker(args: &IdentifyArgs, by_pictures: Option<OutlineUncertainty>) -> Result<Tracker, Failure> {
     let tracker = Tracker::new(args.tracker_settings(by_pictures)?).map_err(Failure::unusable)?;
     // A report plays few objects, drawings show all of them.
-    let objects = match (&args.overlay, &args.report) {
+    let objects = match (&args.drawings.overlay, &args.report) {
         (Some(_), _) => usize::MAX,
         (None, Some(_)) => OBJECTS_PLAYED,
         (None, None) => 0,
@@ -113,7 +116,7 @@ fn true_motion(args: &IdentifyArgs, input: &Input) -> Option<Truth> {
 /// Refuses options that cannot be combined.
 fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     let candidates = &args.pictures.candidates;
-    let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.overlay, candidates];
+    let outputs = [&args.trace, &args.trajectory, &args.svg, &args.report, &args.drawings.overlay, candidates];
     let outputs: Vec<_> = outputs.into_iter().flatten().map(AsRef::as_ref).collect();
     refuse_overwriting(&args.options.files_read(&args.pictures, &args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;

@@ -5,12 +5,13 @@ use freeform_motion::outline_io::{OutlineFrame, SourcePicture, TableFormat, Tabl
 
 use super::simulate::SequenceError;
 use crate::args::OutlineArgs;
+use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Waiting};
+use crate::input::Input;
 use crate::interrupt;
 use crate::left_out::MissingWarnings;
 use crate::output::{DrawnPictures, Sink, refuse_overwriting};
-use crate::progress::Progress;
+use crate::progress::{Progress, Verbosity};
 use crate::seen::{Item, Missing};
 
 /// Traces the outlines of pictures, or takes those of a file, and writes them.
@@ -23,7 +24,8 @@ pub(crate) fn run(args: &OutlineArgs) -> Result<(), Failure> {
     refuse_overwriting(&args.pictures.files_read(&args.inputs), &outputs)?;
     // A pipe that nobody reads is waited for here, which the first signal ends.
     let mut sink = Sink::open(&args.output)?;
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, args.quiet)?.with_corners_alone();
+    let verbosity = Verbosity::of_flag(args.quiet);
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::UntilInterrupted, verbosity)?.with_corners_alone();
     if !input.has_pictures() && args.overlay.is_some() {
         return Err(Failure::unusable(format_args!("{}: not a picture, there is nothing to draw on", input.name)));
     }

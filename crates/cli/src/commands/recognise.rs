@@ -4,13 +4,14 @@ use rayon::prelude::*;
 
 use super::fit::{OUTLINES_AT_ONCE, POINTS_AT_ONCE};
 use crate::args::{RecogniseArgs, RecogniseFormat};
+use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Waiting};
+use crate::input::Input;
 use crate::left_out::MissingWarnings;
 use crate::output::{
     RecognisedObject, Sink, refuse_overwriting, refuse_standard_output, write_recognised_json, write_recognised_table,
 };
-use crate::progress::Progress;
+use crate::progress::{Progress, Verbosity};
 use crate::seen::Item;
 
 /// Names every object of the input.
@@ -20,7 +21,7 @@ pub(crate) fn run(args: &RecogniseArgs) -> Result<(), Failure> {
     refuse_overwriting(&read, &candidates)?;
     refuse_standard_output(&candidates)?;
     let recogniser = learnt(args)?;
-    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed, false)?;
+    let input = Input::open(&args.inputs, &args.pictures, Waiting::Allowed, Verbosity::Usual)?;
     let name = input.name.clone();
     input.tell_tracing();
     let mut sink = Sink::stdout();

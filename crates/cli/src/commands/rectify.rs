@@ -8,10 +8,12 @@ use freeform_motion::riccati::homography;
 use nalgebra::Projective2;
 
 use crate::args::RectifyArgs;
+use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Waiting};
+use crate::input::Input;
 use crate::left_out::MissingWarnings;
 use crate::output::{Sink, refuse_overwriting, refuse_standard_output};
+use crate::progress::Verbosity;
 use crate::seen::Item;
 
 /// Most outlines of an object at rest that are read; more would not tell more.
@@ -52,7 +54,7 @@ fn of_outline(args: &RectifyArgs, known: &Path) -> Result<(Projective2<f64>, Str
     refuse_overwriting(&read, &candidates)?;
     refuse_standard_output(&candidates)?;
     let known = read_shape(known).map_err(Failure::unusable)?;
-    let input = Input::open(&args.seen, &args.pictures, Waiting::Allowed, false)?;
+    let input = Input::open(&args.seen, &args.pictures, Waiting::Allowed, Verbosity::Usual)?;
     let name = input.name.clone();
     input.tell_tracing();
     let (mut seen, mut object, mut warnings) = (Vec::<Outline>::new(), None::<String>, MissingWarnings::default());

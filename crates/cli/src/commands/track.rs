@@ -3,35 +3,38 @@ use std::io::Write as _;
 use freeform_motion::Tracker;
 
 use crate::args::TrackArgs;
+use crate::awaited::Waiting;
 use crate::failure::{Failure, warn};
-use crate::input::{Input, Waiting};
+use crate::input::Input;
 use crate::interrupt;
 use crate::output::{Sink, closing_line, refuse_overwriting, refuse_standard_output, track_line};
 use crate::overlay::InputOverlay;
 use crate::picture_input::PictureInput;
+use crate::progress::Verbosity;
 use crate::reader::{Event, follow_stream};
 
 /// Identifies as a stream.
 pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
-    let outputs: Vec<_> = args.overlay.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
+    let outputs: Vec<_> = args.drawings.overlay.iter().chain(&args.pictures.candidates).map(AsRef::as_ref).collect();
     refuse_overwriting(&args.options.files_read(&args.pictures, &args.inputs), &outputs)?;
     refuse_standard_output(&outputs)?;
     args.options.check()?;
-    let shown = if args.overlay.is_some() { usize::MAX } else { 0 };
+    let shown = if args.drawings.overlay.is_some() { usize::MAX } else { 0 };
     let tracker = |settings| Tracker::new(settings).map(|tracker| tracker.with_known_outlines(shown));
     let mut following = tracker(args.options.tracker_settings()).map_err(Failure::unusable)?;
-    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None, args.quiet)?;
+    let verbosity = Verbosity::of_flag(args.quiet);
+    let mut input = Input::open(&args.inputs, &args.pictures, Waiting::None, verbosity)?;
     if let Some(error) = input.pictures().and_then(PictureInput::outline_uncertainty) {
         let settings = args.options.tracker_settings_for(error);
         following = tracker(settings).map_err(Failure::unusable)?;
     }
-    let mut overlay = InputOverlay::open(args.overlay.as_deref(), &args.inputs, &input, &args.options)?;
+    let mut overlay = InputOverlay::open(args.drawings.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
-    let failure = follow_stream(&mut following, &mut input, args.quiet, |event| {
+    let failure = follow_stream(&mut following, &mut input, verbosity, |event| {
         let event = match event {
             Ok(event) => event,
             Err(left) => return write_line(&mut sink, &closing_line(left).map_err(Failure::unusable)?),

@@ -12,7 +12,7 @@ use serde::ser::{Serialize, SerializeMap, SerializeStruct, Serializer};
 use super::plane_json::{NormalJson, PlanesJson};
 use super::velocity_json::VelocityJson;
 use crate::left_out::LeftOut;
-use crate::reader::Left;
+use crate::seen::Left;
 
 /// The result as one JSON object.
 pub(crate) fn write_identify_json(

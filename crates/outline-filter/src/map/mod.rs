@@ -18,6 +18,6 @@ mod turn_evidence;
 pub(crate) use chains::{CellPoint, has_common_places};
 pub(crate) use contour::Contour;
 pub(crate) use medians::{median, median_about};
-pub(crate) use null_space::{CLOCKWISE, NullDirection};
+pub(crate) use null_space::{CLOCKWISE, NullDirection, map_between};
 pub(crate) use outline_map::{Cell, ContourNoise, OutlineMap, Resolution};
 pub(crate) use turn_evidence::{TurnEvent, TurnEvidence};

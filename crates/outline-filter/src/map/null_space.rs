@@ -17,6 +17,14 @@ use crate::tuning::{
 /// Generator of a turn about the origin by 1 rad, clockwise where y points up.
 pub(crate) const CLOCKWISE: Matrix3<f64> = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
+/// A linear map with the shift that takes one point to another.
+pub(crate) fn map_between(linear: &Matrix2<f64>, from: &Vector2<f64>, to: &Vector2<f64>) -> Matrix3<f64> {
+    let shift = to - linear * from;
+    let mut map = linear.to_homogeneous();
+    (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
+    map
+}
+
 /// A null direction in the image: Jacobians of measurements lose `(h . direction) dual`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NullDirection {
@@ -113,11 +121,8 @@ impl OutlineMap {
     /// which is stretched until it is as long as wide: only such turns may leave it as it is. `None` where it may not.
     pub(crate) fn stretched_turn(&self, angle: f64) -> Option<Matrix3<f64>> {
         let turn = self.null_space.stretch?.turn(angle);
-        let centroid = self.null_space.centroid.coords;
-        let shift = centroid - turn * centroid;
-        let mut map = turn.to_homogeneous();
-        (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
-        Some(map)
+        let centroid = &self.null_space.centroid.coords;
+        Some(map_between(&turn, centroid, centroid))
     }
 
     /// How many times as long as wide an outline is, in a pose, that may be stretched; 1 where it may not.

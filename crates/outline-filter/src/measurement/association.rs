@@ -2,7 +2,7 @@
 use freeform_riccati::{is_affine, map_point};
 use nalgebra::{Matrix3, Point2};
 
-use super::{Counted, Frame, Jacobians, Lies, Measurement, NoiseModel, Piece, hidden::hide_points};
+use super::{Counted, Frame, Jacobians, Lies, Measurement, NoiseModel, hidden::hide_points_of_pieces};
 use crate::{
     belief::Belief,
     map::{NullDirection, OutlineMap},
@@ -114,7 +114,9 @@ impl View<'_> {
         }
         self.weigh(measurements, values, deviations, pass);
         if self.map.has_ends() {
-            leave_out_hidden(measurements, pieces);
+            // Hidden arcs show nothing of the outline: their points have no cells.
+            let lies = |list: &[Measurement], i: usize| Lies::of(list[i].cell == NO_CELL, list[i].weight > 0.0);
+            hide_points_of_pieces(measurements.as_mut_slice(), pieces, lies, |list, i| list[i] = Measurement::NOTHING);
         }
         columns.take(measurements);
     }
@@ -143,16 +145,6 @@ impl View<'_> {
                 measurement.cell = if map.is_beyond_end(number, &q) { NO_CELL } else { number };
             }
         }
-    }
-}
-
-/// Takes the cells off points that are parts of hidden arcs, which are those of the pieces.
-fn leave_out_hidden(measurements: &mut [Measurement], pieces: &[Piece]) {
-    for piece in pieces {
-        let measurements = &mut measurements[piece.range()];
-        let count = measurements.len();
-        let lies = |list: &[Measurement], i: usize| Lies::of(list[i].cell == NO_CELL, list[i].weight > 0.0);
-        hide_points(measurements, (count, piece.closed), lies, |list, i| list[i] = Measurement::NOTHING);
     }
 }
 

@@ -3,6 +3,7 @@
 //! Of an arc that was hidden so far the points next to a known end lie beyond it. Further on they may lie anywhere, nearest to what is across or to
 //! another end, and look like outliers. What tells them from outliers is that the contour leaves the outline where that ends: in a wrong pose it
 //! leaves it anywhere.
+use super::Piece;
 
 /// Where a point of a contour lies in a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +62,25 @@ pub(crate) fn hide_points<S: ?Sized>(
                 hide(of_points, at(k));
             }
         }
+    }
+}
+
+/// [`hide_points`] of all pieces of a contour, with the numbers that points have in the whole of it.
+pub(super) fn hide_points_of_pieces<S: ?Sized>(
+    of_points: &mut S,
+    pieces: &[Piece],
+    lies: impl Fn(&S, usize) -> Lies,
+    mut hide: impl FnMut(&mut S, usize),
+) {
+    for piece in pieces {
+        let range = piece.range();
+        let start = range.start;
+        hide_points(
+            of_points,
+            (range.len(), piece.closed),
+            |of_points, i| lies(of_points, start + i),
+            |of_points, i| hide(of_points, start + i),
+        );
     }
 }
 

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Point2, Vector2};
 
 use super::{
     CellLine, Columns, Frame, Jacobians, Lies, Measurement, NO_CELL, Pass, Piece, View,
-    association::mean_of_neighbours, hidden::hide_points,
+    association::mean_of_neighbours, hidden::hide_points_of_pieces,
 };
 use crate::{
     map::{NullDirection, OutlineMap},
@@ -143,16 +143,10 @@ impl Columns {
     /// Takes the cells off points that are parts of hidden arcs, which are those of the pieces.
     fn leave_out_hidden(&mut self, pieces: &[Piece]) {
         let none = (self.lines.len() - 1) as u32;
-        for piece in pieces {
-            let range = piece.range();
-            let start = range.start;
-            let lies = |columns: &Self, i: usize| {
-                Lies::of(columns.numbers[start + i] == none, columns.weights[start + i] > 0.0)
-            };
-            hide_points(self, (range.len(), piece.closed), lies, |columns, i| {
-                (columns.numbers[start + i], columns.residuals[start + i]) = (none, 0.0);
-            });
-        }
+        let lies = |columns: &Self, i: usize| Lies::of(columns.numbers[i] == none, columns.weights[i] > 0.0);
+        hide_points_of_pieces(self, pieces, lies, |columns, i| {
+            (columns.numbers[i], columns.residuals[i]) = (none, 0.0);
+        });
     }
 
     /// Finds the cells nearest to the places of the points in the body frame.

@@ -64,9 +64,8 @@ impl MotionHistory {
         self.dynamics.as_ref().map_or(1.0, DynamicsFilter::widening)
     }
 
-    /// Records what became of a frame some time after the one before. If it was not taken, `elsewhere` is how far from where it was expected the
-    /// object lies, where that was looked for.
-    pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64, elsewhere: Option<PoseVector>) {
+    /// Records what became of a frame some time after the one before.
+    pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64) {
         self.since_taken += seconds;
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
@@ -77,9 +76,14 @@ impl MotionHistory {
                     dynamics.record_change();
                 }
             }
-        } else if let Some(pose) = outcome.pose.and_then(|measured| measured.error()).or(elsewhere) {
-            self.contradiction = Some(pose / self.since_taken);
+        } else if let Some(apart) = outcome.pose.and_then(|measured| measured.error()) {
+            self.record_apart(&apart);
         }
+    }
+
+    /// Records how far from where it was expected a frame shows the object that was not taken, and has been recorded.
+    pub(super) fn record_apart(&mut self, apart: &PoseVector) {
+        self.contradiction = Some(apart / self.since_taken);
     }
 
     /// A covariance of pose and motion, of k parameters, by which an interval of 95 % reaches what a frame shows that has not been taken.

@@ -66,9 +66,13 @@ pub(super) fn advance(
     predict(settings, track, history, seconds);
     let gates = Gates::of_new_frame(settings, track, history.widening(), is_after_rejected);
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, comparison);
-    let lies_elsewhere = matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. }));
-    let elsewhere = if lies_elsewhere { displacement_nearby(track, frame) } else { None };
-    history.record(&outcome, seconds, elsewhere);
+    history.record(&outcome, seconds);
+    if matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. }))
+        && outcome.pose.is_none()
+        && let Some(elsewhere) = displacement_nearby(track, frame)
+    {
+        history.record_apart(&elsewhere);
+    }
     outcome
 }
 
@@ -82,7 +86,7 @@ pub(super) fn advance_again(
     predict(settings, track, history, seconds);
     let gates = Gates::of_accepted_frame(settings, track, history.widening());
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, Comparison::NotAsked);
-    history.record(&outcome, seconds, None);
+    history.record(&outcome, seconds);
     outcome
 }
 

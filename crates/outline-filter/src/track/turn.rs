@@ -5,6 +5,7 @@ use freeform_riccati::{map_point, turn_rate};
 use nalgebra::{Matrix2, Matrix3, Rotation2, Vector2};
 
 use super::Track;
+use crate::map::map_between;
 
 /// A turn between half a circle clockwise and half a circle anticlockwise.
 pub(crate) fn wrapped(turn: f64) -> f64 {
@@ -13,11 +14,7 @@ pub(crate) fn wrapped(turn: f64) -> f64 {
 
 /// The turn by an angle, rad, anticlockwise where y points up, that takes one point to another.
 pub(crate) fn turn_between(angle: f64, from: &Vector2<f64>, to: &Vector2<f64>) -> Matrix3<f64> {
-    let rotation = Rotation2::new(angle);
-    let shift = to - rotation * from;
-    let mut map = rotation.to_homogeneous();
-    (map[(0, 2)], map[(1, 2)]) = (shift.x, shift.y);
-    map
+    map_between(Rotation2::new(angle).matrix(), from, to)
 }
 
 impl Track {
