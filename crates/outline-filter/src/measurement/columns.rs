@@ -36,6 +36,15 @@ pub(crate) enum Jacobians {
     OfCells,
 }
 
+/// Jacobians of the residuals of the points of every cell.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct CellJacobians {
+    /// How fast they fall as the offset of the cell grows; of one for none as well.
+    pub(crate) by_offsets: Vec<f64>,
+    /// By the pose, in two rows of whole vectors.
+    pub(crate) rows: Vec<f64>,
+}
+
 /// Numbers of the points of a frame, by columns; buffers that are reused from frame to frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Columns {
@@ -47,16 +56,14 @@ pub(crate) struct Columns {
     pub(crate) by_offsets: Vec<f64>,
     /// Coordinates along the lines of the cells, where Jacobians are those of cells.
     pub(crate) along: Vec<f64>,
-    /// Of every cell, and one for none; and how fast the residuals of its points fall as its offset grows.
+    /// Of every cell, and one for none.
     pub(crate) lines: Vec<CellLine>,
-    pub(crate) by_offsets_of_cells: Vec<f64>,
     /// Where the cells themselves lie along the normals of their lines, without their offsets: Jacobians are taken there.
     pub(crate) own_lines: Vec<f64>,
     /// Of every cell, and one for none: what its points add up to, and what a step makes of their residuals.
     pub(crate) sums: Vec<CellSums>,
     pub(crate) moves: Vec<[f64; 2]>,
-    /// Of every cell: the Jacobians of its points in two rows of whole vectors.
-    pub(crate) rows_of_cells: Vec<f64>,
+    pub(crate) of_cells: CellJacobians,
     /// The points in the body frame; in the end the means of their neighbours where they count.
     pub(super) own_places: Vec<Point2<f64>>,
     /// Coordinates in the body frame times weights, and these; a fourth number, which is none, makes it a whole vector.

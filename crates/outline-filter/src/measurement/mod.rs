@@ -15,7 +15,7 @@ mod side_by_side;
 mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
-pub(crate) use columns::{CellLine, CellSums, Columns, Jacobians, PointOnCell};
+pub(crate) use columns::{CellJacobians, CellLine, CellSums, Columns, Jacobians, PointOnCell};
 pub(crate) use frame::{Frame, Piece, Reference};
 pub(crate) use hidden::{Lies, hide_points};
 pub(crate) use lattice::{PixelLattice, PlaceOnLattice};

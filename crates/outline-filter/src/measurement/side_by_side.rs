@@ -33,9 +33,9 @@ impl View<'_> {
         }
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (points, places) = (points.as_slice(), places.as_mut_slice());
-        let Columns { own_places, lines, by_offsets_of_cells, own_lines, .. } = columns;
+        let Columns { own_places, lines, of_cells, own_lines, .. } = columns;
         let (own_places, lines) = (own_places.as_mut_slice(), lines.as_mut_slice());
-        let by_offsets_of_cells = by_offsets_of_cells.as_mut_slice();
+        let by_offsets_of_cells = of_cells.by_offsets.as_mut_slice();
         let own_lines = own_lines.as_mut_slice();
         vectorised(
             #[inline(always)]
@@ -63,8 +63,8 @@ impl View<'_> {
         if map.has_ends() {
             columns.leave_out_hidden(pieces);
         }
-        let Columns { numbers, by_offsets, by_offsets_of_cells, .. } = columns;
-        let by_offsets_of_cells = by_offsets_of_cells.as_slice();
+        let Columns { numbers, by_offsets, of_cells, .. } = columns;
+        let by_offsets_of_cells = of_cells.by_offsets.as_slice();
         for (by_offset, number) in by_offsets.iter_mut().zip(numbers.iter()) {
             *by_offset = by_offsets_of_cells[*number as usize];
         }
@@ -135,7 +135,7 @@ impl Columns {
         weighted.resize(points, [0.0; LANES]);
         rows.resize(points, [0.0; LANES]);
         self.lines.resize(cells + 1, CellLine::NONE);
-        self.by_offsets_of_cells.resize(cells + 1, 0.0);
+        self.of_cells.by_offsets.resize(cells + 1, 0.0);
         self.own_lines.resize(cells + 1, 0.0);
         self.jacobians = Jacobians::OfCells;
     }

@@ -21,7 +21,7 @@ use crate::{
 impl MotionFilter {
     /// Goes on as predicted if that fits, searches for the object otherwise.
     pub(super) fn acquire(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
-        let seconds = time - self.track_time;
+        let seconds = time - self.clock.of_track;
         let track = self.track.as_ref()?;
         if self.phase == Phase::Lost {
             let gate = Gate { largest_innovation: Some(LARGEST_INNOVATION), ..gate(&self.settings, track) };
@@ -68,7 +68,7 @@ impl MotionFilter {
         // Turns are counted from where the step to this frame has led.
         let seconds = self.track.as_ref().map_or(0.0, |track| track.belief().memory.step);
         let found = other.search(time, seconds, outline).filter(Outcome::is_accepted);
-        self.searches = other.searches;
+        self.search_memory.budget = other.search_memory.budget;
         let Some(track) = &mut self.track else { return outcome };
         let (mut is_explained, mut turns_alike) = (false, false);
         if let (Some(found), Some(of_other)) = (found, &other.track) {
@@ -102,7 +102,7 @@ impl MotionFilter {
         if !self.may_search() {
             return None;
         }
-        self.searches.spend();
+        self.search_memory.budget.spend();
         self.track.as_mut().into_iter().for_each(Track::show_turn);
         self.registered(outline, extent)
     }
@@ -132,7 +132,7 @@ impl MotionFilter {
         let nearest = candidates.iter().max_by(|a, b| agreement(a).total_cmp(&agreement(b)))?.outcome;
         let lost = self.phase == Phase::Lost;
         candidates.retain(|candidate| candidate.outcome.is_accepted());
-        let (taken, others) = TurnHypotheses::among(candidates, self.symmetry, seconds);
+        let (taken, others) = TurnHypotheses::among(candidates, self.search_memory.symmetry, seconds);
         self.turn_hypotheses = others;
         let outcome = taken.as_ref().map_or(nearest, |candidate| candidate.outcome);
         if let Some(taken) = taken {
@@ -149,7 +149,7 @@ impl MotionFilter {
     /// What the loaded frame is off by in the best pose of a registration which says that it shows something else, where one linearisation leaves
     /// no doubt of it. Nothing is found then.
     fn rejected_at_a_glance(&mut self, registration: &Registration, seconds: f64) -> Option<Outcome> {
-        let poses = registration.poses(self.track.as_ref()?, &self.frame.points, self.symmetry);
+        let poses = registration.poses(self.track.as_ref()?, &self.frame.points, self.search_memory.symmetry);
         let mut moved = self.moved(poses.first()?, seconds)?;
         moved.set_tolerance(Tolerance::Relaxed);
         let outcome = moved.rejected_at_a_glance(&mut self.frame, &gate(&self.settings, &moved))?;
@@ -179,10 +179,10 @@ impl MotionFilter {
         let Some(track) = self.track.as_mut().filter(|track| !track.turn_is_unseen()) else { return candidates };
         if track.shows_turn(outline, &pose, &mut self.frame) {
             let symmetry = symmetry_order(track, outline, &pose, &mut self.frame);
-            if symmetry == self.symmetry {
+            if symmetry == self.search_memory.symmetry {
                 return candidates;
             }
-            self.symmetry = symmetry;
+            self.search_memory.symmetry = symmetry;
             // What has been measured is so in the same way, unless others have vouched for it.
             let is_measured = candidates.iter().all(|candidate| candidate.verdict_of == VerdictOf::Itself);
             let measured = if is_measured { candidates } else { Vec::new() };
@@ -196,7 +196,7 @@ impl MotionFilter {
     /// The outline of the track brought onto that of the frame.
     fn registered(&mut self, outline: &Outline, extent: Extent) -> Option<Registration> {
         let track = self.track.as_ref()?;
-        let landmarks = self.landmarks.and_then(|landmarks| {
+        let landmarks = self.search_memory.landmarks.and_then(|landmarks| {
             let pose = track.affine_pose()?;
             Some([landmarks.moved(&pose), Landmarks::of(outline)?])
         });
@@ -216,7 +216,7 @@ impl MotionFilter {
     ) -> Vec<Candidate> {
         let Some(track) = self.track.as_ref() else { return Vec::new() };
         self.frame.load(outline, track.reference());
-        let poses = registration.poses(track, &self.frame.points, self.symmetry);
+        let poses = registration.poses(track, &self.frame.points, self.search_memory.symmetry);
         self.candidates_at(outline, seconds, tolerance, (&poses, measured))
     }
 

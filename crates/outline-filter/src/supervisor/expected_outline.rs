@@ -41,7 +41,7 @@ impl MotionFilter {
     /// ```
     #[must_use]
     pub fn expected_outline(&self, time: f64) -> Option<ExpectedOutline> {
-        let seconds = time / self.seconds_per_unit() - self.track_time;
+        let seconds = time / self.seconds_per_unit() - self.clock.of_track;
         if self.phase != Phase::Tracking || !seconds.is_finite() {
             return None;
         }

@@ -173,9 +173,9 @@ impl MotionFilter {
             return;
         };
         let to_body: Option<Affine2<f64>> = nalgebra::try_convert(new.pose().inverse());
-        self.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
-        self.begin_window(self.last_time, outline, &new);
-        self.replace(new, self.track_time, Phase::Acquiring);
+        self.search_memory.landmarks = to_body.and_then(|to_body| Some(Landmarks::of(outline)?.moved(&to_body)));
+        self.begin_window(self.clock.last_frame, outline, &new);
+        self.replace(new, self.clock.of_track, Phase::Acquiring);
         self.counts.begun_with_turn += 1;
     }
 }

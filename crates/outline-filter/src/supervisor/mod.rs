@@ -1,6 +1,7 @@
 //! The motion filter: phases, restarts, hypotheses and changes of the motion. The only state machine.
 mod acquisition;
 mod ambiguity;
+mod clock;
 mod error;
 mod expected_outline;
 mod initialisation;
@@ -8,6 +9,7 @@ mod motion_change;
 mod motion_filter;
 mod repeated_frames;
 mod search_budget;
+mod search_memory;
 mod settings;
 mod starts;
 #[cfg(feature = "serde")]

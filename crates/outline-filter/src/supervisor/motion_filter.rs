@@ -5,10 +5,11 @@ use freeform_estimate::TimeNotIncreasing;
 use nalgebra::{Point2, Projective2};
 
 use super::{
+    clock::Clock,
     error::FilterError,
     motion_change::MotionHistory,
     repeated_frames::{BeforeRepeated, RepeatedFrames},
-    search_budget::SearchBudget,
+    search_memory::SearchMemory,
     settings::FilterSettings,
     statement::Statement,
     tracking::advance,
@@ -18,7 +19,6 @@ use super::{
 use crate::{
     dynamics::{DynamicsFilter, DynamicsWeights},
     measurement::Frame,
-    search::Landmarks,
     track::{Doubt, KnownOutline, Outcome, Track},
     update::{FrameMeasurement, Rejection},
 };
@@ -137,25 +137,14 @@ pub struct MotionFilter {
     pub(super) settings: FilterSettings,
     pub(super) phase: Phase,
     pub(super) track: Option<Track>,
-    /// Of the first outline, in its image coordinates.
-    pub(super) landmarks: Option<Landmarks>,
-    /// In units of time, as all times here.
-    pub(super) last_time: f64,
-    /// Seconds; one until it is chosen.
-    pub(super) time_unit: Option<f64>,
-    /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
-    pub(super) symmetry: usize,
-    /// Time that the track stands at.
-    pub(super) track_time: f64,
+    pub(super) clock: Clock,
     pub(super) counts: Counts,
-    pub(super) searches: SearchBudget,
+    pub(super) search_memory: SearchMemory,
     pub(super) history: MotionHistory,
     /// Whether the motion of the present track has ever been seen to change.
     pub(super) motion_changed: bool,
     pub(super) turn_hypotheses: TurnHypotheses,
     pub(super) window: InitialisationWindow,
-    /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
-    pub(super) unfound: Vec<(f64, Outline)>,
     pub(super) repeated: RepeatedFrames,
     pub(super) before_repeated: Option<Box<BeforeRepeated>>,
     #[cfg_attr(feature = "serde", serde(skip))]
@@ -176,18 +165,13 @@ impl MotionFilter {
             settings,
             phase: Phase::Waiting,
             track: None,
-            landmarks: None,
-            last_time: f64::NEG_INFINITY,
-            time_unit: None,
-            symmetry: 1,
-            track_time: 0.0,
+            clock: Clock::default(),
             counts: Counts::default(),
-            searches: SearchBudget::default(),
+            search_memory: SearchMemory::default(),
             history: MotionHistory::default(),
             motion_changed: false,
             turn_hypotheses: TurnHypotheses::default(),
             window: InitialisationWindow::default(),
-            unfound: Vec::new(),
             repeated: RepeatedFrames::default(),
             before_repeated: None,
             frame: Frame::default(),
@@ -200,7 +184,7 @@ impl MotionFilter {
     /// # Errors
     /// A time that is not finite or not after the last one; a first outline with fewer than 8 points. The filter is then unchanged.
     pub fn step(&mut self, time: f64, outline: &Outline) -> Result<FilterStep, FilterError> {
-        TimeNotIncreasing::check(self.last_time * self.seconds_per_unit(), time)?;
+        TimeNotIncreasing::check(self.clock.last_frame * self.seconds_per_unit(), time)?;
         self.stated.take();
         self.choose_time_unit(time);
         let (seconds, time) = (time, time / self.seconds_per_unit());
@@ -229,17 +213,17 @@ impl MotionFilter {
     /// for remapping, and after frames that are not taken the filter may fall back on others.
     pub(super) fn process(&mut self, time: f64, outline: &Outline) -> (Option<FrameMeasurement>, Option<Rejection>) {
         self.measure_before_next();
-        self.last_time = time;
+        self.clock.last_frame = time;
         let was_changing = self.history.is_changing();
         let outcome = match self.phase {
             Phase::Tracking => self.follow(time, outline).map(|outcome| self.look_elsewhere(outcome, time, outline)),
             _ => self.acquire(time, outline),
         };
-        self.searches.add_frame(self.phase == Phase::Tracking);
+        self.search_memory.budget.add_frame(self.phase == Phase::Tracking);
         let rejection = outcome.map_or(Some(Rejection::NotFound), |outcome| outcome.verdict.err());
         if rejection.is_none() {
             self.counts.add_accepted();
-            self.unfound.clear();
+            self.search_memory.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
             self.doubt_large_turns();
@@ -263,28 +247,28 @@ impl MotionFilter {
 
     /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
     fn choose_time_unit(&mut self, time: f64) {
-        let interval = time - self.last_time;
-        if self.time_unit.is_some() || self.track.is_none() || !interval.is_finite() {
+        let interval = time - self.clock.last_frame;
+        if self.clock.unit.is_some() || self.track.is_none() || !interval.is_finite() {
             return;
         }
         let unit = interval.log2().round().exp2();
         let unit = if unit.is_normal() && (1.0 / unit).is_normal() { unit } else { 1.0 };
-        self.time_unit = Some(unit);
-        self.last_time /= unit;
-        self.track_time /= unit;
+        self.clock.unit = Some(unit);
+        self.clock.last_frame /= unit;
+        self.clock.of_track /= unit;
         self.window.divide_times(unit);
         self.track.as_mut().into_iter().for_each(|track| track.set_time_unit(unit));
     }
 
     pub(super) fn seconds_per_unit(&self) -> f64 {
-        self.time_unit.unwrap_or(1.0)
+        self.clock.unit.unwrap_or(1.0)
     }
 
     /// Predicts and measures.
     fn follow(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
         let track = self.track.as_mut()?;
-        let seconds = time - self.track_time;
-        self.track_time = time;
+        let seconds = time - self.clock.of_track;
+        self.clock.of_track = time;
         let is_after_rejected = self.counts.rejected_in_a_row > 0;
         let (frame, comparison) = (&mut self.frame, self.turn_hypotheses.comparison());
         frame.load(outline, track.reference());
@@ -317,7 +301,7 @@ impl MotionFilter {
 
     pub(super) fn replace(&mut self, track: Track, time: f64, phase: Phase) {
         self.track = Some(track);
-        self.track_time = time;
+        self.clock.of_track = time;
         self.phase = phase;
         self.history.begin_anew();
         self.repeated.forget_steps();

@@ -22,13 +22,13 @@ impl MotionFilter {
         let FilterSettings { model, mask_pixel, .. } = self.settings;
         let mut track = Track::begin(model, outline, mask_pixel, &mut self.frame).ok_or(too_few)?;
         track.set_time_unit(self.seconds_per_unit());
-        self.landmarks = Landmarks::of(outline);
-        self.symmetry = 1;
+        self.search_memory.landmarks = Landmarks::of(outline);
+        self.search_memory.symmetry = 1;
         self.begin_window(time, outline, &track);
         self.replace(track, time, Phase::Acquiring);
-        self.last_time = time;
+        self.clock.last_frame = time;
         self.counts.rejected_in_a_row = 0;
-        self.unfound.clear();
+        self.search_memory.unfound.clear();
         Ok(())
     }
 
@@ -53,7 +53,7 @@ impl MotionFilter {
         };
         let is_alone = self.phase == Phase::Acquiring && accepted_by_track == 1;
         if is_alone && !give_up && rejected_in_a_row < tuning::FALSE_START {
-            self.unfound.push((time, outline.clone()));
+            self.search_memory.unfound.push((time, outline.clone()));
         }
         // Any frame may be wrong, as the first was: then the next one is waited for.
         let is_wrong = is_alone && rejected_in_a_row == tuning::FALSE_START && self.shows_another(time, outline);
@@ -68,27 +68,28 @@ impl MotionFilter {
     /// Whether the next frame is searched for the object. A start is worth a few searches, or none.
     pub(super) fn may_search(&self) -> bool {
         let is_start_over = self.phase == Phase::Acquiring && self.counts.rejected_in_a_row >= tuning::FALSE_START;
-        self.searches.has(if is_start_over { tuning::FALSE_START } else { 1 })
+        self.search_memory.budget.has(if is_start_over { tuning::FALSE_START } else { 1 })
     }
 
     /// Whether a frame shows something else than those before it in which the object of the first has not been found: they agree with each
     /// other and not with it, so that it is no frame to begin again with. Where nothing is found again and again, that is not looked into.
     fn shows_another(&mut self, time: f64, outline: &Outline) -> bool {
-        if self.counts.fruitless_starts >= tuning::MOST_FRUITLESS || !self.searches.has(tuning::FALSE_START) {
+        if self.counts.fruitless_starts >= tuning::MOST_FRUITLESS || !self.search_memory.budget.has(tuning::FALSE_START)
+        {
             return false;
         }
         let mut do_others_agree = false;
-        let unfound = self.unfound.clone();
+        let unfound = self.search_memory.unfound.clone();
         for (number, (begun_at, first)) in unfound.iter().enumerate() {
             let mut begun = self.clone();
             if begun.start(*begun_at, first).is_err() {
                 continue;
             }
             for (time, outline) in &unfound[number + 1..] {
-                self.searches.spend();
+                self.search_memory.budget.spend();
                 do_others_agree |= begun.process(*time, outline).1.is_none();
             }
-            self.searches.spend();
+            self.search_memory.budget.spend();
             if begun.process(time, outline).1.is_none() {
                 return false;
             }
@@ -101,9 +102,9 @@ impl MotionFilter {
 impl MotionFilter {
     /// Whether the frames that the object has not been found in are no more than are kept, and came one after the other, after the first.
     pub(super) fn unfound_are_valid(&self) -> bool {
-        (self.unfound.is_empty() || self.phase == Phase::Acquiring && self.time_unit.is_some())
-            && self.unfound.len() < tuning::FALSE_START
-            && self.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.last_time)
-            && self.unfound.is_sorted_by(|(a, _), (b, _)| a < b)
+        (self.search_memory.unfound.is_empty() || self.phase == Phase::Acquiring && self.clock.unit.is_some())
+            && self.search_memory.unfound.len() < tuning::FALSE_START
+            && self.search_memory.unfound.iter().all(|(time, _)| time.is_finite() && *time <= self.clock.last_frame)
+            && self.search_memory.unfound.is_sorted_by(|(a, _), (b, _)| a < b)
     }
 }

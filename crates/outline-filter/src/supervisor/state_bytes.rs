@@ -67,7 +67,7 @@ impl MotionFilter {
         if !self.track.as_mut().is_none_or(restored) {
             return inconsistent("track");
         }
-        let (settings, track_time, is_tracking) = (&self.settings, self.track_time, self.phase == Phase::Tracking);
+        let (settings, track_time, is_tracking) = (&self.settings, self.clock.of_track, self.phase == Phase::Tracking);
         let is_valid = |before: &mut Box<BeforeRepeated>| {
             restored(&mut before.track) && before.history.is_valid(settings) && before.time <= track_time && is_tracking
         };
@@ -80,16 +80,19 @@ impl MotionFilter {
         if (self.phase == Phase::Waiting) != self.track.is_none() {
             return inconsistent("phase");
         }
-        if !(1..=LARGEST_ORDER).contains(&self.symmetry) {
+        if !(1..=LARGEST_ORDER).contains(&self.search_memory.symmetry) {
             return inconsistent("symmetry");
         }
         if !self.history.is_valid(&self.settings) {
             return inconsistent("changes of the motion");
         }
-        if !self.counts_are_below(StateFormat::MOST_COUNTED) || !self.searches.is_valid() || !self.repeated.is_valid() {
+        if !self.counts_are_below(StateFormat::MOST_COUNTED)
+            || !self.search_memory.budget.is_valid()
+            || !self.repeated.is_valid()
+        {
             return inconsistent("counts");
         }
-        if !self.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
+        if !self.search_memory.landmarks.is_none_or(|landmarks| landmarks.is_finite()) {
             return inconsistent("landmarks");
         }
         if !self.window.restore(&self.settings, restored_with) {
@@ -103,12 +106,12 @@ impl MotionFilter {
 
     /// Whether the last time is finite, or there was none, that of the track is, and the unit is a power of two.
     fn times_are_valid(&self) -> bool {
-        let before_first = self.last_time == f64::NEG_INFINITY && self.track.is_none();
+        let before_first = self.clock.last_frame == f64::NEG_INFINITY && self.track.is_none();
         let is_power_of_two = |unit: f64| unit > 0.0 && unit.is_normal() && unit == unit.log2().round().exp2();
         let is_unit = |unit: f64| is_power_of_two(unit) && (1.0 / unit).is_normal();
-        (self.last_time.is_finite() || before_first)
-            && self.track_time.is_finite()
-            && self.time_unit.is_none_or(is_unit)
+        (self.clock.last_frame.is_finite() || before_first)
+            && self.clock.of_track.is_finite()
+            && self.clock.unit.is_none_or(is_unit)
     }
 
     /// Whether no counter is near its end.

@@ -167,7 +167,7 @@ impl MotionFilter {
         let estimate = self.estimate()?;
         let mut observable = [false; MAX_PARAMETERS];
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
-        self.track.as_ref()?.state_of(&self.statement()?.all, self.track_time, observable)
+        self.track.as_ref()?.state_of(&self.statement()?.all, self.clock.of_track, observable)
     }
 
     /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed

@@ -9,7 +9,7 @@ use nalgebra::{Point2, Vector2};
 use super::normal_equations::Added;
 use crate::{
     belief::{Arrowhead, OffsetInformation, StateVector},
-    measurement::{CellLine, CellSums, Columns, Frame},
+    measurement::{CellJacobians, CellLine, CellSums, Columns, Frame},
     vectors::vectorised,
 };
 
@@ -54,7 +54,8 @@ impl Frame {
         work.cells.resize_as(known);
         let (own, coupling) = work.cells.all_mut::<S>();
         let Self { right, shifts, columns, .. } = self;
-        let Columns { lines, own_lines, by_offsets_of_cells, sums, rows_of_cells, .. } = columns;
+        let Columns { lines, own_lines, sums, of_cells, .. } = columns;
+        let CellJacobians { by_offsets: by_offsets_of_cells, rows: rows_of_cells } = of_cells;
         rows_of_cells.resize(2 * P * shifts.len(), 0.0);
         let rows = pairs_mut::<P>(rows_of_cells);
         let known = known.own().iter().zip(known.rows::<S>());
@@ -98,7 +99,8 @@ impl Frame {
     }
 
     fn move_residuals_padded<const K: usize, const P: usize>(&mut self, step: &[f64; K], by_cell: &[f64]) {
-        let Columns { by_offsets_of_cells, moves, numbers, residuals, along, rows_of_cells, .. } = &mut self.columns;
+        let Columns { moves, numbers, residuals, along, of_cells, .. } = &mut self.columns;
+        let CellJacobians { by_offsets: by_offsets_of_cells, rows: rows_of_cells } = of_cells;
         moves.resize(by_offsets_of_cells.len(), [0.0; 2]);
         // What is none has not moved.
         moves[by_cell.len()..].fill([0.0; 2]);

@@ -1,0 +1,23 @@
+use freeform_curve_fit::Outline;
+
+use super::search_budget::SearchBudget;
+use crate::search::Landmarks;
+
+/// What searches for the object go by.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct SearchMemory {
+    /// Of the first outline, in its image coordinates.
+    pub(super) landmarks: Option<Landmarks>,
+    /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
+    pub(super) symmetry: usize,
+    pub(super) budget: SearchBudget,
+    /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
+    pub(super) unfound: Vec<(f64, Outline)>,
+}
+
+impl Default for SearchMemory {
+    fn default() -> Self {
+        Self { landmarks: None, symmetry: 1, budget: SearchBudget::default(), unfound: Vec::new() }
+    }
+}
