@@ -60,7 +60,7 @@ fn a_lost_object_is_found_within_eight_frames_at_whatever_turn_it_comes_back() {
 }
 
 /// The outline lies where the first frame has shown it, and no later frame says more of that. Once the object had been lost the deviations of its
-/// positions were two or three times too small: 40 % of them were more than three deviations off.
+/// positions were two or three times too small: 35 of these were more than three deviations off.
 #[test]
 fn positions_of_an_object_that_was_lost_are_still_known_no_better_than_its_first_frame() {
     let (mut all, mut off) = (0, 0);
