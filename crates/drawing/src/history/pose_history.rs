@@ -34,7 +34,7 @@ impl PoseHistory {
 
     /// Adds what a frame says.
     pub(crate) fn take(&mut self, observation: &Observation) {
-        // Poses of different segments are relative to different outlines.
+        // Nobody knows how far the object has turned between segments.
         if observation.segment != self.segment {
             self.segment = observation.segment;
             self.last_angle = 0.0;

@@ -60,9 +60,13 @@ impl MotionFilter {
 
     /// Where more points than usual of a frame that has been taken disagree, or a turn that little tells is another than expected, they may be those
     /// that tell the pose: the object is searched for, and taken to be where that explains the frame significantly better. A frame that shows no
-    /// turn, or another one no less well, has told none where little tells it, so that others must tell it first.
+    /// turn, or another one better, if not significantly, has told none where little tells it, so that others must tell it first.
     pub(super) fn look_elsewhere(&mut self, outcome: Outcome, time: f64, outline: &Outline) -> Outcome {
-        let Some(doubt) = outcome.doubt.filter(|_| outcome.is_accepted() && self.may_search()) else { return outcome };
+        let Some(doubt) = outcome.doubt.filter(|_| outcome.is_accepted()) else { return outcome };
+        if !self.may_search() {
+            self.track.as_mut().filter(|_| doubt == Doubt::Turn).into_iter().for_each(Track::ask_anew_for_turn);
+            return outcome;
+        }
         let mut other = self.clone();
         other.phase = Phase::Lost;
         // Turns are counted from where the step to this frame has led.

@@ -1,3 +1,4 @@
+//! The times of a filter.
 /// Times of a filter, in its unit of time.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -278,7 +278,7 @@ impl MotionFilter {
         self.motion_changed |= self.history.is_changing();
         track.record_spread(&outcome.measurement);
         if outcome.is_accepted() && track.turn_leaps(&before, expected) {
-            outcome.doubt = Some(Doubt::Turn);
+            outcome.doubt = outcome.doubt.or(Some(Doubt::Turn));
         }
         let (turn, was_accepted) = (self.turn_hypotheses.present_turn(), outcome.is_accepted());
         let outcome = self.turn_hypotheses.decide(&self.settings, (track, frame), outcome, seconds);

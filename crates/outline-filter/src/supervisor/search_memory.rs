@@ -1,3 +1,4 @@
+//! What searches for the object go by.
 use freeform_curve_fit::Outline;
 
 use super::search_budget::SearchBudget;
@@ -11,6 +12,7 @@ pub(super) struct SearchMemory {
     pub(super) landmarks: Option<Landmarks>,
     /// Order of the symmetry of the outline, as the frame that it was searched for in last shows it; 1 where there is none.
     pub(super) symmetry: usize,
+    /// Searches that may still be made.
     pub(super) budget: SearchBudget,
     /// Frames in which the object has not been found since the first, while it has been found in none; in units of time.
     pub(super) unfound: Vec<(f64, Outline)>,

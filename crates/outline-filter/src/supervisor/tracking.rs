@@ -68,7 +68,6 @@ pub(super) fn advance(
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, comparison);
     history.record(&outcome, seconds);
     if matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. }))
-        && outcome.pose.is_none()
         && let Some(elsewhere) = displacement_nearby(track, frame)
     {
         history.record_apart(&elsewhere);

@@ -1,8 +1,12 @@
 //! Where the body frame lies beside the outline of the first frame.
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::Matrix3;
 
 use super::Track;
+#[cfg(feature = "serde")]
+use crate::tuning::statement::ROUNDING_OF_CORRELATION;
 use crate::{
     belief::StateMatrix,
     dynamics::{DynamicsFilter, PoseMatrix},
@@ -27,6 +31,10 @@ impl Default for BodyFrame {
 impl BodyFrame {
     pub(super) fn of(covariance: PoseMatrix) -> Self {
         Self { covariance }
+    }
+
+    pub(super) fn covariance(&self) -> PoseMatrix {
+        self.covariance
     }
 }
 
@@ -55,7 +63,7 @@ impl Track {
         let added =
             PoseMatrix::from_fn(|i, j| if i < k && j < k { 0.5 * (added[(i, j)] + added[(j, i)]) } else { 0.0 });
         let in_body = self.carried(&added, &belief.pose.try_inverse()?)?;
-        // Of two numbers that are large where the object has long been lost.
+        // The difference of two that are nearly equal.
         let mut eigen = in_body.symmetric_eigen();
         eigen.eigenvalues.apply(|value| *value = value.max(0.0));
         Some(eigen.recompose())
@@ -82,10 +90,19 @@ impl Track {
     }
 }
 
+/// Whether a matrix is symmetric, without negative variances and in bounds, as one that was saved is.
+#[cfg(feature = "serde")]
+pub(super) fn is_covariance(matrix: &PoseMatrix) -> bool {
+    let size = matrix.amax();
+    size <= StateFormat::LARGEST_NUMBER
+        && (matrix - matrix.transpose()).amax() <= ROUNDING_OF_CORRELATION * size
+        && matrix.diagonal().iter().all(|variance| *variance >= 0.0)
+}
+
 #[cfg(feature = "serde")]
 impl BodyFrame {
-    /// Whether every number is finite.
-    pub(super) fn is_finite(&self) -> bool {
-        self.covariance.iter().all(|number| number.is_finite())
+    /// Whether it may be a covariance.
+    pub(super) fn is_valid(&self) -> bool {
+        is_covariance(&self.covariance)
     }
 }

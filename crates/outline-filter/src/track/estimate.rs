@@ -185,6 +185,10 @@ impl Track {
             m.columns_mut(k, k).scale_mut(per_second);
             m
         };
+        let mut given_outline = belief.covariance_of(&belief.information.with_outline_given(), variance)?;
+        if let Some(untold) = self.covariance_of_untold_turn() {
+            given_outline += DMatrix::from_fn(2 * k, 2 * k, |i, j| untold[(i, j)]);
+        }
         let state = NormalisedState {
             model: belief.model,
             time: time * self.reference.time_unit,
@@ -193,9 +197,7 @@ impl Track {
             pose: summary.pose,
             motion: summary.motion.map(|value| value * per_second),
             covariance: in_seconds(covariance),
-            covariance_given_outline: in_seconds(
-                belief.covariance_of(&belief.information.with_outline_given(), variance)?,
-            ),
+            covariance_given_outline: in_seconds(given_outline),
             observable,
             hidden: self.hidden_rates(),
             centroid: self.map.centroid(),

@@ -37,6 +37,12 @@ impl Track {
         self.first_pose = FirstPose { pose, covariance: PoseMatrix::zeros(), of_body_frame };
     }
 
+    /// Takes over what the body frame has in error that another track of it has.
+    pub(super) fn keep_body_frame_of(&mut self, other: &Self) {
+        self.body_frame = other.body_frame;
+        self.first_pose.of_body_frame = other.body_frame.covariance();
+    }
+
     /// Takes over the pose that another track was begun in, and what its map has in error since then.
     pub(super) fn begin_in_pose_of(&mut self, other: &Self) {
         self.first_pose = other.first_pose;

@@ -33,7 +33,7 @@ impl Track {
             && self.early_shape.is_valid(cells)
             && self.usual.is_valid()
             && self.turn_profile.is_valid()
-            && self.body_frame.is_finite()
+            && self.body_frame.is_valid()
             && self.sensitivity.is_valid(with_sensitivity)
             && self.family.is_valid()
             && self.first_pose.is_finite()

@@ -36,6 +36,7 @@ pub(crate) struct Track {
     pub(super) usual: UsualAgreement,
     /// Whether frames tell a turn that the outline hardly shows.
     pub(super) turn_profile: TurnProfile,
+    /// What all poses have in error since the object was lost.
     pub(super) body_frame: BodyFrame,
     /// What the model leaves out.
     pub(super) sensitivity: Sensitivity,

@@ -57,7 +57,7 @@ impl Track {
     /// Compares the pose of an accepted frame with turned ones, where the outline hardly shows its turn; whether the last frames do not tell it as
     /// well as is said. Not where the model may stretch the outline: what turns it then is told with what stretches it.
     pub(crate) fn add_to_turn_profile(&mut self, outline: &Outline, outcome: &Outcome, frame: &mut Frame) -> bool {
-        let is_asked = self.map.shows_turn_weakly() || self.map.turn_hangs_on_few();
+        let is_asked = self.map.is_all_but_round() || self.map.turn_hangs_on_few();
         if !is_asked || self.turn_is_unseen() || self.model() > MotionModel::Similarity {
             return false;
         }
@@ -102,8 +102,7 @@ impl Track {
             return None;
         }
         let (model, span) = (self.belief.model, self.span_of_motion(false));
-        let about_centroid = SVector::from(model.parameters_of(&CLOCKWISE));
-        let direction: SVector<f64, MAX_PARAMETERS> = self.centred_pose().about_origin(model)? * about_centroid;
+        let direction = self.turn_about_centroid()?;
         let k = model.parameter_count();
         let mut covariance = StateMatrix::zeros();
         // Half a circle takes the origin of the body to the other side of its centroid, which no step along the turn does.
@@ -127,12 +126,16 @@ impl Track {
         self.turn_profile = other.turn_profile;
     }
 
+    /// The clockwise turn by 1 rad about the centroid, as parameters of the image.
+    fn turn_about_centroid(&self) -> Option<SVector<f64, MAX_PARAMETERS>> {
+        let model = self.belief.model;
+        Some(self.centred_pose().about_origin(model)? * SVector::from(model.parameters_of(&CLOCKWISE)))
+    }
+
     /// The turn that frames like this one should tell from none beyond doubt, by the information that this one promises, rad; `None` where they
     /// promise too little.
     fn turn_to_be_told(&self, outcome: &Outcome, points: usize) -> Option<f64> {
-        let model = self.belief.model;
-        let about_centroid = SVector::from(model.parameters_of(&CLOCKWISE));
-        let direction: SVector<f64, MAX_PARAMETERS> = self.centred_pose().about_origin(model)? * about_centroid;
+        let direction = self.turn_about_centroid()?;
         let of_turn = direction.dot(&(outcome.pose?.information * direction));
         // Of more points only so many are compared.
         let kept = points as f64 / points.div_ceil(ENOUGH_POINTS).max(1) as f64;

@@ -174,7 +174,7 @@ pub(crate) mod usual_agreement {
     /// Deviations of a share by which more points must disagree than usual. The usual share is a low one, about one deviation below the mean, and a
     /// search costs as much as fifty frames.
     pub(crate) const SIGNIFICANT: f64 = 5.0;
-    /// As that, where few of the points tell the turn: three of 300 that are off by chance are searched for once or twice.
+    /// As that, where few of the points tell the turn: four of 300 that are off by chance are searched for once or twice.
     pub(crate) const SIGNIFICANT_OF_FEW: f64 = 3.0;
     /// Shares by which a frame corrects the usual share where fewer points disagree, and where more do: that falls fast and rises slowly.
     pub(crate) const FALLS: f64 = 0.2;

@@ -74,7 +74,7 @@ fn angles_of(body: &[Point2<f64>], points: u32, random: &mut ChaCha8Rng) -> Angl
 
 /// Of 874 angles 143 were off before frames were asked; the others that were stated then are left out in the first frames, or for good.
 #[test]
-fn bodies_that_are_round_but_for_a_mark_state_no_angle_before_frames_have_told_it() {
+fn angles_of_bodies_that_are_round_but_for_a_mark_are_told_by_frames_before_they_are_stated() {
     let mut all = Angles::default();
     for seed in 0..12 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);

@@ -9,7 +9,7 @@ use crate::affine_moment_invariants::is_within;
 const LARGEST_CHANGE: f64 = 0.25;
 const CHANGES_OFTEN: usize = 4;
 
-/// Fewest pictures that are enough to say that something goes on in most of them: four bursts.
+/// Fewest pictures in which it is seen that are enough to say that something goes on in most of them: those of four bursts that do not overlap.
 const FEWEST_OF_MOST: usize = 12;
 
 /// What moves by less than this share of the way of another thing stands still beside it.

@@ -1,5 +1,7 @@
 //! What moves in front of a ground that rests. It is looked for where the best way finds what rests, or nothing for sure: the largest thing
 //! that stands out of a still picture is seldom the one whose motion is asked for.
+use std::collections::BTreeSet;
+
 use super::beside::{Beside, Changes, changes_beside};
 use super::chains::{BY_CHANCE, Chain, Likely, chains_of, common_pull, follow_each_other, straight_on};
 use super::evidence::{TracingEvidence, Trial, evidence_of};
@@ -71,14 +73,16 @@ pub(super) fn what_moves(
         for chains in &mut chains {
             chains.retain(|chain| !beside.has(chain));
         }
-        going_on.push(chains.iter().filter(|chains| !chains.is_empty()).count());
+        // Bursts of pictures that follow each other overlap.
+        let frames: BTreeSet<_> = chains.iter().flatten().flatten().map(|sight| sight.frame).collect();
+        going_on.push(frames.len());
         let found = moving(&trial, tracing, (bursts, chains), &beside);
         let found = [best, found].into_iter().flatten();
         best = found.min_by(|a, b| a.chance.total_cmp(&b.chance).then(b.found.score.total_cmp(&a.found.score)));
     }
     // What one way alone shows is noise.
     going_on.sort_unstable();
-    let seen = 3 * going_on.iter().rev().nth(1).or(going_on.first()).copied().unwrap_or(0);
+    let seen = going_on.iter().rev().nth(1).or(going_on.first()).copied().unwrap_or(0);
     Motion { moving: best.map(|best| best.found), changes, goes_on: Changes { seen, pictures: trial.count() } }
 }
 
