@@ -140,6 +140,18 @@ mod tests {
     }
 
     #[test]
+    fn in_the_body_frame_it_is_the_same_wherever_the_object_has_gone() {
+        let quarter = MotionModel::Rigid.flow(&[-std::f64::consts::FRAC_PI_2, 3.0, 1.0], 1.0).into_inner();
+        let turned = CentredPose { pose: quarter, ..reference() };
+        let [here, there] = [reference(), turned].map(|pose| common_error().of_body_frame(&pose).expect("a pose"));
+        assert!((here - there).amax() < 1e-14, "{here} {there}");
+        // There it was the identity that the hypotheses began in.
+        let from = reference().about_origin(MotionModel::Rigid).expect("a pose").fixed_view::<3, 3>(0, 0).into_owned();
+        let expected = from * common_error().covariance.fixed_view::<3, 3>(0, 0) * from.transpose();
+        assert!((here.fixed_view::<3, 3>(0, 0) - expected).amax() < 1e-14);
+    }
+
+    #[test]
     fn it_goes_along_with_the_object() {
         let quarter = MotionModel::Rigid.flow(&[-std::f64::consts::FRAC_PI_2, 3.0, 1.0], 1.0).into_inner();
         let turned = CentredPose { pose: quarter, ..reference() };

@@ -74,6 +74,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn few_marks_that_tell_the_turn_are_missed_from_the_first_frame_on() {
+        let first = |share: f64, shown: TurnShown| UsualAgreement::default().update(share, 300, shown);
+        assert!(first(0.05, TurnShown::ByFew) && !first(0.05, TurnShown::ByMany));
+        assert!(!first(0.005, TurnShown::ByFew));
+    }
+
+    #[test]
     fn a_part_of_the_outline_that_is_missed_is_noticed_in_every_frame_and_usual_outliers_are_not() {
         let mut usual = UsualAgreement::default();
         let noticed = |usual: &mut UsualAgreement, share: f64, frames: i32| {
