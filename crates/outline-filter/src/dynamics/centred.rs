@@ -2,7 +2,11 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
-use crate::{belief::StateMatrix, prediction::centred_change, vectors::vectorised};
+use crate::{
+    belief::StateMatrix,
+    prediction::{adjoint_matrix, centred_change},
+    vectors::vectorised,
+};
 
 /// Most parameters of a model that dynamics are told for, those of affine motion.
 pub(crate) const LARGEST: usize = 6;
@@ -40,10 +44,9 @@ impl CentredPose {
 
     /// Parameters about the centroid by those about the image origin.
     pub(crate) fn about_centroid(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
-        let (k, centre) = (model.parameter_count(), self.centre());
+        let centre = self.centre();
         let shift = |x: f64, y: f64| Matrix3::new(1.0, 0.0, x, 0.0, 1.0, y, 0.0, 0.0, 1.0);
-        let change = model.adjoint(&shift(-centre.x, -centre.y), &shift(centre.x, centre.y));
-        SMatrix::from_fn(|i, j| if i < k && j < k { change[i][j] } else { 0.0 })
+        adjoint_matrix(model, &shift(-centre.x, -centre.y), &shift(centre.x, centre.y))
     }
 }
 

@@ -2,12 +2,11 @@
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
 
+use crate::prediction::{PoseMatrix, moved_covariance};
+
 use super::centred::{CentredMatrix, CentredPose, LARGEST, as_map};
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
-
-/// One entry for each two parameters of a pose.
-pub(crate) type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 
 /// The outline as a whole lies where the first frame has shown it, with an error that all poses measured against it have in common: no
 /// number of frames takes it off a pose that is counted from the first. It goes along with the object.
@@ -92,10 +91,9 @@ impl CommonError {
         let (model, k) = (self.model, self.model.parameter_count());
         let common = self.covariance_in(pose)?;
         let common = PoseMatrix::from_fn(|i, j| if i < k && j < k { common[(i, j)] } else { 0.0 });
-        let to_body = model.adjoint(&pose.pose.try_inverse()?, &pose.pose);
-        let to_body = PoseMatrix::from_fn(|i, j| if i < k && j < k { to_body[i][j] } else { 0.0 });
-        let change = to_body * pose.about_origin(model)?;
-        Some(change * common * change.transpose() + self.shift * self.shift.transpose())
+        let change = pose.about_origin(model)?;
+        let in_body = moved_covariance(model, &(change * common * change.transpose()), &pose.pose.try_inverse()?)?;
+        Some(in_body + self.shift * self.shift.transpose())
     }
 
     #[cfg(feature = "serde")]

@@ -5,11 +5,10 @@ use nalgebra::{Matrix3, Point2, SVector};
 use super::{
     centred::{CentredDeviations, CentredPose, Summary},
     combination::Purpose,
-    common_error::PoseMatrix,
     interacting::InteractingHypotheses,
     setting::{Dynamics, DynamicsWeights},
 };
-use crate::{belief::StateMatrix, map::NullDirection, update::PoseMeasurement};
+use crate::{belief::StateMatrix, map::NullDirection, prediction::PoseMatrix, update::PoseMeasurement};
 
 /// Hypotheses of how the motion goes on, for the models that have dynamics. Matrices have the size that a model needs: most of the work on
 /// larger ones would be on zeros.

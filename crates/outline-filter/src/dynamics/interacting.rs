@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point2, SVector};
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
     combination::centred,
-    common_error::{CommonError, PoseMatrix},
+    common_error::CommonError,
     correction::root_of,
     course::Course,
     hypothesis::{CentredMeasurement, Hypothesis},
@@ -17,7 +17,10 @@ use super::{
 };
 #[cfg(feature = "serde")]
 use crate::tuning::saved_state::SUM_OFF;
-use crate::{belief::StateMatrix, map::NullDirection, tuning::dynamics as tuning, update::PoseMeasurement};
+use crate::{
+    belief::StateMatrix, map::NullDirection, prediction::PoseMatrix, tuning::dynamics as tuning,
+    update::PoseMeasurement,
+};
 
 /// Hypotheses at most.
 pub(super) const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();

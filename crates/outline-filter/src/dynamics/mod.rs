@@ -22,7 +22,6 @@ mod turned_chains;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use combination::Purpose;
-pub(crate) use common_error::PoseMatrix;
 pub(crate) use dynamics_filter::DynamicsFilter;
 pub use family::WrongFamily;
 pub(crate) use family::{FamilyTests, UnmodelledEstimate};

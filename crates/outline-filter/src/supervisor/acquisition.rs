@@ -154,7 +154,7 @@ impl MotionFilter {
     /// no doubt of it. Nothing is found then.
     fn rejected_at_a_glance(&mut self, registration: &Registration, seconds: f64) -> Option<Outcome> {
         let poses = registration.poses(self.track.as_ref()?, &self.frame.points, self.search_memory.symmetry);
-        let mut moved = self.moved(poses.first()?, seconds)?;
+        let mut moved = self.moved(&self.tried()?, poses.first()?, seconds)?;
         moved.set_tolerance(Tolerance::Relaxed);
         let outcome = moved.rejected_at_a_glance(&mut self.frame, &gate(&self.settings, &moved))?;
         self.turn_hypotheses = TurnHypotheses::default();
@@ -239,14 +239,14 @@ impl MotionFilter {
             return measured;
         }
         self.frame.load(outline, track.reference());
-        let mut candidates = Vec::new();
+        let (mut candidates, Some(tried)) = (Vec::new(), self.tried()) else { return Vec::new() };
         for found in poses {
             if let Some(at) = measured.iter().position(|candidate| candidate.found_in == found.pose) {
                 candidates.push(measured.swap_remove(at));
                 continue;
             }
             let (turn, change) = (found.turn, track.change_to(&found.pose));
-            let Some(mut track) = self.moved(found, seconds) else { continue };
+            let Some(mut track) = self.moved(&tried, found, seconds) else { continue };
             track.set_tolerance(tolerance);
             let gate = gate(&self.settings, &track);
             let outcome = track.update(&mut self.frame, &gate, Comparison::NotAsked);
@@ -291,11 +291,19 @@ impl MotionFilter {
         }
     }
 
-    /// The track moved into a pose that was found.
-    fn moved(&self, found: &RegisteredPose, seconds: f64) -> Option<Track> {
+    /// The track that the poses of a search are tried with: that of a lost object keeps what its poses have in error.
+    fn tried(&self) -> Option<Track> {
         let mut track = self.track.clone()?;
         if self.phase == Phase::Lost {
             track.keep_common_error(self.history.dynamics.as_ref());
+        }
+        Some(track)
+    }
+
+    /// A track that poses are tried with, moved into one that was found.
+    fn moved(&self, tried: &Track, found: &RegisteredPose, seconds: f64) -> Option<Track> {
+        let mut track = tried.clone();
+        if self.phase == Phase::Lost {
             track.relocate(found.pose, seconds);
         } else {
             let change = found.pose * track.body_pose().try_inverse()?;

@@ -272,12 +272,12 @@ impl MotionFilter {
         let is_after_rejected = self.counts.rejected_in_a_row > 0;
         let (frame, comparison) = (&mut self.frame, self.turn_hypotheses.comparison());
         frame.load(outline, track.reference());
-        let (before, expected) = (*track.body_pose(), track.turn_in(seconds));
+        let expected = track.is_all_but_round().then(|| (*track.body_pose(), track.turn_in(seconds)));
         let mut outcome =
             advance(&self.settings, (track, frame), &mut self.history, seconds, is_after_rejected, comparison);
         self.motion_changed |= self.history.is_changing();
         track.record_spread(&outcome.measurement);
-        if outcome.is_accepted() && track.turn_leaps(&before, expected) {
+        if outcome.is_accepted() && expected.is_some_and(|(before, turn)| track.turn_leaps(&before, turn)) {
             outcome.doubt = outcome.doubt.or(Some(Doubt::Turn));
         }
         let (turn, was_accepted) = (self.turn_hypotheses.present_turn(), outcome.is_accepted());

@@ -9,6 +9,7 @@ use super::Track;
 use crate::{
     belief::{Belief, StateMatrix, StateVector, scaled_inverse},
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
+    map::NullDirection,
     tuning::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
         statement::ROUNDING_OF_CORRELATION,
@@ -90,15 +91,19 @@ impl Track {
         squared.is_some_and(|squared| squared > SUDDEN * k as f64)
     }
 
+    /// What is believed, and would be if the outline were known, with null directions taken to be none, and known.
+    pub(super) fn held_summaries(&self, null: &[NullDirection]) -> Option<[Summary; 2]> {
+        let belief = &self.belief;
+        let hold = hold(belief, &self.map, null);
+        let held = |information: &StateMatrix| self.summary_by(&with_hold(information, hold.as_ref()));
+        Some([held(&belief.marginal)?, held(&belief.information.with_outline_given())?])
+    }
+
     /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.
     pub(crate) fn begun_dynamics(&self, setting: Dynamics) -> Option<DynamicsFilter> {
-        let belief = &self.belief;
-        let null = self.map.null_directions(belief.model, &belief.pose);
-        let hold = hold(belief, &self.map, &null);
-        let mut summary = self.summary_by(&with_hold(&belief.marginal, hold.as_ref()))?;
+        let (belief, null) = (&self.belief, self.null_directions());
+        let [mut summary, Summary { covariance: given_outline, .. }] = self.held_summaries(&null)?;
         self.add_kept_error(&mut summary.covariance, &summary.pose);
-        let given_outline = belief.information.with_outline_given();
-        let given_outline = self.summary_by(&with_hold(&given_outline, hold.as_ref()))?.covariance;
         let place = (self.map.centroid(), null.as_slice());
         DynamicsFilter::begin(belief.model, setting, (&summary, &given_outline), place, belief.memory.step)
     }

@@ -2,10 +2,14 @@
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::Matrix3;
 
-use super::{Track, body_frame::BodyFrame};
+use super::{
+    Track,
+    body_frame::{BodyFrame, of_pose},
+};
 use crate::{
     belief::StateMatrix,
-    dynamics::{PoseMatrix, Summary},
+    dynamics::Summary,
+    prediction::{PoseMatrix, moved_covariance},
 };
 
 /// Body to image, and what is not known of it: nothing where that frame is the body frame.
@@ -15,13 +19,13 @@ pub(super) struct FirstPose {
     pub(super) pose: Matrix3<f64>,
     /// Of what is not known of it beside the map, on the left; in normalised units.
     covariance: PoseMatrix,
-    /// Of what a map that is cut anew in this pose has in error beside the first frame of all, in the body frame; in normalised units.
-    of_body_frame: PoseMatrix,
+    /// Where the body frame of a map that is cut anew in this pose lies.
+    body_frame: BodyFrame,
 }
 
 impl Default for FirstPose {
     fn default() -> Self {
-        Self { pose: Matrix3::identity(), covariance: PoseMatrix::zeros(), of_body_frame: PoseMatrix::zeros() }
+        Self { pose: Matrix3::identity(), covariance: PoseMatrix::zeros(), body_frame: BodyFrame::default() }
     }
 }
 
@@ -29,24 +33,22 @@ impl Track {
     /// Takes the pose that it is in as that which it was begun in. What is not known of it is where a map that is cut in it lies.
     pub(crate) fn begin_here(&mut self) {
         let Some(Summary { pose, covariance, .. }) = self.summary() else { return };
-        let of_pose = covariance.fixed_view::<MAX_PARAMETERS, MAX_PARAMETERS>(0, 0).into_owned();
-        let k = self.belief.parameter_count();
-        let of_pose = PoseMatrix::from_fn(|i, j| if i < k && j < k { of_pose[(i, j)] } else { 0.0 });
-        let of_body_frame = pose.try_inverse().and_then(|to_body| self.carried(&of_pose, &to_body));
-        let of_body_frame = of_body_frame.unwrap_or_else(PoseMatrix::zeros);
-        self.first_pose = FirstPose { pose, covariance: PoseMatrix::zeros(), of_body_frame };
+        let in_body =
+            pose.try_inverse().and_then(|to_body| moved_covariance(self.model(), &of_pose(&covariance), &to_body));
+        let body_frame = in_body.map_or_else(BodyFrame::default, |in_body| BodyFrame::of(&in_body));
+        self.first_pose = FirstPose { pose, covariance: PoseMatrix::zeros(), body_frame };
     }
 
     /// Takes over what the body frame has in error that another track of it has.
     pub(super) fn keep_body_frame_of(&mut self, other: &Self) {
         self.body_frame = other.body_frame;
-        self.first_pose.of_body_frame = other.body_frame.covariance();
+        self.first_pose.body_frame = other.body_frame;
     }
 
     /// Takes over the pose that another track was begun in, and what its map has in error since then.
     pub(super) fn begin_in_pose_of(&mut self, other: &Self) {
         self.first_pose = other.first_pose;
-        self.body_frame = BodyFrame::of(other.first_pose.of_body_frame);
+        self.body_frame = other.first_pose.body_frame;
         self.doubt_first_pose();
     }
 
@@ -60,7 +62,7 @@ impl Track {
             (0..k).for_each(|i| (0..k).for_each(|j| covariance[(i, j)] += direction[i] * direction[j]));
         }
         self.show_turn();
-        self.first_pose = FirstPose { pose: self.belief.pose, covariance, of_body_frame: PoseMatrix::zeros() };
+        self.first_pose = FirstPose { pose: self.belief.pose, covariance, body_frame: BodyFrame::default() };
         self.doubt_first_pose();
     }
 
@@ -79,8 +81,8 @@ impl Track {
 
 #[cfg(feature = "serde")]
 impl FirstPose {
-    /// Whether every number is finite.
-    pub(super) fn is_finite(&self) -> bool {
-        self.pose.iter().chain(&self.covariance).chain(&self.of_body_frame).all(|number| number.is_finite())
+    /// Whether every number is finite, and the body frame may lie where it does.
+    pub(super) fn is_valid(&self) -> bool {
+        self.pose.iter().chain(&self.covariance).all(|number| number.is_finite()) && self.body_frame.is_valid()
     }
 }

@@ -36,7 +36,7 @@ impl Track {
             && self.body_frame.is_valid()
             && self.sensitivity.is_valid(with_sensitivity)
             && self.family.is_valid()
-            && self.first_pose.is_finite()
+            && self.first_pose.is_valid()
             && Arc::make_mut(&mut self.map).restore()
     }
 }

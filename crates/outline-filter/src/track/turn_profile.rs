@@ -74,7 +74,7 @@ impl Track {
     }
 
     /// Whether frames must tell the turn before it is stated.
-    fn is_all_but_round(&self) -> bool {
+    pub(crate) fn is_all_but_round(&self) -> bool {
         self.map.is_all_but_round() && !self.turn_is_unseen() && self.model() <= MotionModel::Similarity
     }
 

@@ -35,8 +35,7 @@ const CLEAR: f64 = 0.75;
 pub(super) type Chain = [Sight; 3];
 
 /// Whether a thing is nowhere that it was in the picture before.
-fn is_clear(chain: &Chain) -> bool {
-    let [a, b, c] = chain;
+fn is_clear([a, b, c]: [&Sight; 3]) -> bool {
     let step = (b.centre - a.centre).norm().min((c.centre - b.centre).norm());
     step > CLEAR * b.size()
 }
@@ -75,7 +74,7 @@ fn one_or_more(expected: f64) -> f64 {
 }
 
 /// By how much the second step of a chain differs from its first.
-fn bend([a, b, c]: &Chain) -> Vector2<f64> {
+fn bend([a, b, c]: [&Sight; 3]) -> Vector2<f64> {
     a.centre.coords - 2.0 * b.centre.coords + c.centre.coords
 }
 
@@ -88,10 +87,11 @@ pub(super) struct Likely {
 /// The chains of things that are nowhere that they were in the picture before.
 pub(super) fn straight_on(mut chains: Vec<Vec<Chain>>, bursts: &[&[Vec<Sight>]], picture_area: f64) -> Likely {
     let chance = together(chains.iter_mut().zip(bursts).map(|(chains, burst)| {
-        chains.retain(is_clear);
+        chains.retain(|chain| is_clear(chain.each_ref()));
         let triples = triples(burst);
-        let expected =
-            chains.iter().map(|chain| as_straight(triples, bend(chain).norm(), chain[1].size(), picture_area));
+        let expected = chains
+            .iter()
+            .map(|chain| as_straight(triples, bend(chain.each_ref()).norm(), chain[1].size(), picture_area));
         one_or_more(expected.fold(f64::INFINITY, f64::min))
     }));
     Likely { chains, chance }
@@ -106,7 +106,7 @@ pub(super) fn common_pull(
 ) -> Option<Likely> {
     let bent: Vec<Vec<Chain>> = bursts.iter().map(|burst| bent_chains(burst, &is_wanted)).collect();
     let triples: Vec<usize> = bursts.iter().map(|burst| triples(burst)).collect();
-    let off = |chain: &Chain, pull: &Vector2<f64>| (bend(chain) - pull).norm();
+    let off = |chain: &Chain, pull: &Vector2<f64>| (bend(chain.each_ref()) - pull).norm();
     let chance_of = |pull: &Vector2<f64>, own: usize| {
         let others = bent.iter().zip(&triples).enumerate().filter(|(k, _)| *k != own);
         together(others.map(|(_, (chains, triples))| {
@@ -115,7 +115,8 @@ pub(super) fn common_pull(
             one_or_more(expected.fold(f64::INFINITY, f64::min))
         }))
     };
-    let tried = bent.iter().enumerate().flat_map(|(own, chains)| chains.iter().map(move |chain| (own, bend(chain))));
+    let tried =
+        bent.iter().enumerate().flat_map(|(own, chains)| chains.iter().map(move |chain| (own, bend(chain.each_ref()))));
     let count = tried.clone().count();
     let (pull, chance) = tried.map(|(own, pull)| (pull, chance_of(&pull, own))).min_by(|a, b| a.1.total_cmp(&b.1))?;
     let along = |chains: &Vec<Chain>| -> Vec<Chain> {
@@ -129,15 +130,16 @@ pub(super) fn common_pull(
 /// What is like each other in three pictures, nowhere that it was in the picture before, and goes on, bent however within limits.
 fn bent_chains(burst: &[Vec<Sight>], is_wanted: impl Fn(&Chain) -> bool) -> Vec<Chain> {
     let [first, second, third] = burst else { return Vec::new() };
-    let of = |b: &Sight| -> Vec<Chain> {
-        let alike = |of: &[Sight]| -> Vec<Sight> { of.iter().filter(|a| is_like(a, b)).cloned().collect() };
-        let (before, after) = (alike(first), alike(third));
-        let pairs = before.iter().flat_map(|a| after.iter().map(move |c| [a.clone(), b.clone(), c.clone()]));
-        pairs
-            .filter(|chain| is_clear(chain) && bend(chain).norm() < LARGEST_PULL * b.size() && is_wanted(chain))
-            .collect()
-    };
-    second.iter().flat_map(of).collect()
+    let goes_on = |chain: &[&Sight; 3]| is_clear(*chain) && bend(*chain).norm() < LARGEST_PULL * chain[1].size();
+    let all = second.iter().flat_map(|b| candidates(first, b, third)).filter(goes_on);
+    all.map(|chain| chain.map(Sight::clone)).filter(is_wanted).collect()
+}
+
+/// All that may be one thing in three pictures, of which it is seen in the second.
+fn candidates<'a>(first: &'a [Sight], b: &'a Sight, third: &'a [Sight]) -> impl Iterator<Item = [&'a Sight; 3]> {
+    let alike = |of: &'a [Sight]| -> Vec<&'a Sight> { of.iter().filter(|a| is_like(a, b)).collect() };
+    let (before, after) = (alike(first), alike(third));
+    before.into_iter().flat_map(move |a| after.clone().into_iter().map(move |c| [a, b, c]))
 }
 
 pub(super) fn follow_each_other(burst: &[Vec<Sight>]) -> bool {
@@ -148,7 +150,7 @@ pub(super) fn follow_each_other(burst: &[Vec<Sight>]) -> bool {
 /// What goes straight on within three pictures.
 pub(super) fn chains_of(burst: &[Vec<Sight>]) -> Vec<Chain> {
     let [first, second, third] = burst else { return Vec::new() };
-    let goes_on = |a: &Sight, b: &Sight, c: &Sight| {
+    let goes_on = |[a, b, c]: &[&Sight; 3]| {
         let (one, two) = (b.centre - a.centre, c.centre - b.centre);
         let step = one.norm().max(two.norm());
         let bend = BEND[0] * b.size() + BEND[1] * step + BEND[2];
@@ -156,12 +158,8 @@ pub(super) fn chains_of(burst: &[Vec<Sight>]) -> Vec<Chain> {
         (overlaps || (two - one).norm() < bend) && (one + two).norm() > LEAST_WAY[0] * b.size() + LEAST_WAY[1]
     };
     let chain = |b: &Sight| -> Option<Chain> {
-        let candidates = |of: &'_ [Sight]| -> Vec<Sight> { of.iter().filter(|a| is_like(a, b)).cloned().collect() };
-        let (before, after) = (candidates(first), candidates(third));
-        let pairs = before.iter().flat_map(|a| after.iter().map(move |c| (a, c)));
-        let straight = pairs.filter(|(a, c)| goes_on(a, b, c));
-        let (a, c) = straight.min_by(|x, y| way([x.0, b, x.1]).total_cmp(&way([y.0, b, y.1])))?;
-        Some([a.clone(), b.clone(), c.clone()])
+        let straight = candidates(first, b, third).filter(goes_on);
+        Some(straight.min_by(|x, y| way(*x).total_cmp(&way(*y)))?.map(Sight::clone))
     };
     second.iter().filter_map(chain).collect()
 }
@@ -222,7 +220,7 @@ mod tests {
         for seed in 0..20 {
             let with = pulled(&thrown(seed, true)).expect("chains");
             assert!(with.chance < BY_CHANCE, "{seed}: {}", with.chance);
-            let of_thrown = |chain: &Chain| (bend(chain) - Vector2::new(0.0, 10.0)).norm() < 2.0;
+            let of_thrown = |chain: &Chain| (bend(chain.each_ref()) - Vector2::new(0.0, 10.0)).norm() < 2.0;
             assert!(with.chains.iter().all(|chains| chains.iter().any(of_thrown)), "{seed}");
             let without = pulled(&thrown(seed, false)).map_or(1.0, |likely| likely.chance);
             assert!(without > BY_CHANCE, "{seed}: {without}");
