@@ -1,7 +1,7 @@
 //! The stress suite as JSON.
 use std::io::{self, Write};
 
-use freeform_experiments::stress::{Class, Kind, NOTES, QuantitySummary, StressReport, Summary};
+use freeform_experiments::stress::{Class, Kind, NOTES, PoseSummary, QuantitySummary, StressReport, Summary};
 use serde_json::{Map, Value, json};
 
 /// One JSON object.
@@ -43,6 +43,16 @@ fn kind_json(kind: &Kind) -> Map<String, Value> {
     fields.into_iter().map(|(name, text)| (name.to_owned(), text.into())).collect()
 }
 
+fn poses_json(poses: &PoseSummary) -> Value {
+    json!({
+        "silent_wrong": poses.silent_wrong,
+        "off": poses.off,
+        "turn_coverage": poses.turn_coverage,
+        "place_coverage": poses.place_coverage,
+        "turn_unstated": poses.turn_unstated,
+    })
+}
+
 fn summary_json(summary: &Summary) -> Map<String, Value> {
     let quantity = |of: &QuantitySummary| {
         let value = json!({
@@ -64,6 +74,7 @@ fn summary_json(summary: &Summary) -> Map<String, Value> {
         ("alias_told", json!(summary.alias_told)),
         ("frames_rejected", json!(summary.frames_rejected)),
         ("quantities", quantities.into()),
+        ("poses", summary.poses.as_ref().map_or(Value::Null, poses_json)),
     ];
     fields.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

@@ -1,7 +1,7 @@
 //! The stress suite as text.
 use std::io::{self, Write};
 
-use freeform_experiments::stress::{Class, Kind, NOTES, Quantity, StressReport, Summary};
+use freeform_experiments::stress::{Class, Kind, NOTES, PoseSummary, Quantity, StressReport, Summary};
 use freeform_motion::riccati::MotionModel;
 use freeform_motion::significant;
 
@@ -11,13 +11,18 @@ use super::evaluate_table::decimals;
 /// Heads of the columns before those of the quantities.
 const COLUMNS: [&str; 8] = ["class", "kind", "runs", "silent wrong", "off", "unstated", "warned", "rejected"];
 
+/// Heads of the columns of the poses, where any are judged.
+const POSE_COLUMNS: [&str; 4] = ["poses silent", "poses off", "turn held", "place held"];
+
 /// What the columns are.
-const LEGEND: [&str; 6] = [
+const LEGEND: [&str; 7] = [
     "silent wrong: share of the runs in which a stated value was more than 4 standard deviations off, no warning questioned it, and no alias \
      named the true angular velocity",
     "off: the same, told or not; unstated: share of the runs in which a parameter or (round only) v was not stated",
     "warned: share of the runs with a warning that questions the values; rejected: share of the frames that were not used",
     "sigma, omega, a: growth, angular velocity, a1 to a4; b, v: velocity at the origin, of the middle; all at the last frame",
+    "poses silent, poses off: share of the runs with a pose, in any frame that was used, that was more than 5 standard deviations off, without a \
+     warning, with or without; turn held, place held: of the poses",
     "held: share of the stated values whose 95 % interval contains the truth",
     "median: median error in standard deviations, 0.67 where all is well",
 ];
@@ -84,7 +89,8 @@ fn heads(report: &StressReport) -> Vec<String> {
         let unstated = (quantity != Quantity::V).then(|| format!("{quantity} unstated"));
         unstated.into_iter().chain([format!("{quantity} held"), format!("{quantity} median")])
     };
-    COLUMNS.map(str::to_owned).into_iter().chain(judged(report).flat_map(of_quantity)).collect()
+    let of_poses = report.overall.poses.iter().flat_map(|_| POSE_COLUMNS.map(str::to_owned));
+    COLUMNS.map(str::to_owned).into_iter().chain(judged(report).flat_map(of_quantity)).chain(of_poses).collect()
 }
 
 fn judged(report: &StressReport) -> impl Iterator<Item = Quantity> {
@@ -94,14 +100,31 @@ fn judged(report: &StressReport) -> impl Iterator<Item = Quantity> {
 /// Rows of the kinds, and of the classes and all.
 fn rows(report: &StressReport) -> (Vec<Vec<String>>, Vec<Vec<String>>) {
     let quantities: Vec<Quantity> = judged(report).collect();
-    let row = |class: &str, kind: &str, summary: &Summary| row(class, kind, summary, &quantities);
+    let has_poses = report.overall.poses.is_some();
+    let row = |class: &str, kind: &str, summary: &Summary| {
+        let mut cells = row(class, kind, summary, &quantities);
+        if has_poses {
+            cells.extend(pose_cells(summary.poses.as_ref()));
+        }
+        cells
+    };
     let kinds = report.kinds.iter().map(|of| row(of.kind.class.name(), &of.kind.name, &of.summary)).collect();
     let classes = report.classes.iter().map(|(class, summary)| row(class.name(), "all", summary));
     (kinds, classes.chain([row("all", "all", &report.overall)]).collect())
 }
 
+fn pose_cells(poses: Option<&PoseSummary>) -> [String; 4] {
+    let [silent, off] = [poses.and_then(|poses| poses.silent_wrong), poses.and_then(|poses| poses.off)].map(percent);
+    let held = [poses.and_then(|poses| poses.turn_coverage), poses.and_then(|poses| poses.place_coverage)];
+    let [turn, place] = held.map(|share| decimals(share, 2));
+    [silent, off, turn, place]
+}
+
+fn percent(share: Option<f64>) -> String {
+    share.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share))
+}
+
 fn row(class: &str, kind: &str, summary: &Summary, quantities: &[Quantity]) -> Vec<String> {
-    let percent = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), |share| format!("{:.1} %", 100.0 * share));
     let mut row = vec![class.to_owned(), kind.to_owned(), summary.runs.to_string()];
     row.extend(
         [summary.silent_wrong, summary.off, summary.unstated, summary.warned, summary.frames_rejected].map(percent),

@@ -55,6 +55,22 @@ pub(super) enum Body {
 }
 
 impl Body {
+    /// How many turns within a full one leave the contour as it is; 1 of a circle too, none of whose turns is shown.
+    pub(super) fn folds(self) -> usize {
+        match self {
+            Self::Regular { corners } => corners,
+            Self::Gear { teeth, .. } => teeth,
+            Self::Lobes { lobes, .. } => lobes,
+            Self::Ellipse { .. } => 2,
+            Self::Object
+            | Self::Blob
+            | Self::Polygon { .. }
+            | Self::Circle
+            | Self::Notched { .. }
+            | Self::Egg { .. } => 1,
+        }
+    }
+
     /// The contour at unit size about its middle; where it is a matter of chance, another one each time.
     pub(super) fn contour(self, rng: &mut impl Rng) -> Result<Shape, ExperimentError> {
         let wave = |order: usize, angle: f64| (order as f64 * angle).cos();

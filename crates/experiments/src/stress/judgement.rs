@@ -4,6 +4,7 @@ use freeform_motion::tracker::ObjectResult;
 use freeform_riccati::MotionModel;
 use nalgebra::Point2;
 
+use super::poses::PoseErrors;
 use super::sequence::Truth;
 
 /// Codes of warnings that do not question a value that is stated: that others are not, that single frames were not used, that the
@@ -75,6 +76,8 @@ pub(super) struct Outcome {
     pub(super) alias_told: bool,
     pub(super) frames: usize,
     pub(super) frames_rejected: usize,
+    /// Errors of the poses on the way; `None` where they are not judged.
+    pub(super) poses: Option<PoseErrors>,
 }
 
 impl Outcome {
@@ -121,7 +124,13 @@ impl Outcome {
             alias_told: aliases.into_iter().any(|alias| off(alias) <= tolerance),
             frames: result.map_or(0, |result| result.frames),
             frames_rejected: result.map_or(0, |result| result.frames_rejected),
+            poses: None,
         }
+    }
+
+    /// With the errors of the poses.
+    pub(super) fn with_poses(self, poses: Option<PoseErrors>) -> Self {
+        Self { poses, ..self }
     }
 
     /// Whether a stated value is wrong.

@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 use super::course::Motion;
 use super::fault::{Fault, FaultInTime, add_noise};
 use super::recipe::{Deformation, Depth, Recipe, Sampling, Sensing};
+use super::rigid_poses::RigidPoses;
 use super::stretch::Stretch;
 use super::view::View;
 use crate::ExperimentError;
@@ -112,6 +113,13 @@ impl<'a> Sequence<'a> {
         }
     }
 
+    /// The truth of its poses; `None` where the body has no rigid pose in the picture, or the picture as a whole is shifted.
+    pub(super) fn poses(&self) -> Option<RigidPoses> {
+        let is_rigid = self.model == MotionModel::Rigid && self.recipe.deformation == Deformation::None;
+        let is_shifted = self.faults.iter().any(|fault| matches!(fault.fault, Fault::Shake { .. }));
+        (is_rigid && self.recipe.view == View::Flat && !is_shifted).then(|| RigidPoses::new(self.recipe, self.motion))
+    }
+
     /// Where the middle of the object is in the picture.
     #[cfg(test)]
     fn place_in_picture(&self, time: f64) -> Vector2<f64> {
@@ -119,7 +127,7 @@ impl<'a> Sequence<'a> {
     }
 
     /// The first so many frames in order.
-    pub(super) fn frames(mut self, count: usize, rng: &mut impl Rng) -> Vec<SeenFrame> {
+    pub(super) fn frames(&mut self, count: usize, rng: &mut impl Rng) -> Vec<SeenFrame> {
         let mut frames = Vec::with_capacity(count);
         for index in 0..count {
             if index > 0 {
@@ -265,7 +273,7 @@ mod tests {
 
     fn frames(recipe: &Recipe, seed: u64) -> (Truth, Vec<SeenFrame>) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let sequence = Sequence::new(recipe, MotionModel::Rigid, &mut rng).expect("a sequence");
+        let mut sequence = Sequence::new(recipe, MotionModel::Rigid, &mut rng).expect("a sequence");
         (sequence.truth(recipe.frames - 1), sequence.frames(recipe.frames, &mut rng))
     }
 

@@ -1,5 +1,5 @@
 use freeform_motion::outline_io::{DEFAULT_OBJECT, OutlineFrame};
-use freeform_motion::tracker::Method;
+use freeform_motion::tracker::{Method, Trajectory};
 use freeform_motion::{Tracker, TrackerSettings};
 use freeform_riccati::MotionModel;
 use rand::SeedableRng as _;
@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::class::Class;
 use super::judgement::Outcome;
 use super::kind::Kind;
+use super::poses::PoseErrors;
 use super::sequence::Sequence;
 use super::summary::Summary;
 use crate::ExperimentError;
@@ -113,19 +114,22 @@ impl StressStudy {
         let count = frames.map_or(recipe.frames, |frames| frames.min(recipe.frames));
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ hash(&kind.path()));
         rng.set_stream(number as u64);
-        let sequence = Sequence::new(recipe, self.model, &mut rng)?;
-        let truth = sequence.truth(count - 1);
+        let mut sequence = Sequence::new(recipe, self.model, &mut rng)?;
+        let (truth, true_poses) = (sequence.truth(count - 1), sequence.poses());
+        let mut trajectory = Trajectory::default();
         let mut tracker = Tracker::new(TrackerSettings::new(Method::Filter, self.model))?;
         for seen in sequence.frames(count, &mut rng) {
             let frame = seen.index as u64;
             let object = DEFAULT_OBJECT.to_owned();
-            match seen.outline {
-                Some(outline) => drop(tracker.push(&OutlineFrame { frame, time: seen.time, object, outline })),
-                None => drop(tracker.reject(&object, frame, format!("frame {frame} has no outline"))),
-            }
+            trajectory.take(&match seen.outline {
+                Some(outline) => tracker.push(&OutlineFrame { frame, time: seen.time, object, outline }),
+                None => tracker.reject(&object, frame, format!("frame {frame} has no outline")),
+            });
         }
         let frame_rate = recipe.fps / recipe.time_unit;
-        Ok(Outcome::of(tracker.results().first(), &truth, frame_rate, self.model, kind.judges_middle()))
+        let poses = true_poses.map(|truth| PoseErrors::of(&trajectory, &truth));
+        let outcome = Outcome::of(tracker.results().first(), &truth, frame_rate, self.model, kind.judges_middle());
+        Ok(outcome.with_poses(poses))
     }
 }
 

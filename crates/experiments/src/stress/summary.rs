@@ -24,6 +24,24 @@ pub struct Summary {
     pub frames_rejected: Option<f64>,
     /// Of each quantity that is judged.
     pub quantities: Vec<QuantitySummary>,
+    /// Of the poses on the way; `None` where no run has any that are judged.
+    pub poses: Option<PoseSummary>,
+}
+
+/// What the runs say of the poses in the frames that were used. Shares are from 0 to 1, `None` of nothing.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PoseSummary {
+    /// Share of the runs in which a number of a pose was more than five standard deviations off, and no warning questioned the values.
+    pub silent_wrong: Option<f64>,
+    /// Share of the runs in which a number of a pose was more than five standard deviations off, told or not.
+    pub off: Option<f64>,
+    /// Share of the stated angles whose 95 % interval held the truth.
+    pub turn_coverage: Option<f64>,
+    /// Share of the stated coordinates whose 95 % interval held the truth.
+    pub place_coverage: Option<f64>,
+    /// Share of the frames without an angle that is judged.
+    pub turn_unstated: Option<f64>,
 }
 
 /// What the runs say of one quantity.
@@ -64,6 +82,7 @@ impl Summary {
                 .filter(judged)
                 .map(|quantity| QuantitySummary::of(quantity, &outcomes))
                 .collect(),
+            poses: PoseSummary::of(&outcomes),
         }
     }
 
@@ -72,6 +91,22 @@ impl Summary {
     pub fn told_of_off(&self) -> Option<f64> {
         let (silent, off) = (self.silent_wrong?, self.off?);
         (off > 0.0).then(|| 1.0 - silent / off)
+    }
+}
+
+impl PoseSummary {
+    fn of(outcomes: &[&Outcome]) -> Option<Self> {
+        let judged = || outcomes.iter().filter_map(|outcome| Some((*outcome, outcome.poses.as_ref()?)));
+        judged().next()?;
+        let holds = |error: &f64| error.abs() <= HALF_INTERVAL;
+        let [frames, turns] = judged().fold([0, 0], |[f, t], (_, poses)| [f + poses.frames, t + poses.turns.len()]);
+        Some(Self {
+            silent_wrong: share(judged().map(|(outcome, poses)| poses.are_off() && outcome.is_silent())),
+            off: share(judged().map(|(_, poses)| poses.are_off())),
+            turn_coverage: share(judged().flat_map(|(_, poses)| &poses.turns).map(holds)),
+            place_coverage: share(judged().flat_map(|(_, poses)| &poses.places).map(holds)),
+            turn_unstated: (frames > 0).then(|| 1.0 - turns as f64 / frames as f64),
+        })
     }
 }
 
