@@ -4,11 +4,15 @@ use std::f64::consts::PI;
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 
-use super::{Columns, Frame, PlaceOnLattice, variance_inflation::VarianceInflation};
+use super::{
+    Columns, Frame, PlaceOnLattice,
+    correlation::{Correlation, ShownCorrelation},
+    variance_inflation::VarianceInflation,
+};
 use crate::{
     map::{median, median_about},
     tuning::{measurement::MEDIAN_TO_DEVIATION, noise as tuning, statement::ROUNDING},
-    vectors::{LANES, vectorised},
+    vectors::vectorised,
 };
 
 /// Whether a frame may show more noise than the contour of the first, none having been compared yet.
@@ -111,14 +115,6 @@ struct NoiseLevel {
     count: usize,
 }
 
-/// How many times the variance of a mean along the contour is what independent errors give.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Correlation {
-    ratio: f64,
-    frames: f64,
-}
-
 impl NoiseModel {
     /// Of contours with noise of deviation `sigma`, cut into cells with a sagitta and a spacing.
     pub(crate) fn new(sigma: f64) -> Self {
@@ -130,7 +126,7 @@ impl NoiseModel {
             tolerance: Tolerance::Known,
             counted: Counted::Alike,
             level: NoiseLevel { frames: [0.0; tuning::FRAMES], count: 0 },
-            correlation: Correlation { ratio: 1.0, frames: 0.0 },
+            correlation: Correlation::NONE,
             inflation: Vec::new(),
         }
     }
@@ -183,12 +179,9 @@ impl NoiseModel {
         self.inflation[cell].add(square, share);
     }
 
-    /// Updates the mean of how many times the variance of the mean over a stretch was what independent errors give, in a frame that counts for a share of
-    /// one of good points.
-    pub(crate) fn update_correlation(&mut self, ratio: f64, share: f64) {
-        let Correlation { ratio: mean, frames } = &mut self.correlation;
-        *frames = (*frames + share).min(tuning::CORRELATION_MEMORY);
-        *mean += (ratio - *mean) * share / *frames;
+    /// Takes in what a frame shows of the correlation, which counts for a share of one of good points.
+    pub(crate) fn update_correlation(&mut self, shown: &ShownCorrelation, share: f64) {
+        self.correlation.add(shown, share);
     }
 
     /// Variance that the points of a cell count with, in units of that of the noise; at least 1.
@@ -228,88 +221,18 @@ impl NoiseModel {
 
     /// Points that tell as much as one with independent errors would, at least 1.
     pub(crate) fn correlation(&self) -> f64 {
-        let Correlation { ratio, frames } = self.correlation;
-        let uncertainty = (2.0 / (tuning::STRETCHES as f64 * frames.max(1.0))).sqrt();
-        (ratio / (1.0 + tuning::CORRELATION_SIGNIFICANT * uncertainty)).max(self.rounding.shared_by)
+        self.correlation.ratio().max(self.rounding.shared_by)
     }
 
     /// Whether enough frames have been seen to tell, and the errors of points beside each other have not been found to depend on each other.
     pub(crate) fn is_found_independent(&self) -> bool {
-        self.correlation.frames >= tuning::CORRELATION_TOLD && self.correlation() <= 1.0
+        self.correlation.is_told() && self.correlation() <= 1.0
     }
 
     /// Variance of the noise times the points that tell no more than one, since their errors are correlated.
     pub(crate) fn effective_variance(&self) -> f64 {
         self.sigma * self.sigma * self.correlation()
     }
-}
-
-/// How many times the variance of the weighted mean residual over a stretch of the contour is what independent errors give, of deviation
-/// `noise` for a good point; `None` where it cannot be told. Stretches count by the information that they have.
-pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>) -> Option<f64> {
-    let Frame { columns, deviations, .. } = frame;
-    let length = columns.len() / tuning::STRETCHES;
-    let noise = noise.filter(|noise| *noise > 0.0 && length >= tuning::FEWEST_IN_STRETCH)?;
-    let (mut sum, mut count, mut stretches) = (0.0, 0.0, 0.0);
-    let all = columns.residuals.chunks_exact(length).zip(columns.weights.chunks_exact(length));
-    for (stretch, (residuals, weights)) in all.enumerate() {
-        let total = match deviations.ratios() {
-            None => alike(residuals, weights),
-            Some(ratios) => by_deviations(residuals, weights, &ratios[stretch * length..]),
-        };
-        if tuning::ONE_IN_COUNTS * total.number > length as f64 {
-            sum += total.residuals * total.residuals / total.number;
-            count += total.weights / total.number;
-            stretches += 1.0;
-        }
-    }
-    (tuning::ONE_IN_COUNTS * stretches > tuning::STRETCHES as f64).then(|| sum / (count * noise * noise))
-}
-
-/// Sums over a stretch of the contour: of residuals and of weights by the deviations that points state, and the number of points that count.
-struct Total {
-    residuals: f64,
-    weights: f64,
-    number: f64,
-}
-
-/// Of points that state deviations, over that of a good one.
-fn by_deviations(residuals: &[f64], weights: &[f64], ratios: &[f64]) -> Total {
-    let mut total = Total { residuals: 0.0, weights: 0.0, number: 0.0 };
-    for ((residual, _), ratio) in residuals.iter().zip(weights).zip(ratios).filter(|((_, weight), _)| **weight > 0.0) {
-        let weight = (ratio * ratio).recip();
-        total.residuals += residual * weight;
-        total.weights += weight;
-        total.number += 1.0;
-    }
-    total
-}
-
-/// Of good points.
-fn alike(residuals: &[f64], weights: &[f64]) -> Total {
-    let (residuals, last_residuals) = residuals.as_chunks::<LANES>();
-    let (weights, last_weights) = weights.as_chunks::<LANES>();
-    let [sums, counts] = vectorised(
-        #[inline(always)]
-        || {
-            let mut sums = [[0.0; LANES]; 2];
-            for (residuals, weights) in residuals.iter().zip(weights) {
-                for lane in 0..LANES {
-                    let counts = if weights[lane] > 0.0 { 1.0 } else { 0.0 };
-                    sums[0][lane] += counts * residuals[lane];
-                    sums[1][lane] += counts;
-                }
-            }
-            sums
-        },
-    );
-    let mut total = Total { residuals: sums.iter().sum(), weights: 0.0, number: counts.iter().sum() };
-    for (residual, _) in last_residuals.iter().zip(last_weights).filter(|(_, weight)| **weight > 0.0) {
-        total.residuals += residual;
-        total.number += 1.0;
-    }
-    total.weights = total.number;
-    total
 }
 
 /// Robust deviation of all residuals, as if all points were good ones, which is expected to be `noise`; infinite where there are none.
@@ -353,20 +276,12 @@ pub(crate) fn spread(frame: &mut Frame, noise: f64) -> f64 {
 impl NoiseModel {
     /// Whether it is that of a map with so many cells, and all its numbers can be worked with.
     pub(crate) fn is_valid(&self, cells: usize) -> bool {
-        let Correlation { ratio, frames } = self.correlation;
         let positive = |number: f64| number.is_finite() && number > 0.0;
         positive(self.sigma)
-            && [
-                self.weight,
-                self.floor,
-                self.rounding.pixel,
-                self.rounding.share,
-                self.rounding.shared_by,
-                ratio,
-                frames,
-            ]
-            .iter()
-            .all(|number| number.is_finite() && *number >= 0.0)
+            && [self.weight, self.floor, self.rounding.pixel, self.rounding.share, self.rounding.shared_by]
+                .iter()
+                .all(|number| number.is_finite() && *number >= 0.0)
+            && self.correlation.is_valid()
             && self.level.count < StateFormat::MOST_COUNTED
             && !self.level.frames.iter().any(|spread| spread.is_nan())
             && self.inflation.len() == cells
@@ -382,7 +297,8 @@ mod tests {
     fn errors_are_independent_only_once_enough_frames_have_told_so() {
         let seen = |frames: usize, ratio: f64| {
             let mut noise = NoiseModel::new(1.0);
-            (0..frames).for_each(|_| noise.update_correlation(ratio, 1.0));
+            let shown = ShownCorrelation { near: ratio, far: None };
+            (0..frames).for_each(|_| noise.update_correlation(&shown, 1.0));
             noise
         };
         assert!(!seen(15, 1.0).is_found_independent());

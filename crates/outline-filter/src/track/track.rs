@@ -13,7 +13,9 @@ use crate::{
     belief::Belief,
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
     map::{NullDirection, OutlineMap, TurnEvent, TurnEvidence},
-    measurement::{Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, Tolerance, View, correlation_of},
+    measurement::{
+        Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, ShownCorrelation, Tolerance, View, correlation_of,
+    },
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning},
     update::{FrameMeasurement, Gate, PoseMeasurement, Rejection, Sensitivity, commit, hold},
@@ -128,7 +130,8 @@ impl Track {
         // Points that do not move show none of what they are rounded by.
         let rounding = self.noise.rounding().of_point();
         let noise = measurement.noise.map(|noise| measurement.of_good_points(noise));
-        let correlation = correlation_of(frame, noise.map(|noise| (noise / radius).max(rounding)));
+        let known_noise = noise.map(|noise| (noise / radius).max(rounding));
+        let correlation = correlation_of(frame, known_noise, self.model().parameter_count());
         let verdict = self.verdict(gate, &measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
@@ -173,12 +176,17 @@ impl Track {
 
     /// Updates the noise by that of good points in an accepted frame and its correlation, as far as they are told, the frame counting for a
     /// share of one of good points.
-    fn learn_noise(&mut self, frame: &Frame, (noise, correlation): (Option<f64>, Option<f64>), share: f64) {
+    fn learn_noise(
+        &mut self,
+        frame: &Frame,
+        (noise, correlation): (Option<f64>, Option<ShownCorrelation>),
+        share: f64,
+    ) {
         if let Some(noise) = noise {
             self.noise.update(noise, share);
         }
-        if let Some(ratio) = correlation {
-            self.noise.update_correlation(ratio, share);
+        if let Some(shown) = correlation {
+            self.noise.update_correlation(&shown, share);
         }
         self.reference.update_stated(frame.deviations.good());
         if frame.deviations.ratios().is_some() {
