@@ -17,7 +17,7 @@ mod variance_inflation;
 
 pub(crate) use association::{NO_CELL, Pass, View};
 pub(crate) use columns::{CellJacobians, CellLine, CellSums, Columns, Jacobians, PointOnCell};
-pub(crate) use correlation::{ShownCorrelation, correlation_of};
+pub(crate) use correlation::{ShownCorrelation, TakenOff, correlation_of};
 pub(crate) use frame::{Frame, Piece, Reference};
 pub(crate) use hidden::{Lies, hide_points};
 pub(crate) use lattice::{PixelLattice, PlaceOnLattice};

@@ -230,7 +230,13 @@ mod tests {
 
     #[test]
     fn one_frame_that_chance_may_make_shows_no_change_but_several_in_a_row_do() {
-        let innovation = PoseInnovation { squared: 20.0, gradient: [14.0, 2.0], fisher: [1.0; 2], fisher_of_both: 2.5 };
+        let innovation = PoseInnovation {
+            squared: 20.0,
+            gradient: [14.0, 2.0],
+            fisher: [1.0; 2],
+            fisher_of_both: 2.5,
+            ..PoseInnovation::default()
+        };
         let mut change = MotionChange::default();
         change.update(&innovation, 6);
         assert_eq!(change.variances(), None);

@@ -14,11 +14,12 @@ use crate::{
     dynamics::{CentredDeviations, CentredPose, FamilyTests, Summary},
     map::{NullDirection, OutlineMap, TurnEvent, TurnEvidence},
     measurement::{
-        Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, ShownCorrelation, Tolerance, View, correlation_of,
+        Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, ShownCorrelation, TakenOff, Tolerance, View,
+        correlation_of,
     },
     prediction::{ByKind, ShapeNoise},
     tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning},
-    update::{FrameMeasurement, Gate, PoseMeasurement, Rejection, Sensitivity, commit, hold},
+    update::{FrameMeasurement, Gate, PoseMeasurement, Rejection, Sensitivity, commit, hold, left_by_offsets},
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
@@ -131,7 +132,9 @@ impl Track {
         let rounding = self.noise.rounding().of_point();
         let noise = measurement.noise.map(|noise| measurement.of_good_points(noise));
         let known_noise = noise.map(|noise| (noise / radius).max(rounding));
-        let correlation = correlation_of(frame, known_noise, self.model().parameter_count());
+        let by_pose = innovation.degrees_of_freedom;
+        let taken = TakenOff { by_pose, left_by_offsets: left_by_offsets(&self.belief, frame) };
+        let correlation = correlation_of(frame, known_noise, taken);
         let verdict = self.verdict(gate, &measurement);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));

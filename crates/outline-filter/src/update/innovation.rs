@@ -17,6 +17,8 @@ pub(crate) struct PoseInnovation {
     /// Fisher information of each, and of one variance for both.
     pub(crate) fisher: ByKind,
     pub(crate) fisher_of_both: f64,
+    /// Degrees of freedom that the step has taken off the residuals: the trace of the gain, of no more than one for each parameter.
+    pub(crate) degrees_of_freedom: f64,
 }
 
 impl Belief {
@@ -61,7 +63,8 @@ impl Belief {
         let (slope, curvature) =
             (by_change.transpose() * weighted, by_change_before.transpose() * gained * by_change_before);
         let growth = self.memory.step.powi(3) / variance;
-        let mut all = PoseInnovation { squared, ..PoseInnovation::default() };
+        let degrees_of_freedom = (gained * before).trace().clamp(0.0, K as f64);
+        let mut all = PoseInnovation { squared, degrees_of_freedom, ..PoseInnovation::default() };
         let kinds = || self.model.parameter_kinds().iter().map(|kind| kind_index(*kind)).enumerate();
         for (i, of_i) in kinds() {
             all.gradient[of_i] += 0.5 * growth * (slope[i] * slope[i] - curvature[(i, i)]);

@@ -17,7 +17,7 @@ pub use gate::{FrameMeasurement, Rejection};
 pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
 pub(crate) use normal_equations::accumulate;
-pub(crate) use pose_measurement::PoseMeasurement;
+pub(crate) use pose_measurement::{PoseMeasurement, left_by_offsets};
 pub(crate) use sensitivity::Sensitivity;
 pub(crate) use solve::Proposal;
 pub(crate) use unmodelled_displacement::{

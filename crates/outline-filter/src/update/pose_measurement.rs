@@ -66,6 +66,17 @@ impl PoseMeasurement {
     }
 }
 
+/// Share of the variance of mean residuals that the offsets of a solved frame leave: 1 minus the mean leverage of what it adds to each. Half in the second
+/// frame, all once the outline is known.
+pub(crate) fn left_by_offsets(belief: &Belief, frame: &Frame) -> f64 {
+    let count = frame.right.len();
+    let own = frame.cells_with_frame.own()[..count].iter().zip(&belief.information.cells.own()[..count]);
+    let [added, left] = own.filter(|(with, before)| with > before).fold([0.0, 0.0], |[added, left], (with, before)| {
+        [added + (with - before), left + (with - before) * before / with]
+    });
+    if left > 0.0 { left / added } else { 1.0 }
+}
+
 /// What the offsets take off the information of a frame on the pose and off its pull.
 struct Taken<const K: usize> {
     information: [[f64; K]; K],

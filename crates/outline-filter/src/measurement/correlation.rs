@@ -1,0 +1,226 @@
+//! How far errors depend on each other along the contour.
+#[cfg(feature = "serde")]
+use freeform_estimate::StateFormat;
+
+use super::Frame;
+use crate::{
+    tuning::noise as tuning,
+    vectors::{LANES, vectorised},
+};
+
+/// How many times the variance of a mean along the contour is what independent errors give, on average over frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Correlation {
+    near: Average,
+    far: Average,
+}
+
+/// A ratio on average.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Average {
+    mean: f64,
+    frames: f64,
+    /// Variance of the ratio of one frame, if errors are independent.
+    variance: f64,
+}
+
+/// What a frame shows of the correlation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ShownCorrelation {
+    /// How many times the variance of the mean over one stretch is what independent errors give.
+    pub(crate) near: f64,
+    /// The same of a stretch without end, by what two in a row show beside one, and its variance if errors are independent; `None` where that cannot
+    /// be told.
+    pub(crate) far: Option<[f64; 2]>,
+}
+
+impl Correlation {
+    pub(super) const NONE: Self = {
+        let average = Average { mean: 1.0, frames: 0.0, variance: 2.0 / tuning::STRETCHES as f64 };
+        Self { near: average, far: average }
+    };
+
+    /// Takes in a frame that counts for a share of one of good points.
+    pub(super) fn add(&mut self, shown: &ShownCorrelation, share: f64) {
+        self.near.add(shown.near, Self::NONE.near.variance, share);
+        if let Some([ratio, variance]) = shown.far {
+            self.far.add(ratio, variance, share);
+        }
+    }
+
+    /// Points that tell as much as one with independent errors would, at least 1.
+    pub(super) fn ratio(&self) -> f64 {
+        self.near.beyond_chance().max(self.far.beyond_chance())
+    }
+
+    /// Whether enough frames have been seen to tell.
+    pub(super) fn is_told(&self) -> bool {
+        self.near.frames >= tuning::CORRELATION_TOLD
+    }
+
+    #[cfg(feature = "serde")]
+    pub(super) fn is_valid(&self) -> bool {
+        let is_in_bounds = |number: &f64| number.abs() <= StateFormat::LARGEST_NUMBER;
+        let are_valid = |average: &Average| {
+            let Average { mean, frames, variance } = average;
+            is_in_bounds(mean) && is_in_bounds(variance) && is_in_bounds(frames) && *frames >= 0.0 && *variance > 0.0
+        };
+        are_valid(&self.near) && are_valid(&self.far)
+    }
+}
+
+impl Average {
+    fn add(&mut self, ratio: f64, variance: f64, share: f64) {
+        self.frames = (self.frames + share).min(tuning::CORRELATION_MEMORY);
+        self.mean += (ratio - self.mean) * share / self.frames;
+        self.variance = variance;
+    }
+
+    /// The ratio, at least 1: none that chance explains, and all of one that is twice as large as that.
+    fn beyond_chance(&self) -> f64 {
+        let deviation = (self.variance / self.frames.max(1.0)).sqrt();
+        let beyond = self.mean / (1.0 + tuning::CORRELATION_SIGNIFICANT * deviation);
+        if beyond <= 1.0 { 1.0 } else { (beyond * beyond).min(self.mean) }
+    }
+}
+
+/// What the solution of a frame has taken off its residuals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TakenOff {
+    /// Degrees of freedom by the pose.
+    pub(crate) by_pose: f64,
+    /// Share of the variance of a mean over a stretch that the offsets have left, above 0.
+    pub(crate) left_by_offsets: f64,
+}
+
+/// What the residuals of a frame show, of deviation `noise` for a good point; `None` where it cannot be told. Stretches count by the information that
+/// they have.
+pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>, taken: TakenOff) -> Option<ShownCorrelation> {
+    let Frame { columns, deviations, .. } = frame;
+    let length = columns.len() / tuning::STRETCHES;
+    let noise = noise.filter(|noise| *noise > 0.0 && length >= tuning::FEWEST_IN_STRETCH)?;
+    let expected = noise * noise * taken.left_by_offsets;
+    let mut totals = [Total::NONE; tuning::STRETCHES];
+    let all = columns.residuals.chunks_exact(length).zip(columns.weights.chunks_exact(length));
+    for ((stretch, (residuals, weights)), total) in all.enumerate().zip(&mut totals) {
+        *total = match deviations.ratios() {
+            None => alike(residuals, weights),
+            Some(ratios) => by_deviations(residuals, weights, &ratios[stretch * length..]),
+        };
+    }
+    let [ones, twos] = [tuning::STRETCHES, tuning::STRETCHES / 2].map(|stretches| stretches as f64);
+    let [left_of_ones, left_of_twos] = [ones - taken.by_pose, twos - taken.by_pose];
+    let of_one = ratio_over(totals.iter().copied(), length)? / expected * ones / left_of_ones;
+    let pairs = totals.as_chunks::<2>().0.iter().map(|[one, next]| one.and(next));
+    let of_two = ratio_over(pairs, 2 * length).map(|ratio| ratio / expected * twos / left_of_twos);
+    // The covariance of both ratios is the variance of that of single stretches.
+    let variance = 8.0 / left_of_twos - 6.0 / left_of_ones;
+    // The ratio of a long stretch falls short of that of one without end by a share that is inverse to its length.
+    let far = of_two.map(|of_two| [2.0 * of_two - of_one, variance]);
+    Some(ShownCorrelation { near: of_one, far })
+}
+
+/// The mean over stretches of the square of the mean residual in units of what one point of a deviation of one gives; `None` where most of the
+/// contour does not count. All stretches have `length` points.
+fn ratio_over(totals: impl Iterator<Item = Total>, length: usize) -> Option<f64> {
+    let (mut sum, mut count, mut stretches, mut all) = (0.0, 0.0, 0.0, 0.0);
+    for total in totals {
+        all += 1.0;
+        if tuning::ONE_IN_COUNTS * total.number > length as f64 {
+            sum += total.residuals * total.residuals / total.number;
+            count += total.weights / total.number;
+            stretches += 1.0;
+        }
+    }
+    (tuning::ONE_IN_COUNTS * stretches > all).then(|| sum / count)
+}
+
+/// Sums over a stretch of the contour: of residuals and of weights by the deviations that points state, and the number of points that count.
+#[derive(Debug, Clone, Copy)]
+struct Total {
+    residuals: f64,
+    weights: f64,
+    number: f64,
+}
+
+impl Total {
+    const NONE: Self = Self { residuals: 0.0, weights: 0.0, number: 0.0 };
+
+    fn and(&self, next: &Self) -> Self {
+        let Self { residuals, weights, number } = *next;
+        Self { residuals: self.residuals + residuals, weights: self.weights + weights, number: self.number + number }
+    }
+}
+
+/// Of points that state deviations, over that of a good one.
+fn by_deviations(residuals: &[f64], weights: &[f64], ratios: &[f64]) -> Total {
+    let mut total = Total::NONE;
+    for ((residual, _), ratio) in residuals.iter().zip(weights).zip(ratios).filter(|((_, weight), _)| **weight > 0.0) {
+        let weight = (ratio * ratio).recip();
+        total.residuals += residual * weight;
+        total.weights += weight;
+        total.number += 1.0;
+    }
+    total
+}
+
+/// Of good points.
+fn alike(residuals: &[f64], weights: &[f64]) -> Total {
+    let (residuals, last_residuals) = residuals.as_chunks::<LANES>();
+    let (weights, last_weights) = weights.as_chunks::<LANES>();
+    let [sums, counts] = vectorised(
+        #[inline(always)]
+        || {
+            let mut sums = [[0.0; LANES]; 2];
+            for (residuals, weights) in residuals.iter().zip(weights) {
+                for lane in 0..LANES {
+                    let counts = if weights[lane] > 0.0 { 1.0 } else { 0.0 };
+                    sums[0][lane] += counts * residuals[lane];
+                    sums[1][lane] += counts;
+                }
+            }
+            sums
+        },
+    );
+    let mut total = Total { residuals: sums.iter().sum(), weights: 0.0, number: counts.iter().sum() };
+    for (residual, _) in last_residuals.iter().zip(last_weights).filter(|(_, weight)| **weight > 0.0) {
+        total.residuals += residual;
+        total.number += 1.0;
+    }
+    total.weights = total.number;
+    total
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An average over so many frames that show the same.
+    fn shown(ratio: f64, frames: usize) -> Correlation {
+        let mut correlation = Correlation::NONE;
+        (0..frames).for_each(|_| correlation.add(&ShownCorrelation { near: ratio, far: None }, 1.0));
+        correlation
+    }
+
+    #[test]
+    fn what_chance_explains_counts_for_nothing_and_what_is_twice_as_large_counts_wholly() {
+        let by_chance = 1.0 + tuning::CORRELATION_SIGNIFICANT * (2.0 / tuning::STRETCHES as f64).sqrt();
+        assert_eq!(shown(0.99 * by_chance, 1).ratio(), 1.0);
+        let [a_little, more] = [1.1, 1.2].map(|factor| shown(factor * by_chance, 1).ratio());
+        assert!(1.0 < a_little && a_little < more && more < 1.2 * by_chance);
+        assert_eq!(shown(by_chance * by_chance, 1).ratio(), by_chance * by_chance);
+        assert!((shown(1.2, 50).ratio() - 1.2).abs() < 0.02, "more frames leave less to chance");
+    }
+
+    #[test]
+    fn what_reaches_beyond_a_stretch_counts_as_well() {
+        let mut correlation = Correlation::NONE;
+        correlation.add(&ShownCorrelation { near: 8.0, far: Some([30.0, 0.5]) }, 1.0);
+        assert_eq!(correlation.ratio(), 30.0);
+        // What is told too seldom stays what was told.
+        correlation.add(&ShownCorrelation { near: 8.0, far: None }, 1.0);
+        assert_eq!(correlation.ratio(), 30.0);
+    }
+}
