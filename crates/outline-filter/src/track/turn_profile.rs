@@ -95,15 +95,23 @@ impl Track {
     }
 
     /// Covariance of pose and motion, normalised, of a turn that is promised and that too few frames have told yet: of a radian, and of as much in the
-    /// time that the motion is known from. `None` where the turn is shown well, or told by enough frames.
+    /// time that the motion is known from. `None` where the turn is shown well, told by enough frames, or where frames do not promise to tell it and the
+    /// covariance of the pose says as much.
     pub(crate) fn covariance_of_untold_turn(&self) -> Option<StateMatrix> {
         let TurnProfile { frames, promise, .. } = self.turn_profile;
-        if !self.is_all_but_round() || frames >= tuning::MEMORY || promise == Promise::TooLittle {
+        if !self.is_all_but_round() || frames >= tuning::MEMORY {
             return None;
         }
         let (model, span) = (self.belief.model, self.span_of_motion(false));
         let direction = self.turn_about_centroid()?;
         let k = model.parameter_count();
+        if promise == Promise::TooLittle {
+            let known = self.summary()?.covariance;
+            let is_uncertain = |i: usize| known[(i, i)] > (tuning::LARGEST * direction[i]).powi(2);
+            if (0..k - 2).any(|i| direction[i] != 0.0 && is_uncertain(i)) {
+                return None;
+            }
+        }
         let mut covariance = StateMatrix::zeros();
         // Half a circle takes the origin of the body to the other side of its centroid, which no step along the turn does.
         let across = self.map.centroid().coords.norm_squared() * self.belief.scale().powi(2);
