@@ -69,7 +69,11 @@ impl MotionFilter {
             let rounding = of_side / pixels;
             let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
             // What the motion model does not have need not be constant.
-            let [of_pose, of_motion] = track.systematic(displacement, track.span_of_motion(false));
+            let [mut of_pose, of_motion] = track.systematic(displacement, track.span_of_motion(false));
+            if matches!(unmodelled.family, Some(WrongFamily::Shear | WrongFamily::Shape)) {
+                let (k, shift) = (model.parameter_count(), track.shift_by_light(&unmodelled));
+                of_pose.rows_mut(k - 2, 2).iter_mut().for_each(|deviation| *deviation = deviation.hypot(shift));
+            }
             let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
             all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;
         }

@@ -3,21 +3,21 @@ use freeform_estimate::{MotionEstimate, MotionState, NormalisedState, PointVeloc
 use freeform_riccati::{
     MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, ProjectiveMotion, logarithm, map_point,
 };
-use nalgebra::{DMatrix, DVector, Matrix3, Point2, SVector, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point2, SVector, Vector2};
 
 use super::Track;
 use crate::{
     belief::{Belief, StateMatrix, StateVector, scaled_inverse},
-    dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary},
+    dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate},
     map::NullDirection,
     tuning::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
-        statement::ROUNDING_OF_CORRELATION,
+        statement::{ROUNDING_OF_CORRELATION, SHIFT_BY_LIGHT},
         supervisor::STEPS_KNOWN,
         turn_hypotheses::DIFFERENT,
         update::SUDDEN,
     },
-    update::{hold, with_hold},
+    update::{SHEAR, hold, with_hold},
 };
 
 /// What tells the turn of an object.
@@ -41,6 +41,16 @@ impl Track {
         let covariance = scaled_inverse(marginal, belief.parameter_count())? * self.noise.effective_variance();
         let is_finite = covariance.iter().all(|e| e.is_finite());
         is_finite.then_some(Summary { pose: belief.pose, motion: belief.motion, covariance })
+    }
+
+    /// How far the object may seem to have moved since its first frame, along each axis, normalised, if what stretches its outline is light from a side:
+    /// that shifts the whole outline besides, by as much in the picture while the object turns.
+    pub(crate) fn shift_by_light(&self, unmodelled: &UnmodelledEstimate) -> f64 {
+        // Stretch and skew, or the edges that stand for them.
+        let second_harmonic = SHEAR.iter().map(|l| unmodelled.moments[(*l, *l)]).sum::<f64>().max(0.0).sqrt();
+        let linear = self.belief.pose.fixed_view::<2, 2>(0, 0);
+        // Half of the square of `(I - L) s`, whatever the direction of s.
+        0.5 * (Matrix2::identity() - linear).norm() * SHIFT_BY_LIGHT * second_harmonic
     }
 
     /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations

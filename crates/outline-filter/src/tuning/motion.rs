@@ -207,6 +207,8 @@ pub(crate) mod statement {
     /// Fewest frames rejected, no fewer than taken, that say so: one by itself may be wrong, and where frames are wrong by chance two of the
     /// first four hardly are.
     pub(crate) const FEWEST_AGAINST: usize = 2;
+    /// Shift of an outline by light from a side, over the second harmonic of what it displaces edges by: of `max(0, cos t)` that is 1/2 over 2 / 3 pi.
+    pub(crate) const SHIFT_BY_LIGHT: f64 = 2.36;
     /// A variance of so many times the square of a distance has intervals of 95 % of that half width: 1 / 1.96^2.
     pub(crate) const REACH: f64 = 0.26;
 }
