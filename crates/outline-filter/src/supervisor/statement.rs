@@ -70,7 +70,7 @@ impl MotionFilter {
             let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
             // What the motion model does not have need not be constant.
             let [mut of_pose, of_motion] = track.systematic(displacement, track.span_of_motion(false));
-            if matches!(unmodelled.family, Some(WrongFamily::Shear | WrongFamily::Shape)) {
+            if unmodelled.family.is_some() {
                 let (k, shift) = (model.parameter_count(), track.shift_by_light(&unmodelled));
                 of_pose.rows_mut(k - 2, 2).iter_mut().for_each(|deviation| *deviation = deviation.hypot(shift));
             }
