@@ -95,10 +95,13 @@ impl Track {
     }
 
     /// Covariance of pose and motion, normalised, of a turn that is promised and that too few frames have told yet: of a radian, and of as much in the
-    /// time that the motion is known from. `None` where the turn is shown well, or told by enough frames.
+    /// time that the motion is known from. `None` where the turn is shown well, or told by enough frames; from as many frames on also where too little is
+    /// promised to be told.
     pub(crate) fn covariance_of_untold_turn(&self) -> Option<StateMatrix> {
         let TurnProfile { frames, promise, .. } = self.turn_profile;
-        if !self.is_all_but_round() || frames >= tuning::MEMORY || promise == Promise::TooLittle {
+        // In the first frames what is promised rests on normals of a map that follows their errors, however little it is.
+        let is_taken_as_stated = promise == Promise::TooLittle && self.frames >= tuning::MEMORY;
+        if !self.is_all_but_round() || frames >= tuning::MEMORY || is_taken_as_stated {
             return None;
         }
         let (model, span) = (self.belief.model, self.span_of_motion(false));
@@ -172,6 +175,7 @@ impl TurnProfile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawn_curves::{lobed, outline, polar};
 
     /// Whether so many frames of 400 points in which both turns are worse by such differences of squares contradict the turn.
     fn contradicted(frames: usize, clockwise: f64, anticlockwise: f64) -> bool {
@@ -192,5 +196,17 @@ mod tests {
         assert!(contradicted(enough, promised, 0.4 * promised) && contradicted(enough, 0.4 * promised, promised));
         assert!(contradicted(enough, promised, -promised));
         assert!(contradicted(tuning::MEMORY, 0.0, 0.0) && !contradicted(tuning::MEMORY - 1, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_turn_of_which_the_first_frames_promise_too_little_to_be_told_is_not_taken_as_it_is_stated() {
+        let body = outline(400, |t| polar(lobed(t, &[(3.0, [0.058, 0.0])]), t));
+        let mut track = Track::begin(MotionModel::Rigid, &body, 0.0, &mut Frame::default()).expect("a track");
+        assert!(track.is_all_but_round());
+        track.turn_profile.promise = Promise::TooLittle;
+        for frames in 1..2 * tuning::MEMORY {
+            track.frames = frames;
+            assert_eq!(track.covariance_of_untold_turn().is_some(), frames < tuning::MEMORY, "{frames} frames");
+        }
     }
 }
