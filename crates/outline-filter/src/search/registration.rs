@@ -91,7 +91,8 @@ impl Registration {
         // Not again the one that has gone on already.
         rigid.extend(begun.iter().skip(rigid.len()).map(further));
         // A closed outline shows both of its ends, so that middles lead to the same place along it.
-        let apart = if track.map().has_ends() { tuning::SAME_BY_FEW } else { tuning::SAME_POSE };
+        let slides = track.map().has_ends() && track.map().is_mostly_straight();
+        let apart = if slides { tuning::SAME_BY_FEW } else { tuning::SAME_POSE };
         let mut rigid = distinct(rigid, apart);
         keep(&mut rigid, tuning::REFINED);
         let outlook = rigid.first().map_or(Outlook::Open, |best| outlook_by(best.spread));
