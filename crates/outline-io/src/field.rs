@@ -40,6 +40,16 @@ impl Field {
         x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
     }
 
+    /// The grey values nearest to samples from 0 to 255, halves upwards: what `f32::round` says, which is a call of the library for each of them where
+    /// the processor that is built for has no instruction for it.
+    pub(crate) fn nearest_grey_values(&self) -> Vec<u8> {
+        let nearest = |value: &f32| {
+            let below = *value as i32;
+            (below + i32::from(value - below as f32 >= 0.5)) as u8
+        };
+        self.values.iter().map(nearest).collect()
+    }
+
     /// Blurs with a Gaussian of this standard deviation in samples. Beyond the grid its edge goes on, so that a contour
     /// that meets the edge is not bent there.
     pub(crate) fn blur(&mut self, sigma: f64) {
@@ -96,4 +106,18 @@ fn kernel(sigma: f64) -> Vec<f32> {
 /// How far a blur reaches, in samples.
 pub(crate) fn blur_reach(sigma: f64) -> usize {
     (4.0 * sigma).ceil() as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grey_values_are_rounded_as_the_library_rounds() {
+        let beside = |value: f32| [value.next_down().max(0.0), value, value.next_up().min(255.0)];
+        let values: Vec<f32> = (0..=510_u16).flat_map(|half| beside(0.5 * f32::from(half))).collect();
+        let rounded: Vec<u8> = values.iter().map(|value| value.round() as u8).collect();
+        let field = Field { width: values.len(), height: 1, values };
+        assert_eq!(field.nearest_grey_values(), rounded);
+    }
 }

@@ -204,8 +204,7 @@ pub(crate) fn blurred(picture: &GrayImage, sigma: f64) -> GrayImage {
     let values = picture.as_raw().iter().map(|value| f32::from(*value)).collect();
     let mut field = Field { width: width as usize, height: height as usize, values };
     field.blur(sigma);
-    let values = field.values.iter().map(|value| value.round() as u8).collect();
-    GrayImage::from_raw(width, height, values).unwrap_or_default()
+    GrayImage::from_raw(width, height, field.nearest_grey_values()).unwrap_or_default()
 }
 
 /// A part of a picture with an object in it.

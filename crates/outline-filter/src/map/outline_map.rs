@@ -1,4 +1,4 @@
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Matrix2, Point2, Vector2};
 
 #[cfg(feature = "serde")]
 use super::centring::Stretch;
@@ -62,6 +62,13 @@ impl OutlineMap {
 
     pub(crate) fn cells(&self) -> &[Cell] {
         &self.cells
+    }
+
+    /// Whether cells look to two opposite sides nearly all: few of them show how far the outline has gone along itself.
+    pub(crate) fn is_mostly_straight(&self) -> bool {
+        let count = self.cells.len() as f64;
+        let squares = self.cells.iter().map(|cell| cell.normal * cell.normal.transpose()).sum::<Matrix2<f64>>();
+        squares.symmetric_eigenvalues().min() < tuning::MOSTLY_STRAIGHT * count
     }
 
     pub(crate) fn spacing(&self) -> f64 {

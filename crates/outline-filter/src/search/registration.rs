@@ -90,7 +90,10 @@ impl Registration {
         }
         // Not again the one that has gone on already.
         rigid.extend(begun.iter().skip(rigid.len()).map(further));
-        let mut rigid = distinct(rigid);
+        // A closed outline shows both of its ends, so that middles lead to the same place along it.
+        let slides = track.map().has_ends() && track.map().is_mostly_straight();
+        let apart = if slides { tuning::SAME_BY_FEW } else { tuning::SAME_POSE };
+        let mut rigid = distinct(rigid, apart);
         keep(&mut rigid, tuning::REFINED);
         let outlook = rigid.first().map_or(Outlook::Open, |best| outlook_by(best.spread));
         if outlook == Outlook::Hopeless {
@@ -101,7 +104,7 @@ impl Registration {
         // Some come together only with all points: one taken twice would keep another out.
         let refine =
             |found: &RegisteredPose| refined(track, points, MotionModel::Rigid, &found.pose, Steps::REFINEMENT);
-        rigid = distinct(rigid.iter().map(refine).collect());
+        rigid = distinct(rigid.iter().map(refine).collect(), tuning::SAME_POSE);
         keep(&mut rigid, tuning::KEPT);
         keep_near_best(&mut rigid, tuning::FAR_WORSE);
         Self { rigid, outlook }
@@ -247,11 +250,11 @@ fn add_turns_of_symmetry(best: &mut Vec<RegisteredPose>, track: &Track, points: 
     best.retain(|h| h.score.is_finite());
 }
 
-/// The best of those that are the same, for each.
-fn distinct(list: Vec<RegisteredPose>) -> Vec<RegisteredPose> {
+/// The best of those that are the same, for each; matrices of poses of one turn that differ by less than a distance are.
+fn distinct(list: Vec<RegisteredPose>, distance: f64) -> Vec<RegisteredPose> {
     let mut best: Vec<RegisteredPose> = Vec::new();
     for found in list.into_iter().filter(|h| h.score.is_finite()) {
-        match best.iter_mut().find(|other| same(other, &found)) {
+        match best.iter_mut().find(|other| same(other, &found, distance)) {
             Some(other) if other.score > found.score => *other = found,
             Some(_) => {}
             None => best.push(found),
@@ -278,8 +281,8 @@ fn keep_near_best(list: &mut Vec<RegisteredPose>, times: f64) {
     }
 }
 
-fn same(a: &RegisteredPose, b: &RegisteredPose) -> bool {
-    wrapped(a.turn - b.turn).abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < tuning::SAME_POSE
+fn same(a: &RegisteredPose, b: &RegisteredPose, distance: f64) -> bool {
+    wrapped(a.turn - b.turn).abs() < tuning::SAME_TURN && (a.pose - b.pose).norm() < distance
 }
 
 #[cfg(test)]

@@ -95,8 +95,8 @@ impl Track {
     }
 
     /// Covariance of pose and motion, normalised, of a turn that is promised and that too few frames have told yet: of a radian, and of as much in the
-    /// time that the motion is known from. `None` where the turn is shown well, told by enough frames, or where frames do not promise to tell it and the
-    /// covariance of the pose says as much.
+    /// time that the motion is known from. `None` where the turn is shown well, or told by enough frames; from as many frames on also where frames do not
+    /// promise to tell it and the covariance of the pose says as much.
     pub(crate) fn covariance_of_untold_turn(&self) -> Option<StateMatrix> {
         let TurnProfile { frames, promise, .. } = self.turn_profile;
         if !self.is_all_but_round() || frames >= tuning::MEMORY {
@@ -105,7 +105,8 @@ impl Track {
         let (model, span) = (self.belief.model, self.span_of_motion(false));
         let direction = self.turn_about_centroid()?;
         let k = model.parameter_count();
-        if promise == Promise::TooLittle {
+        // In the first frames what is promised rests on normals of a map that follows their errors, however little it is.
+        if promise == Promise::TooLittle && self.frames >= tuning::MEMORY {
             let known = self.summary()?.covariance;
             let is_uncertain = |i: usize| known[(i, i)] > (tuning::LARGEST * direction[i]).powi(2);
             if (0..k - 2).any(|i| direction[i] != 0.0 && is_uncertain(i)) {
@@ -180,6 +181,7 @@ impl TurnProfile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawn_curves::{lobed, outline, polar};
 
     /// Whether so many frames of 400 points in which both turns are worse by such differences of squares contradict the turn.
     fn contradicted(frames: usize, clockwise: f64, anticlockwise: f64) -> bool {
@@ -200,5 +202,21 @@ mod tests {
         assert!(contradicted(enough, promised, 0.4 * promised) && contradicted(enough, 0.4 * promised, promised));
         assert!(contradicted(enough, promised, -promised));
         assert!(contradicted(tuning::MEMORY, 0.0, 0.0) && !contradicted(tuning::MEMORY - 1, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_turn_that_frames_promise_too_little_to_tell_is_taken_as_stated_after_the_first_ones_if_little_is_stated() {
+        let body = outline(400, |t| polar(lobed(t, &[(3.0, [0.058, 0.0])]), t));
+        let mut track = Track::begin(MotionModel::Rigid, &body, 0.0, &mut Frame::default()).expect("a track");
+        assert!(track.is_all_but_round());
+        track.turn_profile.promise = Promise::TooLittle;
+        for (noise, is_known_well) in [(1e-3, true), (10.0, false)] {
+            track.noise.sigma = noise;
+            for frames in 1..2 * tuning::MEMORY {
+                track.frames = frames;
+                let is_untold = frames < tuning::MEMORY || is_known_well;
+                assert_eq!(track.covariance_of_untold_turn().is_some(), is_untold, "{frames} frames, {noise}");
+            }
+        }
     }
 }

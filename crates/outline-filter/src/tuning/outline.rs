@@ -2,6 +2,9 @@
 
 /// The map: cells along the outline, cut from points.
 pub(crate) mod map {
+    /// Mean square of the normals in the direction that they have least of, below which an outline is mostly straight: an ellipse four
+    /// times as long as wide has 0.11, a bar ten times as long as wide that is cut at one end 0.05.
+    pub(crate) const MOSTLY_STRAIGHT: f64 = 0.1;
     /// Fewest points that a map is begun with. Three cells of two points make no outline; below eight, chance makes any shape.
     pub(crate) const FEWEST_POINTS: usize = 8;
     /// Length of a cell in deviations of the noise. Shorter cells leave more offsets to be estimated, and points that come to the wrong

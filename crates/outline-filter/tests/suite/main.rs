@@ -12,6 +12,7 @@ mod first_frames;
 mod gaps;
 mod kept_errors;
 mod known_outline;
+mod long_bars;
 mod lost_objects;
 mod mask_rounding;
 mod moving_poses;

@@ -1,0 +1,45 @@
+//! Outlines that are mostly one straight side: little of them shows how far they have gone along it.
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_riccati::MotionModel;
+use nalgebra::Point2;
+
+use crate::filter_support::filter;
+
+const FRAME_RATE: f64 = 5.0;
+/// Where the picture cuts the bar, pixels.
+const CUT: f64 = 46.5;
+/// Standard deviation of the points, pixels.
+const NOISE: f64 = 0.05;
+
+/// The long side of a bar that a border cuts, with its end, 12 pixels high, and a mark of 5 pixels beside the cut; moved along itself. Points err alike
+/// in all frames where they lie on the bar alike, as pixels make them.
+fn bar(moved: f64, at_rest: bool) -> Outline {
+    let error = |number: usize, of: f64| if at_rest { 0.02 * (12.9 * number as f64 + of).sin() } else { 0.0 };
+    let side = (0..711).map(|i| Point2::new(46.5 + f64::from(i) + moved, 597.0 + error(i as usize, 0.0)));
+    let end = (0..12).map(|i| Point2::new(757.0 + moved + error(i as usize, 1.0), 597.5 + f64::from(i)));
+    let mark = (0..36).map(|i| {
+        let turn = std::f64::consts::TAU * f64::from(i) / 37.0;
+        Point2::new(84.5 + moved + 4.7 * turn.cos(), 604.8 + 4.7 * turn.sin())
+    });
+    let seen = |points: Vec<Point2<f64>>| -> Vec<_> { points.into_iter().filter(|p| p.x >= CUT).collect() };
+    let arcs: Vec<_> = [seen(side.chain(end).collect()), seen(mark.collect())]
+        .into_iter()
+        .filter_map(|points| OpenArc::new(points).ok())
+        .collect();
+    let count = arcs.iter().map(|arc| arc.points().len()).sum();
+    let outline = Outline::Open(OpenOutline::new(arcs).expect("arcs"));
+    outline.with_deviations(vec![NOISE; count]).expect("a deviation for each point")
+}
+
+#[test]
+fn a_bar_that_a_border_cuts_goes_along_itself_as_its_end_and_its_mark_do() {
+    for step in [0.0, 5.0, 13.0, 31.0, 51.0, 90.0, -20.0] {
+        let mut run = filter(MotionModel::Rigid);
+        for frame in 0..5_u32 {
+            let time = f64::from(frame) / FRAME_RATE;
+            run.step(time, &bar(step * f64::from(frame), step == 0.0)).expect("increasing times");
+        }
+        let moved = run.pose().expect("a pose").matrix()[(0, 2)];
+        assert!((moved - 4.0 * step).abs() < 0.5, "{step} pixels in a frame: {moved} after four");
+    }
+}
