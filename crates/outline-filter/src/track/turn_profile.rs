@@ -210,7 +210,7 @@ mod tests {
         let mut track = Track::begin(MotionModel::Rigid, &body, 0.0, &mut Frame::default()).expect("a track");
         assert!(track.is_all_but_round());
         track.turn_profile.promise = Promise::TooLittle;
-        for (noise, is_known_well) in [(1e-3, true), (10.0, false)] {
+        for (noise, is_known_well) in [(1e-3, true), (1e3, false)] {
             track.noise.sigma = noise;
             for frames in 1..2 * tuning::MEMORY {
                 track.frames = frames;
