@@ -115,7 +115,8 @@ fn holes_without_number_take_no_more_than_the_picture_does() {
     let sieve = picture(folder.path(), ("sieve.png", LARGE), |y| teeth(LARGE, y % 2 == 0));
     let (status, peak) = peak(&["outline", &sieve, "--contours", "all", "--light", "--smoothing", "0"]);
     assert_eq!(status, Some(0));
-    assert!(peak < LIMIT / 8, "{peak} kB");
+    // Half of a quarter, and what the program takes for itself.
+    assert!(peak < LIMIT / 8 + (50 << 10), "{peak} kB");
 }
 
 #[test]
