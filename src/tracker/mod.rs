@@ -8,6 +8,7 @@ mod attendance;
 mod contour_order;
 mod edge_seeker;
 mod family;
+mod filtered_object;
 mod identifier;
 mod not_stated;
 mod object;
@@ -23,6 +24,7 @@ mod seeking;
 mod settings;
 #[cfg(feature = "serde")]
 mod state_bytes;
+mod step;
 mod trajectory;
 mod trajectory_csv;
 

@@ -3,7 +3,7 @@ use freeform_curve_fit::Outline;
 use freeform_estimate::PlaneEstimate;
 use freeform_outline_filter::{PlaneFilter, PlaneUnknown, Unstated};
 
-use super::identifier::{Step, of_following};
+use super::step::{Step, of_following};
 use crate::rejection::RejectionCause;
 use crate::warning::Warning;
 

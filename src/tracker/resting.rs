@@ -9,7 +9,7 @@ use std::{
 use freeform_estimate::MotionEstimate;
 use freeform_outline_filter::MotionFilter;
 
-use super::identifier::FilteredObject;
+use super::filtered_object::FilteredObject;
 
 /// Smallest room in the file, in bytes. Larger ones are twice that, four times, and so on, so that room fits the next that needs it.
 const SMALLEST_ROOM: u64 = 1 << 12;

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::{
     Objects, Tracker,
     contour_order::{ContourOrder, FRAMES},
-    identifier::{FilteredObject, Identifier},
+    filtered_object::FilteredObject,
+    identifier::Identifier,
     object::{KnownOutlines, REJECTIONS_KEPT, TrackedObject},
     settings::{MethodSettings, TrackerSettings},
 };

@@ -6,8 +6,8 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use crate::natural_order::natural_order;
+use crate::polygon_bodies::{Bodies, Body, checked_name, points_of};
 use crate::polygon_error::PolygonError;
-use crate::polygons::{Bodies, Body, checked_name, points_of};
 
 /// What tells annotations of one category apart.
 const REMEDY: &str = "give annotations a track_id, or one body a picture and category";

@@ -5,8 +5,8 @@ use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use crate::natural_order::natural_order;
+use crate::polygon_bodies::{Bodies, Body};
 use crate::polygon_error::PolygonError;
-use crate::polygons::{Bodies, Body};
 
 /// What tells shapes of one label apart.
 const REMEDY: &str = "give bodies labels of their own, or the contours of one body the same group_id";

@@ -95,6 +95,7 @@ mod picture_outlines;
 mod picture_preview;
 mod picture_sequence;
 mod pixel_aspect;
+mod polygon_bodies;
 mod polygon_error;
 mod polygons;
 mod read_ahead;

@@ -5,10 +5,11 @@ use nalgebra::Point2;
 
 use crate::coco::{CocoFile, coco_bodies};
 use crate::error::{Place, ReadError, ReadErrorKind};
-use crate::frame::{NAME_LIMIT, OutlineFrame};
+use crate::frame::OutlineFrame;
 use crate::labelme::{LabelmeFile, labelme_bodies};
 use crate::natural_order::natural_order;
 use crate::outline_rows::closed_outline;
+use crate::polygon_bodies::{Bodies, Body};
 use crate::polygon_error::PolygonError;
 use crate::trackmate::trackmate_bodies;
 
@@ -45,24 +46,6 @@ impl Default for PolygonSettings {
     fn default() -> Self {
         Self { frames_per_second: None, vertical: VerticalAxis::Up, pixel_size: 1.0 }
     }
-}
-
-/// The polygons of a body in a picture, as the file has them: y downwards.
-#[derive(Debug)]
-pub(crate) struct Body {
-    pub(crate) object: String,
-    pub(crate) frame: u64,
-    /// In seconds, where the file tells.
-    pub(crate) time: Option<f64>,
-    /// Of the picture; 0 where it is not known.
-    pub(crate) height: f64,
-    pub(crate) contours: Vec<Vec<Point2<f64>>>,
-}
-
-/// Bodies, and what would tell those of one name apart.
-pub(crate) struct Bodies {
-    pub(crate) list: Vec<Body>,
-    pub(crate) remedy: &'static str,
 }
 
 /// The outlines of polygons.
@@ -156,20 +139,4 @@ fn place(name: &str) -> Place {
 
 pub(crate) fn failed(name: &str, error: PolygonError) -> ReadError {
     ReadError { place: place(name), kind: ReadErrorKind::Polygons(error) }
-}
-
-/// A name that many outlines will have.
-pub(crate) fn checked_name(name: &str) -> Result<&str, PolygonError> {
-    match name.len() {
-        length if length > NAME_LIMIT => Err(PolygonError::LongName { length, limit: NAME_LIMIT }),
-        _ => Ok(name),
-    }
-}
-
-/// Points of a flat list of coordinates.
-pub(crate) fn points_of(coordinates: &[f64], item: impl Fn() -> String) -> Result<Vec<Point2<f64>>, PolygonError> {
-    if coordinates.len() % 2 == 1 {
-        return Err(PolygonError::OddCoordinates { item: item(), count: coordinates.len() });
-    }
-    Ok(coordinates.chunks_exact(2).map(|pair| Point2::new(pair[0], pair[1])).collect())
 }

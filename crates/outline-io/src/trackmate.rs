@@ -6,8 +6,8 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use crate::csv_field::quoted_start;
+use crate::polygon_bodies::{Bodies, Body, checked_name, points_of};
 use crate::polygon_error::PolygonError;
-use crate::polygons::{Bodies, Body, checked_name, points_of};
 
 /// What is wrong where two spots have a name; branches have names of their own.
 const REMEDY: &str = "two tracks have this name";

@@ -94,6 +94,11 @@ impl PyEstimate {
         Self { inner, covariance }
     }
 
+    /// Whether a parameter of this name has a value.
+    pub(crate) fn states(&self, name: &str) -> bool {
+        self.inner.parameters().any(|parameter| parameter.name == name && parameter.value.is_some())
+    }
+
     /// Its parameters in one line.
     pub(crate) fn text(&self) -> String {
         self.inner.parameters().map(|p| text(&p)).collect::<Vec<_>>().join(", ")

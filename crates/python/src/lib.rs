@@ -14,6 +14,7 @@ mod line_identifier;
 mod motion_filter;
 mod names;
 mod object_result;
+mod observation;
 mod outline;
 mod pickled;
 mod pipeline;
@@ -21,6 +22,7 @@ mod plane;
 mod polynomial;
 mod recogniser;
 mod recording;
+mod result_warning;
 mod simulation;
 mod table_arrays;
 mod tracker;
@@ -47,6 +49,8 @@ mod _native {
     #[pymodule_export]
     use crate::object_result::PyObjectResult;
     #[pymodule_export]
+    use crate::observation::PyObservation;
+    #[pymodule_export]
     use crate::outline::PyOutline;
     #[pymodule_export]
     use crate::pipeline::PyPipeline;
@@ -59,7 +63,9 @@ mod _native {
     #[pymodule_export]
     use crate::recording::{PyRecorder, identify_table, outlines_of_table, track_table};
     #[pymodule_export]
+    use crate::result_warning::PyResultWarning;
+    #[pymodule_export]
     use crate::simulation::{PySimulatedFrame, PySimulation, simulate};
     #[pymodule_export]
-    use crate::tracker::{PyObservation, PyResultWarning, PyTracker};
+    use crate::tracker::PyTracker;
 }

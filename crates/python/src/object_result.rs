@@ -1,14 +1,15 @@
 use freeform_motion::outline_filter::DynamicsWeights;
-use freeform_motion::tracker::ObjectResult;
+use freeform_motion::tracker::{NotStated, ObjectResult};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::{Deserialize, Serialize};
 
+use crate::errors::value_error;
 use crate::estimate::{PyEstimate, PyPointVelocity};
 use crate::names::dynamics_weights;
 use crate::pickled::{Pickled, Reduced};
-use crate::tracker::PyResultWarning;
+use crate::result_warning::PyResultWarning;
 
 /// The result for an object after all its frames so far.
 #[pyclass(frozen, name = "ObjectResult", module = "freeform_motion")]
@@ -44,11 +45,32 @@ pub(crate) struct PyObjectResult {
     /// What a user should know, causes before consequences: each with a `code` for programs and a `message` for people.
     #[pyo3(get)]
     warnings: Vec<PyResultWarning>,
+    /// Saved behind the others, since results that were saved before have none.
+    #[serde(skip)]
+    reasons: Reasons,
+}
+
+/// Why values of a result are not stated.
+#[derive(Debug, Default, Serialize, Deserialize)]
+struct Reasons {
+    /// Names of parameters, each with its reason.
+    of_parameters: Vec<(String, String)>,
+    of_velocity: Option<String>,
+}
+
+impl Reasons {
+    fn of(result: &ObjectResult) -> Self {
+        let reason = |name: &&str| Some(((*name).to_owned(), result.not_stated(name)?.name().to_owned()));
+        Self {
+            of_parameters: result.motion.parameter_names().iter().filter_map(reason).collect(),
+            of_velocity: result.velocity_not_stated().map(|reason| reason.name().to_owned()),
+        }
+    }
 }
 
 impl From<ObjectResult> for PyObjectResult {
     fn from(result: ObjectResult) -> Self {
-        let covariance = result.covariance;
+        let (reasons, covariance) = (Reasons::of(&result), result.covariance);
         Self {
             object: result.object,
             method: result.method.name().to_owned(),
@@ -62,16 +84,47 @@ impl From<ObjectResult> for PyObjectResult {
             aliases: result.aliases,
             dynamics: result.dynamics.map(|weights| [weights.generator, weights.velocity, weights.accelerating]),
             warnings: result.warnings.iter().map(Into::into).collect(),
+            reasons,
         }
     }
 }
 
 impl Pickled for PyObjectResult {
     const KIND: ([u8; 4], &'static str) = (*b"obje", "ObjectResult");
+
+    fn to_bytes(&self) -> PyResult<Vec<u8>> {
+        Self::format().encoded(&(self, &self.reasons)).map_err(value_error)
+    }
+
+    fn of_bytes(bytes: &[u8]) -> PyResult<Self> {
+        let format = Self::format();
+        match format.decoded(bytes) {
+            Ok((result, reasons)) => Ok(Self { reasons, ..result }),
+            Err(_) => format.decoded(bytes).map_err(value_error),
+        }
+    }
 }
 
 #[pymethods]
 impl PyObjectResult {
+    /// Why a parameter is not stated: `unobservable` (the outlines do not show it), `ambiguous` (two turns explain them) or `unknown` (not known
+    /// well enough, or saved by a version that did not tell); None where it is stated.
+    fn not_stated(&self, name: &str) -> Option<&str> {
+        let told = self.reasons.of_parameters.iter().find(|(parameter, _)| parameter == name);
+        let is_stated = || self.estimate.as_ref().is_some_and(|estimate| estimate.states(name));
+        match told {
+            Some((_, reason)) => Some(reason),
+            None => (!is_stated()).then_some(NotStated::Unknown.name()),
+        }
+    }
+
+    /// Why `velocity` is None: `ambiguous` (it is another for each of the turns that explain the outlines) or `unknown`; None where it is stated.
+    #[getter]
+    fn velocity_not_stated(&self) -> Option<&str> {
+        let reason = self.reasons.of_velocity.as_deref().unwrap_or(NotStated::Unknown.name());
+        self.velocity.is_none().then_some(reason)
+    }
+
     /// Other turns in radians, anticlockwise if y points up, that explain the outlines as well, shape (n,); empty where there is none.
     #[getter]
     fn rival_turns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {

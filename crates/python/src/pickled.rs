@@ -18,8 +18,11 @@ pub(crate) trait Pickled: Serialize + DeserializeOwned {
     const KIND: ([u8; 4], &'static str);
 
     fn reduced<'py>(&self, class: &Bound<'py, PyType>) -> PyResult<Reduced<'py>> {
-        let bytes = Self::format().encoded(self).map_err(value_error)?;
-        Ok((class.getattr("_restored")?, (PyBytes::new(class.py(), &bytes),)))
+        Ok((class.getattr("_restored")?, (PyBytes::new(class.py(), &self.to_bytes()?),)))
+    }
+
+    fn to_bytes(&self) -> PyResult<Vec<u8>> {
+        Self::format().encoded(self).map_err(value_error)
     }
 
     fn of_bytes(bytes: &[u8]) -> PyResult<Self> {

@@ -8,7 +8,7 @@ use crate::errors::value_error;
 use crate::estimate::PyEstimate;
 use crate::names::{adaptive_law, motion_model};
 use crate::outline::outline_of;
-use crate::tracker::PyResultWarning;
+use crate::result_warning::PyResultWarning;
 
 /// The method of the paper, from outlines to motion: fit a curve, decompose it into lines, match the lines, identify the motion.
 ///

@@ -13,9 +13,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::estimate::or_nan;
+use crate::observation::PyObservation;
 use crate::outline::PyOutline;
 use crate::table_arrays::{TableArrays, TableOutlines};
-use crate::tracker::{PyObservation, PyTracker};
+use crate::tracker::PyTracker;
 
 /// Frames after which Python is asked whether to go on.
 const FRAMES_BETWEEN_SIGNALS: usize = 64;

@@ -2,19 +2,17 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use freeform_motion::outline_io::OutlineFrame;
 use freeform_motion::riccati::CameraScale;
-use freeform_motion::tracker::{MethodSettings, NotStated, ObjectPhase, Observation};
-use freeform_motion::{Tracker, TrackerSettings, Warning};
+use freeform_motion::tracker::MethodSettings;
+use freeform_motion::{Tracker, TrackerSettings};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use serde::{Deserialize, Serialize};
 
 use crate::errors::{value_error, whole};
-use crate::estimate::{PyEstimate, PyMotionState, PyPointVelocity, motion_covariance};
 use crate::motion_filter::FilterArguments;
 use crate::names::{camera_scale, method, motion_model, object_name};
 use crate::object_result::PyObjectResult;
+use crate::observation::PyObservation;
 use crate::outline::outline_of;
-use crate::pickled::{Pickled, Reduced};
 use crate::plane::rectification;
 
 /// Identifies the motion of many objects from their outlines. Memory does not grow with the number of frames.
@@ -120,7 +118,7 @@ impl PyTracker {
             let mut tracker = self.lock();
             (tracker.push(&outline), tracker.settings().scale)
         });
-        Ok(PyObservation { inner, scale })
+        Ok(PyObservation::new(inner, scale))
     }
 
     /// Records a frame of an object whose points are no outline. It counts as rejected.
@@ -145,7 +143,7 @@ impl PyTracker {
         reason: String,
     ) -> PyObservation {
         let inner = py.detach(|| self.lock().reject(&object, frame, reason));
-        PyObservation { inner, scale: None }
+        PyObservation::new(inner, None)
     }
 
     /// The result for each object so far, in the order in which they first appeared.
@@ -240,164 +238,5 @@ impl PyTracker {
         let tracker = self.lock();
         let settings = tracker.settings();
         format!("Tracker({}, {}, {} object(s))", settings.motion(), settings.method(), tracker.objects().len())
-    }
-}
-
-/// Something that a user should know of a result.
-#[pyclass(frozen, name = "ResultWarning", module = "freeform_motion", get_all)]
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct PyResultWarning {
-    /// A name that is the same in every version.
-    code: String,
-    /// A sentence for people.
-    message: String,
-}
-
-impl From<&Warning> for PyResultWarning {
-    fn from(warning: &Warning) -> Self {
-        Self { code: warning.code().to_owned(), message: warning.to_string() }
-    }
-}
-
-impl PyResultWarning {
-    pub(crate) fn code(&self) -> &str {
-        &self.code
-    }
-}
-
-impl Pickled for PyResultWarning {
-    const KIND: ([u8; 4], &'static str) = (*b"warn", "ResultWarning");
-}
-
-#[pymethods]
-impl PyResultWarning {
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().reduced(&slf.get_type())
-    }
-
-    #[staticmethod]
-    fn _restored(bytes: &[u8]) -> PyResult<Self> {
-        Self::of_bytes(bytes)
-    }
-
-    fn __str__(&self) -> &str {
-        &self.message
-    }
-
-    fn __repr__(&self) -> String {
-        format!("ResultWarning({}: {})", self.code, self.message)
-    }
-}
-
-/// The result of one frame of one object.
-#[pyclass(frozen, name = "Observation", module = "freeform_motion")]
-#[derive(Debug)]
-pub(crate) struct PyObservation {
-    pub(crate) inner: Observation,
-    /// Camera scale of the tracker.
-    scale: Option<CameraScale>,
-}
-
-#[pymethods]
-impl PyObservation {
-    /// Name of the object.
-    #[getter]
-    fn object(&self) -> &str {
-        &self.inner.object
-    }
-
-    /// Number of the frame.
-    #[getter]
-    fn frame(&self) -> u64 {
-        self.inner.frame
-    }
-
-    /// Time in seconds; None if the points are no outline.
-    #[getter]
-    fn time(&self) -> Option<f64> {
-        self.inner.time
-    }
-
-    /// `waiting`, `acquiring`, `tracking` or `lost` (motion filter), `start` or `adapt` (adaptive); None if the frame was not used at all.
-    #[getter]
-    fn phase(&self) -> Option<&'static str> {
-        self.inner.phase.map(ObjectPhase::name)
-    }
-
-    /// Whether the frame was used.
-    #[getter]
-    fn is_accepted(&self) -> bool {
-        self.inner.is_accepted()
-    }
-
-    /// Why it was not used; None if it was.
-    #[getter]
-    fn rejection(&self) -> Option<String> {
-        self.inner.rejection.as_ref().map(ToString::to_string)
-    }
-
-    /// The motion estimated after the frame, in space if a camera scale is given; None if it is not known.
-    #[getter]
-    fn estimate(&self) -> Option<PyEstimate> {
-        let Observation { estimate, state, .. } = &self.inner;
-        let image = state.as_ref().map(motion_covariance);
-        estimate.map(|estimate| {
-            let covariance = image.map(|image| match self.scale {
-                Some(scale) => scale.covariance_in_space(estimate.model(), &image),
-                None => image,
-            });
-            PyEstimate::new(estimate, covariance)
-        })
-    }
-
-    /// Why a parameter is not stated, as known after the frame: `unobservable` (the outlines do not show it), `ambiguous` (two turns explain
-    /// them) or `unknown` (not known well enough); None where it is stated.
-    fn not_stated(&self, name: &str) -> Option<&'static str> {
-        self.inner.not_stated(name).map(NotStated::name)
-    }
-
-    /// Velocity of the middle of the object, in space if a camera scale is given (motion filter); None where it is not known.
-    #[getter]
-    fn velocity(&self) -> Option<PyPointVelocity> {
-        self.inner.velocity.map(|inner| PyPointVelocity { inner })
-    }
-
-    /// Pose and motion in the image with their joint covariance (motion filter), the last known ones.
-    #[getter]
-    fn state(&self) -> Option<PyMotionState> {
-        self.inner.state.clone().map(|inner| PyMotionState { inner })
-    }
-
-    /// Noise of this frame (motion filter), or root mean square distance of the points from the fitted curve (adaptive), image lengths.
-    #[getter]
-    fn residual(&self) -> Option<f64> {
-        self.inner.residual
-    }
-
-    /// Squared innovation of the pose in units of its covariance (motion filter).
-    #[getter]
-    fn innovation(&self) -> Option<f64> {
-        self.inner.innovation
-    }
-
-    /// Counted up where the object was given up and begun anew, and where a frame has shown its turn for the first time: nobody knows how far the
-    /// object had turned between poses of different segments.
-    #[getter]
-    fn segment(&self) -> usize {
-        self.inner.segment
-    }
-
-    /// A warning that should not wait for the end.
-    #[getter]
-    fn warning(&self) -> Option<PyResultWarning> {
-        self.inner.warning.as_ref().map(Into::into)
-    }
-
-    fn __repr__(&self) -> String {
-        let Observation { object, frame, rejection, .. } = &self.inner;
-        match rejection {
-            None => format!("Observation({object:?}, frame {frame}, accepted)"),
-            Some(rejection) => format!("Observation(rejected: {rejection})"),
-        }
     }
 }

@@ -102,6 +102,32 @@ def test_an_observation_has_the_velocity_of_the_middle_and_says_why_a_parameter_
     assert (last.not_stated("omega"), last.not_stated("nothing of this name")) == ("unobservable", "unknown")
 
 
+def test_a_result_says_why_a_value_is_not_stated_also_after_it_was_pickled():
+    circle = ff.identify(ff.simulate("circle", b=(0.3, 0.0), seconds=1.0))[0]
+    assert circle.estimate["omega"].value is None and circle.velocity is not None
+    bird = ff.identify(ff.simulate("bird", seconds=1.0))[0]
+    adaptive = ff.identify(ff.simulate("bird", seconds=1.0), method="adaptive")[0]
+    for told in (circle, again(circle)):
+        assert (told.not_stated("omega"), told.not_stated("nothing of this name")) == ("unobservable", "unknown")
+        assert told.velocity_not_stated is None
+    for told in (bird, again(bird)):
+        assert [told.not_stated(name) for name in ("omega", "b1", "b2")] == [None] * 3
+    assert again(adaptive).velocity_not_stated == "unknown"
+
+
+def test_results_that_were_pickled_before_they_had_reasons_are_read(bird):
+    result = ff.identify(bird)[0]
+    restore, (data,) = result.__reduce__()
+    # No parameter without a value, and a velocity: an empty list and none.
+    assert data[-2:] == b"\0\0"
+    state, checksum = data[16:-2], 0xCBF29CE484222325
+    for byte in state:
+        checksum = (checksum ^ byte) * 0x100000001B3 % 2**64
+    before = restore(data[:8] + checksum.to_bytes(8, "little") + state)
+    assert repr(before) == repr(result) and before.not_stated("omega") is None
+    assert before.not_stated("nothing of this name") == "unknown"
+
+
 def test_arrays_of_points_are_outlines_as_for_the_motion_filter(bird):
     outlines = [frame.outline for frame in bird]
     of_points = ff.identify([outline.points for outline in outlines], fps=30)

@@ -1,6 +1,6 @@
 use image::{GrayImage, Rgb, RgbImage};
 
-use super::drawing::OUTLINE;
+use super::colours::OUTLINE;
 
 /// A picture to draw on. Positions are in columns and rows, pixel centres at half numbers.
 #[derive(Debug)]

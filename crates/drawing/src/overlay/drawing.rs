@@ -7,16 +7,8 @@ use image::{Rgb, RgbImage};
 use nalgebra::{Matrix3, Point2};
 
 use super::canvas::Canvas;
+use super::colours::{CURVE, MOTION, OUTLINE, REJECTED, RELATED};
 use super::lettering::{write_words, write_words_below};
-
-pub(super) const OUTLINE: Rgb<u8> = Rgb([255, 230, 60]);
-const REJECTED: Rgb<u8> = Rgb([255, 80, 80]);
-const CURVE: Rgb<u8> = Rgb([86, 180, 233]);
-const RELATED: Rgb<u8> = Rgb([240, 120, 220]);
-const MOTION: Rgb<u8> = Rgb([0, 220, 150]);
-
-/// All colours of drawings.
-pub(super) const COLOURS: [Rgb<u8>; 5] = [OUTLINE, REJECTED, CURVE, RELATED, MOTION];
 
 /// Most arrows of the motion field around an outline.
 const ARROWS: usize = 24;

@@ -1,5 +1,6 @@
 //! What was found, drawn on the pictures.
 mod canvas;
+mod colours;
 mod drawing;
 mod gif_animation;
 mod lettering;

@@ -3,7 +3,7 @@ use std::collections::HashMap;
 
 use image::Rgb;
 
-use super::drawing::COLOURS;
+use super::colours::COLOURS;
 
 /// What shows the picture before.
 pub(super) const TRANSPARENT: u8 = 0;

@@ -73,10 +73,14 @@ fn law_and_filter() -> Vec<(String, Method)> {
 
 /// All tables but that of the initial values.
 pub(super) fn questions() -> Vec<Question> {
+    [of_pictures(), of_camera_scale(), of_laws(), of_identifier()].into_iter().flatten().collect()
+}
+
+/// How exact and how frequent the outlines have to be.
+fn of_pictures() -> Vec<Question> {
     let usual = Condition::usual;
     let noises = [0.0, 0.001, 0.0025, 0.005, 0.01, 0.02, 0.05];
     let rates = [10.0, 20.0, 30.0, 50.0, 100.0, 200.0];
-    let scales = [0.02, 0.05, 0.1, 0.2, 0.5];
     vec![
         Question {
             name: "open-noise",
@@ -97,6 +101,14 @@ pub(super) fn questions() -> Vec<Question> {
             methods: law_and_filter(),
             counts_rejected: false,
         },
+    ]
+}
+
+/// What the scale of the camera does, by the size of the object in the image and by its velocity there.
+fn of_camera_scale() -> Vec<Question> {
+    let usual = Condition::usual;
+    let scales = [0.02, 0.05, 0.1, 0.2, 0.5];
+    vec![
         Question {
             name: "open-scale",
             title: "Camera scale f/Z0, the object staying as it is in space",
@@ -126,6 +138,13 @@ pub(super) fn questions() -> Vec<Question> {
             methods: law_and_filter(),
             counts_rejected: false,
         },
+    ]
+}
+
+/// Which lines tell the motion, and by which law.
+fn of_laws() -> Vec<Question> {
+    let usual = Condition::usual;
+    vec![
         Question {
             name: "open-pair",
             title: "The line pair",
@@ -151,6 +170,13 @@ pub(super) fn questions() -> Vec<Question> {
             methods: LAWS.map(|(name, kind)| (name.to_owned(), law(kind, PairChoice::All))).into(),
             counts_rejected: false,
         },
+    ]
+}
+
+/// How the identifier is set, and what curves it is given.
+fn of_identifier() -> Vec<Question> {
+    let usual = Condition::usual;
+    vec![
         Question {
             name: "open-size",
             title: "Size of the object in the identifier",

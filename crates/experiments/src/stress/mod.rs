@@ -32,6 +32,7 @@ mod view;
 
 pub use class::Class;
 pub use judgement::{NOTES, Quantity};
-pub use kind::{Kind, all_kinds, kinds_containing};
+pub use kind::Kind;
+pub use kinds::{all_kinds, kinds_containing};
 pub use study::{KindReport, StressReport, StressStudy};
 pub use summary::{PoseSummary, QuantitySummary, Summary};

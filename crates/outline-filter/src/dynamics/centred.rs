@@ -82,6 +82,20 @@ impl Summary {
         }
         Some(Self { covariance: carried(&of_both(&to, k), &centred, 2 * k), ..*self })
     }
+
+    /// Motion and covariance about the centroid, by the change of k parameters that leads there. The pose is where errors are counted from.
+    pub(super) fn about_centroid<const N: usize>(
+        &self,
+        change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+        k: usize,
+    ) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
+        let motion = change * SVector::<f64, MAX_PARAMETERS>::from(self.motion);
+        let mut mean = SVector::zeros();
+        (0..k).for_each(|j| mean[k + j] = motion[j]);
+        let moved = carried(&of_both(change, k), &self.covariance, 2 * k);
+        let covariance = SMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
+        (mean, covariance)
+    }
 }
 
 /// A change of k parameters as one of the errors of pose and motion.

@@ -57,7 +57,7 @@ impl<const N: usize> InteractingHypotheses<N> {
     fn of_generator(&self, given: &Summary) -> Option<(SVector<f64, N>, SMatrix<f64, N, N>)> {
         let (model, change) = (self.model, self.reference.about_centroid(self.model));
         let k = model.parameter_count();
-        let (mut mean, covariance) = centred(&change, given, k);
+        let (mut mean, covariance) = given.about_centroid(&change, k);
         let off = model.motion_between(&(given.pose * self.reference.pose.try_inverse()?), 1.0)?;
         let shift = if self.outline_has_moved { self.common.shift_in(&self.reference.pose) } else { SVector::zeros() };
         let moved = change * (SVector::<f64, MAX_PARAMETERS>::from(off) + shift);
@@ -201,18 +201,4 @@ impl<const N: usize> InteractingHypotheses<N> {
 /// much as lies outside.
 fn reach_of(others: f64) -> f64 {
     if others > 0.0 { (REACH / others.max(tuning::OUTSIDE_INTERVAL)).max(1.0) } else { 1.0 }
-}
-
-/// Motion and covariance of a summary about the centroid.
-pub(super) fn centred<const N: usize>(
-    change: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
-    summary: &Summary,
-    k: usize,
-) -> (SVector<f64, N>, SMatrix<f64, N, N>) {
-    let motion = change * SVector::<f64, MAX_PARAMETERS>::from(summary.motion);
-    let mut mean = SVector::zeros();
-    (0..k).for_each(|j| mean[k + j] = motion[j]);
-    let moved = carried(&of_both(change, k), &summary.covariance, 2 * k);
-    let covariance = SMatrix::from_fn(|i, j| if i < 2 * k && j < 2 * k { moved[(i, j)] } else { 0.0 });
-    (mean, covariance)
 }

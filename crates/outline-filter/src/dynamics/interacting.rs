@@ -4,7 +4,6 @@ use nalgebra::{Matrix3, Point2, SVector};
 
 use super::{
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
-    combination::centred,
     common_error::CommonError,
     correction::root_of,
     course::Course,
@@ -71,9 +70,10 @@ impl<const N: usize> InteractingHypotheses<N> {
         }
         let reference = CentredPose { pose: summary.pose, centroid };
         let change = reference.about_centroid(model);
-        let (mean, mut covariance) = centred(&change, summary, k);
+        let (mean, mut covariance) = summary.about_centroid(&change, k);
         // Poses are followed as they are measured, against the outline as it is.
-        let (_, measured) = centred::<N>(&change, &Summary { covariance: *given_outline, ..*summary }, k);
+        let of_poses = Summary { covariance: *given_outline, ..*summary };
+        let (_, measured) = of_poses.about_centroid::<N>(&change, k);
         let common = CommonError::of_outline(model, &covariance, &measured, &reference);
         for (i, j) in (0..2 * k).flat_map(|i| (0..k).map(move |j| (i, j))) {
             (covariance[(i, j)], covariance[(j, i)]) = (measured[(i, j)], measured[(j, i)]);

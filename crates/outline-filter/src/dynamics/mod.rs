@@ -19,10 +19,11 @@ mod setting;
 mod steady_change;
 mod step;
 mod turned_chains;
+mod wrong_family;
 
 pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
 pub(crate) use combination::Purpose;
 pub(crate) use dynamics_filter::DynamicsFilter;
-pub use family::WrongFamily;
 pub(crate) use family::{FamilyTests, UnmodelledEstimate};
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};
+pub use wrong_family::WrongFamily;

@@ -83,7 +83,7 @@ impl MotionFilter {
                 return found;
             }
             is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
-            turns_alike = is_explained && track.leaps_to(of_other.body_pose());
+            turns_alike = is_explained && track.turn_leaps(of_other.body_pose(), 0.0);
         }
         if doubt == Doubt::Points && !is_explained {
             track.record_as_usual(outcome.measurement.agreement);

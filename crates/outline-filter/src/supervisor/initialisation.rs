@@ -143,7 +143,7 @@ impl MotionFilter {
         if likelihoods[0].is_worse_than(&likelihoods[1]) {
             return Remapping::Idle;
         }
-        if !present.track.leaps_to(&poses[1]) {
+        if !present.track.turn_leaps(&poses[1], 0.0) {
             present.track.go_on_with_turn_profile_of(track);
         }
         self.turn_hypotheses.remap(|turn| {

@@ -7,6 +7,7 @@ mod expected_outline;
 mod initialisation;
 mod motion_change;
 mod motion_filter;
+mod passing_over;
 mod repeated_frames;
 mod search_budget;
 mod search_memory;
@@ -14,6 +15,7 @@ mod settings;
 mod starts;
 #[cfg(feature = "serde")]
 mod state_bytes;
+mod stated;
 mod statement;
 mod tracking;
 mod turn_hypotheses;

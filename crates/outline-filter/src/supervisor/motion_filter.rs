@@ -11,7 +11,7 @@ use super::{
     repeated_frames::{BeforeRepeated, RepeatedFrames},
     search_memory::SearchMemory,
     settings::FilterSettings,
-    statement::Statement,
+    stated::Statement,
     tracking::advance,
     turn_hypotheses::TurnHypotheses,
     window::InitialisationWindow,

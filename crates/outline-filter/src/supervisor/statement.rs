@@ -3,10 +3,13 @@ use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::DMatrix;
 
-use super::motion_filter::{Counts, MotionFilter, Phase};
+use super::{
+    motion_filter::{Counts, MotionFilter, Phase},
+    stated::Statement,
+};
 use crate::{
     belief::StateMatrix,
-    dynamics::{CentredDeviations, Purpose, Summary, WrongFamily},
+    dynamics::{CentredDeviations, Purpose, WrongFamily},
     track::TurnTold,
     tuning::statement as tuning,
 };
@@ -24,17 +27,6 @@ pub enum Unstated {
         /// All of them.
         frames: usize,
     },
-}
-
-/// Pose and motion with their covariance, the hypotheses of dynamics taken together.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Statement {
-    /// With the random part of the errors alone.
-    random: Summary,
-    /// With the random and the systematic part.
-    all: Summary,
-    /// What the model leaves out, beyond doubt.
-    family: Option<WrongFamily>,
 }
 
 impl MotionFilter {

@@ -78,15 +78,11 @@ impl Track {
         self.map.is_all_but_round() && !self.turn_is_unseen() && self.model() <= MotionModel::Similarity
     }
 
-    /// Whether the turn of an outline that is all but round is, since a pose, another than expected; rad, anticlockwise where y points up.
+    /// Whether the turn of an outline that is all but round is, since a pose, another than expected; rad, anticlockwise where y points up. No turn is
+    /// expected where it is to be told from another pose in the same frame.
     pub(crate) fn turn_leaps(&self, before: &Matrix3<f64>, expected: f64) -> bool {
         // By the turn back.
         self.is_all_but_round() && wrapped(self.turn_to(before) + expected).abs() > tuning::LEAP
-    }
-
-    /// Whether a pose that the frame does not tell from this one has another turn, where that must be told.
-    pub(crate) fn leaps_to(&self, pose: &Matrix3<f64>) -> bool {
-        self.turn_leaps(pose, 0.0)
     }
 
     /// Forgets what frames have told of the turn.

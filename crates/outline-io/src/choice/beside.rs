@@ -3,17 +3,8 @@ use nalgebra::{Point2, Vector2};
 
 use super::chains::Chain;
 use super::sight::Sight;
+use super::tuning::beside as tuning;
 use crate::affine_moment_invariants::is_within;
-
-/// A change is no larger than this share of the picture, and is seen in one of so many pictures.
-const LARGEST_CHANGE: f64 = 0.25;
-const CHANGES_OFTEN: usize = 4;
-
-/// Fewest pictures in which it is seen that are enough to say that something goes on in most of them: those of four bursts that do not overlap.
-const FEWEST_OF_MOST: usize = 12;
-
-/// What moves by less than this share of the way of another thing stands still beside it.
-const STANDS: f64 = 0.2;
 
 /// What is seen to change besides what is traced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,12 +18,12 @@ pub(super) struct Changes {
 impl Changes {
     /// Whether it is seen in half of the pictures, and in more than a few.
     pub(super) fn are_most(self) -> bool {
-        self.seen >= FEWEST_OF_MOST && 2 * self.seen >= self.pictures
+        self.seen >= tuning::FEWEST_OF_MOST && 2 * self.seen >= self.pictures
     }
 
     /// Whether it is seen often enough to be no speck of noise.
     pub(super) fn are_many(self) -> bool {
-        self.seen > 2 && CHANGES_OFTEN * self.seen >= self.pictures
+        self.seen > 2 && tuning::CHANGES_OFTEN * self.seen >= self.pictures
     }
 }
 
@@ -71,14 +62,14 @@ impl Beside {
         };
         let way = (after.centre - before.centre).norm();
         let moved = |(a, b): (&Sight, &Sight)| (a.centre - b.centre).norm().max(a.unlike(b));
-        seen(before.frame).zip(seen(after.frame)).is_some_and(|seen| moved(seen) < STANDS * way)
+        seen(before.frame).zip(seen(after.frame)).is_some_and(|seen| moved(seen) < tuning::STANDS * way)
     }
 }
 
 /// In how many pictures something differs from the ground beside the outline of what rests, that is not most of the picture, as light does. What
 /// changes within the outline counts: it may be what moves on it.
 pub(super) fn changes_beside(pictures: &[Vec<Sight>], still: &Sight, picture_area: f64) -> Changes {
-    let is_beside = |sight: &Sight| !lies_on(sight, still) && sight.area < LARGEST_CHANGE * picture_area;
+    let is_beside = |sight: &Sight| !lies_on(sight, still) && sight.area < tuning::LARGEST_CHANGE * picture_area;
     let seen = pictures.iter().filter(|sights| sights.iter().any(is_beside)).count();
     Changes { seen, pictures: pictures.len() }
 }

@@ -2,34 +2,7 @@
 use nalgebra::Vector2;
 
 use super::sight::Sight;
-
-/// Largest logarithm of the ratio of areas from one picture to the next, and what the rounding of a small outline adds, over its size.
-const GROWTH: f64 = 0.15;
-const GROWTH_OF_SMALL: f64 = 2.0;
-
-/// Largest step from one picture to the next, in sizes (roots of areas).
-const LARGEST_STEP: f64 = 8.0;
-
-/// How far two steps that follow each other may differ: in sizes, in steps, and in pixels of the trial.
-const BEND: [f64; 3] = [0.03, 0.25, 0.3];
-
-/// Steps of so many sizes need no straight way: nothing else is where the thing was.
-const OVERLAP: f64 = 0.5;
-
-/// Least way in three pictures: in sizes, and in pixels of the trial.
-const LEAST_WAY: [f64; 2] = [0.1, 1.5];
-
-/// Largest bend of a way that a common acceleration explains, in sizes.
-const LARGEST_PULL: f64 = 3.0;
-
-/// How far the common acceleration of a thing may vary, as shares of it: its middle is known in whole pictures, and pictures are taken unevenly.
-const PULL_VARIES: f64 = 0.15;
-
-/// So likely clutter may look as if it moved.
-pub(super) const BY_CHANCE: f64 = 1e-4;
-
-/// A thing moves clearly where it moves by so many of its sizes from picture to picture.
-const CLEAR: f64 = 0.75;
+use super::tuning::chains as tuning;
 
 /// Three sightings of one thing in pictures that follow each other.
 pub(super) type Chain = [Sight; 3];
@@ -37,7 +10,7 @@ pub(super) type Chain = [Sight; 3];
 /// Whether a thing is nowhere that it was in the picture before.
 fn is_clear([a, b, c]: [&Sight; 3]) -> bool {
     let step = (b.centre - a.centre).norm().min((c.centre - b.centre).norm());
-    step > CLEAR * b.size()
+    step > tuning::CLEAR * b.size()
 }
 
 /// How likely chances have at most the product that they have, if all are by chance (R. A. Fisher, *Statistical Methods for Research Workers*).
@@ -64,8 +37,8 @@ fn triples(burst: &[Vec<Sight>]) -> usize {
 /// How many of so many triples are expected to be bent as little as by `bend`, of things that lie anywhere near each other.
 fn as_straight(triples: usize, bend: f64, size: f64, picture_area: f64) -> f64 {
     let disc = |radius: f64| std::f64::consts::PI * radius * radius;
-    let room = disc(LARGEST_STEP * size).min(picture_area);
-    triples as f64 * disc(bend + BEND[2]) / room
+    let room = disc(tuning::LARGEST_STEP * size).min(picture_area);
+    triples as f64 * disc(bend + tuning::BEND[2]) / room
 }
 
 /// That there is one or more where so many are expected.
@@ -120,8 +93,9 @@ pub(super) fn common_pull(
     let count = tried.clone().count();
     let (pull, chance) = tried.map(|(own, pull)| (pull, chance_of(&pull, own))).min_by(|a, b| a.1.total_cmp(&b.1))?;
     let along = |chains: &Vec<Chain>| -> Vec<Chain> {
-        let is_along =
-            |chain: &&Chain| off(chain, &pull) < BEND[0] * chain[1].size() + BEND[2] + PULL_VARIES * pull.norm();
+        let is_along = |chain: &&Chain| {
+            off(chain, &pull) < tuning::BEND[0] * chain[1].size() + tuning::BEND[2] + tuning::PULL_VARIES * pull.norm()
+        };
         chains.iter().filter(is_along).cloned().collect()
     };
     Some(Likely { chains: bent.iter().map(along).collect(), chance: count as f64 * chance })
@@ -130,7 +104,8 @@ pub(super) fn common_pull(
 /// What is like each other in three pictures, nowhere that it was in the picture before, and goes on, bent however within limits.
 fn bent_chains(burst: &[Vec<Sight>], is_wanted: impl Fn(&Chain) -> bool) -> Vec<Chain> {
     let [first, second, third] = burst else { return Vec::new() };
-    let goes_on = |chain: &[&Sight; 3]| is_clear(*chain) && bend(*chain).norm() < LARGEST_PULL * chain[1].size();
+    let goes_on =
+        |chain: &[&Sight; 3]| is_clear(*chain) && bend(*chain).norm() < tuning::LARGEST_PULL * chain[1].size();
     let all = second.iter().flat_map(|b| candidates(first, b, third)).filter(goes_on);
     all.map(|chain| chain.map(Sight::clone)).filter(is_wanted).collect()
 }
@@ -153,9 +128,10 @@ pub(super) fn chains_of(burst: &[Vec<Sight>]) -> Vec<Chain> {
     let goes_on = |[a, b, c]: &[&Sight; 3]| {
         let (one, two) = (b.centre - a.centre, c.centre - b.centre);
         let step = one.norm().max(two.norm());
-        let bend = BEND[0] * b.size() + BEND[1] * step + BEND[2];
-        let overlaps = step < OVERLAP * b.size();
-        (overlaps || (two - one).norm() < bend) && (one + two).norm() > LEAST_WAY[0] * b.size() + LEAST_WAY[1]
+        let bend = tuning::BEND[0] * b.size() + tuning::BEND[1] * step + tuning::BEND[2];
+        let overlaps = step < tuning::OVERLAP * b.size();
+        (overlaps || (two - one).norm() < bend)
+            && (one + two).norm() > tuning::LEAST_WAY[0] * b.size() + tuning::LEAST_WAY[1]
     };
     let chain = |b: &Sight| -> Option<Chain> {
         let straight = candidates(first, b, third).filter(goes_on);
@@ -174,8 +150,8 @@ fn is_like(a: &Sight, b: &Sight) -> bool {
     let size = a.size().min(b.size());
     !a.is_clipped
         && !b.is_clipped
-        && (a.area / b.area).ln().abs() < GROWTH + GROWTH_OF_SMALL / size
-        && (a.centre - b.centre).norm() < LARGEST_STEP * size
+        && (a.area / b.area).ln().abs() < tuning::GROWTH + tuning::GROWTH_OF_SMALL / size
+        && (a.centre - b.centre).norm() < tuning::LARGEST_STEP * size
 }
 
 #[cfg(test)]
@@ -219,11 +195,11 @@ mod tests {
         };
         for seed in 0..20 {
             let with = pulled(&thrown(seed, true)).expect("chains");
-            assert!(with.chance < BY_CHANCE, "{seed}: {}", with.chance);
+            assert!(with.chance < tuning::BY_CHANCE, "{seed}: {}", with.chance);
             let of_thrown = |chain: &Chain| (bend(chain.each_ref()) - Vector2::new(0.0, 10.0)).norm() < 2.0;
             assert!(with.chains.iter().all(|chains| chains.iter().any(of_thrown)), "{seed}");
             let without = pulled(&thrown(seed, false)).map_or(1.0, |likely| likely.chance);
-            assert!(without > BY_CHANCE, "{seed}: {without}");
+            assert!(without > tuning::BY_CHANCE, "{seed}: {without}");
         }
     }
 

@@ -7,6 +7,7 @@ mod rest;
 mod sample;
 mod scaled;
 mod sight;
+mod tuning;
 mod warning;
 
 use std::sync::Arc;

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::beside::{Beside, Changes, changes_beside};
-use super::chains::{BY_CHANCE, Chain, Likely, chains_of, common_pull, follow_each_other, straight_on};
+use super::chains::{Chain, Likely, chains_of, common_pull, follow_each_other, straight_on};
 use super::evidence::{TracingEvidence, Trial, evidence_of};
 use super::sight::Sight;
+use super::tuning::chains as tuning;
 use super::{AGAINST_NOISE, PictureSample, Tracing, TracingWay};
 use crate::background::Difference;
 use crate::channel::Channel;
@@ -127,7 +128,7 @@ fn moving(
     // acceleration bent its way in all bursts, as gravity does that of what is thrown or falls.
     let area = trial.picture_area();
     let by_chance = |likely: Likely| {
-        let (found, _) = (likely.chance < BY_CHANCE).then(|| of_one_thing(&likely.chains))??;
+        let (found, _) = (likely.chance < tuning::BY_CHANCE).then(|| of_one_thing(&likely.chains))??;
         Some(Moving { found, chance: likely.chance })
     };
     by_chance(straight_on(chains, &bursts, area))

@@ -1,0 +1,28 @@
+//! Frames that repeat the one before them are passed over.
+use super::{
+    motion_filter::{MotionFilter, Phase},
+    repeated_frames::BeforeRepeated,
+    tracking::predict,
+};
+
+impl MotionFilter {
+    /// Moves on to the time of a frame that repeats the one before it.
+    pub(super) fn pass_over(&mut self, time: f64) {
+        self.clock.last_frame = time;
+        let Some(track) = self.track.as_mut().filter(|_| self.phase == Phase::Tracking) else { return };
+        if self.before_repeated.is_none() {
+            let (track, history) = (track.clone(), self.history.clone());
+            self.before_repeated = Some(Box::new(BeforeRepeated { track, history, time: self.clock.of_track }));
+        }
+        predict(&self.settings, track, &mut self.history, time - self.clock.of_track);
+        self.clock.of_track = time;
+    }
+
+    /// Goes back to the last frame that was looked at.
+    pub(super) fn go_back_before_repeated(&mut self) {
+        if let Some(before) = self.before_repeated.take() {
+            let BeforeRepeated { track, history, time } = *before;
+            (self.track, self.history, self.clock.of_track) = (Some(track), history, time);
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Constants of what goes on from picture to picture, each with its reason.
+
+/// What may be one thing in three pictures that follow each other, and how little of that chance explains.
+pub(super) mod chains {
+    /// Largest logarithm of the ratio of areas from one picture to the next: that of a thing that comes nearer by 7 % of its distance.
+    pub(in crate::choice) const GROWTH: f64 = 0.15;
+
+    /// What the rounding of a small outline adds to it, over its size: the area of a thing of ten pixels across is off by up to two rows of them.
+    pub(in crate::choice) const GROWTH_OF_SMALL: f64 = 2.0;
+
+    /// Largest step from one picture to the next, in sizes (roots of areas): with a larger one nearly all things of a picture could be each other.
+    pub(in crate::choice) const LARGEST_STEP: f64 = 8.0;
+
+    /// How far two steps that follow each other may differ: in sizes, as a middle is known; in steps, as a motion may turn and speed up in three
+    /// pictures; and in pixels of the trial, as outlines are rounded.
+    pub(in crate::choice) const BEND: [f64; 3] = [0.03, 0.25, 0.3];
+
+    /// Steps of so many sizes need no straight way: nothing else is where the thing was.
+    pub(in crate::choice) const OVERLAP: f64 = 0.5;
+
+    /// Least way in three pictures: in sizes, and in pixels of the trial. What rests has less, by the rounding of its outline.
+    pub(in crate::choice) const LEAST_WAY: [f64; 2] = [0.1, 1.5];
+
+    /// Largest bend of a way that a common acceleration explains, in sizes: a seventh of the room that things at random fill.
+    pub(in crate::choice) const LARGEST_PULL: f64 = 3.0;
+
+    /// How far the common acceleration of a thing may vary, as shares of it: its middle is known in whole pictures, and pictures are taken unevenly.
+    pub(in crate::choice) const PULL_VARIES: f64 = 0.15;
+
+    /// So likely clutter may look as if it moved: many ways of tracing are tried on each sequence.
+    pub(in crate::choice) const BY_CHANCE: f64 = 1e-4;
+
+    /// A thing moves clearly where it moves by so many of its sizes from picture to picture: a disc then leaves most of where it was.
+    pub(in crate::choice) const CLEAR: f64 = 0.75;
+}
+
+/// What there is beside a thing that may move.
+pub(super) mod beside {
+    /// A change is no larger than this share of the picture: light changes more of it at once.
+    pub(in crate::choice) const LARGEST_CHANGE: f64 = 0.25;
+
+    /// It is seen in one of so many pictures: specks of noise are in fewer.
+    pub(in crate::choice) const CHANGES_OFTEN: usize = 4;
+
+    /// Fewest pictures in which it is seen that are enough to say that something goes on in most of them: those of four bursts that do not overlap.
+    pub(in crate::choice) const FEWEST_OF_MOST: usize = 12;
+
+    /// What moves by less than this share of the way of another thing stands still beside it: a part of a thing goes all of its way, and the middle
+    /// of what stands is off by a little of it where the other is in front.
+    pub(in crate::choice) const STANDS: f64 = 0.2;
+}

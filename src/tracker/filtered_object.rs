@@ -1,0 +1,96 @@
+//! One object that the motion filter follows, and what is known of it.
+use freeform_curve_fit::Outline;
+use freeform_estimate::MotionEstimate;
+use freeform_outline_filter::{MotionFilter, Phase};
+
+use super::step::{Step, of_following, unstated_of};
+use crate::rejection::RejectionCause;
+use crate::warning::Warning;
+
+/// A filter, and what it knew before it began to look for the object again.
+#[derive(Debug, Clone)]
+pub(super) struct FilteredObject {
+    pub(super) filter: MotionFilter,
+    /// Time in seconds and motion when it was last known.
+    pub(super) last_known: Option<(f64, MotionEstimate)>,
+}
+
+impl FilteredObject {
+    pub(super) fn push(&mut self, time: f64, outline: &Outline) -> Step {
+        let step = match self.filter.step(time, outline) {
+            Ok(step) => step,
+            Err(error) => return Step { rejected_because: Some(RejectionCause::Filter(error)), ..Step::default() },
+        };
+        let estimate = self.filter.estimate();
+        if let Some(estimate) = estimate {
+            // Of a lost object nothing is stated, but when something was.
+            let is_stated = estimate.parameters().any(|p| p.value.is_some());
+            let since = self.last_known.filter(|_| !is_stated && self.filter.phase() == Phase::Lost);
+            self.last_known = Some((since.map_or(time, |(since, _)| since), estimate));
+        }
+        Step {
+            phase: Some(step.phase.into()),
+            hidden: estimate.as_ref().map_or_else(Vec::new, |estimate| self.hidden(estimate)),
+            estimate,
+            velocity: estimate.and_then(|_| self.filter.velocity()),
+            residual: step.measurement.and_then(|measurement| measurement.noise),
+            innovation: step.measurement.map(|measurement| measurement.innovation),
+            state: self.filter.state(),
+            ambiguity: self.filter.ambiguity(),
+            aliases: self.filter.aliases(),
+            rejected_because: step.rejection.map(RejectionCause::NotAccepted),
+            ..Step::default()
+        }
+    }
+
+    /// Parameters of an estimate that the outlines do not show.
+    fn hidden(&self, estimate: &MotionEstimate) -> Vec<&'static str> {
+        // Mostly all is stated.
+        if unstated_of(estimate).next().is_none() {
+            return Vec::new();
+        }
+        let parameters = estimate.parameters().zip(self.filter.hidden_parameters());
+        parameters.filter(|(p, is_hidden)| p.value.is_none() && *is_hidden).map(|(p, _)| p.name).collect()
+    }
+
+    pub(super) fn warnings(&self) -> Vec<Warning> {
+        let Self { filter, last_known } = self;
+        let ambiguity = filter.ambiguity();
+        let mut warnings = Vec::new();
+        if let Some((_, estimate)) = last_known {
+            let ambiguous = ambiguity.as_ref().map_or(&[][..], |ambiguity| &ambiguity.parameters);
+            let unknown = estimate.parameters().zip(filter.hidden_parameters()).filter(|(p, _)| p.value.is_none());
+            let (mut hidden, mut others) = (Vec::new(), Vec::new());
+            for (parameter, is_hidden) in unknown.filter(|(p, _)| !ambiguous.contains(&p.name)) {
+                if is_hidden { &mut hidden } else { &mut others }.push(parameter.name);
+            }
+            if !hidden.is_empty() {
+                warnings.push(Warning::NotObservable { parameters: hidden });
+            }
+            if !others.is_empty() {
+                warnings.push(Warning::NotKnown { parameters: others });
+            }
+            if filter.turn_is_told_by_path() && estimate.parameters().next().is_some_and(|p| p.value.is_some()) {
+                warnings.push(Warning::RotationFromPath);
+            }
+        }
+        if let (Phase::Acquiring, Some((time, _))) = (filter.phase(), last_known) {
+            warnings.push(Warning::Reacquiring { last_known: *time });
+        }
+        warnings.extend(of_following(filter));
+        warnings.extend(ambiguity.map(Warning::Ambiguous));
+        if let Some(family) = filter.wrong_family() {
+            warnings.push(Warning::WrongFamily { family, motion: filter.settings().model });
+        }
+        let aliases = filter.aliases();
+        if !aliases.is_empty() {
+            warnings.push(Warning::Aliases { omega: aliases, motion: filter.settings().model });
+        }
+        if filter.motion_changed() {
+            let dynamics = filter.dynamics().map(|weights| weights.most_probable());
+            warnings.push(Warning::MotionChanged { dynamics });
+        }
+        warnings.sort_by_key(Warning::order);
+        warnings
+    }
+}

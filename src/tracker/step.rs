@@ -1,0 +1,52 @@
+//! What became of one frame of an object, and what is to be said of how it was followed.
+use freeform_curve_fit::Fit;
+use freeform_estimate::{MotionEstimate, MotionState, PlaneEstimate, PointVelocity};
+use freeform_outline_filter::{Ambiguity, MotionFilter, Phase, PlaneAmbiguity, Unstated};
+
+use super::observation::ObjectPhase;
+use crate::AdaptiveProgress;
+use crate::rejection::RejectionCause;
+use crate::warning::{MANY_REJECTED, Warning};
+
+/// What became of one frame.
+#[derive(Debug, Default)]
+pub(super) struct Step {
+    pub(super) phase: Option<ObjectPhase>,
+    pub(super) estimate: Option<MotionEstimate>,
+    pub(super) hidden: Vec<&'static str>,
+    pub(super) velocity: Option<PointVelocity>,
+    pub(super) plane: Option<Box<PlaneEstimate>>,
+    pub(super) plane_ambiguity: Option<Box<PlaneAmbiguity>>,
+    pub(super) fit: Option<Fit>,
+    pub(super) progress: Option<AdaptiveProgress>,
+    pub(super) residual: Option<f64>,
+    pub(super) innovation: Option<f64>,
+    pub(super) state: Option<MotionState>,
+    pub(super) ambiguity: Option<Ambiguity>,
+    pub(super) aliases: Vec<f64>,
+    pub(super) rejected_because: Option<RejectionCause>,
+}
+
+/// Names of the parameters of an estimate that are not stated.
+pub(super) fn unstated_of(estimate: &MotionEstimate) -> impl Iterator<Item = &'static str> {
+    estimate.parameters().filter(|p| p.value.is_none()).map(|p| p.name)
+}
+
+/// What is to be said of how an object was followed: it is lost, it was begun anew, or many of its frames do not fit.
+pub(super) fn of_following(filter: &MotionFilter) -> Vec<Warning> {
+    let rejected = filter.frames_rejected();
+    let frames = filter.frames_accepted() + rejected;
+    let restarts = filter.restarts();
+    let are_many = rejected as f64 > MANY_REJECTED * frames as f64;
+    let unstated = match filter.unstated() {
+        Some(Unstated::ManyRejected { rejected, frames }) => Some(Warning::TooManyRejected { rejected, frames }),
+        _ => None,
+    };
+    let warnings = [
+        (filter.phase() == Phase::Lost).then_some(Warning::Lost),
+        unstated,
+        (restarts > 0).then_some(Warning::Restarted { times: restarts }),
+        are_many.then_some(Warning::FramesRejected { rejected, frames }),
+    ];
+    warnings.into_iter().flatten().collect()
+}
