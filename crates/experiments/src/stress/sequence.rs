@@ -358,7 +358,7 @@ mod tests {
         ] {
             for recipe in recipes {
                 let mut rng = ChaCha8Rng::seed_from_u64(8);
-                let sequence = Sequence::new(recipe, model, &mut rng).expect("a sequence");
+                let mut sequence = Sequence::new(recipe, model, &mut rng).expect("a sequence");
                 // Central differences about the last frame but one.
                 let truth = sequence.truth(recipe.frames - 2);
                 let middle = sequence.place_in_picture(recipe.time(recipe.frames - 2)) * recipe.length_unit;

@@ -143,9 +143,12 @@ mod tests {
     use super::*;
     use crate::stress::{Quantity, kinds_containing};
 
+    fn study(text: &str) -> StressStudy {
+        StressStudy::new(kinds_containing(text).expect("some"))
+    }
+
     fn report(text: &str, seed: u64) -> StressReport {
-        let kinds = kinds_containing(text).expect("some");
-        StressStudy { runs: 2, seed, ..StressStudy::new(kinds) }.run(&|| ()).expect("a report")
+        StressStudy { runs: 2, seed, ..study(text) }.run(&|| ()).expect("a report")
     }
 
     #[test]
@@ -158,6 +161,19 @@ mod tests {
         assert_eq!(report.classes.len(), 1);
         let quantities: Vec<Quantity> = report.overall.quantities.iter().map(|of| of.quantity).collect();
         assert_eq!(quantities, [Quantity::Omega, Quantity::B]);
+    }
+
+    #[test]
+    fn poses_on_the_way_are_judged_where_they_are_rigid_and_those_of_symmetric_bodies_but_for_their_symmetry() {
+        for kind in ["plain/8 frames", "symmetry/gear of 8 teeth, 0.45 of a pitch"] {
+            let poses = report(kind, 1).overall.poses.expect("poses");
+            assert_eq!((poses.off, poses.turn_unstated), (Some(0.0), Some(0.0)), "{kind}");
+            let held = [poses.turn_coverage, poses.place_coverage].map(|share| share.expect("some"));
+            assert!(held.iter().all(|share| *share > 0.7), "{kind}: {held:?}");
+        }
+        assert_eq!(report("noise/camera shake", 1).overall.poses, None);
+        let growing = StressStudy { runs: 1, model: MotionModel::Similarity, ..study("plain/8 frames") };
+        assert_eq!(growing.run(&|| ()).expect("a report").overall.poses, None);
     }
 
     #[test]

@@ -143,6 +143,7 @@ fn median(sorted: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stress::poses::PoseErrors;
 
     fn outcome(omega: Option<f64>, warned: bool, alias_told: bool) -> Outcome {
         Outcome {
@@ -151,7 +152,21 @@ mod tests {
             alias_told,
             frames: 10,
             frames_rejected: usize::from(warned),
+            poses: None,
         }
+    }
+
+    #[test]
+    fn poses_that_are_off_are_silent_where_nothing_was_said_of_the_values() {
+        let poses = PoseErrors { turns: vec![0.5, -6.0], places: vec![1.0, -3.0, 0.0, 0.0], frames: 4 };
+        let right = PoseErrors { turns: vec![1.0; 4], places: vec![1.0; 8], frames: 4 };
+        let off = |warned: bool| outcome(Some(1.0), warned, false).with_poses(Some(poses.clone()));
+        let outcomes = [off(false), off(true), outcome(Some(1.0), false, false).with_poses(Some(right))];
+        let summary = Summary::of(outcomes.iter()).poses.expect("poses");
+        assert_eq!((summary.silent_wrong, summary.off), (Some(1.0 / 3.0), Some(2.0 / 3.0)));
+        assert_eq!((summary.turn_coverage, summary.place_coverage), (Some(6.0 / 8.0), Some(14.0 / 16.0)));
+        assert_eq!(summary.turn_unstated, Some(1.0 - 8.0 / 12.0));
+        assert_eq!(Summary::of([outcome(Some(1.0), false, false)].iter()).poses, None);
     }
 
     #[test]

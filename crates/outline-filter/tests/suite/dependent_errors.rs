@@ -55,7 +55,8 @@ fn pose_errors(run: &MotionFilter, turn: f64) -> Option<[f64; 3]> {
     Some([error / angle.standard_deviation, off.x / x.standard_deviation, off.y / y.standard_deviation])
 }
 
-/// Of 360 numbers, 237 were held before what pose and outline take off the residuals was allowed for, and errors that reach beyond a stretch were seen.
+/// Before what pose and outline take off the residuals was allowed for, and errors that reach beyond a stretch were seen, 314 of 360 numbers were held,
+/// and one was ten deviations off.
 #[test]
 fn the_first_poses_are_within_their_deviations_where_errors_are_smooth_along_the_contour() {
     let (mut held, mut all, mut largest) = (0, 0, 0.0_f64);
@@ -74,11 +75,10 @@ fn the_first_poses_are_within_their_deviations_where_errors_are_smooth_along_the
             }
         }
     }
-    println!("{held} of {all}, {largest}");
-    assert!(all > 300 && f64::from(held) > 0.85 * f64::from(all) && largest < 6.0, "{held} of {all}, {largest}");
+    assert!(all > 300 && f64::from(held) > 0.9 * f64::from(all) && largest < 5.0, "{held} of {all}, {largest}");
 }
 
-/// Light shifts the outline in the picture, wherever the body has turned to.
+/// Light shifts the outline in the picture, wherever the body has turned to. Without the shift in the deviations the mean square was 57.
 #[test]
 fn the_place_of_a_body_that_turns_in_light_is_within_its_deviations() {
     let mut errors = Vec::new();
@@ -97,6 +97,5 @@ fn the_place_of_a_body_that_turns_in_light_is_within_its_deviations() {
         assert!(run.wrong_family().is_some(), "{seed}");
     }
     let mean_square = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
-    println!("{mean_square} of {}", errors.len());
     assert!(errors.len() > 300 && mean_square < 2.0, "{mean_square} of {}", errors.len());
 }
