@@ -101,6 +101,9 @@ pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>, taken: TakenOff)
     let Frame { columns, deviations, .. } = frame;
     let length = columns.len() / tuning::STRETCHES;
     let noise = noise.filter(|noise| *noise > 0.0 && length >= tuning::FEWEST_IN_STRETCH)?;
+    if taken.left_by_offsets < tuning::LEAST_LEFT {
+        return None;
+    }
     let expected = noise * noise * taken.left_by_offsets;
     let mut totals = [Total::NONE; tuning::STRETCHES];
     let all = columns.residuals.chunks_exact(length).zip(columns.weights.chunks_exact(length));

@@ -72,6 +72,9 @@ pub(crate) mod noise {
     pub(crate) const FEWEST_IN_STRETCH: usize = 3;
     /// One in so many of the points of a stretch must count, and of the stretches, for the correlation to be told: most of the contour.
     pub(crate) const ONE_IN_COUNTS: f64 = 2.0;
+    /// Share of the variance of a mean that the offsets must leave for the correlation to be told. It is a half in the second frame: with less, most of what
+    /// the frame shows was not known before.
+    pub(crate) const LEAST_LEFT: f64 = 0.2;
     /// Frames that the correlation is averaged over.
     pub(crate) const CORRELATION_MEMORY: f64 = 50.0;
     /// Deviations of its estimate by which a correlation must be larger than none.
