@@ -90,6 +90,8 @@ impl PoseErrors {
         let symmetric = Rotation2::new(-turns * step);
         let there = truth * (middle + symmetric * (of_body - middle));
         let off = here - there;
-        self.places.extend([off.x / x.standard_deviation, off.y / y.standard_deviation]);
+        if off.iter().all(|error| error.is_finite()) {
+            self.places.extend([off.x / x.standard_deviation, off.y / y.standard_deviation]);
+        }
     }
 }

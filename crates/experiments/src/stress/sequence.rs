@@ -127,7 +127,7 @@ impl<'a> Sequence<'a> {
     }
 
     /// The first so many frames in order.
-    pub(super) fn frames(&mut self, count: usize, rng: &mut impl Rng) -> Vec<SeenFrame> {
+    pub(super) fn frames(mut self, count: usize, rng: &mut impl Rng) -> Vec<SeenFrame> {
         let mut frames = Vec::with_capacity(count);
         for index in 0..count {
             if index > 0 {
@@ -273,7 +273,7 @@ mod tests {
 
     fn frames(recipe: &Recipe, seed: u64) -> (Truth, Vec<SeenFrame>) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut sequence = Sequence::new(recipe, MotionModel::Rigid, &mut rng).expect("a sequence");
+        let sequence = Sequence::new(recipe, MotionModel::Rigid, &mut rng).expect("a sequence");
         (sequence.truth(recipe.frames - 1), sequence.frames(recipe.frames, &mut rng))
     }
 
@@ -358,7 +358,7 @@ mod tests {
         ] {
             for recipe in recipes {
                 let mut rng = ChaCha8Rng::seed_from_u64(8);
-                let mut sequence = Sequence::new(recipe, model, &mut rng).expect("a sequence");
+                let sequence = Sequence::new(recipe, model, &mut rng).expect("a sequence");
                 // Central differences about the last frame but one.
                 let truth = sequence.truth(recipe.frames - 2);
                 let middle = sequence.place_in_picture(recipe.time(recipe.frames - 2)) * recipe.length_unit;

@@ -114,7 +114,7 @@ impl StressStudy {
         let count = frames.map_or(recipe.frames, |frames| frames.min(recipe.frames));
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed ^ hash(&kind.path()));
         rng.set_stream(number as u64);
-        let mut sequence = Sequence::new(recipe, self.model, &mut rng)?;
+        let sequence = Sequence::new(recipe, self.model, &mut rng)?;
         let (truth, true_poses) = (sequence.truth(count - 1), sequence.poses());
         let mut trajectory = Trajectory::default();
         let mut tracker = Tracker::new(TrackerSettings::new(Method::Filter, self.model))?;

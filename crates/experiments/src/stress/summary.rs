@@ -40,7 +40,7 @@ pub struct PoseSummary {
     pub turn_coverage: Option<f64>,
     /// Share of the stated coordinates whose 95 % interval held the truth.
     pub place_coverage: Option<f64>,
-    /// Share of the frames without an angle that is judged.
+    /// Share of the frames that have no angle, or the first one after a loss, from which others are counted.
     pub turn_unstated: Option<f64>,
 }
 

@@ -22,17 +22,16 @@ pub(super) struct Correlation {
 struct Average {
     mean: f64,
     frames: f64,
-    /// Variance of the ratio of one frame, if errors are independent.
+    /// Variance of the ratio of one frame, if errors are independent, on average.
     variance: f64,
 }
 
 /// What a frame shows of the correlation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ShownCorrelation {
-    /// How many times the variance of the mean over one stretch is what independent errors give.
-    pub(crate) near: f64,
-    /// The same of a stretch without end, by what two in a row show beside one, and its variance if errors are independent; `None` where that cannot
-    /// be told.
+    /// How many times the variance of the mean over one stretch is what independent errors give, and the variance of that if errors are independent.
+    pub(crate) near: [f64; 2],
+    /// The same of a stretch without end, by what two in a row show beside one; `None` where that cannot be told.
     pub(crate) far: Option<[f64; 2]>,
 }
 
@@ -44,9 +43,9 @@ impl Correlation {
 
     /// Takes in a frame that counts for a share of one of good points.
     pub(super) fn add(&mut self, shown: &ShownCorrelation, share: f64) {
-        self.near.add(shown.near, Self::NONE.near.variance, share);
-        if let Some([ratio, variance]) = shown.far {
-            self.far.add(ratio, variance, share);
+        self.near.add(shown.near, share);
+        if let Some(far) = shown.far {
+            self.far.add(far, share);
         }
     }
 
@@ -72,13 +71,16 @@ impl Correlation {
 }
 
 impl Average {
-    fn add(&mut self, ratio: f64, variance: f64, share: f64) {
+    fn add(&mut self, [ratio, variance]: [f64; 2], share: f64) {
+        if !ratio.is_finite() {
+            return;
+        }
         self.frames = (self.frames + share).min(tuning::CORRELATION_MEMORY);
         self.mean += (ratio - self.mean) * share / self.frames;
-        self.variance = variance;
+        self.variance += (variance - self.variance) * share / self.frames;
     }
 
-    /// The ratio, at least 1: none that chance explains, and all of one that is twice as large as that.
+    /// The ratio, at least 1: none that chance explains, and all of one that is as many times that as that is of 1.
     fn beyond_chance(&self) -> f64 {
         let deviation = (self.variance / self.frames.max(1.0)).sqrt();
         let beyond = self.mean / (1.0 + tuning::CORRELATION_SIGNIFICANT * deviation);
@@ -113,21 +115,27 @@ pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>, taken: TakenOff)
             Some(ratios) => by_deviations(residuals, weights, &ratios[stretch * length..]),
         };
     }
-    let [ones, twos] = [tuning::STRETCHES, tuning::STRETCHES / 2].map(|stretches| stretches as f64);
-    let [left_of_ones, left_of_twos] = [ones - taken.by_pose, twos - taken.by_pose];
-    let of_one = ratio_over(totals.iter().copied(), length)? / expected * ones / left_of_ones;
+    let over = |ratio: (f64, f64)| left_by_pose(ratio, expected, taken.by_pose);
+    let (of_one, ones) = over(ratio_over(totals.iter().copied(), length)?)?;
+    let near = [of_one, 2.0 / ones];
     let pairs = totals.as_chunks::<2>().0.iter().map(|[one, next]| one.and(next));
-    let of_two = ratio_over(pairs, 2 * length).map(|ratio| ratio / expected * twos / left_of_twos);
-    // The covariance of both ratios is the variance of that of single stretches.
-    let variance = 8.0 / left_of_twos - 6.0 / left_of_ones;
-    // The ratio of a long stretch falls short of that of one without end by a share that is inverse to its length.
-    let far = of_two.map(|of_two| [2.0 * of_two - of_one, variance]);
-    Some(ShownCorrelation { near: of_one, far })
+    // The covariance of both ratios is the variance of that of single stretches. The ratio of a long stretch falls short of that of one without end by a
+    // share that is inverse to its length.
+    let far = ratio_over(pairs, 2 * length).and_then(over);
+    let far = far.map(|(of_two, twos)| [2.0 * of_two - of_one, 8.0 / twos - 6.0 / ones]);
+    Some(ShownCorrelation { near, far })
+}
+
+/// The ratio over a number of stretches, in units of what is expected of independent errors, and the degrees of freedom that the pose has left; `None`
+/// where they are less than those that it has taken.
+fn left_by_pose((square, stretches): (f64, f64), expected: f64, taken: f64) -> Option<(f64, f64)> {
+    let left = stretches - taken;
+    (left >= taken && left > 0.0).then(|| (square / expected * stretches / left, left))
 }
 
 /// The mean over stretches of the square of the mean residual in units of what one point of a deviation of one gives; `None` where most of the
-/// contour does not count. All stretches have `length` points.
-fn ratio_over(totals: impl Iterator<Item = Total>, length: usize) -> Option<f64> {
+/// contour does not count. With the number of stretches that do. All have `length` points.
+fn ratio_over(totals: impl Iterator<Item = Total>, length: usize) -> Option<(f64, f64)> {
     let (mut sum, mut count, mut stretches, mut all) = (0.0, 0.0, 0.0, 0.0);
     for total in totals {
         all += 1.0;
@@ -137,7 +145,7 @@ fn ratio_over(totals: impl Iterator<Item = Total>, length: usize) -> Option<f64>
             stretches += 1.0;
         }
     }
-    (tuning::ONE_IN_COUNTS * stretches > all).then(|| sum / count)
+    (tuning::ONE_IN_COUNTS * stretches > all).then(|| (sum / count, stretches))
 }
 
 /// Sums over a stretch of the contour: of residuals and of weights by the deviations that points state, and the number of points that count.
@@ -203,12 +211,14 @@ mod tests {
     /// An average over so many frames that show the same.
     fn shown(ratio: f64, frames: usize) -> Correlation {
         let mut correlation = Correlation::NONE;
-        (0..frames).for_each(|_| correlation.add(&ShownCorrelation { near: ratio, far: None }, 1.0));
+        (0..frames).for_each(|_| {
+            correlation.add(&ShownCorrelation { near: [ratio, 2.0 / tuning::STRETCHES as f64], far: None }, 1.0);
+        });
         correlation
     }
 
     #[test]
-    fn what_chance_explains_counts_for_nothing_and_what_is_twice_as_large_counts_wholly() {
+    fn what_chance_explains_counts_for_nothing_and_what_is_far_beyond_it_counts_wholly() {
         let by_chance = 1.0 + tuning::CORRELATION_SIGNIFICANT * (2.0 / tuning::STRETCHES as f64).sqrt();
         assert_eq!(shown(0.99 * by_chance, 1).ratio(), 1.0);
         let [a_little, more] = [1.1, 1.2].map(|factor| shown(factor * by_chance, 1).ratio());
@@ -220,10 +230,10 @@ mod tests {
     #[test]
     fn what_reaches_beyond_a_stretch_counts_as_well() {
         let mut correlation = Correlation::NONE;
-        correlation.add(&ShownCorrelation { near: 8.0, far: Some([30.0, 0.5]) }, 1.0);
+        correlation.add(&ShownCorrelation { near: [8.0, 0.1], far: Some([30.0, 0.5]) }, 1.0);
         assert_eq!(correlation.ratio(), 30.0);
         // What is told too seldom stays what was told.
-        correlation.add(&ShownCorrelation { near: 8.0, far: None }, 1.0);
+        correlation.add(&ShownCorrelation { near: [8.0, 0.1], far: None }, 1.0);
         assert_eq!(correlation.ratio(), 30.0);
     }
 }

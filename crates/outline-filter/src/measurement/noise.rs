@@ -297,7 +297,7 @@ mod tests {
     fn errors_are_independent_only_once_enough_frames_have_told_so() {
         let seen = |frames: usize, ratio: f64| {
             let mut noise = NoiseModel::new(1.0);
-            let shown = ShownCorrelation { near: ratio, far: None };
+            let shown = ShownCorrelation { near: [ratio, 2.0 / tuning::STRETCHES as f64], far: None };
             (0..frames).for_each(|_| noise.update_correlation(&shown, 1.0));
             noise
         };

@@ -90,7 +90,8 @@ impl Registration {
         }
         // Not again the one that has gone on already.
         rigid.extend(begun.iter().skip(rigid.len()).map(further));
-        // A closed outline shows both of its ends, so that middles lead to the same place along it.
+        // Where ends are hidden, few points hardly tell how far a straight outline has gone along itself: such poses are kept apart. Those of a closed
+        // outline, which shows all of its sides, lead to the same place.
         let slides = track.map().has_ends() && track.map().is_mostly_straight();
         let apart = if slides { tuning::SAME_BY_FEW } else { tuning::SAME_POSE };
         let mut rigid = distinct(rigid, apart);
@@ -250,7 +251,7 @@ fn add_turns_of_symmetry(best: &mut Vec<RegisteredPose>, track: &Track, points: 
     best.retain(|h| h.score.is_finite());
 }
 
-/// The best of those that are the same, for each; matrices of poses of one turn that differ by less than a distance are.
+/// The best of those that are the same, for each; those whose matrices differ by less than a distance are the same.
 fn distinct(list: Vec<RegisteredPose>, distance: f64) -> Vec<RegisteredPose> {
     let mut best: Vec<RegisteredPose> = Vec::new();
     for found in list.into_iter().filter(|h| h.score.is_finite()) {

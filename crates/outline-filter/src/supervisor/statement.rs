@@ -1,6 +1,6 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_riccati::MAX_PARAMETERS;
+use freeform_riccati::{MAX_PARAMETERS, ParameterKind};
 use nalgebra::DMatrix;
 
 use super::{
@@ -61,10 +61,14 @@ impl MotionFilter {
             let rounding = of_side / pixels;
             let [pose, motion] = track.systematic(edge_uncertainty.hypot(rounding), span);
             // What the motion model does not have need not be constant.
-            let [mut of_pose, of_motion] = track.systematic(displacement, track.span_of_motion(false));
+            let [mut of_pose, mut of_motion] = track.systematic(displacement, track.span_of_motion(false));
             if unmodelled.family.is_some() {
-                let (k, shift) = (model.parameter_count(), track.shift_by_light(&unmodelled));
-                of_pose.rows_mut(k - 2, 2).iter_mut().for_each(|deviation| *deviation = deviation.hypot(shift));
+                let [of_place, of_velocity] = track.shift_by_light(&unmodelled);
+                let kinds = model.parameter_kinds().iter().enumerate();
+                for (i, _) in kinds.filter(|(_, kind)| **kind == ParameterKind::Velocity) {
+                    of_pose[i] = of_pose[i].hypot(of_place);
+                    of_motion[i] = of_motion[i].hypot(of_velocity);
+                }
             }
             let [pose, motion] = [pose.zip_map(&of_pose, f64::hypot), motion.zip_map(&of_motion, f64::hypot)];
             all = all.widened(model, &centroid, &CentredDeviations::from_element(1.0), [&pose, &motion])?;

@@ -43,14 +43,16 @@ impl Track {
         is_finite.then_some(Summary { pose: belief.pose, motion: belief.motion, covariance })
     }
 
-    /// How far the object may seem to have moved since its first frame, along each axis, normalised, if what stretches its outline is light from a side:
-    /// that shifts the whole outline besides, by as much in the picture while the object turns.
-    pub(crate) fn shift_by_light(&self, unmodelled: &UnmodelledEstimate) -> f64 {
+    /// Deviations along each axis, normalised, of what a shift of the whole outline makes of its place since the first frame, and of the velocity of its
+    /// plane, if what stretches the outline is light from a side: that shifts it besides, by as much in the picture while the object turns.
+    pub(crate) fn shift_by_light(&self, unmodelled: &UnmodelledEstimate) -> [f64; 2] {
         // Stretch and skew, or the edges that stand for them.
         let second_harmonic = SHEAR.iter().map(|l| unmodelled.moments[(*l, *l)]).sum::<f64>().max(0.0).sqrt();
         let linear = self.belief.pose.fixed_view::<2, 2>(0, 0);
-        // Half of the square of `(I - L) s`, whatever the direction of s.
-        0.5 * (Matrix2::identity() - linear).norm() * SHIFT_BY_LIGHT * second_harmonic
+        let rates = self.model().generator(&self.belief.motion[..self.belief.parameter_count()]);
+        // The mean square of `C s` over the directions of s is `|C|^2 s^2 / 2`, half of it along each axis.
+        let of_shift = |change: Matrix2<f64>| 0.5 * change.norm() * SHIFT_BY_LIGHT * second_harmonic;
+        [of_shift(Matrix2::identity() - linear), of_shift(rates.fixed_view::<2, 2>(0, 0).into_owned())]
     }
 
     /// What an error of the whole outline, of a size in image lengths and of its own in every frame, makes of pose and motion: deviations

@@ -92,7 +92,7 @@ impl Track {
 
     /// Covariance of pose and motion, normalised, of a turn that is promised and that too few frames have told yet: of a radian, and of as much in the
     /// time that the motion is known from. `None` where the turn is shown well, or told by enough frames; from as many frames on also where frames do not
-    /// promise to tell it and the covariance of the pose says as much.
+    /// promise to tell it and its deviation is too large to be mistaken for a turn that is known.
     pub(crate) fn covariance_of_untold_turn(&self) -> Option<StateMatrix> {
         let TurnProfile { frames, promise, .. } = self.turn_profile;
         if !self.is_all_but_round() || frames >= tuning::MEMORY {
@@ -101,7 +101,7 @@ impl Track {
         let (model, span) = (self.belief.model, self.span_of_motion(false));
         let direction = self.turn_about_centroid()?;
         let k = model.parameter_count();
-        // In the first frames what is promised rests on normals of a map that follows their errors, however little it is.
+        // In the first frames what is promised rests on normals of a map that follows the errors of these frames.
         if promise == Promise::TooLittle && self.frames >= tuning::MEMORY {
             let known = self.summary()?.covariance;
             let is_uncertain = |i: usize| known[(i, i)] > (tuning::LARGEST * direction[i]).powi(2);

@@ -103,7 +103,7 @@ pub(crate) mod registration {
     /// As [`SAME_POSE`], of outlines with ends that are mostly straight, found with few points: no farther than the weights of a refinement
     /// reach ([`TUKEY`] times [`WIDEST_REFINED`]). Few points hardly tell how far such an outline has gone along itself, and no refinement
     /// brings together what is farther apart.
-    pub(crate) const SAME_BY_FEW: f64 = 0.14;
+    pub(crate) const SAME_BY_FEW: f64 = TUKEY * WIDEST_REFINED;
     /// A score up to this many times the best is a tie.
     pub(crate) const TIE: f64 = 1.25;
     /// Tukey's constant for 95 % efficiency at Gaussian noise.

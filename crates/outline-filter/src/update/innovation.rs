@@ -75,7 +75,8 @@ impl Belief {
             }
         }
         let is_finite = all.gradient.iter().chain(&all.fisher).all(|e| e.is_finite());
-        (squared >= 0.0 && is_finite && all.fisher.iter().all(|f| *f > 0.0)).then_some(all)
+        let is_told = squared >= 0.0 && is_finite && all.fisher.iter().all(|f| *f > 0.0);
+        Some(if is_told { all } else { PoseInnovation { degrees_of_freedom, ..PoseInnovation::default() } })
     }
 }
 

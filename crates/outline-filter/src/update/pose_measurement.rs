@@ -74,7 +74,7 @@ pub(crate) fn left_by_offsets(belief: &Belief, frame: &Frame) -> f64 {
     let [added, left] = own.filter(|(with, before)| with > before).fold([0.0, 0.0], |[added, left], (with, before)| {
         [added + (with - before), left + (with - before) * before / with]
     });
-    if left > 0.0 { left / added } else { 1.0 }
+    if added > 0.0 { left / added } else { 1.0 }
 }
 
 /// What the offsets take off the information of a frame on the pose and off its pull.

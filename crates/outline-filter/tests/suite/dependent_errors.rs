@@ -75,7 +75,8 @@ fn the_first_poses_are_within_their_deviations_where_errors_are_smooth_along_the
             }
         }
     }
-    assert!(all > 300 && f64::from(held) > 0.9 * f64::from(all) && largest < 5.0, "{held} of {all}, {largest}");
+    let share = f64::from(held) / f64::from(all);
+    assert!(all > 300 && (0.9..0.99).contains(&share) && largest < 5.0, "{held} of {all}, {largest}");
 }
 
 /// Light shifts the outline in the picture, wherever the body has turned to. Without the shift in the deviations the mean square was 57.
@@ -97,5 +98,5 @@ fn the_place_of_a_body_that_turns_in_light_is_within_its_deviations() {
         assert!(run.wrong_family().is_some(), "{seed}");
     }
     let mean_square = errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64;
-    assert!(errors.len() > 300 && mean_square < 2.0, "{mean_square} of {}", errors.len());
+    assert!(errors.len() > 300 && (0.3..2.0).contains(&mean_square), "{mean_square} of {}", errors.len());
 }
