@@ -12,6 +12,8 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Correlation {
+    /// Of residuals as they are.
+    residuals: Average,
     near: Average,
     far: Average,
 }
@@ -29,24 +31,33 @@ struct Average {
 /// What a frame shows of the correlation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ShownCorrelation {
-    /// How many times the variance of the mean over one stretch is what independent errors give, and the variance of that if errors are independent.
-    pub(crate) near: [f64; 2],
-    /// The same of a stretch without end, by what two in a row show beside one; `None` where that cannot be told.
+    /// How many times the variance of the mean residual over one stretch is what independent errors give, pose and offsets having taken their part.
+    pub(crate) residuals: f64,
+    /// The same with what pose and offsets have taken, and the variance of that if errors are independent; `None` where it cannot be told.
+    pub(crate) near: Option<[f64; 2]>,
+    /// The same of a stretch without end, by what two in a row show beside one.
     pub(crate) far: Option<[f64; 2]>,
 }
 
 impl Correlation {
     pub(super) const NONE: Self = {
         let average = Average { mean: 1.0, frames: 0.0, variance: 2.0 / tuning::STRETCHES as f64 };
-        Self { near: average, far: average }
+        Self { residuals: average, near: average, far: average }
     };
 
     /// Takes in a frame that counts for a share of one of good points.
     pub(super) fn add(&mut self, shown: &ShownCorrelation, share: f64) {
-        self.near.add(shown.near, share);
-        if let Some(far) = shown.far {
-            self.far.add(far, share);
+        self.residuals.add([shown.residuals, Self::NONE.residuals.variance], share);
+        for (average, shown) in [(&mut self.near, shown.near), (&mut self.far, shown.far)] {
+            if let Some(shown) = shown {
+                average.add(shown, share);
+            }
         }
+    }
+
+    /// Points that tell as much as one with independent errors would, as far as residuals over a stretch show it beyond chance; may be below 1.
+    pub(super) fn of_residuals(&self) -> f64 {
+        self.residuals.mean / self.residuals.by_chance()
     }
 
     /// Points that tell as much as one with independent errors would, at least 1.
@@ -56,7 +67,7 @@ impl Correlation {
 
     /// Whether enough frames have been seen to tell.
     pub(super) fn is_told(&self) -> bool {
-        self.near.frames >= tuning::CORRELATION_TOLD
+        self.residuals.frames >= tuning::CORRELATION_TOLD
     }
 
     #[cfg(feature = "serde")]
@@ -66,7 +77,7 @@ impl Correlation {
             let Average { mean, frames, variance } = average;
             is_in_bounds(mean) && is_in_bounds(variance) && is_in_bounds(frames) && *frames >= 0.0 && *variance > 0.0
         };
-        are_valid(&self.near) && are_valid(&self.far)
+        [&self.residuals, &self.near, &self.far].into_iter().all(are_valid)
     }
 }
 
@@ -80,10 +91,14 @@ impl Average {
         self.variance += (variance - self.variance) * share / self.frames;
     }
 
+    /// The largest ratio that chance explains.
+    fn by_chance(&self) -> f64 {
+        1.0 + tuning::CORRELATION_SIGNIFICANT * (self.variance / self.frames.max(1.0)).sqrt()
+    }
+
     /// The ratio, at least 1: none that chance explains, and all of one that is as many times that as that is of 1.
     fn beyond_chance(&self) -> f64 {
-        let deviation = (self.variance / self.frames.max(1.0)).sqrt();
-        let beyond = self.mean / (1.0 + tuning::CORRELATION_SIGNIFICANT * deviation);
+        let beyond = self.mean / self.by_chance();
         if beyond <= 1.0 { 1.0 } else { (beyond * beyond).min(self.mean) }
     }
 }
@@ -103,9 +118,6 @@ pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>, taken: TakenOff)
     let Frame { columns, deviations, .. } = frame;
     let length = columns.len() / tuning::STRETCHES;
     let noise = noise.filter(|noise| *noise > 0.0 && length >= tuning::FEWEST_IN_STRETCH)?;
-    if taken.left_by_offsets < tuning::LEAST_LEFT {
-        return None;
-    }
     let expected = noise * noise * taken.left_by_offsets;
     let mut totals = [Total::NONE; tuning::STRETCHES];
     let all = columns.residuals.chunks_exact(length).zip(columns.weights.chunks_exact(length));
@@ -115,15 +127,18 @@ pub(crate) fn correlation_of(frame: &Frame, noise: Option<f64>, taken: TakenOff)
             Some(ratios) => by_deviations(residuals, weights, &ratios[stretch * length..]),
         };
     }
+    let of_one = ratio_over(totals.iter().copied(), length)?;
+    let residuals = of_one.0 / (noise * noise);
     let over = |ratio: (f64, f64)| left_by_pose(ratio, expected, taken.by_pose);
-    let (of_one, ones) = over(ratio_over(totals.iter().copied(), length)?)?;
-    let near = [of_one, 2.0 / ones];
+    let Some((near, ones)) = over(of_one).filter(|_| taken.left_by_offsets >= tuning::LEAST_LEFT) else {
+        return Some(ShownCorrelation { residuals, near: None, far: None });
+    };
     let pairs = totals.as_chunks::<2>().0.iter().map(|[one, next]| one.and(next));
     // The covariance of both ratios is the variance of that of single stretches. The ratio of a long stretch falls short of that of one without end by a
     // share that is inverse to its length.
     let far = ratio_over(pairs, 2 * length).and_then(over);
-    let far = far.map(|(of_two, twos)| [2.0 * of_two - of_one, 8.0 / twos - 6.0 / ones]);
-    Some(ShownCorrelation { near, far })
+    let far = far.map(|(of_two, twos)| [2.0 * of_two - near, 8.0 / twos - 6.0 / ones]);
+    Some(ShownCorrelation { residuals, near: Some([near, 2.0 / ones]), far })
 }
 
 /// The ratio over a number of stretches, in units of what is expected of independent errors, and the degrees of freedom that the pose has left; `None`
@@ -212,7 +227,10 @@ mod tests {
     fn shown(ratio: f64, frames: usize) -> Correlation {
         let mut correlation = Correlation::NONE;
         (0..frames).for_each(|_| {
-            correlation.add(&ShownCorrelation { near: [ratio, 2.0 / tuning::STRETCHES as f64], far: None }, 1.0);
+            correlation.add(
+                &ShownCorrelation { residuals: ratio, near: Some([ratio, 2.0 / tuning::STRETCHES as f64]), far: None },
+                1.0,
+            );
         });
         correlation
     }
@@ -230,10 +248,10 @@ mod tests {
     #[test]
     fn what_reaches_beyond_a_stretch_counts_as_well() {
         let mut correlation = Correlation::NONE;
-        correlation.add(&ShownCorrelation { near: [8.0, 0.1], far: Some([30.0, 0.5]) }, 1.0);
+        correlation.add(&ShownCorrelation { residuals: 7.0, near: Some([8.0, 0.1]), far: Some([30.0, 0.5]) }, 1.0);
         assert_eq!(correlation.ratio(), 30.0);
         // What is told too seldom stays what was told.
-        correlation.add(&ShownCorrelation { near: [8.0, 0.1], far: None }, 1.0);
+        correlation.add(&ShownCorrelation { residuals: 7.0, near: None, far: None }, 1.0);
         assert_eq!(correlation.ratio(), 30.0);
     }
 }

@@ -221,7 +221,13 @@ impl NoiseModel {
 
     /// Points that tell as much as one with independent errors would, at least 1.
     pub(crate) fn correlation(&self) -> f64 {
-        self.correlation.ratio().max(self.rounding.shared_by)
+        self.correlation.of_residuals().max(self.rounding.shared_by)
+    }
+
+    /// How many times wider deviations are than with [`correlation`](Self::correlation), by what pose and offsets have taken off the residuals, and by errors
+    /// that reach beyond a stretch; at least 1.
+    pub(crate) fn widening_by_correlation(&self) -> f64 {
+        (self.correlation.ratio() / self.correlation()).max(1.0).sqrt()
     }
 
     /// Whether enough frames have been seen to tell, and the errors of points beside each other have not been found to depend on each other.
@@ -297,7 +303,7 @@ mod tests {
     fn errors_are_independent_only_once_enough_frames_have_told_so() {
         let seen = |frames: usize, ratio: f64| {
             let mut noise = NoiseModel::new(1.0);
-            let shown = ShownCorrelation { near: [ratio, 2.0 / tuning::STRETCHES as f64], far: None };
+            let shown = ShownCorrelation { residuals: ratio, near: None, far: None };
             (0..frames).for_each(|_| noise.update_correlation(&shown, 1.0));
             noise
         };

@@ -42,10 +42,15 @@ impl MotionFilter {
         let (model, centroid) = (self.settings.model, track.centred_pose().centroid);
         let none = CentredDeviations::zeros();
         let mut random = own;
+        let widening = track.noise().widening_by_correlation();
+        let mut factors = CentredDeviations::from_element(1.0);
         if let Some(dynamics) = &self.history.dynamics {
             let summary = dynamics.combined((!dynamics.leads()).then_some(&own), Purpose::Statement).unwrap_or(own);
-            random = summary.widened(model, &centroid, &dynamics.factors(), [&none, &none])?;
+            (random, factors) = (summary, dynamics.factors());
         }
+        // What the innovations show of the correlation counts once.
+        factors = factors.map(|factor| factor.max(widening));
+        random = random.widened(model, &centroid, &factors, [&none, &none])?;
         let doubts = [self.history.contradicted(model.parameter_count()), track.covariance_of_untold_turn()];
         random.covariance += doubts.into_iter().flatten().sum::<StateMatrix>();
         let (unmodelled, moments) = track.unmodelled_motions();
