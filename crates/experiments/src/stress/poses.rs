@@ -2,7 +2,7 @@
 use std::f64::consts::TAU;
 
 use freeform_estimate::MotionState;
-use freeform_motion::tracker::{Trajectory, TrajectoryRow};
+use freeform_motion::tracker::Trajectory;
 use nalgebra::{Isometry2, Point2, Rotation2};
 
 use super::rigid_poses::RigidPoses;
@@ -39,7 +39,12 @@ impl PoseErrors {
         for row in used {
             errors.frames += 1;
             if let (Some(state), Some(time)) = (row.state(), row.time) {
-                errors.add(row, state, &truth.moved(first, time), truth.middle(first), truth.folds, &mut reference);
+                errors.add(
+                    row.segment,
+                    state,
+                    (&truth.moved(first, time), truth.middle(first), truth.folds),
+                    &mut reference,
+                );
             }
         }
         errors
@@ -52,11 +57,9 @@ impl PoseErrors {
 
     fn add(
         &mut self,
-        row: &TrajectoryRow,
+        segment: usize,
         state: &MotionState,
-        truth: &Isometry2<f64>,
-        middle: Point2<f64>,
-        folds: usize,
+        (truth, middle, folds): (&Isometry2<f64>, Point2<f64>, usize),
         reference: &mut Option<Reference>,
     ) {
         let [angle, x, y] = state.pose_parameters()[..] else { return };
@@ -65,9 +68,9 @@ impl PoseErrors {
         let step = TAU / folds as f64;
         let turns = if difference.is_finite() { (difference / step).round() } else { 0.0 };
         let error = difference - turns * step;
-        if row.segment > 0 {
+        if segment > 0 {
             // Nobody knows how far the object has turned since the first segment: turns are judged from the first of their own.
-            match reference.filter(|of| of.segment == row.segment) {
+            match reference.filter(|of| of.segment == segment) {
                 Some(of) if difference.is_finite() => {
                     let apart = error - of.error;
                     let apart = apart - step * (apart / step).round();
@@ -75,7 +78,7 @@ impl PoseErrors {
                 }
                 None if difference.is_finite() => {
                     let deviation = angle.standard_deviation;
-                    *reference = Some(Reference { segment: row.segment, error, deviation });
+                    *reference = Some(Reference { segment: segment, error, deviation });
                 }
                 _ => {}
             }
@@ -93,5 +96,76 @@ impl PoseErrors {
         if off.iter().all(|error| error.is_finite()) {
             self.places.extend([off.x / x.standard_deviation, off.y / y.standard_deviation]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use freeform_estimate::NormalisedState;
+    use freeform_riccati::{MAX_PARAMETERS, MotionModel};
+    use nalgebra::{DMatrix, Matrix3, Vector2};
+
+    use super::*;
+
+    /// A state whose place is that of the point (1, 2), in units of the radius 1, with deviations of 0.01.
+    fn state(pose: Matrix3<f64>) -> MotionState {
+        let covariance = DMatrix::identity(6, 6) * 1e-4;
+        NormalisedState {
+            model: MotionModel::Rigid,
+            time: 0.0,
+            origin: Point2::new(1.0, 2.0),
+            radius: 1.0,
+            pose,
+            motion: [0.0; MAX_PARAMETERS].into(),
+            covariance: covariance.clone(),
+            covariance_given_outline: covariance,
+            observable: [true; MAX_PARAMETERS],
+            hidden: [false; MAX_PARAMETERS],
+            centroid: Point2::origin(),
+        }
+        .into()
+    }
+
+    fn added(
+        segment: usize,
+        pose: Matrix3<f64>,
+        truth: Isometry2<f64>,
+        reference: &mut Option<Reference>,
+    ) -> PoseErrors {
+        let mut errors = PoseErrors::default();
+        // In the image, the middle is (0.5, 0) aside of the place that is stated.
+        errors.add(segment, &state(pose), (&truth, Point2::new(1.5, 2.0), 4), reference);
+        errors
+    }
+
+    #[test]
+    fn a_turn_by_the_symmetry_about_the_middle_is_no_error_and_half_of_it_is_one() {
+        let about_middle = |angle: f64| {
+            let middle = Vector2::new(0.5, 0.0);
+            let turn = Isometry2::new(Vector2::zeros(), angle);
+            let shift = middle - turn * middle;
+            Isometry2::new(shift, angle).to_homogeneous()
+        };
+        for turns in -3..=3 {
+            let errors = added(0, about_middle(f64::from(turns) * FRAC_PI_2), Isometry2::identity(), &mut None);
+            assert!(errors.turns.iter().chain(&errors.places).all(|error| error.abs() < 1e-9), "{turns}: {errors:?}");
+        }
+        assert!(added(0, about_middle(0.5 * FRAC_PI_2), Isometry2::identity(), &mut None).are_off());
+        let elsewhere = Isometry2::new(Vector2::zeros(), FRAC_PI_2).to_homogeneous();
+        assert!(added(0, elsewhere, Isometry2::identity(), &mut None).are_off(), "about another point than the middle");
+    }
+
+    #[test]
+    fn in_a_later_segment_turns_are_counted_from_its_first_frame_and_places_are_not_judged() {
+        let turned = |angle: f64| Isometry2::new(Vector2::zeros(), angle);
+        let mut reference = None;
+        let first = added(1, turned(0.3).to_homogeneous(), turned(0.1), &mut reference);
+        assert_eq!((first.turns.len(), first.places.len()), (0, 0));
+        let right = added(1, turned(0.5).to_homogeneous(), turned(0.3), &mut reference);
+        assert!(right.turns[0].abs() < 1e-9 && right.places.is_empty());
+        assert!(added(1, turned(0.7).to_homogeneous(), turned(0.3), &mut reference).are_off());
+        assert_eq!(added(2, turned(0.7).to_homogeneous(), turned(0.3), &mut reference).turns.len(), 0);
     }
 }
