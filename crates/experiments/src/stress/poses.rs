@@ -78,7 +78,7 @@ impl PoseErrors {
                 }
                 None if difference.is_finite() => {
                     let deviation = angle.standard_deviation;
-                    *reference = Some(Reference { segment: segment, error, deviation });
+                    *reference = Some(Reference { segment, error, deviation });
                 }
                 _ => {}
             }
@@ -118,7 +118,7 @@ mod tests {
             origin: Point2::new(1.0, 2.0),
             radius: 1.0,
             pose,
-            motion: [0.0; MAX_PARAMETERS].into(),
+            motion: [0.0; MAX_PARAMETERS],
             covariance: covariance.clone(),
             covariance_given_outline: covariance,
             observable: [true; MAX_PARAMETERS],
