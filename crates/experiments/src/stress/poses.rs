@@ -66,31 +66,27 @@ impl PoseErrors {
         // Angles of poses are clockwise, as omega is.
         let difference = angle.value + truth.rotation.angle();
         let step = TAU / folds as f64;
-        let turns = if difference.is_finite() { (difference / step).round() } else { 0.0 };
-        let error = difference - turns * step;
+        let but_for_symmetry = |turn: f64| turn - step * (turn / step).round();
+        let error = but_for_symmetry(difference);
         if segment > 0 {
             // Nobody knows how far the object has turned since the first segment: turns are judged from the first of their own.
             match reference.filter(|of| of.segment == segment) {
-                Some(of) if difference.is_finite() => {
-                    let apart = error - of.error;
-                    let apart = apart - step * (apart / step).round();
-                    self.turns.push(apart / of.deviation.hypot(angle.standard_deviation));
+                _ if !error.is_finite() => {}
+                Some(of) => {
+                    let deviation = of.deviation.hypot(angle.standard_deviation);
+                    self.turns.push(but_for_symmetry(error - of.error) / deviation);
                 }
-                None if difference.is_finite() => {
-                    let deviation = angle.standard_deviation;
-                    *reference = Some(Reference { segment, error, deviation });
-                }
-                _ => {}
+                None => *reference = Some(Reference { segment, error, deviation: angle.standard_deviation }),
             }
             return;
         }
-        if difference.is_finite() {
+        if error.is_finite() {
             self.turns.push(error / angle.standard_deviation);
         }
         // The point of the body that a place is of; a turn by the symmetry turns it about the middle.
         let here = Point2::new(x.value, y.value);
         let of_body = state.pose().inverse_transform_point(&here);
-        let symmetric = Rotation2::new(-turns * step);
+        let symmetric = if error.is_finite() { Rotation2::new(error - difference) } else { Rotation2::identity() };
         let there = truth * (middle + symmetric * (of_body - middle));
         let off = here - there;
         if off.iter().all(|error| error.is_finite()) {

@@ -205,8 +205,7 @@ mod tests {
 
     #[test]
     fn a_limit_that_allows_for_more_than_the_noise_is_widened_by_the_displacement_alone() {
-        // So small that the limit stays below the largest noise of any frame.
-        let track = tracked(0.018, 1, (40, [1e-4; 2]));
+        let track = tracked(0.02, 1, (40, [1e-4; 2]));
         let (radius, sigma) = (track.reference().radius, track.noise.sigma);
         let displacement = track.unmodelled_estimate().displacement;
         let largest = 3.0 * LARGEST_RATIO * sigma;

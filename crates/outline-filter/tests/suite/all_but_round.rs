@@ -72,12 +72,11 @@ fn angles_of(body: &[Point2<f64>], points: u32, random: &mut ChaCha8Rng) -> Angl
     angles
 }
 
-/// Of the angles of the first twelve seeds 16 % were off before frames were asked; the others that were stated then are left out in the first frames, or
-/// for good. Of sixty other seeds 0.6 % are.
+/// Of 874 angles 143 were off before frames were asked; the others that were stated then are left out in the first frames, or for good.
 #[test]
 fn angles_of_bodies_that_are_round_but_for_a_mark_are_told_by_frames_before_they_are_stated() {
     let mut all = Angles::default();
-    for seed in 0..24 {
+    for seed in 0..12 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let share = random.random::<f64>();
         for body in [
@@ -90,8 +89,7 @@ fn angles_of_bodies_that_are_round_but_for_a_mark_are_told_by_frames_before_they
                 (all.right + right, all.wrong + wrong, all.right_late + right_late);
         }
     }
-    let Angles { right, wrong, right_late } = all;
-    assert!(wrong * 50 < right + wrong, "{all:?}");
-    // Nor is it left out where it is known: 720 angles could be stated in the last quarter.
-    assert!(right > 1000 && right_late > 320, "{all:?}");
+    assert!(all.wrong <= 2, "{all:?}");
+    // Nor is it left out where it is known.
+    assert!(all.right > 500 && all.right_late > 180, "{all:?}");
 }

@@ -1,7 +1,6 @@
 //! Poses where the errors of points depend on each other: smooth along the contour, or by light from one side.
 use std::f64::consts::TAU;
 
-use freeform_curve_fit::Outline;
 use freeform_outline_filter::MotionFilter;
 use freeform_riccati::MotionModel;
 use nalgebra::{Point2, Rotation2, Vector2};
@@ -9,39 +8,23 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use crate::filter_support::filter;
+use crate::filter_support::{BENT_POINTS, bent_outline, filter};
 
-const POINTS: u16 = 300;
+/// Independent errors of both coordinates.
+const NOISE: f64 = 0.004;
 const FRAMES_PER_SECOND: f64 = 30.0;
 /// Turn from frame to frame, rad, anticlockwise.
 const TURN: f64 = 0.05;
 
 /// Numbers of unit variance for the points of a contour, smooth over twice `width` of them.
 fn smooth_errors(width: f64, random: &mut ChaCha8Rng) -> Vec<f64> {
-    let white: Vec<f64> = (0..POINTS).map(|_| random.sample(StandardNormal)).collect();
+    let white: Vec<f64> = (0..BENT_POINTS).map(|_| random.sample(StandardNormal)).collect();
     let reach = (4.0 * width) as usize;
     let window: Vec<f64> =
         (0..=2 * reach).map(|k| (-0.5 * ((k as f64 - reach as f64) / width).powi(2)).exp()).collect();
     let norm = window.iter().map(|w| w * w).sum::<f64>().sqrt();
     let at = |i: usize| window.iter().enumerate().map(|(k, w)| w * white[(i + k) % white.len()]).sum::<f64>() / norm;
     (0..white.len()).map(at).collect()
-}
-
-/// An outline with bends that has turned about the origin; `across` are errors across it, by the number of the point and the normal.
-fn turned(turn: f64, random: &mut ChaCha8Rng, across: impl Fn(usize, &Vector2<f64>) -> f64) -> Outline {
-    let body = |angle: f64| {
-        let radius = 1.0 + 0.2 * (2.0 * angle).cos() + 0.15 * (3.0 * angle + 1.0).sin() + 0.1 * (5.0 * angle).cos();
-        Point2::from(radius * Vector2::new(angle.cos(), angle.sin()))
-    };
-    let pose = Rotation2::new(turn);
-    let mut point = |i: u16| {
-        let angle = TAU * (f64::from(i) + random.random::<f64>()) / f64::from(POINTS);
-        let tangent = pose * (body(angle + 1e-4) - body(angle - 1e-4));
-        let normal = Vector2::new(tangent.y, -tangent.x).normalize();
-        let noise = Vector2::from_fn(|_, _| 0.004 * random.sample::<f64, _>(StandardNormal));
-        pose * body(angle) + across(usize::from(i), &normal) * normal + noise
-    };
-    Outline::closed((0..POINTS).map(&mut point).collect()).expect("an outline")
 }
 
 /// Errors of angle and place that are stated, in their deviations.
@@ -66,7 +49,7 @@ fn the_first_poses_are_within_their_deviations_where_errors_are_smooth_along_the
         for frame in 0..12_u8 {
             let errors = smooth_errors(10.0, &mut random);
             let turn = TURN * f64::from(frame);
-            let outline = turned(turn, &mut random, |i, _| 0.015 * errors[i]);
+            let outline = bent_outline(turn, NOISE, &mut random, |i, _| 0.015 * errors[i]);
             run.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
             for error in pose_errors(&run, turn).filter(|_| frame > 1).into_iter().flatten() {
                 held += u32::from(error.abs() < 1.96);
@@ -89,7 +72,7 @@ fn the_place_of_a_body_that_turns_in_light_is_within_its_deviations() {
         let mut run = filter(MotionModel::Rigid);
         for frame in 0..60_u8 {
             let turn = TURN * f64::from(frame);
-            let outline = turned(turn, &mut random, |_, normal| 0.06 * normal.dot(&light).max(0.0));
+            let outline = bent_outline(turn, NOISE, &mut random, |_, normal| 0.06 * normal.dot(&light).max(0.0));
             run.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
             if frame > 30 {
                 errors.extend(pose_errors(&run, turn).into_iter().flat_map(|[_, x, y]| [x, y]));

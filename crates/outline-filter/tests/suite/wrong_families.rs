@@ -1,5 +1,5 @@
 //! What the motion model leaves out, beside what the edges may do.
-use crate::filter_support::{frames_of, settings};
+use crate::filter_support::{bent_outline, frames_of, settings};
 use freeform_curve_fit::Outline;
 use freeform_outline_filter::{FilterSettings, MotionFilter, WrongFamily};
 use freeform_riccati::{MotionModel, RigidMotion};
@@ -7,7 +7,6 @@ use freeform_sim_camera::BuiltInShape;
 use nalgebra::{Point2, Rotation2, Vector2};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
 
 #[test]
 fn growth_is_told_where_it_moves_points_by_more_than_the_edges_may_lie_off() {
@@ -35,22 +34,11 @@ fn lit(depth: f64, seed: u64) -> (Option<WrongFamily>, f64, f64) {
     const FRAMES_PER_SECOND: f64 = 30.0;
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let light = Rotation2::new(random.random_range(0.0..std::f64::consts::TAU)) * Vector2::x();
-    let body = |angle: f64| {
-        let radius = 1.0 + 0.2 * (2.0 * angle).cos() + 0.15 * (3.0 * angle + 1.0).sin() + 0.1 * (5.0 * angle).cos();
-        Point2::from(radius * Vector2::new(angle.cos(), angle.sin()))
-    };
     let settings = FilterSettings { model: MotionModel::Affine, ..FilterSettings::default() };
     let mut filter = MotionFilter::new(settings).expect("settings");
     for frame in 0..60_u8 {
-        let pose = Rotation2::new(-0.05 * f64::from(frame));
-        let mut point = |i: u16| {
-            let angle = std::f64::consts::TAU * (f64::from(i) + random.random::<f64>()) / 300.0;
-            let tangent = pose * (body(angle + 1e-4) - body(angle - 1e-4));
-            let normal = Vector2::new(tangent.y, -tangent.x).normalize();
-            let noise = Vector2::from_fn(|_, _| 0.005 * random.sample::<f64, _>(StandardNormal));
-            pose * body(angle) + depth * normal.dot(&light).max(0.0) * normal + noise
-        };
-        let outline = Outline::closed((0..300).map(&mut point).collect()).expect("an outline");
+        let edges = |_, normal: &Vector2<f64>| depth * normal.dot(&light).max(0.0);
+        let outline = bent_outline(-0.05 * f64::from(frame), 0.005, &mut random, edges);
         filter.step(f64::from(frame) / FRAMES_PER_SECOND, &outline).expect("an outline");
     }
     let estimate = filter.estimate().expect("an estimate");
