@@ -13,6 +13,8 @@ use crate::{
     track::{Comparison, Doubt, Outcome, Track},
     tuning::{
         supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION},
+        turn_profile::LEAP,
+        update::SUDDEN,
         usual_agreement::ELSEWHERE,
     },
     update::Gate,
@@ -78,14 +80,18 @@ impl MotionFilter {
         if let (Some(found), Some(of_other)) = (found, &other.track) {
             let poses = [*track.body_pose(), *of_other.body_pose()];
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
-            if likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
+            // Beside the present pose one that lies elsewhere along a direction is the same model with a parameter fitted.
+            let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
+            let is_fitted =
+                doubt == Doubt::Direction && lies_near && likelihoods[0].is_worse_by_fit(SUDDEN, &likelihoods[1]);
+            if is_fitted || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
                 *self = other;
                 return found;
             }
             is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
             turns_alike = is_explained && track.turn_leaps(of_other.body_pose(), 0.0);
         }
-        if doubt == Doubt::Points && !is_explained {
+        if doubt != Doubt::Turn && !is_explained {
             track.record_as_usual(outcome.measurement.agreement);
         }
         let pose = *track.body_pose();

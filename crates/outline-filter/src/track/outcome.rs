@@ -20,6 +20,8 @@ pub(crate) enum Comparison {
 pub(crate) enum Doubt {
     /// More of the points than usual disagree with the outline.
     Points,
+    /// Few of the points agree that tell where the outline lies along some direction, as the ends of a bar do.
+    Direction,
     /// A turn that few points or slight levers tell is another than it was to be.
     Turn,
 }

@@ -18,7 +18,7 @@ use crate::{
         correlation_of,
     },
     prediction::{ByKind, ShapeNoise},
-    tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning},
+    tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning, usual_agreement},
     update::{FrameMeasurement, Gate, PoseMeasurement, Rejection, Sensitivity, commit, hold, left_by_offsets},
 };
 
@@ -140,11 +140,14 @@ impl Track {
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
         let (mut shift, mut doubt) = (SVector::zeros(), None);
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
+            // Wrong points may be usual, but not that only few of those agree which tell a direction.
+            let hardly_tells = measurement.agreement < usual_agreement::ALL_AGREE
+                && self.view().weakest_agreement(frame) < usual_agreement::WEAKEST;
             self.frames += 1;
             self.look_for_unmodelled_motions(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
             let disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
-            doubt = disagrees.then_some(Doubt::Points);
+            doubt = if hardly_tells { Some(Doubt::Direction) } else { disagrees.then_some(Doubt::Points) };
             self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);
             self.learn_noise(frame, (noise.map(|noise| noise / radius), correlation), measurement.weight);

@@ -160,6 +160,8 @@ pub(crate) mod update {
     pub(crate) const AGREEING: f64 = 3.5;
     /// Residuals below this many spacings agree too: corners lie off the straight cells by as much.
     pub(crate) const BEND: f64 = 0.2;
+    /// Share of the information on each parameter that is added where points that agree are compared with all: far below what shows a direction.
+    pub(crate) const UNTOLD_DIRECTION: f64 = 1e-4;
     /// So many points beyond the known ends count as one in the share that agrees: they may be anything.
     pub(crate) const NEW_POINTS_PER_POINT: f64 = 3.0;
     /// Share of what is known of a cell beyond which a point says nothing of the noise: the cell follows it.

@@ -182,6 +182,13 @@ pub(crate) mod usual_agreement {
     /// Shares by which a frame corrects the usual share where fewer points disagree, and where more do: that falls fast and rises slowly.
     pub(crate) const FALLS: f64 = 0.2;
     pub(crate) const RISES: f64 = 0.02;
+    /// Share of the points that agree from which on every direction of the pose is told well enough.
+    pub(crate) const ALL_AGREE: f64 = 0.99;
+    /// Least share of the information on any direction that must come from points which agree.
+    pub(crate) const WEAKEST: f64 = 0.6;
+    /// Share of the points that must agree, after a frame that was not taken, for nothing else to be looked for: a motion that has changed leads to
+    /// another tooth of a gear, or past the end of a bar, and a hole or an end are some hundredths of the points.
+    pub(crate) const AFTER_REJECTED: f64 = 0.97;
     /// Deviations by which another pose must explain such a frame better: more points than usual speak for it already.
     pub(crate) const ELSEWHERE: f64 = 3.0;
     /// Share by which a frame does that nothing explains better, so that it is not looked into again and again.

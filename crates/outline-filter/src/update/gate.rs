@@ -136,7 +136,30 @@ impl FrameMeasurement {
     }
 }
 
+/// What the residual of a point that agrees with the outline may be, normalised.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Agreeing {
+    by_noise: f64,
+    /// The most that points may state of themselves, in deviations of a good point.
+    widest: f64,
+    least: f64,
+}
+
+impl Agreeing {
+    /// Of a point with a deviation in units of that of a good one.
+    #[inline(always)]
+    pub(super) fn of(&self, ratio: f64) -> f64 {
+        (self.by_noise * ratio.min(self.widest)).max(self.least)
+    }
+}
+
 impl View<'_> {
+    /// What agrees in a frame of such a spread.
+    pub(super) fn agreeing(&self, frame: &Frame, spread: f64) -> Agreeing {
+        let by_noise = tuning::AGREEING * spread.clamp(self.noise.sigma, self.noise.tolerated());
+        Agreeing { by_noise, widest: frame.deviations.widest(), least: tuning::BEND * self.map.spacing() }
+    }
+
     /// Most noise of good points in a frame that shows the known outline, in image lengths; `radius` is that of the first outline.
     pub(crate) fn largest_noise(&self, radius: f64) -> f64 {
         self.noise.tolerated().max(NEVER_TOO_MUCH * self.map.spacing()) * radius
@@ -151,18 +174,16 @@ impl View<'_> {
         radius: f64,
     ) -> FrameMeasurement {
         let spread = spread(frame, self.noise.sigma);
+        let limit = self.agreeing(frame, spread);
         let Frame { columns, values, weighted, cells_with_frame: cells, deviations, .. } = frame;
-        let scale = spread.clamp(self.noise.sigma, self.noise.tolerated());
-        let widest = deviations.widest();
-        let limit = |ratio: f64| (tuning::AGREEING * scale * ratio.min(widest)).max(tuning::BEND * self.map.spacing());
         values.resize(columns.len(), 0.0);
         weighted.clear();
         let Told { known, agreeing, new, new_points, told } = match deviations.ratios() {
             None => vectorised(
                 #[inline(always)]
-                || told_alike(columns, cells.own(), limit(1.0), values),
+                || told_alike(columns, cells.own(), limit.of(1.0), values),
             ),
-            Some(ratios) => told_by_deviations((columns, ratios), cells.own(), limit, weighted),
+            Some(ratios) => told_by_deviations((columns, ratios), cells.own(), |ratio| limit.of(ratio), weighted),
         };
         let enough = told * tuning::ONE_IN_TELLS > columns.len();
         // Points count by their weights: what those that count most scatter by must not hide behind others that say too much of theirs.

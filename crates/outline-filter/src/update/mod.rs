@@ -10,6 +10,7 @@ mod sensitivity;
 mod solve;
 mod unmodelled_displacement;
 mod unmodelled_score;
+mod weakest_agreement;
 
 pub(crate) use commit::commit;
 pub(crate) use gate::Gate;

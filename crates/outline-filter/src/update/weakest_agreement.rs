@@ -1,0 +1,69 @@
+//! How much of what a frame tells of its pose comes from points that agree with the outline.
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+use crate::{
+    measurement::{Frame, View, spread},
+    tuning::update::UNTOLD_DIRECTION,
+};
+
+type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
+
+impl View<'_> {
+    /// Of all directions that the pose may err in, the one that points which agree with the outline say least of: how much that is of what a frame
+    /// with as many points is to say, in [0, 1]. Most of the points of a bar say nothing of where it lies along itself: where those of its ends
+    /// disagree, or are taken for points of its sides, nearly all agree, and the share is next to nothing. What a frame with gaps does not show is
+    /// not asked of it, and directions that the outline does not show are left out.
+    pub(crate) fn weakest_agreement(&self, frame: &mut Frame) -> f64 {
+        let spread = spread(frame, self.noise.sigma);
+        let limit = self.agreeing(frame, spread);
+        let Frame { columns, weighted, deviations, pieces, .. } = frame;
+        let (cells, model) = (self.map.cells(), self.belief.model);
+        // Of each cell, what its points count for, and those of them that agree.
+        let of_cells = weighted;
+        of_cells.clear();
+        of_cells.resize(cells.len(), (0.0, 0.0));
+        for (i, m) in columns.points().enumerate() {
+            let Some((all, agreeing)) = of_cells.get_mut(m.cell) else { continue };
+            let ratio = deviations.ratios().map_or(1.0, |ratios| ratios[i]);
+            let share = (ratio * ratio).recip();
+            *all += share;
+            *agreeing += if m.residual.abs() < limit.of(ratio) { share } else { 0.0 };
+        }
+        // What frames have told of the cells says how many points each has; where a whole contour has none of them, they lie elsewhere.
+        let is_whole = pieces.iter().all(|piece| piece.closed);
+        let own = self.belief.information.cells.own();
+        let points: f64 = of_cells.iter().map(|(all, _)| all).sum();
+        let usual = if is_whole { points / own.iter().sum::<f64>() } else { 0.0 };
+        // Shares are the same in every pose of the model: those of the body frame need no image.
+        let null = self.map.null_directions(model, &Matrix3::identity());
+        let (mut of_all, mut of_agreeing) = (PoseMatrix::zeros(), PoseMatrix::zeros());
+        for ((cell, own), (all, agreeing)) in cells.iter().zip(own).zip(of_cells.iter()) {
+            let expected = all.max(usual * own);
+            if expected <= 0.0 {
+                continue;
+            }
+            let mut along = model.normal_velocities(&cell.centre, &cell.normal);
+            null.iter().for_each(|direction| direction.project_out(&mut along));
+            let along = SVector::from(along);
+            of_all.ger(expected, &along, &along, 1.0);
+            of_agreeing.ger(*agreeing, &along, &along, 1.0);
+        }
+        smallest_share(of_agreeing, of_all, model.parameter_count())
+    }
+}
+
+/// The smallest of `x' A x / x' B x` over the directions x of k parameters, of A that is nowhere more than B.
+fn smallest_share(mut a: PoseMatrix, mut b: PoseMatrix, k: usize) -> f64 {
+    for i in 0..MAX_PARAMETERS {
+        // What nothing tells is not told by what disagrees either.
+        let untold = if i < k { UNTOLD_DIRECTION * b[(i, i)] } else { 0.0 };
+        let untold = if untold > 0.0 { untold } else { 1.0 };
+        (a[(i, i)], b[(i, i)]) = (a[(i, i)] + untold, b[(i, i)] + untold);
+    }
+    let Some(root) = b.cholesky() else { return 1.0 };
+    let lower = root.l();
+    let Some(half) = lower.solve_lower_triangular(&a) else { return 1.0 };
+    let Some(shares) = lower.solve_lower_triangular(&half.transpose()) else { return 1.0 };
+    (0.5 * (shares + shares.transpose())).symmetric_eigenvalues().min().clamp(0.0, 1.0)
+}
