@@ -82,8 +82,8 @@ impl MotionFilter {
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             // Beside the present pose one that lies elsewhere along a direction is the same model with a parameter fitted.
             let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
-            let is_fitted =
-                doubt == Doubt::Direction && lies_near && likelihoods[0].is_worse_by_fit(SUDDEN, &likelihoods[1]);
+            let is_direction = matches!(doubt, Doubt::Direction { .. });
+            let is_fitted = is_direction && lies_near && likelihoods[0].is_worse_by_fit(SUDDEN, &likelihoods[1]);
             if is_fitted || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
                 *self = other;
                 return found;
@@ -92,7 +92,7 @@ impl MotionFilter {
             turns_alike = is_explained && track.turn_leaps(of_other.body_pose(), 0.0);
         }
         if doubt != Doubt::Turn && !is_explained {
-            track.record_as_usual(outcome.measurement.agreement);
+            track.record_as_usual(outcome.measurement.agreement, doubt);
         }
         let pose = *track.body_pose();
         if turns_alike || doubt == Doubt::Turn && !track.shows_turn(outline, &pose, &mut self.frame) {

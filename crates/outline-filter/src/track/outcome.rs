@@ -16,12 +16,15 @@ pub(crate) enum Comparison {
 }
 
 /// Why the object may lie elsewhere than where a frame that was taken has found it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Doubt {
     /// More of the points than usual disagree with the outline.
     Points,
     /// Few of the points agree that tell where the outline lies along some direction, as the ends of a bar do.
-    Direction,
+    Direction {
+        /// The [weakest agreement](crate::measurement::View::weakest_agreement).
+        weakest: f64,
+    },
     /// A turn that few points or slight levers tell is another than it was to be.
     Turn,
 }

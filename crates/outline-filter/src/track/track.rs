@@ -6,7 +6,7 @@ use freeform_riccati::{MotionModel, ParameterVector};
 use nalgebra::{Affine2, Matrix3, Projective2, SVector};
 
 use super::{
-    Comparison, Doubt, Outcome, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape,
+    Comparison, Outcome, body_frame::BodyFrame, first_pose::FirstPose, shape_change::EarlyShape,
     turn_profile::TurnProfile, usual_agreement::UsualAgreement,
 };
 use crate::{
@@ -140,14 +140,12 @@ impl Track {
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
         let (mut shift, mut doubt) = (SVector::zeros(), None);
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
-            // Wrong points may be usual, but not that only few of those agree which tell a direction.
-            let hardly_tells = measurement.agreement < usual_agreement::ALL_AGREE
-                && self.view().weakest_agreement(frame) < usual_agreement::WEAKEST;
+            let all_agree = measurement.agreement >= usual_agreement::ALL_AGREE;
+            let weakest = if all_agree { 1.0 } else { self.view().weakest_agreement(frame) };
             self.frames += 1;
             self.look_for_unmodelled_motions(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));
-            let disagrees = self.disagrees_more_than_usual(measurement.agreement, frame.points.len());
-            doubt = if hardly_tells { Some(Doubt::Direction) } else { disagrees.then_some(Doubt::Points) };
+            doubt = self.doubt_of_agreement(measurement.agreement, weakest, frame.points.len());
             self.look_for_change_of_shape(frame);
             shift = self.common_shift(frame);
             self.learn_noise(frame, (noise.map(|noise| noise / radius), correlation), measurement.weight);

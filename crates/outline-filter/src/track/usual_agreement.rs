@@ -1,17 +1,26 @@
-//! Whether more points of a frame disagree with the outline than usual.
+//! Whether more points of a frame disagree with the outline than usual, or fewer than usual agree of those that tell some direction of the pose.
 //!
-//! Where a body shows its turn, or its place along itself, by a small part of its outline only, such as the notch of a disc, a prediction
-//! that misses this part makes outliers of its points. All others agree, and the pose goes on as predicted, for ever. A share of points
+//! Where a body shows its turn, or its place along itself, by a small part of its outline only, such as the notch of a disc or the ends of a bar,
+//! a prediction that misses this part makes outliers of its points. All others agree, and the pose goes on as predicted, for ever. A share of points
 //! that disagree which is larger than usual says so.
-use super::Track;
+use super::{Doubt, Track};
 use crate::tuning::usual_agreement as tuning;
 
-/// Share of the points that disagree in most of the frames.
-#[derive(Debug, Clone, Copy, Default)]
+/// How far the points of most of the frames agree.
+#[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct UsualAgreement {
+    /// Share of the points that disagree.
     disagreeing: f64,
+    /// The [weakest agreement](crate::measurement::View::weakest_agreement).
+    weakest: f64,
     frames: usize,
+}
+
+impl Default for UsualAgreement {
+    fn default() -> Self {
+        Self { disagreeing: 0.0, weakest: 1.0, frames: 0 }
+    }
 }
 
 impl UsualAgreement {
@@ -32,6 +41,14 @@ impl UsualAgreement {
         };
         (is_known || shown == TurnShown::ByFew) && disagreeing > usual + significant * deviation
     }
+
+    /// Updates the usual weakest agreement by that of a frame; whether it is far less than usual.
+    fn update_weakest(&mut self, weakest: f64) -> bool {
+        let usual = self.weakest;
+        let gain = if weakest > usual { tuning::FALLS } else { tuning::RISES };
+        self.weakest += gain * (weakest - usual);
+        weakest < tuning::WEAKEST * usual
+    }
 }
 
 /// How much of an outline shows its turn.
@@ -43,16 +60,23 @@ enum TurnShown {
 }
 
 impl Track {
-    /// Takes the share of the points of an accepted frame that agree; whether more than usual do not.
-    pub(super) fn disagrees_more_than_usual(&mut self, agreement: f64, points: usize) -> bool {
+    /// Takes how far the points of an accepted frame agree: their share, and the weakest agreement. Why the object may lie elsewhere, if it may.
+    pub(super) fn doubt_of_agreement(&mut self, agreement: f64, weakest: f64, points: usize) -> Option<Doubt> {
         let shown = if self.map.is_all_but_round() { TurnShown::ByFew } else { TurnShown::ByMany };
-        self.usual.update(disagreeing(agreement), points, shown)
+        let disagrees = self.usual.update(disagreeing(agreement), points, shown);
+        if self.usual.update_weakest(weakest) {
+            return Some(Doubt::Direction { weakest });
+        }
+        disagrees.then_some(Doubt::Points)
     }
 
-    /// Records a share of points that agree as nearer to the usual one: nothing else explains them better.
-    pub(crate) fn record_as_usual(&mut self, agreement: f64) {
+    /// Records how far the points agree of a frame in doubt as nearer to what is usual: nothing else explains them better.
+    pub(crate) fn record_as_usual(&mut self, agreement: f64, doubt: Doubt) {
         let more = disagreeing(agreement) - self.usual.disagreeing;
         self.usual.disagreeing += tuning::UNEXPLAINED * more.max(0.0);
+        if let Doubt::Direction { weakest } = doubt {
+            self.usual.weakest += tuning::UNEXPLAINED * (weakest - self.usual.weakest).min(0.0);
+        }
     }
 }
 
@@ -65,7 +89,8 @@ fn disagreeing(agreement: f64) -> f64 {
 impl UsualAgreement {
     /// Whether it is a share of so many frames.
     pub(super) fn is_valid(&self) -> bool {
-        (0.0..=1.0).contains(&self.disagreeing) && self.frames < freeform_estimate::StateFormat::MOST_COUNTED
+        [self.disagreeing, self.weakest].iter().all(|share| (0.0..=1.0).contains(share))
+            && self.frames < freeform_estimate::StateFormat::MOST_COUNTED
     }
 }
 
@@ -78,6 +103,18 @@ mod tests {
         let first = |share: f64, shown: TurnShown| UsualAgreement::default().update(share, 300, shown);
         assert!(first(0.05, TurnShown::ByFew) && !first(0.05, TurnShown::ByMany));
         assert!(!first(0.005, TurnShown::ByFew));
+    }
+
+    #[test]
+    fn a_direction_that_few_points_tell_is_in_doubt_where_these_disagree_and_not_where_they_always_do() {
+        let mut usual = UsualAgreement::default();
+        let noticed = |usual: &mut UsualAgreement, weakest: f64, frames: i32| {
+            (0..frames).filter(|_| usual.update_weakest(weakest)).count()
+        };
+        assert_eq!(noticed(&mut usual, 0.8, 50), 0);
+        assert_eq!(noticed(&mut usual, 0.2, 5), 5);
+        assert!(noticed(&mut usual, 0.2, 200) < 100);
+        assert_eq!(noticed(&mut usual, 0.2, 50), 0);
     }
 
     #[test]

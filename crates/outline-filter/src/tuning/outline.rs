@@ -184,7 +184,7 @@ pub(crate) mod usual_agreement {
     pub(crate) const RISES: f64 = 0.02;
     /// Share of the points that agree from which on every direction of the pose is told well enough.
     pub(crate) const ALL_AGREE: f64 = 0.99;
-    /// Least share of the information on any direction that must come from points which agree.
+    /// Share of the usual weakest agreement below which a direction of the pose is in doubt.
     pub(crate) const WEAKEST: f64 = 0.6;
     /// Share of the points that must agree, after a frame that was not taken, for nothing else to be looked for: a motion that has changed leads to
     /// another tooth of a gear, or past the end of a bar, and a hole or an end are some hundredths of the points.
