@@ -50,6 +50,9 @@ fn a_gear_that_has_stopped_behind_something_else_is_not_taken_for_one_that_is_a_
             let error = sine.atan2(cosine) - turn;
             let deviation = state.pose_parameters()[0].standard_deviation;
             all += 1;
+            if (error.sin().abs() > 0.05 || error.cos() < 0.0) {
+                println!("gear {seed} {frame} {per_frame:.3} {error:.3} {deviation:.4}");
+            }
             off += u32::from((error.sin().abs() > 0.05 || error.cos() < 0.0) && deviation < 0.02);
         }
     }
@@ -77,6 +80,10 @@ fn a_bar_that_stops_suddenly_is_not_taken_to_go_on_along_itself() {
             let Some(state) = run.state().filter(|_| frame > 14 && run.segment() == 0) else { continue };
             let place = middle.coords + gone * along;
             let stated = &state.pose_parameters()[1..];
+            let q: Vec<_> = stated.iter().zip(place.iter()).map(|(a, t)| (a.value - t, a.standard_deviation)).collect();
+            if q.iter().any(|(e, d)| e.abs() > 6.0 * d) {
+                println!("{seed} {frame} {per_frame:.3} {q:.4?}");
+            }
             all += 1;
             off += u32::from(
                 stated
