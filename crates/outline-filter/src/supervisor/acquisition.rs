@@ -36,7 +36,7 @@ impl MotionFilter {
                 .unwrap_or_else(|| going_on.update(&mut self.frame, &gate, Comparison::NotAsked));
             if outcome.is_accepted() {
                 self.replace(going_on, time, Phase::Tracking);
-                return Some(outcome);
+                return Some(self.look_elsewhere(outcome.after_rejected(), time, outline));
             }
             if self.track.as_ref().is_some_and(|track| track.noise().is_found_independent()) {
                 return self.search_in_part(time, seconds, outline, outcome);

@@ -20,7 +20,6 @@ use crate::{
     dynamics::{DynamicsFilter, DynamicsWeights},
     measurement::Frame,
     track::{Doubt, KnownOutline, Outcome, Track},
-    tuning::usual_agreement,
     update::{FrameMeasurement, Rejection},
 };
 
@@ -281,9 +280,8 @@ impl MotionFilter {
         if outcome.is_accepted() && expected.is_some_and(|(before, turn)| track.turn_leaps(&before, turn)) {
             outcome.doubt = outcome.doubt.or(Some(Doubt::Turn));
         }
-        if is_after_rejected && outcome.is_accepted() && outcome.measurement.agreement < usual_agreement::AFTER_REJECTED
-        {
-            outcome.doubt = outcome.doubt.or(Some(Doubt::Points));
+        if is_after_rejected {
+            outcome = outcome.after_rejected();
         }
         let (turn, was_accepted) = (self.turn_hypotheses.present_turn(), outcome.is_accepted());
         let outcome = self.turn_hypotheses.decide(&self.settings, (track, frame), outcome, seconds);

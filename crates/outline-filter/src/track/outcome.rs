@@ -5,6 +5,7 @@ use nalgebra::SVector;
 use crate::{
     dynamics::CentredDeviations,
     measurement::NegativeLogLikelihood,
+    tuning::usual_agreement::AFTER_REJECTED,
     update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection},
 };
 
@@ -64,6 +65,12 @@ impl Outcome {
 
     pub(crate) fn is_accepted(&self) -> bool {
         self.verdict.is_ok()
+    }
+
+    /// In doubt if it was accepted after frames that were not, with points that disagree: where an object goes on may have changed meanwhile.
+    pub(crate) fn after_rejected(self) -> Self {
+        let is_in_doubt = self.is_accepted() && self.measurement.agreement < AFTER_REJECTED;
+        Self { doubt: self.doubt.or(is_in_doubt.then_some(Doubt::Points)), ..self }
     }
 
     /// The gate by which the frame, of so many points, is judged where another pose shows that it is one of the object; `None` where it was
