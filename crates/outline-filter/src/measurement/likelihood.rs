@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point2};
 use super::{Frame, Pass, PointOnCell, View};
 use crate::{
     map::median,
-    tuning::{likelihood as tuning, measurement::MEDIAN_TO_DEVIATION, update::BEND},
+    tuning::{likelihood as tuning, measurement::MEDIAN_TO_DEVIATION},
     vectors::vectorised,
 };
 
@@ -33,13 +33,6 @@ impl NegativeLogLikelihood {
     pub(crate) fn is_worse_by(&self, deviations: f64, other: &Self) -> bool {
         let unit = (other.squares / other.points).max(1.0);
         self.all() - other.all() > deviations * unit * Self::deviation(other.weighted)
-    }
-
-    /// Whether the difference is more than so many times what noise makes of one parameter that the other has fitted: a test of models of which the other
-    /// holds this one (S. S. Wilks 1938, The large-sample distribution of the likelihood ratio for testing composite hypotheses).
-    pub(crate) fn is_worse_by_fit(&self, squares: f64, other: &Self) -> bool {
-        let unit = (other.squares / other.points).max(1.0) * (other.weighted / other.points).max(1.0);
-        self.all() - other.all() > squares * unit
     }
 
     /// That of the points alone, whatever the path.
@@ -213,17 +206,11 @@ impl View<'_> {
         columns.points().enumerate().map(move |(i, point)| self.innovation_of(&point, ratio(i), shifts))
     }
 
-    /// Distance of a point from the outline as it was known, as if that were exact and the point a good one; `None` beyond the ends
-    /// of what is known. `ratio` is its deviation over that of a good point.
+    /// Distance of a point from the outline as it was known, as if that were exact and the point a good one; `None` where nothing was
+    /// known. `ratio` is its deviation over that of a good point.
     fn innovation_of(&self, m: &PointOnCell, ratio: f64, shifts: &[f64]) -> Option<f64> {
-        let own = *self.belief.information.cells.own().get(m.cell)?;
-        let of_cell = if own > 0.0 {
-            m.by_offset * m.by_offset / own
-        } else {
-            // Of the bend at a corner, which no frame has followed, as little is known as points beside straight cells are allowed to lie off.
-            (BEND * self.map.spacing() / self.noise.sigma).powi(2)
-        };
-        let variance = ratio * ratio + of_cell;
+        let own = self.belief.information.cells.own().get(m.cell).copied().filter(|own| *own > 0.0)?;
+        let variance = ratio * ratio + m.by_offset * m.by_offset / own;
         Some((m.residual + m.by_offset * shifts[m.cell]) / variance.sqrt())
     }
 }

@@ -14,7 +14,6 @@ use crate::{
     tuning::{
         supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION},
         turn_profile::LEAP,
-        update::SUDDEN,
         usual_agreement::ELSEWHERE,
     },
     update::Gate,
@@ -80,15 +79,15 @@ impl MotionFilter {
         if let (Some(found), Some(of_other)) = (found, &other.track) {
             let poses = [*track.body_pose(), *of_other.body_pose()];
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
-            // Beside the present pose one that lies elsewhere along a direction is the same model with a parameter fitted.
+            is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
+            // Little further along, where the points that tell of it agree as usual, it lies better if they explain the frame no worse.
+            let is_direction = |doubt: Doubt| matches!(doubt, Doubt::Direction { .. });
             let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
-            let is_direction = matches!(doubt, Doubt::Direction { .. });
-            let is_fitted = is_direction && lies_near && likelihoods[0].is_worse_by_fit(SUDDEN, &likelihoods[1]);
-            if is_fitted || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
+            let agrees = is_direction(doubt) && lies_near && !found.doubt.is_some_and(is_direction);
+            if agrees && is_explained || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
                 *self = other;
                 return found;
             }
-            is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
             turns_alike = is_explained && track.turn_leaps(of_other.body_pose(), 0.0);
         }
         if doubt != Doubt::Turn && !is_explained {
