@@ -61,7 +61,9 @@ impl MotionFilter {
 
     /// Where more points than usual of a frame that has been taken disagree, or a turn that little tells is another than expected, they may be those
     /// that tell the pose: the object is searched for, and taken to be where that explains the frame significantly better. A frame that shows no
-    /// turn, or another one better, if not significantly, has told none where little tells it, so that others must tell it first.
+    /// turn, or another one better, if not significantly, has told none where little tells it, so that others must tell it first. Where few points
+    /// agree of those that tell a direction, a pose further along it in which they agree as usual is taken if it explains the frame better at all:
+    /// the others say nothing of it.
     pub(super) fn look_elsewhere(&mut self, outcome: Outcome, time: f64, outline: &Outline) -> Outcome {
         let Some(doubt) = outcome.doubt.filter(|_| outcome.is_accepted()) else { return outcome };
         if !self.may_search() {
@@ -80,17 +82,16 @@ impl MotionFilter {
             let poses = [*track.body_pose(), *of_other.body_pose()];
             let likelihoods = track.compared(outline, &poses, &mut self.frame);
             is_explained = likelihoods[0].is_worse_by(0.0, &likelihoods[1]);
-            // Little further along, where the points that tell of it agree as usual, it lies better if they explain the frame no worse.
             let is_direction = |doubt: Doubt| matches!(doubt, Doubt::Direction { .. });
             let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
-            let agrees = is_direction(doubt) && lies_near && !found.doubt.is_some_and(is_direction);
-            if agrees && is_explained || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
+            let lies_further = is_direction(doubt) && lies_near && !found.doubt.is_some_and(is_direction);
+            if lies_further && is_explained || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
                 *self = other;
                 return found;
             }
             turns_alike = is_explained && track.turn_leaps(of_other.body_pose(), 0.0);
         }
-        if doubt != Doubt::Turn && !is_explained {
+        if !is_explained {
             track.record_as_usual(outcome.measurement.agreement, doubt);
         }
         let pose = *track.body_pose();

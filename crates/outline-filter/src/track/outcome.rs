@@ -26,6 +26,8 @@ pub(crate) enum Doubt {
         /// The [weakest agreement](crate::measurement::View::weakest_agreement).
         weakest: f64,
     },
+    /// Some points disagree, and the frame before was not taken: the motion may have changed meanwhile.
+    AfterRejected,
     /// A turn that few points or slight levers tell is another than it was to be.
     Turn,
 }
@@ -67,10 +69,10 @@ impl Outcome {
         self.verdict.is_ok()
     }
 
-    /// In doubt if it was accepted after frames that were not, with points that disagree: where an object goes on may have changed meanwhile.
+    /// The outcome of a frame that follows one that was not taken.
     pub(crate) fn after_rejected(self) -> Self {
         let is_in_doubt = self.is_accepted() && self.measurement.agreement < AFTER_REJECTED;
-        Self { doubt: self.doubt.or(is_in_doubt.then_some(Doubt::Points)), ..self }
+        Self { doubt: self.doubt.or(is_in_doubt.then_some(Doubt::AfterRejected)), ..self }
     }
 
     /// The gate by which the frame, of so many points, is judged where another pose shows that it is one of the object; `None` where it was

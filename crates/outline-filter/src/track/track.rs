@@ -140,8 +140,8 @@ impl Track {
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));
         let (mut shift, mut doubt) = (SVector::zeros(), None);
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
-            let all_agree = measurement.agreement >= usual_agreement::ALL_AGREE;
-            let weakest = if all_agree { 1.0 } else { self.view().weakest_agreement(frame) };
+            let is_asked = measurement.agreement < usual_agreement::ALL_AGREE;
+            let weakest = is_asked.then(|| self.view().weakest_agreement(frame));
             self.frames += 1;
             self.look_for_unmodelled_motions(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));

@@ -32,7 +32,7 @@ impl UsualAgreement {
         let deviation = (usual.max(1.0 / points) * (1.0 - usual) / points).sqrt();
         self.frames += 1;
         // Frames in which a part has been missed must not become the usual ones.
-        let gain = if disagreeing < usual { tuning::FALLS } else { tuning::RISES };
+        let gain = if disagreeing < usual { tuning::TOWARDS_BETTER } else { tuning::TOWARDS_WORSE };
         self.disagreeing += gain.max(1.0 / self.frames as f64) * (disagreeing - usual);
         // Few marks are soon missed, in the very first frames as well.
         let significant = match shown {
@@ -45,7 +45,7 @@ impl UsualAgreement {
     /// Updates the usual weakest agreement by that of a frame; whether it is far less than usual.
     fn update_weakest(&mut self, weakest: f64) -> bool {
         let usual = self.weakest;
-        let gain = if weakest > usual { tuning::FALLS } else { tuning::RISES };
+        let gain = if weakest > usual { tuning::TOWARDS_BETTER } else { tuning::TOWARDS_WORSE };
         self.weakest += gain * (weakest - usual);
         weakest < tuning::WEAKEST * usual
     }
@@ -60,11 +60,12 @@ enum TurnShown {
 }
 
 impl Track {
-    /// Takes how far the points of an accepted frame agree: their share, and the weakest agreement. Why the object may lie elsewhere, if it may.
-    pub(super) fn doubt_of_agreement(&mut self, agreement: f64, weakest: f64, points: usize) -> Option<Doubt> {
+    /// Takes how far the points of an accepted frame agree: their share, and the weakest agreement if it was asked for. Why the object may lie
+    /// elsewhere, if it may.
+    pub(super) fn doubt_of_agreement(&mut self, agreement: f64, weakest: Option<f64>, points: usize) -> Option<Doubt> {
         let shown = if self.map.is_all_but_round() { TurnShown::ByFew } else { TurnShown::ByMany };
         let disagrees = self.usual.update(disagreeing(agreement), points, shown);
-        if self.usual.update_weakest(weakest) {
+        if let Some(weakest) = weakest.filter(|weakest| self.usual.update_weakest(*weakest)) {
             return Some(Doubt::Direction { weakest });
         }
         disagrees.then_some(Doubt::Points)
@@ -72,10 +73,15 @@ impl Track {
 
     /// Records how far the points agree of a frame in doubt as nearer to what is usual: nothing else explains them better.
     pub(crate) fn record_as_usual(&mut self, agreement: f64, doubt: Doubt) {
-        let more = disagreeing(agreement) - self.usual.disagreeing;
-        self.usual.disagreeing += tuning::UNEXPLAINED * more.max(0.0);
-        if let Doubt::Direction { weakest } = doubt {
-            self.usual.weakest += tuning::UNEXPLAINED * (weakest - self.usual.weakest).min(0.0);
+        match doubt {
+            Doubt::Points => {
+                let more = disagreeing(agreement) - self.usual.disagreeing;
+                self.usual.disagreeing += tuning::UNEXPLAINED * more.max(0.0);
+            }
+            Doubt::Direction { weakest } => {
+                self.usual.weakest += tuning::UNEXPLAINED * (weakest - self.usual.weakest).min(0.0);
+            }
+            Doubt::AfterRejected | Doubt::Turn => {}
         }
     }
 }

@@ -179,12 +179,15 @@ pub(crate) mod usual_agreement {
     pub(crate) const SIGNIFICANT: f64 = 5.0;
     /// As that, where few of the points tell the turn: four of 300 that are off by chance are searched for once or twice.
     pub(crate) const SIGNIFICANT_OF_FEW: f64 = 3.0;
-    /// Shares by which a frame corrects the usual share where fewer points disagree, and where more do: that falls fast and rises slowly.
-    pub(crate) const FALLS: f64 = 0.2;
-    pub(crate) const RISES: f64 = 0.02;
-    /// Share of the points that agree from which on every direction of the pose is told well enough.
+    /// Shares by which a frame corrects what is usual where its points agree better than that, and where they agree worse: frames in which a part has
+    /// been missed must not become the usual ones.
+    pub(crate) const TOWARDS_BETTER: f64 = 0.2;
+    pub(crate) const TOWARDS_WORSE: f64 = 0.02;
+    /// Share of the points that agree from which on directions are not asked for: an end of a bar that is 50 times as long as wide has 1 % of the
+    /// points.
     pub(crate) const ALL_AGREE: f64 = 0.99;
-    /// Share of the usual weakest agreement below which a direction of the pose is in doubt.
+    /// Share of the usual weakest agreement below which a direction of the pose is in doubt: the ends of a bar have few points, of which chance
+    /// leaves a third out.
     pub(crate) const WEAKEST: f64 = 0.6;
     /// Share of the points that must agree, after a frame that was not taken, for nothing else to be looked for: a motion that has changed leads to
     /// another tooth of a gear, or past the end of a bar, and a hole or an end are some hundredths of the points.

@@ -34,8 +34,9 @@ impl View<'_> {
         let is_whole = pieces.iter().all(|piece| piece.closed);
         let own = self.belief.information.cells.own();
         let points: f64 = of_cells.iter().map(|(all, _)| all).sum();
-        let usual = if is_whole { points / own.iter().sum::<f64>() } else { 0.0 };
-        // Shares are the same in every pose of the model: those of the body frame need no image.
+        let all_own: f64 = own.iter().sum();
+        let usual = if is_whole && all_own > 0.0 { points / all_own } else { 0.0 };
+        // Rigid and similar poses leave the shares as they are, and others change them little: those of the body frame need no image.
         let null = self.map.null_directions(model, &Matrix3::identity());
         let (mut of_all, mut of_agreeing) = (PoseMatrix::zeros(), PoseMatrix::zeros());
         for ((cell, own), (all, agreeing)) in cells.iter().zip(own).zip(of_cells.iter()) {
@@ -66,4 +67,45 @@ fn smallest_share(mut a: PoseMatrix, mut b: PoseMatrix, k: usize) -> f64 {
     let Some(half) = lower.solve_lower_triangular(&a) else { return 1.0 };
     let Some(shares) = lower.solve_lower_triangular(&half.transpose()) else { return 1.0 };
     (0.5 * (shares + shares.transpose())).symmetric_eigenvalues().min().clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_curve_fit::Outline;
+    use freeform_riccati::MotionModel;
+    use nalgebra::Point2;
+
+    use crate::{
+        measurement::{Frame, Pass},
+        track::Track,
+    };
+
+    /// A bar of 6 by 1/2 that has been moved along itself.
+    fn bar(along: f64) -> Outline {
+        let side = |i: u32| f64::from(i) / 20.0;
+        let points = (0..120)
+            .map(|i| (side(i), 0.0))
+            .chain((0..10).map(|i| (6.0, side(i))))
+            .chain((0..120).map(|i| (6.0 - side(i), 0.5)))
+            .chain((0..10).map(|i| (0.0, 0.5 - side(i))));
+        Outline::closed(points.map(|(x, y)| Point2::new(x + along, y)).collect()).expect("an outline")
+    }
+
+    fn weakest(along: f64) -> f64 {
+        let mut frame = Frame::default();
+        let mut track = Track::begin(MotionModel::Rigid, &bar(0.0), 0.0, &mut frame).expect("a track");
+        track.set_noise(0.002);
+        frame.load(&bar(along), track.reference());
+        let pose = *track.body_pose();
+        track.view().measure_by_columns(&mut frame, &pose, &[], Pass::First);
+        track.view().weakest_agreement(&mut frame)
+    }
+
+    #[test]
+    fn where_a_bar_lies_along_itself_its_ends_alone_tell() {
+        assert!(weakest(0.0) > 0.9, "{}", weakest(0.0));
+        for along in [-0.4, -0.2, 0.2, 0.4] {
+            assert!(weakest(along) < 0.3, "{along}: {}", weakest(along));
+        }
+    }
 }
