@@ -56,7 +56,7 @@ fn a_gear_that_has_stopped_behind_something_else_is_not_taken_for_one_that_is_a_
     assert_eq!(off, 0, "of {all} turns");
 }
 
-/// Points of its ends that lie beside the sides are taken for those of the sides, and the others for wrong ones: of 87 places 77 were off.
+/// Points of its ends that lie beside the sides are taken for those of the sides, and the others for wrong ones: of 24 bars 22 were off.
 #[test]
 fn a_bar_that_stops_suddenly_is_not_taken_to_go_on_along_itself() {
     const STOPS: u32 = 15;
@@ -68,7 +68,7 @@ fn a_bar_that_stops_suddenly_is_not_taken_to_go_on_along_itself() {
         let along = Vector2::new(f64::cos(turn), f64::sin(turn));
         let mut run = filter(MotionModel::Rigid);
         let mut middle = None;
-        for frame in 0..STOPS + 3 {
+        for frame in 0..STOPS + 6 {
             let gone = per_frame * f64::from(frame.min(STOPS)) * along;
             let outline = Outline::closed(points_on(&bar, 150, (turn, gone), &mut random)).expect("an outline");
             let middle = *middle.get_or_insert_with(|| outline.centroid());
@@ -81,6 +81,6 @@ fn a_bar_that_stops_suddenly_is_not_taken_to_go_on_along_itself() {
             off += u32::from((0..2).any(|i| error(i).abs() > 6.0 * deviation(i)));
         }
     }
-    assert!(all > 48, "{all}");
-    assert!(10 * off < all, "{off} of {all} places");
+    assert!(all > 100, "{all}");
+    assert!(20 * off < all, "{off} of {all} places");
 }
