@@ -35,6 +35,13 @@ impl NegativeLogLikelihood {
         self.all() - other.all() > deviations * unit * Self::deviation(other.weighted)
     }
 
+    /// Whether the difference is more than so many squares of the noise: a test of models of which the other has a parameter more (S. S. Wilks 1938, The
+    /// large-sample distribution of the likelihood ratio for testing composite hypotheses), where only few of the points tell it.
+    pub(crate) fn is_worse_by_fit(&self, squares: f64, other: &Self) -> bool {
+        let unit = (other.squares / other.points).max(1.0) * (other.weighted / other.points).max(1.0);
+        self.all() - other.all() > squares * unit
+    }
+
     /// That of the points alone, whatever the path.
     pub(crate) fn of_points(self) -> Self {
         Self { of_path: 0.0, ..self }

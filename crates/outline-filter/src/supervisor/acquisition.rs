@@ -14,7 +14,7 @@ use crate::{
     tuning::{
         supervisor::{FRAMES_OF_SEARCH, LARGEST_INNOVATION},
         turn_profile::LEAP,
-        usual_agreement::ELSEWHERE,
+        usual_agreement::{ELSEWHERE, FURTHER_ALONG},
     },
     update::Gate,
 };
@@ -62,8 +62,8 @@ impl MotionFilter {
     /// Where more points than usual of a frame that has been taken disagree, or a turn that little tells is another than expected, they may be those
     /// that tell the pose: the object is searched for, and taken to be where that explains the frame significantly better. A frame that shows no
     /// turn, or another one better, if not significantly, has told none where little tells it, so that others must tell it first. Where few points
-    /// agree of those that tell a direction, a pose further along it in which they agree as usual is taken if it explains the frame better at all:
-    /// the others say nothing of it.
+    /// agree of those that tell a direction, a pose further along it in which they agree as usual is taken where it explains the
+    /// frame better by what few points can say: the others say nothing of it.
     pub(super) fn look_elsewhere(&mut self, outcome: Outcome, time: f64, outline: &Outline) -> Outcome {
         let Some(doubt) = outcome.doubt.filter(|_| outcome.is_accepted()) else { return outcome };
         if !self.may_search() {
@@ -85,7 +85,9 @@ impl MotionFilter {
             let is_direction = |doubt: Doubt| matches!(doubt, Doubt::Direction { .. });
             let lies_near = track.turn_to(of_other.body_pose()).abs() < LEAP;
             let lies_further = is_direction(doubt) && lies_near && !found.doubt.is_some_and(is_direction);
-            if lies_further && is_explained || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1]) {
+            if lies_further && likelihoods[0].is_worse_by_fit(FURTHER_ALONG, &likelihoods[1])
+                || likelihoods[0].is_worse_by(ELSEWHERE, &likelihoods[1])
+            {
                 *self = other;
                 return found;
             }

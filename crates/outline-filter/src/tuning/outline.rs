@@ -194,6 +194,9 @@ pub(crate) mod usual_agreement {
     pub(crate) const AFTER_REJECTED: f64 = 0.97;
     /// Deviations by which another pose must explain such a frame better: more points than usual speak for it already.
     pub(crate) const ELSEWHERE: f64 = 3.0;
+    /// Squares of the noise by which a pose further along a direction must explain a frame better, of which few points agree that tell it: four
+    /// deviations of one parameter.
+    pub(crate) const FURTHER_ALONG: f64 = 16.0;
     /// Share by which a frame does that nothing explains better, so that it is not looked into again and again.
     pub(crate) const UNEXPLAINED: f64 = 0.5;
 }
