@@ -87,6 +87,22 @@ impl ObjectResult {
     pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {
         parameters_of(self.estimate.as_ref(), self.plane.as_deref())
     }
+
+    /// The same result where it is in doubt what the outlines show: of a motion that is stated of two frames alone a warning says so.
+    ///
+    /// Two outlines of whatever things have a motion from one to the other; that a third lies where it leads is what speaks for it.
+    #[must_use]
+    pub fn of_doubtful_outlines(mut self) -> Self {
+        let names = self.motion.parameter_names();
+        let has_motion = self.estimate.is_some() || self.plane.is_some();
+        let is_stated =
+            (has_motion && names.iter().any(|name| self.not_stated(name).is_none())) || self.velocity.is_some();
+        if is_stated && self.frames.saturating_sub(self.frames_rejected) <= 2 {
+            self.warnings.push(Warning::OfTwoFrames);
+            self.warnings.sort_by_key(Warning::order);
+        }
+        self
+    }
 }
 
 /// Names of the components of the velocity of the middle of an object.

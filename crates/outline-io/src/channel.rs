@@ -31,6 +31,24 @@ impl Channel {
         }
     }
 
+    /// Several channels of a decoded picture, as [`of`](Self::of) gives each.
+    pub(crate) fn all_of(picture: DynamicImage, channels: &[Self]) -> Vec<GrayImage> {
+        let luminance =
+            channels.contains(&Self::Luminance).then(|| visible_part(&picture).unwrap_or_else(|| picture.to_luma8()));
+        if channels.iter().all(|channel| *channel == Self::Luminance) {
+            return luminance.into_iter().cycle().take(channels.len()).collect();
+        }
+        let colours = picture.into_rgb8();
+        let of_colours = |channel: &Self| match (channel, &luminance) {
+            (Self::Luminance, Some(luminance)) => luminance.clone(),
+            _ => {
+                let grey = colours.pixels().map(|pixel| channel.of_colour(pixel.0)).collect();
+                GrayImage::from_raw(colours.width(), colours.height(), grey).unwrap_or_default()
+            }
+        };
+        channels.iter().map(of_colours).collect()
+    }
+
     /// The channel of one colour: red, green, blue.
     pub(crate) fn of_colour(self, [red, green, blue]: [u8; 3]) -> u8 {
         match self {

@@ -5,11 +5,12 @@ use image::GrayImage;
 use super::rest::{movement, rests};
 use super::scaled::{factor_for, scaled};
 use super::sight::Sight;
-use super::{LINE, PictureSample, Tracing, TracingWay, ground_of};
+use super::{LINE, PictureSample, Tracing, TracingWay};
 use crate::background::Background;
 use crate::channel::Channel;
 use crate::contrast::Contrast;
 use crate::edges::median;
+use crate::ground_picture::ground_picture;
 use crate::ground_surface::ground_surface;
 use crate::identity::Selection;
 use crate::picture_outlines::PictureSettings;
@@ -146,7 +147,7 @@ impl Trial {
 
     fn settings(&self, tracing: &Tracing) -> PictureSettings {
         let ground = match tracing.way {
-            TracingWay::Median(_) => self.ground.get_or_init(|| ground_of(&self.all)).clone(),
+            TracingWay::Median(_) => self.ground.get_or_init(|| ground_picture(&self.all)).clone(),
             _ => None,
         };
         let mut settings = tracing.settings(&self.base, ground);

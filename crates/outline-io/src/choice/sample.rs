@@ -82,11 +82,7 @@ impl PictureSample {
         }
         let mut coloured = Self { channels: Vec::new(), ..sample.clone() };
         coloured.take(Channel::Saturation, pictures(Channel::Saturation).into_iter().flatten());
-        let has_colour = coloured.channels.iter().flat_map(|(_, pictures)| pictures).any(|picture| {
-            let strong = picture.as_raw().iter().filter(|value| **value > LITTLE_COLOUR).count();
-            1000 * strong > picture.as_raw().len()
-        });
-        if has_colour {
+        if coloured.channels.iter().flat_map(|(_, pictures)| pictures).any(|picture| has_colour(picture)) {
             for channel in others {
                 match channel {
                     Channel::Saturation => sample.channels.append(&mut coloured.channels),
@@ -97,20 +93,61 @@ impl PictureSample {
         sample
     }
 
+    /// Reads a sample as [`read`](Self::read) does, of pictures that come with these channels at once, or the first alone where they have no colour.
+    pub(crate) fn read_at_once(
+        channels: &[Channel],
+        pictures: impl Iterator<Item = Result<(u64, Vec<GrayImage>), PictureError>>,
+    ) -> Self {
+        let mut sample = Self { factor: 1, ..Self::default() };
+        let Some((first, others)) = channels.split_first() else { return sample };
+        let (mut frames, mut kept) = (Vec::new(), vec![Vec::new(); channels.len()]);
+        for (frame, pictures) in pictures.flatten() {
+            if pictures.first().is_some_and(|picture| sample.is_of_its_size(picture)) {
+                frames.push(frame);
+                for (kept, picture) in kept.iter_mut().zip(pictures) {
+                    kept.push(sample.small(Arc::new(picture)));
+                }
+            }
+        }
+        let mut kept = kept.into_iter();
+        sample.keep(*first, &frames, kept.next().unwrap_or_default());
+        let others: Vec<(Channel, Vec<Arc<GrayImage>>)> = others.iter().copied().zip(kept).collect();
+        let saturation = others.iter().find(|(channel, _)| *channel == Channel::Saturation);
+        if saturation.is_some_and(|(_, pictures)| pictures.iter().any(|picture| has_colour(picture))) {
+            others.into_iter().for_each(|(channel, kept)| sample.keep(channel, &frames, kept));
+        }
+        sample
+    }
+
     fn take(&mut self, channel: Channel, pictures: impl Iterator<Item = Result<PictureFrame, PictureError>>) {
         let mut kept = Vec::new();
         let mut frames = Vec::new();
         for PictureFrame { frame, picture, .. } in pictures.flatten() {
-            let size = picture.dimensions();
-            if self.size == (0, 0) {
-                self.size = size;
-                self.factor = factor_for(size.0, size.1, MOST_PIXELS);
-            }
-            if size == self.size {
+            if self.is_of_its_size(&picture) {
                 frames.push(frame);
-                kept.push(if self.factor == 1 { picture } else { Arc::new(scaled(&picture, self.factor)) });
+                kept.push(self.small(picture));
             }
         }
+        self.keep(channel, &frames, kept);
+    }
+
+    /// Whether a picture has the size of the first, which it may be.
+    fn is_of_its_size(&mut self, picture: &GrayImage) -> bool {
+        let size = picture.dimensions();
+        if self.size == (0, 0) {
+            self.size = size;
+            self.factor = factor_for(size.0, size.1, MOST_PIXELS);
+        }
+        size == self.size
+    }
+
+    /// A picture as the sample holds it.
+    fn small(&self, picture: Arc<GrayImage>) -> Arc<GrayImage> {
+        if self.factor == 1 { picture } else { Arc::new(scaled(&picture, self.factor)) }
+    }
+
+    /// Keeps of the pictures with these numbers those that the sample is made of.
+    fn keep(&mut self, channel: Channel, frames: &[u64], kept: Vec<Arc<GrayImage>>) {
         if self.frames.is_empty() {
             // Of a sequence whose length was not known more may have been kept than are needed.
             let bursts = SamplePlan::Spread(frames.len() as u64).frames();
@@ -211,4 +248,10 @@ impl PictureSample {
         let Some((_, pictures)) = self.channels.first() else { return false };
         self.factor == 1 && pictures.iter().all(|picture| is_two_valued(picture))
     }
+}
+
+/// Whether a picture of the saturation shows more than some specks.
+fn has_colour(saturation: &GrayImage) -> bool {
+    let strong = saturation.as_raw().iter().filter(|value| **value > LITTLE_COLOUR).count();
+    1000 * strong > saturation.as_raw().len()
 }

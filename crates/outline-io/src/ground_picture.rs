@@ -1,0 +1,271 @@
+//! The ground of a sequence: the median of its pictures, without what rests in most of them and is gone in others.
+use std::sync::Arc;
+
+use image::GrayImage;
+
+use crate::background::median_picture;
+use crate::edges::median;
+
+/// Fewest pictures in which a thing that the median shows must be gone: of fewer, one that was covered would be taken for gone.
+const FEWEST_GONE: usize = 3;
+
+/// Fewest pictures that anything rests in most of.
+const FEWEST_PICTURES: usize = 8;
+
+/// Fewest pixels of a thing.
+const FEWEST_PIXELS: usize = 64;
+
+/// What changes more of a picture than this is the light, or the camera.
+const LARGEST_SHARE: f64 = 0.3;
+
+/// A difference lies so many standard deviations of the others beyond their middle, and at least so many grey values.
+const BEYOND_NOISE: f64 = 6.0;
+const LEAST_LEVEL: f64 = 12.0;
+
+/// The median has an edge around what is gone in a picture, and the picture has so many times less of one. What is in front of the ground is the
+/// other way round, and what only changes has edges in both.
+const LESS_OF_AN_EDGE: f64 = 2.0;
+
+/// Distance, in pixels, of the places on both sides of an edge at which it is looked at: an edge in pictures is some pixels wide.
+const REACH: isize = 2;
+
+/// Every so many pixels of a picture tell its noise.
+const NOISE_STEP: usize = 37;
+
+/// What the pixels of a picture are, while what differs in it is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pixel {
+    Ground,
+    Lighter,
+    Darker,
+    Seen,
+}
+
+/// The ground of pictures of one size, from anywhere in a sequence: their median, pixel by pixel. What rests in most of them is a part of that. Where
+/// it has left, pictures differ from the median in its shape, but have no edge there, as what is in front of the ground has: there the ground is the
+/// median of these pictures instead. `None` of no picture.
+#[must_use]
+pub fn ground_picture(pictures: &[Arc<GrayImage>]) -> Option<Arc<GrayImage>> {
+    let plain = median_picture(pictures)?;
+    if pictures.len() < FEWEST_PICTURES {
+        return Some(plain);
+    }
+    let mut seen: Vec<(u32, u8)> = Vec::new();
+    let mut pixels = Vec::new();
+    for picture in pictures.iter().filter(|picture| picture.dimensions() == plain.dimensions()) {
+        uncovered(picture, &plain, &mut pixels, &mut seen);
+    }
+    if seen.is_empty() {
+        return Some(plain);
+    }
+    seen.sort_unstable();
+    let mut ground = GrayImage::clone(&plain);
+    for of_pixel in seen.chunk_by(|a, b| a.0 == b.0).filter(|of_pixel| of_pixel.len() >= FEWEST_GONE) {
+        ground.as_mut()[of_pixel[0].0 as usize] = of_pixel[of_pixel.len() / 2].1;
+    }
+    Some(Arc::new(ground))
+}
+
+/// Adds the values of the pixels where a picture shows the ground and the median something in front of it.
+fn uncovered(picture: &GrayImage, plain: &GrayImage, pixels: &mut Vec<Pixel>, seen: &mut Vec<(u32, u8)>) {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let differences = || picture.as_raw().iter().zip(plain.as_raw()).map(|(a, b)| a.abs_diff(*b));
+    let noise = || differences().step_by(NOISE_STEP).map(f64::from);
+    let Some(middle) = median(noise()) else { return };
+    let Some(spread) = median(noise().map(|value| (value - middle).abs())) else { return };
+    let level = (middle + BEYOND_NOISE * 1.4826 * (spread + 0.5)).max(LEAST_LEVEL);
+    if level > f64::from(u8::MAX) {
+        return;
+    }
+    let level = level as u8;
+    let count = differences().filter(|difference| *difference > level).count();
+    if count < FEWEST_PIXELS || count as f64 > LARGEST_SHARE * (width * height) as f64 {
+        return;
+    }
+    pixels.clear();
+    // What is gone and what has come differ in opposite ways from the ground, where they touch too.
+    let pixel = |(value, ground): (&u8, &u8)| match value.abs_diff(*ground) > level {
+        true if value > ground => Pixel::Lighter,
+        true => Pixel::Darker,
+        false => Pixel::Ground,
+    };
+    pixels.extend(picture.as_raw().iter().zip(plain.as_raw()).map(pixel));
+    let mut is_taken = vec![false; pixels.len()];
+    let mut thing: Vec<usize> = Vec::new();
+    for start in 0..pixels.len() {
+        let kind = pixels[start];
+        if matches!(kind, Pixel::Ground | Pixel::Seen) {
+            continue;
+        }
+        thing.clear();
+        thing.push(start);
+        pixels[start] = Pixel::Seen;
+        let mut next = 0;
+        while let Some(&index) = thing.get(next) {
+            next += 1;
+            for neighbour in around(index, width, height).into_iter().flatten() {
+                if pixels[neighbour] == kind {
+                    pixels[neighbour] = Pixel::Seen;
+                    thing.push(neighbour);
+                }
+            }
+        }
+        if thing.len() >= FEWEST_PIXELS && is_gone(&thing, pixels, picture, plain, f64::from(level)) {
+            add(&thing, picture, &mut is_taken, seen);
+        }
+    }
+}
+
+/// The four pixels beside one, where there are any: left, right, above, below.
+fn around(index: usize, width: usize, height: usize) -> [Option<usize>; 4] {
+    let (column, row) = (index % width, index / width);
+    [
+        (column > 0).then(|| index - 1),
+        (column + 1 < width).then(|| index + 1),
+        (row > 0).then(|| index - width),
+        (row + 1 < height).then(|| index + width),
+    ]
+}
+
+/// Whether the median has an edge around what differs, and the picture has not.
+fn is_gone(thing: &[usize], pixels: &[Pixel], picture: &GrayImage, plain: &GrayImage, level: f64) -> bool {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let (mut of_median, mut of_picture, mut places) = (0_u64, 0_u64, 0_u64);
+    for &index in thing {
+        let (column, row) = ((index % width) as isize, (index / width) as isize);
+        let steps = [(-1, 0), (1, 0), (0, -1), (0, 1)];
+        for (neighbour, (across, down)) in around(index, width, height).into_iter().zip(steps) {
+            if neighbour.is_none_or(|neighbour| pixels[neighbour] != Pixel::Ground) {
+                continue;
+            }
+            let at = |by: isize| -> Option<usize> {
+                let (column, row) = (column + by * across, row + by * down);
+                let is_within = (0..width as isize).contains(&column) && (0..height as isize).contains(&row);
+                is_within.then(|| row as usize * width + column as usize)
+            };
+            if let Some((inner, outer)) = at(-REACH).zip(at(REACH)) {
+                let step = |image: &GrayImage| u64::from(image.as_raw()[inner].abs_diff(image.as_raw()[outer]));
+                of_median += step(plain);
+                of_picture += step(picture);
+                places += 1;
+            }
+        }
+    }
+    of_median as f64 > level * places as f64 && of_median as f64 > LESS_OF_AN_EDGE * of_picture as f64
+}
+
+/// Adds what a picture shows where a thing is gone, with the pixels around it that its blurred edge has reached.
+fn add(thing: &[usize], picture: &GrayImage, is_taken: &mut [bool], seen: &mut Vec<(u32, u8)>) {
+    let (width, height) = (picture.width() as isize, picture.height() as isize);
+    for &index in thing {
+        let (column, row) = (index as isize % width, index as isize / width);
+        for y in (row - REACH).max(0)..=(row + REACH).min(height - 1) {
+            for x in (column - REACH).max(0)..=(column + REACH).min(width - 1) {
+                let place = (y * width + x) as usize;
+                if !is_taken[place] {
+                    is_taken[place] = true;
+                    seen.push((place as u32, picture.as_raw()[place]));
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use image::Luma;
+
+    use super::*;
+
+    /// Distance from an L.
+    fn letter(x: f64, y: f64) -> f64 {
+        let bar = |cx: f64, cy: f64, w: f64, h: f64| ((x - cx).abs() - w).max((y - cy).abs() - h);
+        bar(0.0, 0.0, 20.0, 7.0).min(bar(14.0, 15.0, 6.0, 20.0))
+    }
+
+    /// The ground, uneven.
+    fn ground(x: f64, y: f64) -> f64 {
+        110.0 + 12.0 * (0.21 * x).sin() * (0.17 * y + 0.4).cos()
+    }
+
+    fn picture(seed: u32, grey: impl Fn(f64, f64) -> f64) -> Arc<GrayImage> {
+        Arc::new(GrayImage::from_fn(160, 120, |x, y| {
+            let mixed = (x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ seed.wrapping_mul(0xc2b2_ae3d))
+                .wrapping_mul(0x2c1b_3c6d);
+            let noise = f64::from((mixed >> 13) % 5) - 2.0;
+            Luma([(grey(f64::from(x) + 0.5, f64::from(y) + 0.5) + noise).round().clamp(0.0, 255.0) as u8])
+        }))
+    }
+
+    /// Pictures of a dark L that is moved by this in the picture of this number.
+    fn moved(count: u32, by: impl Fn(f64) -> f64) -> Vec<Arc<GrayImage>> {
+        (0..count)
+            .map(|k| {
+                let along = 50.0 + by(f64::from(k));
+                picture(k, move |x, y| {
+                    let inside = (0.5 - letter(x - along, y - 60.0)).clamp(0.0, 1.0);
+                    ground(x, y) * (1.0 - inside) + 45.0 * inside
+                })
+            })
+            .collect()
+    }
+
+    fn farthest(found: &GrayImage, true_ground: impl Fn(f64, f64) -> f64) -> f64 {
+        let off = |(x, y, value): (u32, u32, &Luma<u8>)| {
+            (f64::from(value.0[0]) - true_ground(f64::from(x) + 0.5, f64::from(y) + 0.5)).abs()
+        };
+        found.enumerate_pixels().map(off).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn what_rests_in_most_pictures_and_leaves_is_no_part_of_the_ground() {
+        // Before it goes, after it has come, and between.
+        let ways: [fn(f64) -> f64; 3] = [
+            |k| 8.0 * (k - 16.0).max(0.0),
+            |k| 8.0 * k.min(9.0),
+            |k| 10.0 * ((k - 5.0).min(0.0) + (k - 20.0).max(0.0)),
+        ];
+        for (number, way) in ways.into_iter().enumerate() {
+            let pictures = moved(26, way);
+            let plain = farthest(&median_picture(&pictures).expect("a median"), ground);
+            let found = farthest(&ground_picture(&pictures).expect("a ground"), ground);
+            assert!(plain > 50.0, "{number}: {plain}");
+            assert!(found < 8.0, "{number}: {found}");
+        }
+    }
+
+    #[test]
+    fn what_moves_through_what_only_changes_and_what_is_covered_or_out_of_focus_leave_the_median_as_it_is() {
+        let square = |x: f64, y: f64, half: f64| (x - 110.0).abs().max((y - 50.0).abs()) - half;
+        let still = |x: f64, y: f64| if square(x, y, 14.0) < 0.0 { 45.0 } else { ground(x, y) };
+        let kinds: [Vec<Arc<GrayImage>>; 5] = [
+            moved(26, |k| 4.0 * k),
+            // A lamp that is lit in some.
+            (0..26)
+                .map(|k| {
+                    picture(k, |x, y| still(x, y) + if k % 3 == 0 && square(x, y, 14.0) < 0.0 { 150.0 } else { 0.0 })
+                })
+                .collect(),
+            // Something lighter than the ground in front of it in some.
+            (0..26)
+                .map(|k| picture(k, |x, y| if k > 18 && square(x, y, 25.0) < 0.0 { 190.0 } else { still(x, y) }))
+                .collect(),
+            // Dimmer.
+            (0..26).map(|k| picture(k, |x, y| still(x, y) * if k > 18 { 0.6 } else { 1.0 })).collect(),
+            // Blurred.
+            (0..26)
+                .map(|k| {
+                    picture(k, |x, y| {
+                        let inside = 0.5 - square(x, y, 14.0) / if k > 18 { 8.0 } else { 1.0 };
+                        let inside = inside.clamp(0.0, 1.0);
+                        ground(x, y) * (1.0 - inside) + 45.0 * inside
+                    })
+                })
+                .collect(),
+        ];
+        for (number, pictures) in kinds.iter().enumerate() {
+            let [plain, found] = [median_picture(pictures), ground_picture(pictures)].map(|g| g.expect("a ground"));
+            assert!(plain == found, "{number}");
+        }
+    }
+}
