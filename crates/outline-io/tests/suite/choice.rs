@@ -170,24 +170,23 @@ fn changes_within_the_outline_of_what_rests_are_warned_of() {
 
 #[test]
 fn a_puck_that_slides_on_a_plate_is_warned_of_where_an_arm_that_moves_over_the_edge_of_the_plate_changes_its_outline() {
-    for has_puck in [false, true] {
+    for moves in [false, true] {
         let pictures = (0..24).map(|frame| {
+            let time = if moves { f64::from(frame) } else { 0.0 };
             let plate = |x: f64, y: f64| ((x - 180.0).abs() - 110.0).max((y - 120.0).abs() - 90.0);
-            // It reaches over the left edge, more and less far, and never in one place for long.
-            let reach = 80.0 + 60.0 * (0.7 * f64::from(frame)).sin();
-            let arm = |x: f64, y: f64| (x - 70.0 - reach).max((y - 130.0 - 0.5 * f64::from(frame)).abs() - 12.0);
-            let along = 8.0 * f64::from(frame);
-            let puck = [115.0 + along.min(320.0 - along), 60.0 + 0.3 * along, if has_puck { 6.0 } else { -9.0 }];
+            // It reaches over the left edge, and is nowhere twice.
+            let arm = |x: f64, y: f64| (x - 150.0).max((y - 85.0 - 3.0 * time).abs() - 6.0);
+            let along = 8.0 * time;
+            let puck = [175.0 + (along + 50.0).min(150.0 - along), 60.0 + 0.3 * along, 6.0];
             picture(frame, |x, y| plate(x, y).max(-arm(x, y)).max(-disc(x, y, puck)))
         });
         let choice = choice(&pictures.collect::<Vec<_>>());
         let best = choice.best().expect("a way");
-        // It is not told to rest, and is seen well.
-        assert!(!best.rests && best.score > 0.5 && best.area_share > 0.4, "{best:?}");
+        // It is seen well, and only an outline that stays where it is tells that it rests.
+        assert!(best.rests != moves && best.score > 0.3 && best.area_share > 0.4, "{best:?}");
         let warned: Vec<TracingWarning> = choice.warnings().collect();
-        let is_told = matches!(warned[..], [TracingWarning::MovesBeside { .. }]);
-        assert_eq!(is_told, has_puck, "{warned:?}, {best:?}");
-        assert_eq!(warned.is_empty(), !has_puck, "{warned:?}");
+        assert_eq!(matches!(warned[..], [TracingWarning::MovesBeside { .. }]), moves, "{warned:?}, {best:?}");
+        assert_eq!(warned.is_empty(), !moves, "{warned:?}");
     }
 }
 
