@@ -1,4 +1,4 @@
-use image::{DynamicImage, GrayImage, Luma};
+use image::{DynamicImage, GrayImage, Luma, RgbImage};
 
 /// What is looked at of a colour picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,11 +23,7 @@ impl Channel {
     pub(crate) fn of(self, picture: DynamicImage) -> GrayImage {
         match self {
             Self::Luminance => visible_part(&picture).unwrap_or_else(|| picture.into_luma8()),
-            channel => {
-                let colours = picture.into_rgb8();
-                let grey = colours.pixels().map(|pixel| channel.of_colour(pixel.0)).collect();
-                GrayImage::from_raw(colours.width(), colours.height(), grey).unwrap_or_default()
-            }
+            channel => channel.of_colours(&picture.into_rgb8()),
         }
     }
 
@@ -41,12 +37,23 @@ impl Channel {
         let colours = picture.into_rgb8();
         let of_colours = |channel: &Self| match (channel, &luminance) {
             (Self::Luminance, Some(luminance)) => luminance.clone(),
-            _ => {
-                let grey = colours.pixels().map(|pixel| channel.of_colour(pixel.0)).collect();
-                GrayImage::from_raw(colours.width(), colours.height(), grey).unwrap_or_default()
-            }
+            _ => channel.of_colours(&colours),
         };
         channels.iter().map(of_colours).collect()
+    }
+
+    /// The channel of each pixel.
+    fn of_colours(self, colours: &RgbImage) -> GrayImage {
+        let (pixels, _) = colours.as_raw().as_chunks::<3>();
+        // One loop for each channel: what is done in it is known then.
+        let grey = match self {
+            Self::Red => pixels.iter().map(|[red, ..]| *red).collect(),
+            Self::Green => pixels.iter().map(|[_, green, _]| *green).collect(),
+            Self::Blue => pixels.iter().map(|[.., blue]| *blue).collect(),
+            Self::Saturation => pixels.iter().map(|colour| Self::Saturation.of_colour(*colour)).collect(),
+            Self::Luminance => pixels.iter().map(|colour| Self::Luminance.of_colour(*colour)).collect(),
+        };
+        GrayImage::from_raw(colours.width(), colours.height(), grey).unwrap_or_default()
     }
 
     /// The channel of one colour: red, green, blue.

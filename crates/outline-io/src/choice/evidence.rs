@@ -15,7 +15,7 @@ use crate::ground_surface::ground_surface;
 use crate::identity::Selection;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
-use crate::trace::{TracedOutline, blurred, trace_objects};
+use crate::trace::{TracedOutline, blurred, is_two_valued, trace_objects};
 use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
 /// Most pixels of a picture where ways are tried for the first time.
@@ -79,6 +79,7 @@ pub(super) struct Trial {
     all: Vec<Arc<GrayImage>>,
     ground: std::cell::OnceCell<Option<Arc<GrayImage>>>,
     surfaces: std::cell::OnceCell<Vec<Arc<GrayImage>>>,
+    last_shown: std::cell::RefCell<(Option<LookedAt>, Vec<Option<Shown>>)>,
     base: PictureSettings,
     /// Pixels of the sequence for one of these.
     factor: u32,
@@ -130,6 +131,7 @@ impl Trial {
             all,
             ground: std::cell::OnceCell::new(),
             surfaces: std::cell::OnceCell::new(),
+            last_shown: std::cell::RefCell::default(),
             base: base.clone(),
             factor: sample.factor() * further,
             ring_width: ring_width.widest(columns, rows),
@@ -178,20 +180,50 @@ impl Trial {
             return None;
         }
         let settings = self.settings(tracing);
+        let step = (self.count() / 5).max(1);
+        let levels = (0..self.count()).step_by(step).filter_map(|k| {
+            self.ground(tracing, &settings, k)?;
+            let Shown { picture, smooth } = self.shown(tracing, &settings, k);
+            let shown = smooth.unwrap_or(picture);
+            let mut counts = [0_usize; 256];
+            shown.as_raw().iter().step_by(7).for_each(|value| counts[usize::from(*value)] += 1);
+            let middle = median_of_counts(&counts)?;
+            let mut deviations = [0_usize; 256];
+            counts.iter().enumerate().for_each(|(value, count)| deviations[value.abs_diff(middle)] += count);
+            let spread = 1.4826 * (median_of_counts(&deviations)? as f64 + 0.5);
+            Some((middle as f64 + BEYOND_NOISE * spread).max(LEAST_LEVEL).round())
+        });
+        median(levels)
+    }
+
+    /// What a way looks at of a picture. What it showed last is kept: a way is tried with several levels, and lighter and darker things are looked for
+    /// in the same picture.
+    fn shown(&self, tracing: &Tracing, settings: &PictureSettings, k: usize) -> Shown {
+        let is_plain = matches!(
+            tracing.way,
+            TracingWay::Lighter | TracingWay::Darker | TracingWay::DarkRing | TracingWay::LightRing
+        );
+        let key = ((!is_plain).then_some(tracing.way), tracing.smoothing);
+        let mut last = self.last_shown.borrow_mut();
+        if last.0 != Some(key) {
+            *last = (Some(key), vec![None; self.count()]);
+        }
+        let known = &mut last.1[k];
+        let shown = known.get_or_insert_with(|| {
+            let difference =
+                self.ground(tracing, settings, k).map(|ground| settings.difference.of(&self.pictures[k], ground));
+            let picture = difference.map_or_else(|| Arc::clone(&self.pictures[k]), Arc::new);
+            Shown { picture, smooth: None }
+        });
         let sigma = match settings.trace.smoothing {
             Smoothing::Gaussian(sigma) => sigma,
             Smoothing::Automatic => 0.0,
         };
-        let step = (self.count() / 5).max(1);
-        let levels = (0..self.count()).step_by(step).filter_map(|k| {
-            let difference = settings.difference.of(&self.pictures[k], self.ground(tracing, &settings, k)?);
-            let smooth = if sigma > 0.0 { blurred(&difference, sigma) } else { difference };
-            let values = || smooth.as_raw().iter().step_by(7).map(|value| f64::from(*value));
-            let middle = median(values())?;
-            let spread = 1.4826 * (median(values().map(|value| (value - middle).abs()))? + 0.5);
-            Some((middle + BEYOND_NOISE * spread).max(LEAST_LEVEL).round())
-        });
-        median(levels)
+        // Rings smooth for themselves.
+        if sigma > 0.0 && settings.trace.ring.is_none() && shown.smooth.is_none() {
+            shown.smooth = Some(Arc::new(blurred(&shown.picture, sigma)));
+        }
+        shown.clone()
     }
 
     /// What a picture is compared with, if with anything.
@@ -237,15 +269,45 @@ impl Trial {
     }
 
     fn seen(&self, tracing: &Tracing, settings: &PictureSettings, k: usize, most: usize) -> Option<Seen> {
-        let (frame, picture) = (self.frames[k], &self.pictures[k]);
-        let difference = self.ground(tracing, settings, k).map(|ground| settings.difference.of(picture, ground));
-        let picture = difference.map_or_else(|| Arc::clone(picture), Arc::new);
-        let traced = trace_objects(&picture, &settings.trace, most).ok()?;
+        let frame = self.frames[k];
+        let Shown { picture, smooth } = self.shown(tracing, settings, k);
+        // Pictures of two values are smoothed where their outlines are traced.
+        let smooth = smooth.filter(|smooth| !is_two_valued(&picture) && !is_two_valued(smooth));
+        let traced = match smooth {
+            Some(smooth) => {
+                let trace = TraceSettings { smoothing: Smoothing::Gaussian(0.0), ..settings.trace };
+                trace_objects(&smooth, &trace, most)
+            }
+            None => trace_objects(&picture, &settings.trace, most),
+        };
+        let traced = traced.ok()?;
         let line = settings.trace.ring.map(|ring| ring.contrast);
         let contrast = line.unwrap_or(settings.trace.contrast);
         let reach = if line.is_some() { 1.5 } else { 2.0 };
         Some(Seen { frame, traced, picture, contrast, reach })
     }
+}
+
+/// What a way shows of a picture.
+#[derive(Clone)]
+struct Shown {
+    /// The picture, or its difference from the ground.
+    picture: Arc<GrayImage>,
+    /// The same, smoothed, where it is smoothed before objects are looked for.
+    smooth: Option<Arc<GrayImage>>,
+}
+
+/// A way but for its level and which side of it is an object, with a smoothing.
+type LookedAt = (Option<TracingWay>, Smoothing);
+
+/// The value that half of those counted are below, the upper one of two.
+fn median_of_counts(counts: &[usize; 256]) -> Option<usize> {
+    let middle = counts.iter().sum::<usize>() / 2;
+    let mut seen = 0;
+    counts.iter().position(|count| {
+        seen += count;
+        seen > middle
+    })
 }
 
 /// What is seen in one picture.
