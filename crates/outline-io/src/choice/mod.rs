@@ -8,6 +8,7 @@ mod rest;
 mod sample;
 mod scaled;
 mod sight;
+mod trial;
 mod tuning;
 mod warning;
 
@@ -24,9 +25,10 @@ use crate::ring::Ring;
 use crate::threshold::Threshold;
 use crate::trace_settings::{Smoothing, TraceSettings};
 pub use evidence::TracingEvidence;
-use evidence::{Trial, judged};
+use evidence::judged;
 use preference::{motion_beside, preferring_what_moves};
 pub use sample::{PictureSample, SamplePlan};
+use trial::Trial;
 pub use warning::TracingWarning;
 
 /// A way to tell objects from the ground.
