@@ -188,7 +188,10 @@ impl Trial {
             Smoothing::Automatic => 0.0,
         };
         // Rings smooth for themselves.
-        if sigma > 0.0 && settings.trace.ring.is_none() && shown.smooth.is_none() {
+        if settings.trace.ring.is_some() {
+            return Shown { smooth: None, ..shown.clone() };
+        }
+        if sigma > 0.0 && shown.smooth.is_none() {
             shown.smooth = Some(Arc::new(blurred(&shown.picture, sigma)));
         }
         shown.clone()
