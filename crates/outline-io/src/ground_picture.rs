@@ -38,7 +38,6 @@ enum Pixel {
     Ground,
     Lighter,
     Darker,
-    Seen,
 }
 
 /// The ground of pictures of one size, from anywhere in a sequence: their median, pixel by pixel. What rests in most of them is a part of that. Where
@@ -90,28 +89,28 @@ fn uncovered(picture: &GrayImage, plain: &GrayImage, pixels: &mut Vec<Pixel>, se
         false => Pixel::Ground,
     };
     pixels.extend(picture.as_raw().iter().zip(plain.as_raw()).map(pixel));
-    let mut is_taken = vec![false; pixels.len()];
+    let (mut is_seen, mut is_taken) = (vec![false; pixels.len()], vec![false; pixels.len()]);
     let mut thing: Vec<usize> = Vec::new();
     for start in 0..pixels.len() {
         let kind = pixels[start];
-        if matches!(kind, Pixel::Ground | Pixel::Seen) {
+        if kind == Pixel::Ground || is_seen[start] {
             continue;
         }
         thing.clear();
         thing.push(start);
-        pixels[start] = Pixel::Seen;
+        is_seen[start] = true;
         let mut next = 0;
         while let Some(&index) = thing.get(next) {
             next += 1;
             for neighbour in around(index, width, height).into_iter().flatten() {
-                if pixels[neighbour] == kind {
-                    pixels[neighbour] = Pixel::Seen;
+                if pixels[neighbour] == kind && !is_seen[neighbour] {
+                    is_seen[neighbour] = true;
                     thing.push(neighbour);
                 }
             }
         }
         if thing.len() >= FEWEST_PIXELS && is_gone(&thing, pixels, picture, plain, f64::from(level)) {
-            add(&thing, picture, &mut is_taken, seen);
+            add(&thing, pixels, picture, &mut is_taken, seen);
         }
     }
 }
@@ -154,18 +153,23 @@ fn is_gone(thing: &[usize], pixels: &[Pixel], picture: &GrayImage, plain: &GrayI
     of_median as f64 > level * places as f64 && of_median as f64 > LESS_OF_AN_EDGE * of_picture as f64
 }
 
-/// Adds what a picture shows where a thing is gone, with the pixels around it that its blurred edge has reached.
-fn add(thing: &[usize], picture: &GrayImage, is_taken: &mut [bool], seen: &mut Vec<(u32, u8)>) {
+/// Adds what a picture shows where a thing is gone, with the pixels around it that its blurred edge has reached, but for those that the edge of what is
+/// in front of the ground beside it has reached.
+fn add(thing: &[usize], pixels: &[Pixel], picture: &GrayImage, is_taken: &mut [bool], seen: &mut Vec<(u32, u8)>) {
     let (width, height) = (picture.width() as isize, picture.height() as isize);
-    for &index in thing {
-        let (column, row) = (index as isize % width, index as isize / width);
-        for y in (row - REACH).max(0)..=(row + REACH).min(height - 1) {
-            for x in (column - REACH).max(0)..=(column + REACH).min(width - 1) {
-                let place = (y * width + x) as usize;
-                if !is_taken[place] {
-                    is_taken[place] = true;
-                    seen.push((place as u32, picture.as_raw()[place]));
-                }
+    let near = |place: usize| {
+        let (column, row) = (place as isize % width, place as isize / width);
+        let columns = (column - REACH).max(0)..=(column + REACH).min(width - 1);
+        let rows = (row - REACH).max(0)..=(row + REACH).min(height - 1);
+        rows.flat_map(move |y| columns.clone().map(move |x| (y * width + x) as usize))
+    };
+    let kind = pixels[thing[0]];
+    let is_beside = |place: usize| near(place).any(|other| pixels[other] != Pixel::Ground && pixels[other] != kind);
+    for place in thing.iter().flat_map(|&index| near(index)) {
+        if !is_taken[place] {
+            is_taken[place] = true;
+            if !is_beside(place) {
+                seen.push((place as u32, picture.as_raw()[place]));
             }
         }
     }
