@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use image::{DynamicImage, GrayImage, Luma, RgbImage};
 
 /// What is looked at of a colour picture.
@@ -27,17 +29,24 @@ impl Channel {
         }
     }
 
-    /// Several channels of a decoded picture, as [`of`](Self::of) gives each.
-    pub(crate) fn all_of(picture: DynamicImage, channels: &[Self]) -> Vec<GrayImage> {
-        let luminance =
-            channels.contains(&Self::Luminance).then(|| visible_part(&picture).unwrap_or_else(|| picture.to_luma8()));
-        if channels.iter().all(|channel| *channel == Self::Luminance) {
-            return luminance.into_iter().cycle().take(channels.len()).collect();
+    /// Several channels of a decoded picture, as [`of`](Self::of) gives each; those that are equal, as in grey pictures, are one picture.
+    pub(crate) fn all_of(picture: DynamicImage, channels: &[Self]) -> Vec<Arc<GrayImage>> {
+        let visible = visible_part(&picture).map(Arc::new);
+        if !picture.color().has_color() || channels.iter().all(|channel| *channel == Self::Luminance) {
+            let grey = Arc::new(picture.into_luma8());
+            let of_grey = |channel: &Self| match (channel, &visible) {
+                (Self::Luminance, Some(visible)) => Arc::clone(visible),
+                (Self::Saturation, _) => Arc::new(GrayImage::new(grey.width(), grey.height())),
+                _ => Arc::clone(&grey),
+            };
+            return channels.iter().map(of_grey).collect();
         }
+        let luminance = channels.contains(&Self::Luminance);
+        let luminance = luminance.then(|| visible.unwrap_or_else(|| Arc::new(picture.to_luma8())));
         let colours = picture.into_rgb8();
         let of_colours = |channel: &Self| match (channel, &luminance) {
-            (Self::Luminance, Some(luminance)) => luminance.clone(),
-            _ => channel.of_colours(&colours),
+            (Self::Luminance, Some(luminance)) => Arc::clone(luminance),
+            _ => Arc::new(channel.of_colours(&colours)),
         };
         channels.iter().map(of_colours).collect()
     }

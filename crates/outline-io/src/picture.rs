@@ -1,6 +1,7 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::Path;
+use std::sync::Arc;
 
 use image::codecs::png::PngDecoder;
 #[cfg(feature = "all-pictures")]
@@ -73,14 +74,13 @@ pub(crate) fn decode(source: &mut dyn Source, channel: Channel) -> Result<GrayIm
     Ok(turned(channel.of(picture), orientation))
 }
 
-/// Several channels of a picture that is decoded once, in their order; of one without colours the first alone.
-pub(crate) fn read_picture_channels(path: &Path, channels: &[Channel]) -> Result<Vec<GrayImage>, PictureError> {
+/// Several channels of a picture that is decoded once, in their order.
+pub(crate) fn read_picture_channels(path: &Path, channels: &[Channel]) -> Result<Vec<Arc<GrayImage>>, PictureError> {
     let picture = File::open(path).map_err(PictureErrorKind::Io);
     let picture = picture.and_then(|file| decode_colours(&mut BufReader::new(file)));
-    let (picture, orientation) = picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))?;
-    let count = if picture.color().has_color() { channels.len() } else { channels.len().min(1) };
-    let channels = Channel::all_of(picture, &channels[..count]);
-    Ok(channels.into_iter().map(|channel| turned(channel, orientation)).collect())
+    let (mut picture, orientation) = picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))?;
+    picture.apply_orientation(orientation);
+    Ok(Channel::all_of(picture, channels))
 }
 
 /// A picture as it is to be seen.

@@ -133,10 +133,9 @@ impl PicturePreview {
             // Colour pictures are decoded once for all channels.
             Self::Pictures(files) => {
                 let wanted = wanted_of(files, self.plan().frames());
-                let read = |(frame, path): (u64, PathBuf)| {
-                    read_picture_channels(&path, channels).map(|pictures| (frame, pictures))
-                };
-                PictureSample::read_at_once(channels, wanted.map(read))
+                PictureSample::read_at_once(channels, |channels| {
+                    wanted.map(move |(frame, path)| Ok((frame, read_picture_channels(&path, &channels)?)))
+                })
             }
             _ => PictureSample::read(channels, |channel| self.pictures(channel)),
         }

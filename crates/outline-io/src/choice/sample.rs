@@ -10,7 +10,7 @@ use crate::picture_sequence::PictureFrame;
 use crate::trace::is_two_valued;
 
 /// Pictures that follow each other, so that they show how evenly something moves.
-const BURST: u64 = 3;
+pub(crate) const BURST: u64 = 3;
 
 /// Bursts in a sample.
 const BURSTS: u64 = 8;
@@ -56,7 +56,7 @@ impl SamplePlan {
 }
 
 /// Pictures spread over a sequence, in every channel that shows something of its own, scaled down where they are large.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct PictureSample {
     /// Numbers of the pictures, in order.
     frames: Vec<u64>,
@@ -93,28 +93,36 @@ impl PictureSample {
         sample
     }
 
-    /// Reads a sample as [`read`](Self::read) does, of pictures that come with these channels at once, or the first alone where they have no colour.
-    pub(crate) fn read_at_once(
+    /// Reads a sample as [`read`](Self::read) does, of `pictures` that each come in all of the channels that are asked for, in their order.
+    pub(crate) fn read_at_once<I: Iterator<Item = Result<(u64, Vec<Arc<GrayImage>>), PictureError>>>(
         channels: &[Channel],
-        pictures: impl Iterator<Item = Result<(u64, Vec<GrayImage>), PictureError>>,
+        pictures: impl FnOnce(Vec<Channel>) -> I,
     ) -> Self {
         let mut sample = Self { factor: 1, ..Self::default() };
         let Some((first, others)) = channels.split_first() else { return sample };
-        let (mut frames, mut kept) = (Vec::new(), vec![Vec::new(); channels.len()]);
-        for (frame, pictures) in pictures.flatten() {
+        let mut wanted = channels.to_vec();
+        if !others.is_empty() && !wanted.contains(&Channel::Saturation) {
+            // It tells whether there is colour.
+            wanted.push(Channel::Saturation);
+        }
+        let (mut frames, mut kept) = (Vec::new(), vec![Vec::new(); wanted.len()]);
+        for (frame, pictures) in pictures(wanted.clone()).flatten() {
             if pictures.first().is_some_and(|picture| sample.is_of_its_size(picture)) {
                 frames.push(frame);
-                for (kept, picture) in kept.iter_mut().zip(pictures) {
-                    kept.push(sample.small(Arc::new(picture)));
+                for (k, picture) in pictures.iter().enumerate() {
+                    // Channels of a grey picture are one picture, and are made smaller once.
+                    let same = pictures[..k].iter().position(|other| Arc::ptr_eq(other, picture));
+                    let small = same.and_then(|same| kept[same].last().cloned());
+                    kept[k].push(small.unwrap_or_else(|| sample.small(Arc::clone(picture))));
                 }
             }
         }
+        let saturation = wanted.iter().position(|channel| *channel == Channel::Saturation);
+        let is_coloured = saturation.is_some_and(|k| kept[k].iter().any(|picture| has_colour(picture)));
         let mut kept = kept.into_iter();
         sample.keep(*first, &frames, kept.next().unwrap_or_default());
-        let others: Vec<(Channel, Vec<Arc<GrayImage>>)> = others.iter().copied().zip(kept).collect();
-        let saturation = others.iter().find(|(channel, _)| *channel == Channel::Saturation);
-        if saturation.is_some_and(|(_, pictures)| pictures.iter().any(|picture| has_colour(picture))) {
-            others.into_iter().for_each(|(channel, kept)| sample.keep(channel, &frames, kept));
+        if is_coloured {
+            others.iter().zip(kept).for_each(|(channel, kept)| sample.keep(*channel, &frames, kept));
         }
         sample
     }
