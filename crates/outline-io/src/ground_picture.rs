@@ -4,12 +4,14 @@ use std::sync::Arc;
 use image::GrayImage;
 
 use crate::background::median_picture;
-use crate::edges::median;
+use crate::choice::BURST;
+use crate::threshold::{beyond_noise, counted};
 
-/// Fewest pictures in which a thing that the median shows must be gone: of fewer, one that was covered would be taken for gone.
-const FEWEST_GONE: usize = 3;
+/// Fewest pictures in which a thing that the median shows must be gone: one more than a burst of a sample. What passes in front of it and looks like
+/// the ground hides it in all pictures of a burst, as they follow each other.
+const FEWEST_GONE: usize = BURST as usize + 1;
 
-/// Fewest pictures that anything rests in most of.
+/// With fewer pictures the plain median is taken.
 const FEWEST_PICTURES: usize = 8;
 
 /// Fewest pixels of a thing.
@@ -18,9 +20,8 @@ const FEWEST_PIXELS: usize = 64;
 /// What changes more of a picture than this is the light, or the camera.
 const LARGEST_SHARE: f64 = 0.3;
 
-/// A difference lies so many standard deviations of the others beyond their middle, and at least so many grey values.
-const BEYOND_NOISE: f64 = 6.0;
-const LEAST_LEVEL: f64 = 12.0;
+/// What differs differs by more grey values than this, however little noise there is: its edges are to be told from none.
+const LEAST_DIFFERENCE: f64 = 12.0;
 
 /// The median has an edge around what is gone in a picture, and the picture has so many times less of one. What is in front of the ground is the
 /// other way round, and what only changes has edges in both.
@@ -49,37 +50,56 @@ pub fn ground_picture(pictures: &[Arc<GrayImage>]) -> Option<Arc<GrayImage>> {
     if pictures.len() < FEWEST_PICTURES {
         return Some(plain);
     }
-    let mut seen: Vec<(u32, u8)> = Vec::new();
     let mut pixels = Vec::new();
-    for picture in pictures.iter().filter(|picture| picture.dimensions() == plain.dimensions()) {
-        uncovered(picture, &plain, &mut pixels, &mut seen);
-    }
-    if seen.is_empty() {
+    let of_size = pictures.iter().filter(|picture| picture.dimensions() == plain.dimensions());
+    let uncovered: Vec<(&[u8], PixelSet)> = of_size
+        .filter_map(|picture| Some((picture.as_raw().as_slice(), uncovered(picture, &plain, &mut pixels)?)))
+        .collect();
+    if uncovered.len() < FEWEST_GONE {
         return Some(plain);
     }
-    seen.sort_unstable();
     let mut ground = GrayImage::clone(&plain);
-    for of_pixel in seen.chunk_by(|a, b| a.0 == b.0).filter(|of_pixel| of_pixel.len() >= FEWEST_GONE) {
-        ground.as_mut()[of_pixel[0].0 as usize] = of_pixel[of_pixel.len() / 2].1;
+    let mut values = Vec::with_capacity(uncovered.len());
+    for (place, ground) in ground.iter_mut().enumerate() {
+        values.clear();
+        values.extend(uncovered.iter().filter(|(_, set)| set.contains(place)).map(|(picture, _)| picture[place]));
+        if values.len() >= FEWEST_GONE {
+            let middle = values.len() / 2;
+            *ground = *values.select_nth_unstable(middle).1;
+        }
     }
     Some(Arc::new(ground))
 }
 
-/// Adds the values of the pixels where a picture shows the ground and the median something in front of it.
-fn uncovered(picture: &GrayImage, plain: &GrayImage, pixels: &mut Vec<Pixel>, seen: &mut Vec<(u32, u8)>) {
+/// Some pixels of a picture, by a bit for each: an eighth of the memory of the picture, however many they are.
+struct PixelSet(Vec<u64>);
+
+impl PixelSet {
+    fn none_of(pixels: usize) -> Self {
+        Self(vec![0; pixels.div_ceil(64)])
+    }
+
+    fn insert(&mut self, place: usize) {
+        self.0[place / 64] |= 1 << (place % 64);
+    }
+
+    fn contains(&self, place: usize) -> bool {
+        self.0[place / 64] >> (place % 64) & 1 == 1
+    }
+}
+
+/// The pixels where a picture shows the ground and the median something in front of it; `None` where there are none.
+fn uncovered(picture: &GrayImage, plain: &GrayImage, pixels: &mut Vec<Pixel>) -> Option<PixelSet> {
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     let differences = || picture.as_raw().iter().zip(plain.as_raw()).map(|(a, b)| a.abs_diff(*b));
-    let noise = || differences().step_by(NOISE_STEP).map(f64::from);
-    let Some(middle) = median(noise()) else { return };
-    let Some(spread) = median(noise().map(|value| (value - middle).abs())) else { return };
-    let level = (middle + BEYOND_NOISE * 1.4826 * (spread + 0.5)).max(LEAST_LEVEL);
+    let level = beyond_noise(&counted(differences().step_by(NOISE_STEP)), LEAST_DIFFERENCE)?;
     if level > f64::from(u8::MAX) {
-        return;
+        return None;
     }
     let level = level as u8;
     let count = differences().filter(|difference| *difference > level).count();
     if count < FEWEST_PIXELS || count as f64 > LARGEST_SHARE * (width * height) as f64 {
-        return;
+        return None;
     }
     pixels.clear();
     // What is gone and what has come differ in opposite ways from the ground, where they touch too.
@@ -91,6 +111,7 @@ fn uncovered(picture: &GrayImage, plain: &GrayImage, pixels: &mut Vec<Pixel>, se
     pixels.extend(picture.as_raw().iter().zip(plain.as_raw()).map(pixel));
     let (mut is_seen, mut is_taken) = (vec![false; pixels.len()], vec![false; pixels.len()]);
     let mut thing: Vec<usize> = Vec::new();
+    let mut uncovered = None;
     for start in 0..pixels.len() {
         let kind = pixels[start];
         if kind == Pixel::Ground || is_seen[start] {
@@ -110,9 +131,11 @@ fn uncovered(picture: &GrayImage, plain: &GrayImage, pixels: &mut Vec<Pixel>, se
             }
         }
         if thing.len() >= FEWEST_PIXELS && is_gone(&thing, pixels, picture, plain, f64::from(level)) {
-            add(&thing, pixels, picture, &mut is_taken, seen);
+            let uncovered = uncovered.get_or_insert_with(|| PixelSet::none_of(pixels.len()));
+            add(&thing, pixels, (width, height), &mut is_taken, uncovered);
         }
     }
+    uncovered
 }
 
 /// The four pixels beside one, where there are any: left, right, above, below.
@@ -153,10 +176,10 @@ fn is_gone(thing: &[usize], pixels: &[Pixel], picture: &GrayImage, plain: &GrayI
     of_median as f64 > level * places as f64 && of_median as f64 > LESS_OF_AN_EDGE * of_picture as f64
 }
 
-/// Adds what a picture shows where a thing is gone, with the pixels around it that its blurred edge has reached, but for those that the edge of what is
-/// in front of the ground beside it has reached.
-fn add(thing: &[usize], pixels: &[Pixel], picture: &GrayImage, is_taken: &mut [bool], seen: &mut Vec<(u32, u8)>) {
-    let (width, height) = (picture.width() as isize, picture.height() as isize);
+/// Adds the pixels where a thing is gone, with those around it that its blurred edge has reached, but for those that the edge of what is in front of
+/// the ground beside it has reached. `size` is that of the picture, columns and rows.
+fn add(thing: &[usize], pixels: &[Pixel], size: (usize, usize), is_taken: &mut [bool], uncovered: &mut PixelSet) {
+    let (width, height) = (size.0 as isize, size.1 as isize);
     let near = |place: usize| {
         let (column, row) = (place as isize % width, place as isize / width);
         let columns = (column - REACH).max(0)..=(column + REACH).min(width - 1);
@@ -169,7 +192,7 @@ fn add(thing: &[usize], pixels: &[Pixel], picture: &GrayImage, is_taken: &mut [b
         if !is_taken[place] {
             is_taken[place] = true;
             if !is_beside(place) {
-                seen.push((place as u32, picture.as_raw()[place]));
+                uncovered.insert(place);
             }
         }
     }
@@ -235,6 +258,19 @@ mod tests {
             let found = farthest(&ground_picture(&pictures).expect("a ground"), ground);
             assert!(plain > 50.0, "{number}: {plain}");
             assert!(found < 8.0, "{number}: {found}");
+        }
+    }
+
+    #[test]
+    fn what_is_hidden_in_one_burst_by_what_looks_like_the_ground_is_not_taken_for_gone() {
+        // In the pictures of one burst, and in one picture more.
+        for (hidden, is_gone) in [(BURST, false), (BURST + 1, true)] {
+            let square = |x: f64, y: f64| (x - 110.0).abs().max((y - 50.0).abs()) - 14.0;
+            let is_hidden = |k: u32| k >= 9 && u64::from(k) < 9 + hidden;
+            let grey = |k: u32, x: f64, y: f64| if square(x, y) < 0.0 && !is_hidden(k) { 45.0 } else { ground(x, y) };
+            let pictures: Vec<_> = (0..24).map(|k| picture(k, |x, y| grey(k, x, y))).collect();
+            let [plain, found] = [median_picture(&pictures), ground_picture(&pictures)].map(|g| g.expect("a ground"));
+            assert_eq!(plain != found, is_gone, "{hidden}");
         }
     }
 

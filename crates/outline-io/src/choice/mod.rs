@@ -27,6 +27,7 @@ use crate::trace_settings::{Smoothing, TraceSettings};
 pub use evidence::TracingEvidence;
 use evidence::judged;
 use preference::{motion_beside, preferring_what_moves};
+pub(crate) use sample::BURST;
 pub use sample::{PictureSample, SamplePlan};
 use trial::Trial;
 pub use warning::TracingWarning;
@@ -42,7 +43,8 @@ pub enum TracingWay {
     DarkRing,
     /// A light line is around them.
     LightRing,
-    /// They differ from the median of pictures of the whole sequence.
+    /// They differ from the ground of the whole sequence: the median of pictures of it, without what rests in most of these and leaves or comes
+    /// ([`ground_picture`](crate::ground_picture)).
     Median(Difference),
     /// They differ from a smooth surface through the ground of each picture.
     Surface(Difference),
@@ -141,7 +143,8 @@ impl Tracing {
         rest(self) == rest(other) && self.smoothing == other.smoothing
     }
 
-    /// The settings of this way; of the median, `ground` is that of the sequence.
+    /// The settings of this way. `ground` is what [`TracingWay::Median`] compares pictures with, as
+    /// [`PicturePreview::ground`](crate::PicturePreview::ground) gives it; other ways do without.
     #[must_use]
     pub fn settings(&self, base: &PictureSettings, ground: Option<Arc<GrayImage>>) -> PictureSettings {
         let ring = |contrast| Some(Ring { contrast, width: base.trace.ring.and_then(|ring| ring.width) });

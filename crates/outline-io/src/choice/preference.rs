@@ -9,8 +9,8 @@ use crate::picture_outlines::PictureSettings;
 /// What moves by less than this share of its size in all may rest: its outline may change where something in front of it moves.
 const HARDLY_MOVES: f64 = 0.1;
 
-/// Puts what moves in front of what rests, or is in doubt; says what else moves where it does not, but is not seen well, or hardly moves. `known` is what has been found to move in place of
-/// a way.
+/// Puts what moves in front of the best way where that shows what rests, or is in doubt. Where the best does neither, but is not seen well or hardly
+/// moves, it says what else moves. `known` is what has been found to move in place of a way.
 pub(super) fn preferring_what_moves(
     sample: &PictureSample,
     base: &PictureSettings,

@@ -15,6 +15,7 @@ use crate::ground_picture::ground_picture;
 use crate::ground_surface::ground_surface;
 use crate::picture_outlines::PictureSettings;
 use crate::ring::Ring;
+use crate::threshold::{beyond_noise, counted};
 use crate::trace::{TracedOutline, blurred, is_two_valued, trace_objects};
 use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
 
@@ -30,9 +31,11 @@ const FINE_PICTURES: usize = 15;
 /// Objects looked at in a picture.
 const OBJECTS: usize = 6;
 
-/// A level lies so many standard deviations of the ground beyond it, and at least so many grey values.
-const BEYOND_NOISE: f64 = 6.0;
+/// A level beyond the noise of the ground is at least so many grey values.
 const LEAST_LEVEL: f64 = 8.0;
+
+/// Every so many pixels of a picture tell that noise.
+const NOISE_STEP: usize = 7;
 
 /// Pictures in one channel on which ways are tried.
 pub(super) struct Trial {
@@ -153,19 +156,14 @@ impl Trial {
             self.ground(tracing, &settings, k)?;
             let Shown { picture, smooth } = self.shown(tracing, &settings, k);
             let shown = smooth.unwrap_or(picture);
-            let mut counts = [0_usize; 256];
-            shown.as_raw().iter().step_by(7).for_each(|value| counts[usize::from(*value)] += 1);
-            let middle = median_of_counts(&counts)?;
-            let mut deviations = [0_usize; 256];
-            counts.iter().enumerate().for_each(|(value, count)| deviations[value.abs_diff(middle)] += count);
-            let spread = 1.4826 * (median_of_counts(&deviations)? as f64 + 0.5);
-            Some((middle as f64 + BEYOND_NOISE * spread).max(LEAST_LEVEL).round())
+            let counts = counted(shown.as_raw().iter().copied().step_by(NOISE_STEP));
+            beyond_noise(&counts, LEAST_LEVEL).map(f64::round)
         });
         median(levels)
     }
 
-    /// What a way looks at of a picture. What it showed last is kept: a way is tried with several levels, and lighter and darker things are looked for
-    /// in the same picture.
+    /// What a way looks at of a picture. What was shown last is kept: a way is tried with several levels, and lighter and darker things are looked
+    /// for in the same picture.
     fn shown(&self, tracing: &Tracing, settings: &PictureSettings, k: usize) -> Shown {
         let is_plain = matches!(
             tracing.way,
@@ -268,18 +266,9 @@ struct Shown {
     smooth: Option<Arc<GrayImage>>,
 }
 
-/// A way but for its level and which side of it is an object, with a smoothing.
+/// What decides which picture a way looks at: the way, or `None` for all those that look at the picture itself, and the smoothing. The threshold
+/// does not, nor whether what is lighter or what is darker than it is an object.
 type LookedAt = (Option<TracingWay>, Smoothing);
-
-/// The value that half of those counted are below, the upper one of two.
-fn median_of_counts(counts: &[usize; 256]) -> Option<usize> {
-    let middle = counts.iter().sum::<usize>() / 2;
-    let mut seen = 0;
-    counts.iter().position(|count| {
-        seen += count;
-        seen > middle
-    })
-}
 
 /// What is seen in one picture.
 struct Seen {
