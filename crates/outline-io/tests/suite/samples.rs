@@ -14,6 +14,9 @@ enum Stored {
     Transparent,
 }
 
+/// How the picture of this number is stored.
+type StoredIn = fn(u32) -> Stored;
+
 /// A picture of some greys, with a square that is red where colours are stored.
 fn picture(frame: u32, stored: Stored, [width, height]: [u32; 2]) -> DynamicImage {
     let grey = move |x: u32, y: u32| 40 + ((x * 31 + y * 17 + frame * 7) % 97) as u8;
@@ -38,9 +41,8 @@ fn picture(frame: u32, stored: Stored, [width, height]: [u32; 2]) -> DynamicImag
 #[test]
 fn samples_of_files_are_the_same_decoded_once_and_keep_all_channels_where_any_picture_has_colour() {
     let all = [Channel::Luminance, Channel::Red, Channel::Green, Channel::Blue, Channel::Saturation];
-    let colour = |_: u32| Stored::Colour;
-    let kinds: [(&str, fn(u32) -> Stored, bool); 6] = [
-        ("colour", colour, true),
+    let kinds: [(&str, StoredIn, bool); 6] = [
+        ("colour", |_| Stored::Colour, true),
         ("grey", |_| Stored::Grey, false),
         ("16 bits", |_| Stored::Grey16, false),
         ("transparent", |_| Stored::Transparent, false),
