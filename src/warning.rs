@@ -50,6 +50,8 @@ pub enum Warning {
         /// Time in seconds when the motion was last known.
         last_known: f64,
     },
+    /// The motion is that between two frames, and how the pictures were traced is in doubt: no third frame tells whether both show one object.
+    OfTwoFrames,
     /// The object was given up, and the filter started again with a new one.
     Restarted {
         /// Number of restarts.
@@ -147,7 +149,7 @@ impl Warning {
         match self {
             Self::PointsOutOfOrder { .. } | Self::Diverged | Self::StateLost { .. } => 0,
             Self::TooManyRejected { .. } | Self::Lost | Self::Reacquiring { .. } => 1,
-            Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
+            Self::OfTwoFrames | Self::Ambiguous(_) | Self::TwoPlanes(_) | Self::AmbiguousCorrespondence { .. } => 2,
             Self::WrongFamily { .. } | Self::PlaneMisfit { .. } | Self::AffineBias => 3,
             Self::Aliases { .. } | Self::RotationFromPath => 4,
             Self::NotObservable { .. }
@@ -172,6 +174,7 @@ impl Warning {
             Self::RotationFromPath => "rotation_from_path",
             Self::Lost => "lost",
             Self::Reacquiring { .. } => "reacquiring",
+            Self::OfTwoFrames => "of_two_frames",
             Self::Restarted { .. } => "restarted",
             Self::FramesRejected { .. } => "frames_rejected",
             Self::Ambiguous(_) => "ambiguous",
@@ -215,6 +218,7 @@ impl fmt::Display for Warning {
             Self::RotationFromPath => f.write_str(ROTATION_FROM_PATH),
             Self::Lost => f.write_str("the object was lost at the end"),
             Self::Reacquiring { last_known } => write_reacquiring(f, *last_known),
+            Self::OfTwoFrames => f.write_str(OF_TWO_FRAMES),
             Self::Restarted { times } => write!(f, "the object was given up and started again {times} time(s)"),
             Self::FramesRejected { rejected, frames } => write!(f, "{rejected} of {frames} frames rejected"),
             Self::Ambiguous(ambiguity) => write_ambiguity(f, ambiguity),
@@ -241,6 +245,9 @@ impl fmt::Display for Warning {
         }
     }
 }
+
+const OF_TWO_FRAMES: &str = "its motion is that between two frames, traced in a way that is in doubt: no third frame tells whether both show \
+                             one object";
 
 const ROTATION_FROM_PATH: &str = "the outline does not show its rotation: omega is told by the path alone, and right only if the object \
                                   turns with its path";

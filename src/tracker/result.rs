@@ -87,6 +87,25 @@ impl ObjectResult {
     pub fn parameters(&self) -> Option<Vec<ParameterEstimate>> {
         parameters_of(self.estimate.as_ref(), self.plane.as_deref())
     }
+
+    /// The same result where it is in doubt what the outlines show: of a motion that is stated of two frames alone a warning says so.
+    ///
+    /// Two outlines of whatever things have a motion from one to the other; that a third lies where it leads is what speaks for it. The accepted
+    /// frames are counted from the first one on, also those before the object was given up and the filter started again: of that
+    /// [`Warning::Restarted`] tells. The warning is given once, however often this is called.
+    #[must_use]
+    pub fn of_doubtful_outlines(mut self) -> Self {
+        let names = self.motion.parameter_names();
+        let has_motion = self.estimate.is_some() || self.plane.is_some();
+        let is_stated =
+            (has_motion && names.iter().any(|name| self.not_stated(name).is_none())) || self.velocity.is_some();
+        let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2;
+        if is_stated && is_of_two && !self.warnings.contains(&Warning::OfTwoFrames) {
+            self.warnings.push(Warning::OfTwoFrames);
+            self.warnings.sort_by_key(Warning::order);
+        }
+        self
+    }
 }
 
 /// Names of the components of the velocity of the middle of an object.
@@ -99,4 +118,32 @@ pub(super) fn parameters_of(
 ) -> Option<Vec<ParameterEstimate>> {
     let of_picture = estimate.map(|estimate| estimate.parameters().collect());
     of_picture.or_else(|| plane.map(|plane| plane.parameters().collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use freeform_riccati::MotionModel;
+    use nalgebra::{Matrix2, Point2, Vector2};
+
+    use super::*;
+
+    /// Warnings of an object of so many accepted frames beside three rejected ones, where it is in doubt what its outlines show.
+    fn warnings_of(accepted: usize, is_stated: bool) -> Vec<Warning> {
+        let unknown = ObjectResult::unknown("left", Method::Filter, MotionModel::Rigid);
+        let (point, velocity, covariance) = (Point2::origin(), Vector2::x(), Matrix2::identity());
+        let velocity = is_stated.then_some(PointVelocity { point, velocity, covariance });
+        let warnings = vec![Warning::Lost, Warning::Restarted { times: 1 }];
+        ObjectResult { frames: accepted + 3, frames_rejected: 3, velocity, warnings, ..unknown }
+            .of_doubtful_outlines()
+            .of_doubtful_outlines()
+            .warnings
+    }
+
+    #[test]
+    fn what_is_stated_of_two_frames_alone_is_warned_of_once_and_of_three_not() {
+        let (lost, restarted) = (Warning::Lost, Warning::Restarted { times: 1 });
+        assert_eq!(warnings_of(2, true), [lost.clone(), Warning::OfTwoFrames, restarted.clone()]);
+        assert_eq!(warnings_of(3, true), [lost.clone(), restarted.clone()]);
+        assert_eq!(warnings_of(2, false), [lost, restarted]);
+    }
 }

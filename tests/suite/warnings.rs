@@ -25,6 +25,7 @@ fn examples() -> Vec<Warning> {
         Warning::TooManyRejected { rejected: 37, frames: 75 },
         Warning::Lost,
         Warning::Reacquiring { last_known: 1.733 },
+        Warning::OfTwoFrames,
         Warning::Restarted { times: 2 },
         Warning::Ambiguous(Ambiguity {
             turn: -50_f64.to_radians(),

@@ -179,6 +179,11 @@ impl PictureInput {
         self.chosen.iter().flat_map(|chosen| chosen.warnings(drawn)).collect()
     }
 
+    /// Whether the way of tracing was chosen, and may show something else than an object.
+    pub(crate) fn is_tracing_in_doubt(&self) -> bool {
+        self.chosen.as_ref().is_some_and(|chosen| !chosen.choice.is_convincing())
+    }
+
     /// Why the way of tracing is not to be trusted.
     pub(crate) fn doubts(&self) -> Vec<String> {
         let drawn = self.options.candidates.as_deref();

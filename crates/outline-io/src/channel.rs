@@ -1,4 +1,6 @@
-use image::{DynamicImage, GrayImage, Luma};
+use std::sync::Arc;
+
+use image::{DynamicImage, GrayImage, Luma, RgbImage};
 
 /// What is looked at of a colour picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,12 +25,44 @@ impl Channel {
     pub(crate) fn of(self, picture: DynamicImage) -> GrayImage {
         match self {
             Self::Luminance => visible_part(&picture).unwrap_or_else(|| picture.into_luma8()),
-            channel => {
-                let colours = picture.into_rgb8();
-                let grey = colours.pixels().map(|pixel| channel.of_colour(pixel.0)).collect();
-                GrayImage::from_raw(colours.width(), colours.height(), grey).unwrap_or_default()
-            }
+            channel => channel.of_colours(&picture.into_rgb8()),
         }
+    }
+
+    /// Several channels of a decoded picture, as [`of`](Self::of) gives each; those that are equal, as in grey pictures, are one picture.
+    pub(crate) fn all_of(picture: DynamicImage, channels: &[Self]) -> Vec<Arc<GrayImage>> {
+        let visible = visible_part(&picture).map(Arc::new);
+        if !picture.color().has_color() || channels.iter().all(|channel| *channel == Self::Luminance) {
+            let grey = Arc::new(picture.into_luma8());
+            let of_grey = |channel: &Self| match (channel, &visible) {
+                (Self::Luminance, Some(visible)) => Arc::clone(visible),
+                (Self::Saturation, _) => Arc::new(GrayImage::new(grey.width(), grey.height())),
+                _ => Arc::clone(&grey),
+            };
+            return channels.iter().map(of_grey).collect();
+        }
+        let luminance = channels.contains(&Self::Luminance);
+        let luminance = luminance.then(|| visible.unwrap_or_else(|| Arc::new(picture.to_luma8())));
+        let colours = picture.into_rgb8();
+        let of_colours = |channel: &Self| match (channel, &luminance) {
+            (Self::Luminance, Some(luminance)) => Arc::clone(luminance),
+            _ => Arc::new(channel.of_colours(&colours)),
+        };
+        channels.iter().map(of_colours).collect()
+    }
+
+    /// The channel of each pixel.
+    fn of_colours(self, colours: &RgbImage) -> GrayImage {
+        let (pixels, _) = colours.as_raw().as_chunks::<3>();
+        // One loop for each channel: what is done in it is known then.
+        let grey = match self {
+            Self::Red => pixels.iter().map(|[red, ..]| *red).collect(),
+            Self::Green => pixels.iter().map(|[_, green, _]| *green).collect(),
+            Self::Blue => pixels.iter().map(|[.., blue]| *blue).collect(),
+            Self::Saturation => pixels.iter().map(|colour| Self::Saturation.of_colour(*colour)).collect(),
+            Self::Luminance => pixels.iter().map(|colour| Self::Luminance.of_colour(*colour)).collect(),
+        };
+        GrayImage::from_raw(colours.width(), colours.height(), grey).unwrap_or_default()
     }
 
     /// The channel of one colour: red, green, blue.

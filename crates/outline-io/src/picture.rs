@@ -1,6 +1,7 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::Path;
+use std::sync::Arc;
 
 use image::codecs::png::PngDecoder;
 #[cfg(feature = "all-pictures")]
@@ -69,6 +70,28 @@ pub(crate) trait Source: BufRead + Seek {}
 impl<T: BufRead + Seek> Source for T {}
 
 pub(crate) fn decode(source: &mut dyn Source, channel: Channel) -> Result<GrayImage, PictureErrorKind> {
+    let (picture, orientation) = decode_colours(source)?;
+    Ok(turned(channel.of(picture), orientation))
+}
+
+/// Several channels of a picture that is decoded once, in their order.
+pub(crate) fn read_picture_channels(path: &Path, channels: &[Channel]) -> Result<Vec<Arc<GrayImage>>, PictureError> {
+    let picture = File::open(path).map_err(PictureErrorKind::Io);
+    let picture = picture.and_then(|file| decode_colours(&mut BufReader::new(file)));
+    let (mut picture, orientation) = picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))?;
+    picture.apply_orientation(orientation);
+    Ok(Channel::all_of(picture, channels))
+}
+
+/// A picture as it is to be seen.
+fn turned(picture: GrayImage, orientation: Orientation) -> GrayImage {
+    let mut picture = DynamicImage::ImageLuma8(picture);
+    picture.apply_orientation(orientation);
+    picture.into_luma8()
+}
+
+/// A picture with its colours, and how it is to be turned.
+fn decode_colours(source: &mut dyn Source) -> Result<(DynamicImage, Orientation), PictureErrorKind> {
     let start = source.fill_buf()?;
     if start.is_empty() {
         return Err(PictureErrorKind::Empty);
@@ -105,9 +128,7 @@ pub(crate) fn decode(source: &mut dyn Source, channel: Channel) -> Result<GrayIm
     }
     // What cannot be understood turns nothing.
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-    let mut picture = DynamicImage::ImageLuma8(channel.of(DynamicImage::from_decoder(decoder).map_err(damaged)?));
-    picture.apply_orientation(orientation);
-    Ok(picture.into_luma8())
+    Ok((DynamicImage::from_decoder(decoder).map_err(damaged)?, orientation))
 }
 
 /// Name of the kind of file, if it holds several pictures of which one alone would be read. Leaves the source at its beginning.

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use image::GrayImage;
 
 use crate::{
-    background::{Background, median_picture},
+    background::Background,
     channel::Channel,
     choice::{PictureSample, SamplePlan, TracingChoice, choose_tracing},
+    ground_picture::ground_picture,
     identity::Selection,
+    picture::read_picture_channels,
     picture_error::PictureError,
     picture_files::picture_files,
     picture_outlines::{PictureOutlines, PictureSettings},
@@ -62,6 +64,12 @@ pub enum PicturePreview {
     Beginning(Arc<[u8]>),
 }
 
+/// The files of these numbers that can be opened: to open a pipe among them is to wait for somebody who writes to it.
+fn wanted_of(files: &[PathBuf], frames: Vec<u64>) -> impl Iterator<Item = (u64, PathBuf)> + use<> {
+    let wanted: Vec<(u64, PathBuf)> = frames.into_iter().map(|k| (k, files[k as usize].clone())).collect();
+    wanted.into_iter().filter(|(_, path)| path.is_file())
+}
+
 /// Pictures of a sample, one after the other.
 type Previewed = Box<dyn Iterator<Item = Result<PictureFrame, PictureError>>>;
 
@@ -97,10 +105,7 @@ impl PicturePreview {
         let frames = self.plan().frames();
         let sequence = match self {
             Self::Pictures(files) => {
-                let wanted: Vec<(u64, PathBuf)> = frames.into_iter().map(|k| (k, files[k as usize].clone())).collect();
-                // To open a pipe among them is to wait for somebody who writes to it.
-                let wanted = wanted.into_iter().filter(|(_, path)| path.is_file());
-                return Some(Box::new(wanted.filter_map(move |(frame, path)| {
+                return Some(Box::new(wanted_of(files, frames).filter_map(move |(frame, path)| {
                     let picture = PictureSequence::open(&[path], settings).ok()?.next()?;
                     Some(picture.map(|picture| PictureFrame { frame, ..picture }))
                 })));
@@ -124,7 +129,16 @@ impl PicturePreview {
     /// A sample in these channels.
     #[must_use]
     pub fn sample(&self, channels: &[Channel]) -> PictureSample {
-        PictureSample::read(channels, |channel| self.pictures(channel))
+        match self {
+            // Colour pictures are decoded once for all channels.
+            Self::Pictures(files) => {
+                let wanted = wanted_of(files, self.plan().frames());
+                PictureSample::read_at_once(channels, |channels| {
+                    wanted.map(move |(frame, path)| Ok((frame, read_picture_channels(&path, &channels)?)))
+                })
+            }
+            _ => PictureSample::read(channels, |channel| self.pictures(channel)),
+        }
     }
 
     /// Chooses how objects are told from the ground, in one of these channels, by [`choose_tracing`](crate::choose_tracing); `None` where too few
@@ -162,7 +176,7 @@ impl PicturePreview {
         lengths.get(lengths.len() / 2).copied().map(OutlineUncertainty::Edges)
     }
 
-    /// The median of the pictures of the sample, at their full size; `None` where nothing can be looked at.
+    /// The [ground](ground_picture) by the pictures of the sample, at their full size; `None` where nothing can be looked at.
     #[must_use]
     pub fn ground(&self, channel: Channel) -> Option<Arc<GrayImage>> {
         let mut pictures = Vec::new();
@@ -175,6 +189,6 @@ impl PicturePreview {
             pictures.push(picture);
         }
         // Bursts show nearly the same three times: one of each is as good, and the others make the median no worse.
-        median_picture(&pictures)
+        ground_picture(&pictures)
     }
 }

@@ -7,6 +7,9 @@ use crate::picture_error::TraceError;
 /// pure noise into halves 2.3 of them apart and an even gradient into halves 2.7 apart.
 const STANDS_OUT: f64 = 3.0;
 
+/// Noise does not reach a level so many robust standard deviations beyond its median.
+const BEYOND_NOISE: f64 = 6.0;
+
 /// Objects of few pixels are this many robust standard deviations of the ground beyond it, and so many grey values.
 const RARE_STANDS_OUT: f64 = 8.0;
 const LEAST_RARE: f64 = 16.0;
@@ -97,12 +100,7 @@ impl Levels {
     /// Levels of objects that have few pixels, far beyond the noise of the ground; `None` where nothing is there.
     fn of_rare(counts: &[u64; 256]) -> Option<Self> {
         let ground = median(counts, 0)?;
-        let mut deviations = [0_u64; 256];
-        for (value, count) in counts.iter().enumerate() {
-            deviations[(value as f64 - ground).abs() as usize] += count;
-        }
-        let spread = 1.4826 * (median(&deviations, 0)? + 0.5);
-        let least = (ground + (RARE_STANDS_OUT * spread).max(LEAST_RARE)).ceil() as usize;
+        let least = (ground + (RARE_STANDS_OUT * spread(counts, ground)).max(LEAST_RARE)).ceil() as usize;
         let rare = counts.get(least..)?;
         let (few, all): (u64, u64) = (rare.iter().sum(), counts.iter().sum());
         let object = median(rare, least).filter(|_| RAREST <= few && RARE_SHARE * few <= all)?;
@@ -112,14 +110,32 @@ impl Levels {
 
 /// Refuses classes that are no further apart than noise, or a ground that grows lighter to one side, is split into.
 fn stands_out(ground_counts: &[u64], ground: f64, object: f64) -> Result<(), TraceError> {
-    let mut deviations = [0_u64; 256];
-    for (value, count) in ground_counts.iter().enumerate() {
-        deviations[(value as f64 - ground).abs() as usize] += count;
-    }
-    // The median absolute deviation to a grey value is half a grey value too small in the mean.
-    let spread = 1.4826 * (median(&deviations, 0).unwrap_or(0.0) + 0.5);
+    let spread = spread(ground_counts, ground);
     let difference = object - ground;
     if difference < STANDS_OUT * spread { Err(TraceError::NoContrast { difference, spread }) } else { Ok(()) }
+}
+
+/// Robust standard deviation of grey values about their median, by their median absolute deviation.
+fn spread(counts: &[u64], middle: f64) -> f64 {
+    let mut deviations = [0_u64; 256];
+    for (value, count) in counts.iter().enumerate() {
+        deviations[(value as f64 - middle).abs() as usize] += count;
+    }
+    // The median absolute deviation to a grey value is half a grey value too small in the mean.
+    1.4826 * (median(&deviations, 0).unwrap_or(0.0) + 0.5)
+}
+
+/// How many of some grey values there are of each.
+pub(crate) fn counted(values: impl Iterator<Item = u8>) -> [u64; 256] {
+    let mut counts = [0; 256];
+    values.for_each(|value| counts[usize::from(value)] += 1);
+    counts
+}
+
+/// A level that noise of these grey values does not reach, at least `least`; `None` of no value.
+pub(crate) fn beyond_noise(counts: &[u64; 256], least: f64) -> Option<f64> {
+    let middle = median(counts, 0)?;
+    Some((middle + BEYOND_NOISE * spread(counts, middle)).max(least))
 }
 
 /// From a grey value of the picture to the scale where the object is lighter, or back.

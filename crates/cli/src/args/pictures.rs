@@ -53,7 +53,8 @@ pub(crate) struct PictureOptions {
     pub(crate) channel: Option<ChannelChoice>,
 
     /// Find objects by their difference from a picture without objects; from 'median', the median of the latest pictures; from 'whole',
-    /// the median of pictures of the whole input; or from 'surface', a smooth surface through the ground of each picture
+    /// the median of pictures of the whole input, without what rests in most of them and leaves or comes; or from 'surface', a smooth
+    /// surface through the ground of each picture
     #[arg(long, value_name = "FILE|median|whole|surface", conflicts_with = "ring")]
     pub(crate) background: Option<PathBuf>,
 
@@ -178,7 +179,7 @@ impl PictureOptions {
         inputs.iter().chain(self.background.as_ref().filter(is_file)).cloned().collect()
     }
 
-    /// Whether pictures are compared with the median of the whole input.
+    /// Whether pictures are compared with the ground of the whole input.
     pub(crate) fn compares_with_whole(&self) -> bool {
         self.background.as_ref().is_some_and(|path| path.as_os_str() == "whole")
     }

@@ -165,7 +165,9 @@ impl<'a> Outcome<'a> {
         left_out: LeftOut,
         failure: Option<Failure>,
     ) -> Self {
-        let results = tracker.results();
+        let in_doubt = input.pictures().is_some_and(PictureInput::is_tracing_in_doubt);
+        let doubted = |result: ObjectResult| if in_doubt { result.of_doubtful_outlines() } else { result };
+        let results: Vec<ObjectResult> = tracker.results().into_iter().map(doubted).collect();
         let is_found = results.iter().any(|result| result.parameters().is_some());
         let failure = failure.or_else(|| (!is_found).then(|| nothing_found(&input.name, &results)));
         let b = match input.pictures() {

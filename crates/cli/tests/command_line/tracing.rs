@@ -139,3 +139,31 @@ fn changes_beside_what_rests_are_warned_of_by_a_code() {
     );
     assert_eq!(json(&stdout(&output))["warnings"][0]["code"], "moves_beside_rest");
 }
+
+#[test]
+fn a_motion_between_two_frames_alone_is_warned_of_where_the_way_of_tracing_is_in_doubt() {
+    for (shown, is_warned) in [(2, true), (12, false)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        for frame in 0..12_u32 {
+            let place = 60 + 3 * frame;
+            let is_seen = frame.abs_diff(5) < shown && frame >= 5;
+            let is_light = |x: u32, y: u32| {
+                let (x, y) = (x.wrapping_sub(place), y.wrapping_sub(50));
+                is_seen && x < 18 && y < 24 && (x < 7 || y < 6)
+            };
+            let noise = |x: u32, y: u32| ((x * 31 + y * 17 + frame * 7) % 5) as u8;
+            let value = |x: u32, y: u32| noise(x, y) + if is_light(x, y) { 180 } else { 60 };
+            let picture = GrayImage::from_fn(160, 120, |x, y| Luma([value(x, y)]));
+            picture.save(folder.path().join(format!("{frame:02}.png"))).expect("a picture");
+        }
+        let document = json(&succeed(&format!("identify {} --fps 30 --quiet --json", folder.path().display()), ""));
+        let object = &document["objects"][0];
+        let codes = |of: &serde_json::Value| -> Vec<String> {
+            let warnings = of["warnings"].as_array().cloned().unwrap_or_default();
+            warnings.iter().filter_map(|warning| warning["code"].as_str().map(str::to_owned)).collect()
+        };
+        assert!(object["velocity"]["value"][0].is_number(), "{document}");
+        assert_eq!(codes(&document).contains(&"tracing_doubtful".to_owned()), is_warned, "{document}");
+        assert_eq!(codes(object).contains(&"of_two_frames".to_owned()), is_warned, "{document}");
+    }
+}

@@ -1,37 +1,9 @@
-use std::sync::Arc;
-
-use image::GrayImage;
-
 use super::rest::{movement, rests};
-use super::scaled::{factor_for, scaled};
 use super::sight::Sight;
-use super::{LINE, PictureSample, Tracing, TracingWay, ground_of};
-use crate::background::Background;
-use crate::channel::Channel;
-use crate::contrast::Contrast;
+use super::trial::Trial;
+use super::{LINE, Tracing};
 use crate::edges::median;
-use crate::ground_surface::ground_surface;
 use crate::identity::Selection;
-use crate::picture_outlines::PictureSettings;
-use crate::ring::Ring;
-use crate::trace::{TracedOutline, blurred, trace_objects};
-use crate::trace_settings::{Clipping, Contours, Edges, Smoothing, TraceSettings};
-
-/// Most pixels of a picture where ways are tried for the first time.
-const COARSE_PIXELS: u64 = 90_000;
-
-/// Pictures looked at then.
-const COARSE_PICTURES: usize = 9;
-
-/// Pictures looked at of the best ways.
-const FINE_PICTURES: usize = 15;
-
-/// Objects looked at in a picture.
-const OBJECTS: usize = 6;
-
-/// A level lies so many standard deviations of the ground beyond it, and at least so many grey values.
-const BEYOND_NOISE: f64 = 6.0;
-const LEAST_LEVEL: f64 = 8.0;
 
 /// What speaks for a way of tracing, and against it. Shares are from 0 to 1, 1 the best.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,194 +42,6 @@ pub struct TracingEvidence {
     pub score: f64,
 }
 
-/// Pictures in one channel on which ways are tried.
-pub(super) struct Trial {
-    frames: Vec<u64>,
-    pictures: Vec<Arc<GrayImage>>,
-    /// What the ground is the median of.
-    all: Vec<Arc<GrayImage>>,
-    ground: std::cell::OnceCell<Option<Arc<GrayImage>>>,
-    surfaces: std::cell::OnceCell<Vec<Arc<GrayImage>>>,
-    base: PictureSettings,
-    /// Pixels of the sequence for one of these.
-    factor: u32,
-    /// Widest line expected, in pixels of the sequence.
-    ring_width: f64,
-}
-
-impl Trial {
-    /// A few pictures, scaled down.
-    pub(super) fn coarse(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Self {
-        Self::of(sample, base, channel, COARSE_PIXELS, COARSE_PICTURES)
-    }
-
-    /// More pictures as they are in the sample.
-    pub(super) fn fine(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Self {
-        Self::of(sample, base, channel, u64::MAX, FINE_PICTURES)
-    }
-
-    /// All pictures of the sample, as they are in it.
-    pub(super) fn whole(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Self {
-        Self::of(sample, base, channel, u64::MAX, usize::MAX)
-    }
-
-    fn of(sample: &PictureSample, base: &PictureSettings, channel: Channel, most: u64, count: usize) -> Self {
-        let (frames, pictures) = sample.of(channel);
-        let (columns, rows) = sample.size();
-        let of_sample = pictures.first().map_or((1, 1), |picture| picture.dimensions());
-        let further = factor_for(of_sample.0, of_sample.1, most);
-        let all: Vec<Arc<GrayImage>> = pictures
-            .iter()
-            .map(|picture| if further == 1 { Arc::clone(picture) } else { Arc::new(scaled(picture, further)) })
-            .collect();
-        // Whole bursts, from first to last.
-        let bursts: Vec<usize> = (0..all.len()).step_by(3).collect();
-        let wanted = (count / 3).min(bursts.len()).max(1);
-        let mut chosen: Vec<usize> = if count >= all.len() {
-            (0..all.len()).collect()
-        } else {
-            (0..wanted)
-                .map(|k| bursts[k * (bursts.len() - 1) / (wanted - 1).max(1)])
-                .flat_map(|b| b..(b + 3).min(all.len()))
-                .collect()
-        };
-        chosen.dedup();
-        let ring_width = Ring { contrast: Contrast::DarkOnLight, width: base.trace.ring.and_then(|ring| ring.width) };
-        Self {
-            frames: chosen.iter().map(|&k| frames[k]).collect(),
-            pictures: chosen.iter().map(|&k| Arc::clone(&all[k])).collect(),
-            all,
-            ground: std::cell::OnceCell::new(),
-            surfaces: std::cell::OnceCell::new(),
-            base: base.clone(),
-            factor: sample.factor() * further,
-            ring_width: ring_width.widest(columns, rows),
-        }
-    }
-
-    pub(super) fn count(&self) -> usize {
-        self.pictures.len()
-    }
-
-    /// Pixels of a picture.
-    pub(super) fn picture_area(&self) -> f64 {
-        self.pictures.first().map_or(0.0, |picture| picture.as_raw().len() as f64)
-    }
-
-    fn settings(&self, tracing: &Tracing) -> PictureSettings {
-        let ground = match tracing.way {
-            TracingWay::Median(_) => self.ground.get_or_init(|| ground_of(&self.all)).clone(),
-            _ => None,
-        };
-        let mut settings = tracing.settings(&self.base, ground);
-        let factor = f64::from(self.factor);
-        let trace = &mut settings.trace;
-        trace.minimum_area = (trace.minimum_area / u64::from(self.factor).pow(2)).max(4);
-        trace.ring = trace.ring.map(|ring| Ring { width: Some((self.ring_width / factor).max(2.0)), ..ring });
-        trace.smoothing = match trace.smoothing {
-            Smoothing::Gaussian(sigma) => Smoothing::Gaussian(sigma / factor),
-            Smoothing::Automatic => Smoothing::Automatic,
-        };
-        *trace = TraceSettings {
-            edges: Edges::Isoline,
-            contours: Contours::All,
-            clipping: Clipping::Close,
-            y_up: false,
-            pixel_size: 1.0,
-            pixel_aspect: 1.0,
-            margins: None,
-            ..*trace
-        };
-        settings
-    }
-
-    /// A difference from the ground that its noise does not reach, for the ways by a difference.
-    pub(super) fn noise_level(&self, tracing: &Tracing) -> Option<f64> {
-        if !matches!(tracing.way, TracingWay::Median(_) | TracingWay::Surface(_)) {
-            return None;
-        }
-        let settings = self.settings(tracing);
-        let sigma = match settings.trace.smoothing {
-            Smoothing::Gaussian(sigma) => sigma,
-            Smoothing::Automatic => 0.0,
-        };
-        let step = (self.count() / 5).max(1);
-        let levels = (0..self.count()).step_by(step).filter_map(|k| {
-            let difference = settings.difference.of(&self.pictures[k], self.ground(tracing, &settings, k)?);
-            let smooth = if sigma > 0.0 { blurred(&difference, sigma) } else { difference };
-            let values = || smooth.as_raw().iter().step_by(7).map(|value| f64::from(*value));
-            let middle = median(values())?;
-            let spread = 1.4826 * (median(values().map(|value| (value - middle).abs()))? + 0.5);
-            Some((middle + BEYOND_NOISE * spread).max(LEAST_LEVEL).round())
-        });
-        median(levels)
-    }
-
-    /// What a picture is compared with, if with anything.
-    fn ground<'a>(&'a self, tracing: &Tracing, settings: &'a PictureSettings, k: usize) -> Option<&'a Arc<GrayImage>> {
-        match (&settings.background, tracing.way) {
-            (Some(Background::Picture(ground)), _) => Some(ground),
-            (_, TracingWay::Surface(_)) => {
-                let surfaces = || self.pictures.iter().map(|picture| Arc::new(ground_surface(picture))).collect();
-                self.surfaces.get_or_init(surfaces).get(k)
-            }
-            _ => None,
-        }
-    }
-
-    /// What a way finds in each picture.
-    fn sights(&self, tracing: &Tracing) -> Vec<Sight> {
-        let settings = self.settings(tracing);
-        let mut sights = Vec::new();
-        for k in 0..self.count() {
-            let Some(Seen { frame, traced, picture, contrast, reach }) = self.seen(tracing, &settings, k, OBJECTS)
-            else {
-                continue;
-            };
-            sights.extend(Sight::of(frame, &traced, &picture, contrast, reach, sights.last()));
-        }
-        sights
-    }
-
-    /// What a way finds in the first picture in which it finds something.
-    pub(super) fn first_sight(&self, tracing: &Tracing) -> Option<Sight> {
-        let settings = self.settings(tracing);
-        let seen = (0..self.count()).find_map(|k| self.seen(tracing, &settings, k, OBJECTS))?;
-        Sight::of(seen.frame, &seen.traced, &seen.picture, seen.contrast, seen.reach, None)
-    }
-
-    /// All that a way finds, picture for picture.
-    pub(super) fn all_sights(&self, tracing: &Tracing, most: usize) -> Vec<Vec<Sight>> {
-        let settings = self.settings(tracing);
-        let all = |Seen { frame, traced, picture, contrast, reach }: Seen| {
-            traced.iter().map(|one| Sight::of_one(frame, one, &traced, &picture, contrast, reach)).collect()
-        };
-        (0..self.count()).map(|k| self.seen(tracing, &settings, k, most).map_or_else(Vec::new, all)).collect()
-    }
-
-    fn seen(&self, tracing: &Tracing, settings: &PictureSettings, k: usize, most: usize) -> Option<Seen> {
-        let (frame, picture) = (self.frames[k], &self.pictures[k]);
-        let difference = self.ground(tracing, settings, k).map(|ground| settings.difference.of(picture, ground));
-        let picture = difference.map_or_else(|| Arc::clone(picture), Arc::new);
-        let traced = trace_objects(&picture, &settings.trace, most).ok()?;
-        let line = settings.trace.ring.map(|ring| ring.contrast);
-        let contrast = line.unwrap_or(settings.trace.contrast);
-        let reach = if line.is_some() { 1.5 } else { 2.0 };
-        Some(Seen { frame, traced, picture, contrast, reach })
-    }
-}
-
-/// What is seen in one picture.
-struct Seen {
-    frame: u64,
-    traced: Vec<TracedOutline>,
-    /// What was traced: the picture, or its difference from the ground.
-    picture: Arc<GrayImage>,
-    contrast: Contrast,
-    /// Distance from the outline at which its sides are looked at.
-    reach: f64,
-}
-
 /// Tries a way; `None` where it finds nothing.
 pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence> {
     evidence_of(trial, tracing, &trial.sights(&tracing))
@@ -265,7 +49,7 @@ pub(super) fn judged(trial: &Trial, tracing: Tracing) -> Option<TracingEvidence>
 
 /// What speaks for a way by what it finds; `None` where that is nothing.
 pub(super) fn evidence_of(trial: &Trial, tracing: Tracing, sights: &[Sight]) -> Option<TracingEvidence> {
-    let factor = f64::from(trial.factor);
+    let factor = trial.factor();
     let (found, pictures) = (sights.len(), trial.count());
     let picture_area = trial.picture_area();
     let of = |value: &dyn Fn(&Sight) -> f64| median(sights.iter().map(value));

@@ -3,10 +3,12 @@ mod beside;
 mod chains;
 mod evidence;
 mod moving;
+mod preference;
 mod rest;
 mod sample;
 mod scaled;
 mod sight;
+mod trial;
 mod tuning;
 mod warning;
 
@@ -14,7 +16,7 @@ use std::sync::Arc;
 
 use image::GrayImage;
 
-use crate::background::{Background, Difference, median_picture};
+use crate::background::{Background, Difference};
 use crate::channel::Channel;
 use crate::contrast::Contrast;
 use crate::margins::Margins;
@@ -23,9 +25,11 @@ use crate::ring::Ring;
 use crate::threshold::Threshold;
 use crate::trace_settings::{Smoothing, TraceSettings};
 pub use evidence::TracingEvidence;
-use evidence::{Trial, judged};
-use moving::{Motion, what_moves};
+use evidence::judged;
+use preference::{motion_beside, preferring_what_moves};
+pub(crate) use sample::BURST;
 pub use sample::{PictureSample, SamplePlan};
+use trial::Trial;
 pub use warning::TracingWarning;
 
 /// A way to tell objects from the ground.
@@ -39,7 +43,8 @@ pub enum TracingWay {
     DarkRing,
     /// A light line is around them.
     LightRing,
-    /// They differ from the median of pictures of the whole sequence.
+    /// They differ from the ground of the whole sequence: the median of pictures of it, without what rests in most of these and leaves or comes
+    /// ([`ground_picture`](crate::ground_picture)).
     Median(Difference),
     /// They differ from a smooth surface through the ground of each picture.
     Surface(Difference),
@@ -138,7 +143,8 @@ impl Tracing {
         rest(self) == rest(other) && self.smoothing == other.smoothing
     }
 
-    /// The settings of this way; of the median, `ground` is that of the sequence.
+    /// The settings of this way. `ground` is what [`TracingWay::Median`] compares pictures with, as
+    /// [`PicturePreview::ground`](crate::PicturePreview::ground) gives it; other ways do without.
     #[must_use]
     pub fn settings(&self, base: &PictureSettings, ground: Option<Arc<GrayImage>>) -> PictureSettings {
         let ring = |contrast| Some(Ring { contrast, width: base.trace.ring.and_then(|ring| ring.width) });
@@ -256,53 +262,6 @@ fn choose_within(
     (fine, beside)
 }
 
-/// Puts what moves in front of what rests, or is in doubt; says what else moves where it does not. `known` is what has been found to move in place of
-/// a way.
-fn preferring_what_moves(
-    sample: &PictureSample,
-    base: &PictureSettings,
-    channel: Channel,
-    candidates: &mut Vec<TracingEvidence>,
-    known: Option<(Tracing, Motion)>,
-) -> Option<TracingWarning> {
-    let best = candidates.first().map(|best| (best.tracing, best.rests, best.score));
-    let rests = best.filter(|(_, rests, _)| *rests).map(|(tracing, ..)| tracing);
-    let is_in_doubt = rests.is_some() || best.is_none_or(|(.., score)| score < TracingChoice::CONVINCING);
-    if !is_in_doubt {
-        let (tracing, _, score) = best?;
-        let motion = (score < GOOD).then(|| motion_beside(sample, base, channel, None, Some(&tracing)))??;
-        let (seen, pictures) = match motion.moving {
-            Some(moving) => (moving.found, moving.pictures),
-            None if motion.goes_on.are_most() => (motion.goes_on.seen, motion.goes_on.pictures),
-            None => return None,
-        };
-        return Some(TracingWarning::MovesBeside { seen, pictures });
-    }
-    let motion = match known {
-        Some((tracing, motion)) if Some(tracing) == rests => motion,
-        _ => motion_beside(sample, base, channel, rests.as_ref(), None)?,
-    };
-    if let Some(moving) = motion.moving {
-        candidates.retain(|candidate| candidate.tracing != moving.tracing);
-        candidates.insert(0, moving);
-        return None;
-    }
-    let changes = motion.changes.filter(|changes| changes.are_many())?;
-    Some(TracingWarning::MovesBesideRest { seen: changes.seen, pictures: changes.pictures })
-}
-
-/// What moves beside what `rests`, or beside `others`, where the pictures can show it.
-fn motion_beside(
-    sample: &PictureSample,
-    base: &PictureSettings,
-    channel: Channel,
-    rests: Option<&Tracing>,
-    others: Option<&Tracing>,
-) -> Option<Motion> {
-    let may_show = !sample.is_two_valued() && sample.len() >= FEWEST_FOR_MEDIAN;
-    may_show.then(|| what_moves(sample, base, channel, rests, others))
-}
-
 /// The best ways once more, in more pictures as they are, with their variants. `looked_at` are those that have been looked at so.
 fn looked_closer(
     sample: &PictureSample,
@@ -386,9 +345,4 @@ fn sort(candidates: &mut [TracingEvidence]) {
         (candidate.score * candidate.tracing.preference() - channel) * line
     };
     candidates.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
-}
-
-/// The ground of a sequence by a sample of its pictures.
-fn ground_of(pictures: &[Arc<GrayImage>]) -> Option<Arc<GrayImage>> {
-    median_picture(pictures)
 }

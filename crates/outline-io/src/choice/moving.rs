@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 
 use super::beside::{Beside, Changes, changes_beside};
 use super::chains::{Chain, Likely, chains_of, common_pull, follow_each_other, straight_on};
-use super::evidence::{TracingEvidence, Trial, evidence_of};
+use super::evidence::{TracingEvidence, evidence_of};
 use super::sight::Sight;
+use super::trial::Trial;
 use super::tuning::chains as tuning;
 use super::{AGAINST_NOISE, PictureSample, Tracing, TracingWay};
 use crate::background::Difference;

@@ -10,7 +10,7 @@ use crate::picture_sequence::PictureFrame;
 use crate::trace::is_two_valued;
 
 /// Pictures that follow each other, so that they show how evenly something moves.
-const BURST: u64 = 3;
+pub(crate) const BURST: u64 = 3;
 
 /// Bursts in a sample.
 const BURSTS: u64 = 8;
@@ -56,7 +56,7 @@ impl SamplePlan {
 }
 
 /// Pictures spread over a sequence, in every channel that shows something of its own, scaled down where they are large.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct PictureSample {
     /// Numbers of the pictures, in order.
     frames: Vec<u64>,
@@ -82,11 +82,7 @@ impl PictureSample {
         }
         let mut coloured = Self { channels: Vec::new(), ..sample.clone() };
         coloured.take(Channel::Saturation, pictures(Channel::Saturation).into_iter().flatten());
-        let has_colour = coloured.channels.iter().flat_map(|(_, pictures)| pictures).any(|picture| {
-            let strong = picture.as_raw().iter().filter(|value| **value > LITTLE_COLOUR).count();
-            1000 * strong > picture.as_raw().len()
-        });
-        if has_colour {
+        if coloured.channels.iter().flat_map(|(_, pictures)| pictures).any(|picture| has_colour(picture)) {
             for channel in others {
                 match channel {
                     Channel::Saturation => sample.channels.append(&mut coloured.channels),
@@ -97,20 +93,69 @@ impl PictureSample {
         sample
     }
 
+    /// Reads a sample as [`read`](Self::read) does, of `pictures` that each come in all of the channels that are asked for, in their order.
+    pub(crate) fn read_at_once<I: Iterator<Item = Result<(u64, Vec<Arc<GrayImage>>), PictureError>>>(
+        channels: &[Channel],
+        pictures: impl FnOnce(Vec<Channel>) -> I,
+    ) -> Self {
+        let mut sample = Self { factor: 1, ..Self::default() };
+        let Some((first, others)) = channels.split_first() else { return sample };
+        let mut wanted = channels.to_vec();
+        if !others.is_empty() && !wanted.contains(&Channel::Saturation) {
+            // It tells whether there is colour.
+            wanted.push(Channel::Saturation);
+        }
+        let (mut frames, mut kept) = (Vec::new(), vec![Vec::new(); wanted.len()]);
+        for (frame, pictures) in pictures(wanted.clone()).flatten() {
+            if pictures.first().is_some_and(|picture| sample.is_of_its_size(picture)) {
+                frames.push(frame);
+                for (k, picture) in pictures.iter().enumerate() {
+                    // Channels of a grey picture are one picture, and are made smaller once.
+                    let same = pictures[..k].iter().position(|other| Arc::ptr_eq(other, picture));
+                    let small = same.and_then(|same| kept[same].last().cloned());
+                    kept[k].push(small.unwrap_or_else(|| sample.small(Arc::clone(picture))));
+                }
+            }
+        }
+        let saturation = wanted.iter().position(|channel| *channel == Channel::Saturation);
+        let is_coloured = saturation.is_some_and(|k| kept[k].iter().any(|picture| has_colour(picture)));
+        let mut kept = kept.into_iter();
+        sample.keep(*first, &frames, kept.next().unwrap_or_default());
+        if is_coloured {
+            others.iter().zip(kept).for_each(|(channel, kept)| sample.keep(*channel, &frames, kept));
+        }
+        sample
+    }
+
     fn take(&mut self, channel: Channel, pictures: impl Iterator<Item = Result<PictureFrame, PictureError>>) {
         let mut kept = Vec::new();
         let mut frames = Vec::new();
         for PictureFrame { frame, picture, .. } in pictures.flatten() {
-            let size = picture.dimensions();
-            if self.size == (0, 0) {
-                self.size = size;
-                self.factor = factor_for(size.0, size.1, MOST_PIXELS);
-            }
-            if size == self.size {
+            if self.is_of_its_size(&picture) {
                 frames.push(frame);
-                kept.push(if self.factor == 1 { picture } else { Arc::new(scaled(&picture, self.factor)) });
+                kept.push(self.small(picture));
             }
         }
+        self.keep(channel, &frames, kept);
+    }
+
+    /// Whether a picture has the size of the first, which it may be.
+    fn is_of_its_size(&mut self, picture: &GrayImage) -> bool {
+        let size = picture.dimensions();
+        if self.size == (0, 0) {
+            self.size = size;
+            self.factor = factor_for(size.0, size.1, MOST_PIXELS);
+        }
+        size == self.size
+    }
+
+    /// A picture as the sample holds it.
+    fn small(&self, picture: Arc<GrayImage>) -> Arc<GrayImage> {
+        if self.factor == 1 { picture } else { Arc::new(scaled(&picture, self.factor)) }
+    }
+
+    /// Keeps of the pictures with these numbers those that the sample is made of.
+    fn keep(&mut self, channel: Channel, frames: &[u64], kept: Vec<Arc<GrayImage>>) {
         if self.frames.is_empty() {
             // Of a sequence whose length was not known more may have been kept than are needed.
             let bursts = SamplePlan::Spread(frames.len() as u64).frames();
@@ -211,4 +256,10 @@ impl PictureSample {
         let Some((_, pictures)) = self.channels.first() else { return false };
         self.factor == 1 && pictures.iter().all(|picture| is_two_valued(picture))
     }
+}
+
+/// Whether a picture of the saturation shows more than some specks.
+fn has_colour(saturation: &GrayImage) -> bool {
+    let strong = saturation.as_raw().iter().filter(|value| **value > LITTLE_COLOUR).count();
+    1000 * strong > saturation.as_raw().len()
 }

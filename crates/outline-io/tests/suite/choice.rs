@@ -168,6 +168,28 @@ fn changes_within_the_outline_of_what_rests_are_warned_of() {
     }
 }
 
+#[test]
+fn a_puck_that_slides_on_a_plate_is_warned_of_where_an_arm_that_moves_over_the_edge_of_the_plate_changes_its_outline() {
+    for moves in [false, true] {
+        let pictures = (0..24).map(|frame| {
+            let time = if moves { f64::from(frame) } else { 0.0 };
+            let plate = |x: f64, y: f64| ((x - 180.0).abs() - 110.0).max((y - 120.0).abs() - 90.0);
+            // It reaches over the left edge, and is nowhere twice.
+            let arm = |x: f64, y: f64| (x - 150.0).max((y - 85.0 - 3.0 * time).abs() - 6.0);
+            let along = 8.0 * time;
+            let puck = [175.0 + (along + 50.0).min(150.0 - along), 60.0 + 0.3 * along, 6.0];
+            picture(frame, |x, y| plate(x, y).max(-arm(x, y)).max(-disc(x, y, puck)))
+        });
+        let choice = choice(&pictures.collect::<Vec<_>>());
+        let best = choice.best().expect("a way");
+        // It is seen well, and only an outline that stays where it is tells that it rests.
+        assert!(best.rests != moves && best.score > 0.3 && best.area_share > 0.4, "{best:?}");
+        let warned: Vec<TracingWarning> = choice.warnings().collect();
+        assert_eq!(matches!(warned[..], [TracingWarning::MovesBeside { .. }]), moves, "{warned:?}, {best:?}");
+        assert_eq!(warned.is_empty(), !moves, "{warned:?}");
+    }
+}
+
 /// A picture between even bars above and below, as of a video that was fitted into another shape.
 fn between_bars(frame: u32, of_picture: &GrayImage, [above, below]: [u32; 2]) -> GrayImage {
     GrayImage::from_fn(320, 240, |x, y| {

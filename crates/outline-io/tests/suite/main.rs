@@ -18,6 +18,7 @@ mod parquet;
 mod parquet_deviations;
 mod pictures_as_people_have_them;
 mod polygons;
+mod samples;
 mod sequences;
 mod side_by_side;
 mod support;
