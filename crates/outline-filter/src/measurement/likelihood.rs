@@ -35,8 +35,8 @@ impl NegativeLogLikelihood {
         self.all() - other.all() > deviations * unit * Self::deviation(other.weighted)
     }
 
-    /// Whether the difference is more than so many squares of the noise: a test of models of which the other has a parameter more (S. S. Wilks 1938, The
-    /// large-sample distribution of the likelihood ratio for testing composite hypotheses), where only few of the points tell it.
+    /// Whether the difference is more than so many squares of the noise: a test of models of which the other has a parameter more
+    /// (S. S. Wilks 1938, The large-sample distribution of the likelihood ratio for testing composite hypotheses), told by few of the points.
     pub(crate) fn is_worse_by_fit(&self, squares: f64, other: &Self) -> bool {
         let unit = (other.squares / other.points).max(1.0) * (other.weighted / other.points).max(1.0);
         self.all() - other.all() > squares * unit
