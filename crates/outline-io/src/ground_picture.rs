@@ -5,6 +5,7 @@ use image::GrayImage;
 
 use crate::background::median_picture;
 use crate::choice::BURST;
+use crate::segment::{Components, Connectivity, Run};
 use crate::threshold::{beyond_noise, counted};
 
 /// Fewest pictures in which a thing that the median shows must be gone: one more than a burst of a sample. What passes in front of it and looks like
@@ -109,44 +110,22 @@ fn uncovered(picture: &GrayImage, plain: &GrayImage, pixels: &mut Vec<Pixel>) ->
         false => Pixel::Ground,
     };
     pixels.extend(picture.as_raw().iter().zip(plain.as_raw()).map(pixel));
-    let (mut is_seen, mut is_taken) = (vec![false; pixels.len()], vec![false; pixels.len()]);
-    let mut thing: Vec<usize> = Vec::new();
-    let mut uncovered = None;
-    for start in 0..pixels.len() {
-        let kind = pixels[start];
-        if kind == Pixel::Ground || is_seen[start] {
-            continue;
-        }
-        thing.clear();
-        thing.push(start);
-        is_seen[start] = true;
-        let mut next = 0;
-        while let Some(&index) = thing.get(next) {
-            next += 1;
-            for neighbour in around(index, width, height).into_iter().flatten() {
-                if pixels[neighbour] == kind && !is_seen[neighbour] {
-                    is_seen[neighbour] = true;
-                    thing.push(neighbour);
-                }
+    let (mut is_taken, mut uncovered) = (vec![false; pixels.len()], None);
+    for kind in [Pixel::Lighter, Pixel::Darker] {
+        let is_of_kind = |column: usize, row: usize| pixels[row * width + column] == kind;
+        let things = Components::of(width, height, Connectivity::Four, is_of_kind);
+        let is_large = |(_, count): &(u32, u64)| *count >= FEWEST_PIXELS as u64;
+        let large: Vec<u32> = things.pixel_counts().filter(is_large).map(|(thing, _)| thing).collect();
+        for runs in things.into_runs_of(&large) {
+            let of_run = |run: Run| run.columns().map(move |column| run.row() * width + column);
+            let thing: Vec<usize> = runs.into_iter().flat_map(of_run).collect();
+            if is_gone(&thing, pixels, picture, plain, f64::from(level)) {
+                let uncovered = uncovered.get_or_insert_with(|| PixelSet::none_of(pixels.len()));
+                add(&thing, pixels, (width, height), &mut is_taken, uncovered);
             }
-        }
-        if thing.len() >= FEWEST_PIXELS && is_gone(&thing, pixels, picture, plain, f64::from(level)) {
-            let uncovered = uncovered.get_or_insert_with(|| PixelSet::none_of(pixels.len()));
-            add(&thing, pixels, (width, height), &mut is_taken, uncovered);
         }
     }
     uncovered
-}
-
-/// The four pixels beside one, where there are any: left, right, above, below.
-fn around(index: usize, width: usize, height: usize) -> [Option<usize>; 4] {
-    let (column, row) = (index % width, index / width);
-    [
-        (column > 0).then(|| index - 1),
-        (column + 1 < width).then(|| index + 1),
-        (row > 0).then(|| index - width),
-        (row + 1 < height).then(|| index + width),
-    ]
 }
 
 /// Whether the median has an edge around what differs, and the picture has not.
@@ -155,16 +134,15 @@ fn is_gone(thing: &[usize], pixels: &[Pixel], picture: &GrayImage, plain: &GrayI
     let (mut of_median, mut of_picture, mut places) = (0_u64, 0_u64, 0_u64);
     for &index in thing {
         let (column, row) = ((index % width) as isize, (index / width) as isize);
-        let steps = [(-1, 0), (1, 0), (0, -1), (0, 1)];
-        for (neighbour, (across, down)) in around(index, width, height).into_iter().zip(steps) {
-            if neighbour.is_none_or(|neighbour| pixels[neighbour] != Pixel::Ground) {
-                continue;
-            }
+        for (across, down) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
             let at = |by: isize| -> Option<usize> {
                 let (column, row) = (column + by * across, row + by * down);
                 let is_within = (0..width as isize).contains(&column) && (0..height as isize).contains(&row);
                 is_within.then(|| row as usize * width + column as usize)
             };
+            if at(1).is_none_or(|neighbour| pixels[neighbour] != Pixel::Ground) {
+                continue;
+            }
             if let Some((inner, outer)) = at(-REACH).zip(at(REACH)) {
                 let step = |image: &GrayImage| u64::from(image.as_raw()[inner].abs_diff(image.as_raw()[outer]));
                 of_median += step(plain);

@@ -58,10 +58,7 @@ pub fn decode_picture(mut source: impl BufRead + Seek, name: &str) -> Result<Gra
 /// # Errors
 /// As [`read_picture`].
 pub fn read_picture_channel(path: impl AsRef<Path>, channel: Channel) -> Result<GrayImage, PictureError> {
-    let path = path.as_ref();
-    let picture = File::open(path).map_err(PictureErrorKind::Io);
-    let picture = picture.and_then(|file| decode(&mut BufReader::new(file), channel));
-    picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))
+    read_file(path.as_ref(), |source| decode(source, channel))
 }
 
 /// The bytes of a picture. Decoders of single pictures are compiled once for all kinds of them.
@@ -74,11 +71,19 @@ pub(crate) fn decode(source: &mut dyn Source, channel: Channel) -> Result<GrayIm
     Ok(turned(channel.of(picture), orientation))
 }
 
+/// What is read of a file, which errors name.
+fn read_file<T>(
+    path: &Path,
+    read: impl FnOnce(&mut dyn Source) -> Result<T, PictureErrorKind>,
+) -> Result<T, PictureError> {
+    let file = File::open(path).map_err(PictureErrorKind::Io);
+    let read = file.and_then(|file| read(&mut BufReader::new(file)));
+    read.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))
+}
+
 /// Several channels of a picture that is decoded once, in their order.
 pub(crate) fn read_picture_channels(path: &Path, channels: &[Channel]) -> Result<Vec<Arc<GrayImage>>, PictureError> {
-    let picture = File::open(path).map_err(PictureErrorKind::Io);
-    let picture = picture.and_then(|file| decode_colours(&mut BufReader::new(file)));
-    let (mut picture, orientation) = picture.map_err(|kind| PictureError::of_file(path.display().to_string(), kind))?;
+    let (mut picture, orientation) = read_file(path, decode_colours)?;
     picture.apply_orientation(orientation);
     Ok(Channel::all_of(picture, channels))
 }

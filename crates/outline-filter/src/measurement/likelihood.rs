@@ -31,15 +31,13 @@ impl NegativeLogLikelihood {
 
     /// Whether the difference is more than so many of its deviations: see [`is_worse_than`](Self::is_worse_than).
     pub(crate) fn is_worse_by(&self, deviations: f64, other: &Self) -> bool {
-        let unit = (other.squares / other.points).max(1.0);
-        self.all() - other.all() > deviations * unit * Self::deviation(other.weighted)
+        self.all() - other.all() > deviations * other.mean_square() * Self::deviation(other.weighted)
     }
 
     /// Whether the difference is more than so many squares of the noise: a test of models of which the other has a parameter more
     /// (S. S. Wilks 1938, The large-sample distribution of the likelihood ratio for testing composite hypotheses), told by few of the points.
     pub(crate) fn is_worse_by_fit(&self, squares: f64, other: &Self) -> bool {
-        let unit = (other.squares / other.points).max(1.0) * (other.weighted / other.points).max(1.0);
-        self.all() - other.all() > squares * unit
+        self.all() - other.all() > squares * (other.mean_square() * (other.weighted / other.points).max(1.0))
     }
 
     /// That of the points alone, whatever the path.
@@ -52,6 +50,11 @@ impl NegativeLogLikelihood {
         (tuning::VARIANCE * weighted).sqrt()
     }
 
+    /// Mean square of the innovations, which is noise at least.
+    fn mean_square(&self) -> f64 {
+        (self.squares / self.points).max(1.0)
+    }
+
     /// Of points and path.
     pub(crate) fn all(&self) -> f64 {
         self.squares + self.of_path
@@ -59,7 +62,7 @@ impl NegativeLogLikelihood {
 
     /// Whether the mean square of the innovations is no more than so many times that of another, which is noise at least.
     pub(crate) fn is_within(&self, times: f64, other: &Self) -> bool {
-        self.points > 0.0 && self.squares / self.points <= times * (other.squares / other.points).max(1.0)
+        self.points > 0.0 && self.squares / self.points <= times * other.mean_square()
     }
 
     /// The difference of squares that is significant between two poses, for so many points that count for one each: see

@@ -18,7 +18,7 @@ impl Track {
         let proposal = view.solve(frame, &null, hold.as_ref(), 1).ok()?;
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
         let innovation = self.innovation_of(&proposal, hold.as_ref(), variance).squared;
-        let measurement = view.compare(frame, &proposal, innovation, self.reference.radius);
+        let (measurement, _) = view.compare(frame, &proposal, innovation, self.reference.radius);
         let wide = Gate {
             smallest_agreement: PARTLY_THERE * gate.smallest_agreement,
             largest_innovation: None,

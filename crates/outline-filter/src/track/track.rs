@@ -127,7 +127,7 @@ impl Track {
             // No more than a motion has that goes on as it was: another says nothing of the turn.
             likelihood.of_path = innovation.squared.min(tuning::SUDDEN * self.model().parameter_count() as f64);
         }
-        let measurement = view.compare(frame, &proposal, innovation.squared, radius);
+        let (measurement, limit) = view.compare(frame, &proposal, innovation.squared, radius);
         // Points that do not move show none of what they are rounded by.
         let rounding = self.noise.rounding().of_point();
         let noise = measurement.noise.map(|noise| measurement.of_good_points(noise));
@@ -141,7 +141,7 @@ impl Track {
         let (mut shift, mut doubt) = (SVector::zeros(), None);
         if let Some(measured) = measured.filter(|_| verdict.is_ok()) {
             let is_asked = measurement.agreement < usual_agreement::ALL_AGREE;
-            let weakest = is_asked.then(|| self.view().weakest_agreement(frame));
+            let weakest = is_asked.then(|| self.view().weakest_agreement(frame, &limit));
             self.frames += 1;
             self.look_for_unmodelled_motions(frame, (&proposal, hold.as_ref()), &measured, variance);
             commit(&proposal, frame, (&mut self.belief, &mut self.noise, &mut self.shape));

@@ -31,9 +31,7 @@ impl UsualAgreement {
         let points = points.max(1) as f64;
         let deviation = (usual.max(1.0 / points) * (1.0 - usual) / points).sqrt();
         self.frames += 1;
-        // Frames in which a part has been missed must not become the usual ones.
-        let gain = if disagreeing < usual { tuning::TOWARDS_BETTER } else { tuning::TOWARDS_WORSE };
-        self.disagreeing += gain.max(1.0 / self.frames as f64) * (disagreeing - usual);
+        self.disagreeing += gain(disagreeing < usual).max(1.0 / self.frames as f64) * (disagreeing - usual);
         // Few marks are soon missed, in the very first frames as well.
         let significant = match shown {
             TurnShown::ByMany => tuning::SIGNIFICANT,
@@ -45,10 +43,14 @@ impl UsualAgreement {
     /// Updates the usual weakest agreement by that of a frame; whether it is far less than usual.
     fn update_weakest(&mut self, weakest: f64) -> bool {
         let usual = self.weakest;
-        let gain = if weakest > usual { tuning::TOWARDS_BETTER } else { tuning::TOWARDS_WORSE };
-        self.weakest += gain * (weakest - usual);
+        self.weakest += gain(weakest > usual) * (weakest - usual);
         weakest < tuning::WEAKEST * usual
     }
+}
+
+/// Share by which a frame corrects what is usual, where its points agree better than that or worse.
+fn gain(is_better: bool) -> f64 {
+    if is_better { tuning::TOWARDS_BETTER } else { tuning::TOWARDS_WORSE }
 }
 
 /// How much of an outline shows its turn.

@@ -138,7 +138,7 @@ impl FrameMeasurement {
 
 /// What the residual of a point that agrees with the outline may be, normalised.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Agreeing {
+pub(crate) struct Agreeing {
     by_noise: f64,
     /// The most that points may state of themselves, in deviations of a good point.
     widest: f64,
@@ -165,14 +165,14 @@ impl View<'_> {
         self.noise.tolerated().max(NEVER_TOO_MUCH * self.map.spacing()) * radius
     }
 
-    /// The frame compared with the outline, in the pose of a proposal. Lengths are multiplied by `radius`.
+    /// The frame compared with the outline, in the pose of a proposal, and what agrees in it. Lengths are multiplied by `radius`.
     pub(crate) fn compare(
         &self,
         frame: &mut Frame,
         proposal: &Proposal,
         innovation: f64,
         radius: f64,
-    ) -> FrameMeasurement {
+    ) -> (FrameMeasurement, Agreeing) {
         let spread = spread(frame, self.noise.sigma);
         let limit = self.agreeing(frame, spread);
         let Frame { columns, values, weighted, cells_with_frame: cells, deviations, .. } = frame;
@@ -196,7 +196,7 @@ impl View<'_> {
         let agreement = if total > 0.0 { agreeing / total } else { 0.0 };
         let iterations = proposal.iterations;
         let (spread, weight) = (spread * radius * typical, deviations.weight());
-        FrameMeasurement { agreement, new_points, innovation, iterations, noise, spread, weight }
+        (FrameMeasurement { agreement, new_points, innovation, iterations, noise, spread, weight }, limit)
     }
 }
 

@@ -2,8 +2,9 @@
 use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::{Matrix3, SMatrix, SVector};
 
+use super::gate::Agreeing;
 use crate::{
-    measurement::{Frame, View, spread},
+    measurement::{Frame, View},
     tuning::update::UNTOLD_DIRECTION,
 };
 
@@ -13,10 +14,8 @@ impl View<'_> {
     /// Of all directions that the pose may err in, the one that points which agree with the outline say least of: how much that is of what a frame
     /// with as many points is to say, in [0, 1]. Most of the points of a bar say nothing of where it lies along itself: where those of its ends
     /// disagree, or are taken for points of its sides, nearly all agree, and the share is next to nothing. What a frame with gaps does not show is
-    /// not asked of it, and directions that the outline does not show are left out.
-    pub(crate) fn weakest_agreement(&self, frame: &mut Frame) -> f64 {
-        let spread = spread(frame, self.noise.sigma);
-        let limit = self.agreeing(frame, spread);
+    /// not asked of it, and directions that the outline does not show are left out. `limit` is what agrees in the frame.
+    pub(crate) fn weakest_agreement(&self, frame: &mut Frame, limit: &Agreeing) -> f64 {
         let Frame { columns, weighted, deviations, pieces, .. } = frame;
         let (cells, model) = (self.map.cells(), self.belief.model);
         // Of each cell, what its points count for, and those of them that agree.
@@ -76,7 +75,7 @@ mod tests {
     use nalgebra::Point2;
 
     use crate::{
-        measurement::{Frame, Pass},
+        measurement::{Frame, Pass, spread},
         track::Track,
     };
 
@@ -98,7 +97,9 @@ mod tests {
         frame.load(&bar(along), track.reference());
         let pose = *track.body_pose();
         track.view().measure_by_columns(&mut frame, &pose, &[], Pass::First);
-        track.view().weakest_agreement(&mut frame)
+        let spread = spread(&mut frame, track.sigma());
+        let limit = track.view().agreeing(&frame, spread);
+        track.view().weakest_agreement(&mut frame, &limit)
     }
 
     #[test]

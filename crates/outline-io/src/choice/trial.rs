@@ -6,7 +6,7 @@ use image::GrayImage;
 
 use super::scaled::{factor_for, scaled};
 use super::sight::Sight;
-use super::{PictureSample, Tracing, TracingWay};
+use super::{BURST, PictureSample, Tracing, TracingWay};
 use crate::background::Background;
 use crate::channel::Channel;
 use crate::contrast::Contrast;
@@ -79,14 +79,15 @@ impl Trial {
             .map(|picture| if further == 1 { Arc::clone(picture) } else { Arc::new(scaled(picture, further)) })
             .collect();
         // Whole bursts, from first to last.
-        let bursts: Vec<usize> = (0..all.len()).step_by(3).collect();
-        let wanted = (count / 3).min(bursts.len()).max(1);
+        let burst = BURST as usize;
+        let bursts: Vec<usize> = (0..all.len()).step_by(burst).collect();
+        let wanted = (count / burst).min(bursts.len()).max(1);
         let mut chosen: Vec<usize> = if count >= all.len() {
             (0..all.len()).collect()
         } else {
             (0..wanted)
                 .map(|k| bursts[k * (bursts.len() - 1) / (wanted - 1).max(1)])
-                .flat_map(|b| b..(b + 3).min(all.len()))
+                .flat_map(|b| b..(b + burst).min(all.len()))
                 .collect()
         };
         chosen.dedup();
