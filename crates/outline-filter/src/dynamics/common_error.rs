@@ -40,6 +40,11 @@ impl CommonError {
         Self { model, covariance, linear: reference.linear(), shift: SVector::zeros() }
     }
 
+    /// Whether a deviation of it is beyond a limit, in radians or RMS radii.
+    pub(super) fn is_beyond(&self, limit: f64) -> bool {
+        self.covariance.diagonal().iter().any(|variance| *variance > limit * limit)
+    }
+
     /// Its covariance about the centroid in a pose.
     pub(super) fn covariance_in(&self, pose: &CentredPose) -> Option<CentredMatrix> {
         let map = as_map(&(pose.linear() * self.linear.try_inverse()?));

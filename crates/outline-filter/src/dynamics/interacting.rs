@@ -55,7 +55,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
 
 impl<const N: usize> InteractingHypotheses<N> {
     /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
-    /// (projective), and numbers that do not allow it.
+    /// (projective), numbers that do not allow it, and where the outline does not tell the pose yet.
     /// The place is the object's centroid in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
@@ -75,6 +75,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         let of_poses = Summary { covariance: *given_outline, ..*summary };
         let (_, measured) = of_poses.about_centroid::<N>(&change, k);
         let common = CommonError::of_outline(model, &covariance, &measured, &reference);
+        if common.is_beyond(tuning::UNTOLD) {
+            return None;
+        }
         for (i, j) in (0..2 * k).flat_map(|i| (0..k).map(move |j| (i, j))) {
             (covariance[(i, j)], covariance[(j, i)]) = (measured[(i, j)], measured[(j, i)]);
         }

@@ -343,14 +343,14 @@ impl TurnHypotheses {
         self.rival_turns.iter().zip(tracks).filter_map(|(turn, track)| Some((*turn, track?)))
     }
 
-    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew; those that have none are
-    /// none any more.
+    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew. Frames that none could be
+    /// made of have decided against a hypothesis.
     pub(super) fn remap(&mut self, mut track_of: impl FnMut(f64) -> Option<Track>) {
         for index in (0..self.rivals.len()).rev() {
             if let Some(track) = &mut self.rivals[index].track {
                 match track_of(self.rival_turns[index]) {
                     Some(new) => *track = new,
-                    None => self.remove(index),
+                    None => self.rule_out(index),
                 }
             }
         }
