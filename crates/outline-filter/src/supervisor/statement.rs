@@ -10,7 +10,7 @@ use super::{
 use crate::{
     belief::StateMatrix,
     dynamics::{CentredDeviations, Purpose, WrongFamily},
-    track::TurnTold,
+    track::{TurnOfPose, TurnTold},
     tuning::statement as tuning,
 };
 
@@ -172,7 +172,9 @@ impl MotionFilter {
         let estimate = self.estimate()?;
         let mut observable = [false; MAX_PARAMETERS];
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
-        self.track.as_ref()?.state_of(&self.statement()?.all, self.clock.of_track, observable)
+        let turn =
+            if self.turn_hypotheses.are_doubtful() { TurnOfPose::Ambiguous } else { TurnOfPose::AsTheOutlineShows };
+        self.track.as_ref()?.state_of(&self.statement()?.all, self.clock.of_track, observable, turn)
     }
 
     /// Velocity of the object's centroid, that of the area within its known outline (the centre of its cells where that is not one closed

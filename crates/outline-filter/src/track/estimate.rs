@@ -28,6 +28,14 @@ pub(crate) enum TurnTold {
     ByPath,
 }
 
+/// How far the turn of a pose is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TurnOfPose {
+    AsTheOutlineShows,
+    /// Other turns explain the frames as well: how far the object has turned is not known.
+    Ambiguous,
+}
+
 impl Track {
     /// What is believed of pose and motion, normalised; `None` where the covariance cannot be computed.
     pub(crate) fn summary(&self) -> Option<Summary> {
@@ -192,6 +200,7 @@ impl Track {
         summary: &Summary,
         time: f64,
         observable: [bool; MAX_PARAMETERS],
+        turn: TurnOfPose,
     ) -> Option<MotionState> {
         let (belief, variance, k) = (&self.belief, self.noise.effective_variance(), self.belief.parameter_count());
         let covariance = DMatrix::from_fn(2 * k, 2 * k, |i, j| summary.covariance[(i, j)]);
@@ -216,7 +225,7 @@ impl Track {
             covariance: in_seconds(covariance),
             covariance_given_outline: in_seconds(given_outline),
             observable,
-            hidden: self.hidden_rates(),
+            hidden: self.hidden_rates(turn),
             centroid: self.map.centroid(),
         };
         Some(state.into())
@@ -260,11 +269,17 @@ impl Track {
         is_worth(deviation, span.max(memory.span.min(STEPS_KNOWN * memory.step)), displacement)
     }
 
-    /// Rates that take part in a motion about the centroid which the outline does not show.
-    fn hidden_rates(&self) -> [bool; MAX_PARAMETERS] {
+    /// Rates that take part in a motion about the centroid which the outline does not show, or in a turn that is ambiguous.
+    fn hidden_rates(&self, turn: TurnOfPose) -> [bool; MAX_PARAMETERS] {
         let (model, at) = (self.belief.model, self.centred_pose());
         let (change, kinds) = (at.about_centroid(model), model.parameter_kinds());
         let mut hidden = [false; MAX_PARAMETERS];
+        if turn == TurnOfPose::Ambiguous {
+            let about_centroid = self.turn_about_centroid().unwrap_or_default();
+            hidden.iter_mut().zip(kinds).zip(&about_centroid).for_each(|((hidden, kind), rate)| {
+                *hidden = *kind == ParameterKind::Rate && *rate != 0.0;
+            });
+        }
         for null in self.map.null_directions(model, &self.belief.pose) {
             let centred = change * SVector::<f64, MAX_PARAMETERS>::from(null.direction);
             let least = TAKES_PART * centred.amax();

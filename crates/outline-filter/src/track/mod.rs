@@ -28,7 +28,7 @@ mod turn_profile;
 mod unmodelled;
 mod usual_agreement;
 
-pub(crate) use estimate::TurnTold;
+pub(crate) use estimate::{TurnOfPose, TurnTold};
 pub use known_outline::{KnownOutline, KnownPiece};
 pub(crate) use outcome::{Comparison, Doubt, Outcome};
 pub(crate) use remapping::PlacedFrame;
