@@ -1,6 +1,7 @@
 //! Global registration: an object that is known as a track looked for in a frame, without a guess of how it has moved.
 mod landmarks;
 mod linearised;
+mod near_symmetry;
 mod nearby;
 mod outlook;
 mod refinement;

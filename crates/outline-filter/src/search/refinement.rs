@@ -24,6 +24,15 @@ pub(crate) struct RegisteredPose {
     pub(crate) turn: f64,
 }
 
+impl RegisteredPose {
+    /// Takes the score that it has by other points of the frame.
+    pub(super) fn score_by(&mut self, track: &Track, points: &[Point2<f64>]) {
+        if self.score.is_finite() {
+            self.score = mean_distance(track, points, &self.pose, &mut vec![0; points.len()]);
+        }
+    }
+}
+
 /// How a start is followed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Steps {

@@ -3,6 +3,7 @@ use nalgebra::{Matrix3, Point2, Vector2};
 
 use super::{
     Landmarks,
+    near_symmetry::turns_of_near_symmetry,
     outlook::Outlook,
     refinement::{RegisteredPose, Steps, few_of, refined},
 };
@@ -95,6 +96,14 @@ impl Registration {
         let slides = track.map().has_ends() && track.map().is_mostly_straight();
         let apart = if slides { tuning::SAME_BY_FEW } else { tuning::SAME_POSE };
         let mut rigid = distinct(rigid, apart);
+        // Where it has hidden parts, few starts lead to a tooth of a gear, and those to any.
+        let turns = turns_of_near_symmetry(&rigid);
+        rigid.extend(turns.iter().map(|start| refined(track, &few, MotionModel::Rigid, start, Steps::FURTHER)));
+        let mut rigid = distinct(rigid, apart);
+        if rigid.len() > tuning::REFINED {
+            // Few points have a handful on each tooth of a gear: they do not tell which of its turns a mark agrees with.
+            rigid.iter_mut().for_each(|found| found.score_by(track, points));
+        }
         keep(&mut rigid, tuning::REFINED);
         let outlook = rigid.first().map_or(Outlook::Open, |best| outlook_by(best.spread));
         if outlook == Outlook::Hopeless {

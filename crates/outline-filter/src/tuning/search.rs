@@ -104,6 +104,11 @@ pub(crate) mod registration {
     /// reach ([`TUKEY`] times [`WIDEST_REFINED`]). Few points hardly tell how far such an outline has gone along itself, and no refinement
     /// brings together what is farther apart.
     pub(crate) const SAME_BY_FEW: f64 = TUKEY * WIDEST_REFINED;
+    /// Turns of poses that were found lie so near to multiples of a part of a circle, rad, where an outline nearly looks the same after it: few points tell
+    /// a turn to a hundredth.
+    pub(crate) const OFF_NEAR_SYMMETRY: f64 = 0.02;
+    /// Largest number of parts that is looked for: multiples of smaller ones are met by chance.
+    pub(crate) const LARGEST_NEAR_SYMMETRY: usize = 40;
     /// A score up to this many times the best is a tie.
     pub(crate) const TIE: f64 = 1.25;
     /// Tukey's constant for 95 % efficiency at Gaussian noise.
