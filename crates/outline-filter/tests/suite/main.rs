@@ -17,6 +17,7 @@ mod long_bars;
 mod lost_objects;
 mod mask_rounding;
 mod moving_poses;
+mod near_symmetry;
 mod plane;
 mod point_deviations;
 mod recorded;

@@ -1,0 +1,107 @@
+//! Bodies that look the same, or nearly so, after a turn.
+use std::f64::consts::TAU;
+
+use freeform_curve_fit::{OpenArc, OpenOutline, Outline};
+use freeform_outline_filter::MotionFilter;
+use freeform_riccati::MotionModel;
+use nalgebra::{Point2, Rotation2, Vector2};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+
+use crate::{filter_support::filter, gaps::points_on};
+
+/// Frames of a polygon that turns by `per_frame`, rad, anticlockwise, and moves straight on; `after` looks at the filter after each.
+fn follow(
+    polygon: &[Point2<f64>],
+    (count, frames): (u32, u32),
+    (per_frame, step): (f64, Vector2<f64>),
+    seed: u64,
+    mut after: impl FnMut(u32, &MotionFilter),
+) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut run = filter(MotionModel::Rigid);
+    for frame in 0..frames {
+        let (turn, shift) = (per_frame * f64::from(frame), step * f64::from(frame));
+        let outline = Outline::closed(points_on(polygon, count, (turn, shift), &mut random)).expect("an outline");
+        run.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
+        after(frame, &run);
+    }
+}
+
+/// An outline of one open piece.
+fn arc(points: Vec<Point2<f64>>) -> Outline {
+    Outline::Open(OpenOutline::new(vec![OpenArc::new(points).expect("an arc")]).expect("an outline"))
+}
+
+/// The map that is cut anew from many frames of few points has cells that only one of them shows.
+#[test]
+fn poses_of_few_points_keep_deviations_that_a_pose_can_have() {
+    let shape = [(-1.0, -0.7), (1.1, -0.5), (0.8, 0.6), (0.1, 0.3), (-0.6, 0.9)].map(|(x, y)| Point2::new(x, y));
+    let mut all = 0;
+    for seed in 0..12 {
+        follow(&shape, (40, 40), (0.027, Vector2::new(0.016, -0.01)), seed, |frame, run| {
+            let Some(state) = run.state().filter(|_| frame > 4) else { return };
+            all += 1;
+            for parameter in state.pose_parameters() {
+                assert!(parameter.standard_deviation < 0.2, "seed {seed}, frame {frame}: {parameter:?}");
+            }
+        });
+    }
+    assert!(all > 300, "{all}");
+}
+
+/// A constant generator does not have a middle that moves straight on, and least of all with the faster of two turns: the map cut anew could not be
+/// followed with it.
+#[test]
+fn a_rectangle_that_may_have_turned_either_way_keeps_both_turns_when_its_map_is_cut_anew() {
+    let rectangle = [(-1.5, -0.7), (1.5, -0.7), (1.5, 0.7), (-1.5, 0.7)].map(|(x, y)| Point2::new(x, y));
+    for seed in 0..6 {
+        follow(&rectangle, (200, 30), (2.0, Vector2::new(0.0167, -0.01)), seed, |frame, run| {
+            if frame < 2 {
+                return;
+            }
+            assert!(run.ambiguity().is_some(), "seed {seed}, frame {frame}: {:?}", run.estimate());
+            let angle = run.state().expect("a state").pose_parameters()[0];
+            assert!(angle.value.is_nan() && angle.standard_deviation.is_infinite(), "{frame}: {angle:?}");
+        });
+    }
+}
+
+/// A gear of which a part is hidden, another one in every frame, with a tooth that is cut off: few starts of a search lead to a tooth.
+#[test]
+fn a_gear_with_a_mark_and_a_gap_is_found_on_its_own_tooth() {
+    const TEETH: u32 = 14;
+    let corners = [(0.0, 1.0), (0.12, 1.5), (0.48, 1.5), (0.6, 1.0)];
+    let corner = |i: u32| {
+        let height = if i == 5 { 1.15 } else { 1.5 };
+        corners.map(|(share, radius)| ((f64::from(i) + share) * TAU / f64::from(TEETH), f64::min(radius, height)))
+    };
+    let gear: Vec<_> = (0..TEETH)
+        .flat_map(corner)
+        .map(|(angle, radius)| Point2::new(radius * angle.cos(), radius * angle.sin()))
+        .collect();
+    let (mut all, mut off) = (0, 0);
+    for seed in 0..24 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let per_frame = random.random_range(0.05..0.15) * if seed % 2 == 0 { 1.0 } else { -1.0 };
+        let mut run = filter(MotionModel::Rigid);
+        for frame in 0..6 {
+            let turn = per_frame * f64::from(frame);
+            let mut points = points_on(&gear, 600, (turn, Vector2::zeros()), &mut random);
+            points.rotate_left(random.random_range(0..600));
+            points.truncate(430);
+            let outline = arc(points);
+            run.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
+            let Some((state, pose)) = run.state().zip(run.pose()) else { continue };
+            let angle = state.pose_parameters()[0];
+            if run.segment() > 0 || angle.value.is_nan() {
+                continue;
+            }
+            all += 1;
+            let error = (Rotation2::new(-turn) * pose.matrix().fixed_view::<2, 1>(0, 0)).angle(&Vector2::x());
+            off += u32::from(error > 6.0 * angle.standard_deviation);
+        }
+    }
+    assert!(all > 60, "{all}");
+    assert!(off <= 1, "{off} of {all} turns");
+}
