@@ -155,7 +155,9 @@ impl Rounds {
         let stride = points.div_ceil(PLENTY).max(1);
         let gate = Gate { smallest_agreement, largest_innovation: None, largest_noise: None };
         let measure = |track: &mut Track, buffers: &mut Frame, seconds: f64, outline: &Outline| {
-            track.predict(seconds);
+            if !track.predict(seconds) {
+                return false;
+            }
             buffers.load(outline, track.reference());
             track.update(buffers, &gate, Comparison::NotAsked).is_accepted()
         };

@@ -24,7 +24,7 @@ proptest! {
         dense.predict(&transition(belief.model, &belief.motion[..belief.parameter_count()], seconds));
         let flow = (belief.model.generator(&belief.motion[..belief.parameter_count()]) * seconds).exp();
         let expected = flow * belief.pose;
-        prop_assert!(belief.predict(seconds).is_some());
+        prop_assert!(belief.predict(seconds, |_| true).is_some());
         // Projective maps are the same up to a factor.
         let pose = belief.pose * (expected[(2, 2)] / belief.pose[(2, 2)]);
         prop_assert!((pose - expected).norm() < AGREES * expected.norm());
@@ -82,7 +82,7 @@ proptest! {
         for _ in 0..4 {
             let seconds = problem.seconds();
             dense.predict(&transition(model, &problem.belief.motion[..k], seconds));
-            prop_assert!(problem.belief.predict(seconds).is_some());
+            prop_assert!(problem.belief.predict(seconds, |_| true).is_some());
             let measurements = random_measurements(&mut problem.rng, k, 0..cells, 2 * cells);
             measurements.iter().for_each(|m| dense.measure(m));
             let mut frame = Frame::of_measurements(measurements, cells);
@@ -156,7 +156,7 @@ fn deviations_over_those_of_the_dense_filter(frames: usize, changes: f64) -> Vec
     for frame in 0..frames {
         if frame > 0 {
             dense.predict(&transition(model, &belief.motion[..3], seconds));
-            assert!(belief.predict(seconds).is_some());
+            assert!(belief.predict(seconds, |_| true).is_some());
             dense.add_covariance(&added);
             belief.add_process_noise(&noise, seconds, 1.0, sigma * sigma);
         }

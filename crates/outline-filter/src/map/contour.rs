@@ -44,6 +44,11 @@ impl Contour {
         contour
     }
 
+    /// Takes over what has been worked out of the same points, whichever of them were outliers.
+    pub(super) fn adopt_regressions(&mut self, other: &Self) {
+        self.plain.adopt(&other.plain);
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.points.len()
     }
@@ -305,10 +310,14 @@ impl Contour {
 
     /// Least-squares quadratic of position against the number of the point, over the point and the nearest neighbours on either side that
     /// are not outliers.
+    #[inline(always)]
     fn local_fit(&self, i: usize, half_window: usize) -> Option<LocalFit> {
-        if let Some(fit) = self.plain.at(i, half_window) {
-            return Some(fit);
-        }
+        self.plain.at(i, half_window).or_else(|| self.fit_of_inliers(i, half_window))
+    }
+
+    /// As [`local_fit`](Self::local_fit), whatever is in the window.
+    #[inline(never)]
+    fn fit_of_inliers(&self, i: usize, half_window: usize) -> Option<LocalFit> {
         let w = half_window as isize;
         let (origin, width) = (self.points[i], w as f64);
         let mut sums = Sums::default();

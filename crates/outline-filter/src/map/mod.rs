@@ -13,6 +13,7 @@ mod outline_map;
 mod plain_regression;
 mod redrawing;
 mod rest;
+mod shown;
 mod turn_evidence;
 
 pub(crate) use chains::{CellPoint, has_common_places};

@@ -6,7 +6,7 @@ use super::{
     OutlineMap,
     centring::{Centring, NormalByNeighbours, Stretch},
     local_fit::direction_variance,
-    rest::{Rest, add_square},
+    rest::{Rest, add_square, eigen_of_block},
     turn_evidence::{TurnEvent, TurnEvidence},
 };
 use crate::tuning::{
@@ -168,8 +168,7 @@ impl OutlineMap {
         let count = self.cells.len() as f64;
         let contours = self.closed_contours();
         let centring = Centring::of(&self.cells, model, sigma, Self::area_covariance(&contours));
-        let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
-        levers.view_mut((0, 0), (k, k)).fill(0.0);
+        let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
         // What errors of the normals alone would make of the levers.
         let mut levers_of_noise = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
         let mut of_cells = Vec::with_capacity(self.cells.len());
@@ -193,17 +192,16 @@ impl OutlineMap {
             && of_places >= tuning::SHOWN_BY_PLACES.max(tuning::PLACES_PER_NOISE * noise * noise);
         let of_normals = direction_variance(sigma / self.step, self.half_window);
         let needed = tuning::HARDLY_SHOWN.min(tuning::LEAST_LEVER_PER_NOISE * of_normals);
-        let eigen = levers.symmetric_eigen();
         let to_body = centring.to_body();
         let space = &mut self.null_space;
         space.in_body.clear();
         (space.weakest_turn, space.turn_without_most, space.turn_of_rest) = (f64::INFINITY, f64::INFINITY, None);
         let mut unseen: Vec<ParameterVector> = Vec::new();
-        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        for (value, vector) in eigen_of_block(&levers, k) {
             let of_noise = (vector.transpose() * levers_of_noise * vector)[(0, 0)];
-            let told = *value - of_noise;
+            let told = value - of_noise;
             let generator = model.generator(&vector.as_slice()[..k]);
-            let mut is_shown = *value >= tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise);
+            let mut is_shown = value >= tuning::DEGENERATE.max(tuning::EXPLAINED * of_noise);
             let is_turn = turn_rate(&generator).abs() > tuning::HOLDS_TURN;
             if is_turn && places_show_turn {
                 space.weakest_turn = space.weakest_turn.min(told.max(of_places));
@@ -212,7 +210,7 @@ impl OutlineMap {
                 space.weakest_turn = space.weakest_turn.min(told);
                 // Where the outline may be stretched, frames are not asked whether they tell a turn (`turn_profile`).
                 if centring.stretch().is_none() {
-                    let rest = Rest::of(&of_cells, &vector.into_owned(), k);
+                    let rest = Rest::of(&of_cells, &vector, k);
                     // A long bar without its ends does not show where it is along itself, which is no turn.
                     if let Some(turn) = rest.turn(model, &to_body)
                         && rest.lever - of_noise < space.turn_without_most

@@ -130,17 +130,25 @@ pub(crate) struct Resolution {
     step: f64,
 }
 
-/// Contours with the deviation of the noise of each; those that tell none are left out.
+/// Contours with the deviation of the noise of each, if they tell it.
 #[derive(Debug)]
-pub(crate) struct ContourNoise(Vec<(Contour, f64)>);
+pub(crate) struct ContourNoise(Vec<(Contour, Option<f64>)>);
 
 impl ContourNoise {
     pub(crate) fn of(contours: &[Contour]) -> Self {
         let with_noise = |contour: &Contour| {
             let mut contour = contour.clone();
-            contour.noise().map(|noise| (contour, noise))
+            let noise = contour.noise();
+            (contour, noise)
         };
-        Self(contours.iter().filter_map(with_noise).collect())
+        Self(contours.iter().map(with_noise).collect())
+    }
+
+    /// Hands on to the contours what has been worked out of them.
+    pub(crate) fn hand_on_regressions(&self, contours: &mut [Contour]) {
+        for (contour, (known, _)) in contours.iter_mut().zip(&self.0) {
+            contour.adopt_regressions(known);
+        }
     }
 }
 
@@ -150,6 +158,7 @@ impl Resolution {
     pub(crate) fn of(contours: &mut ContourNoise, least_noise: f64, points: usize, normal_noise: f64) -> (Self, f64) {
         let (mut variance, mut count, mut length, mut window) = (0.0, 0.0, 0.0, 2);
         for (contour, noise) in &mut contours.0 {
+            let Some(noise) = *noise else { continue };
             let (weight, sigma) = (contour.len() as f64, noise.max(least_noise));
             window = contour.half_window(sigma, normal_noise).max(window);
             variance += weight * sigma * sigma;

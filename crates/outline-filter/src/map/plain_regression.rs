@@ -1,5 +1,7 @@
 //! Local quadratics of all points of a contour together, where no outlier is near: the powers of the numbers of the points have the same sums
 //! in every window.
+use std::sync::Arc;
+
 use nalgebra::Point2;
 
 use super::local_fit::LocalFit;
@@ -9,7 +11,9 @@ use crate::vectors::vectorised;
 #[derive(Debug, Clone, Default)]
 pub(super) struct PlainRegression {
     half_window: usize,
-    fits: Vec<LocalFit>,
+    fits: Arc<[LocalFit]>,
+    /// Those with every window that has been asked for: they do not depend on which points are outliers.
+    known: Vec<(usize, Arc<[LocalFit]>)>,
     /// Outliers before each place of the window of the first point, and of those that follow.
     outliers: Vec<u32>,
 }
@@ -21,35 +25,50 @@ impl PlainRegression {
             return;
         }
         self.half_window = half_window;
-        self.fits.clear();
+        let known = self.known.iter().find(|(known, _)| *known == half_window);
+        self.fits = known.map_or_else(|| Self::fitted(points, closed, half_window).into(), |(_, fits)| fits.clone());
+        if known.is_none() {
+            self.known.push((half_window, self.fits.clone()));
+        }
+    }
+
+    /// Takes over the regressions that are known of the same points.
+    pub(super) fn adopt(&mut self, other: &Self) {
+        self.known.clone_from(&other.known);
+    }
+
+    /// None where the contour is shorter than a window.
+    fn fitted(points: &[Point2<f64>], closed: bool, half_window: usize) -> Vec<LocalFit> {
         let count = points.len();
         if count < 2 * half_window + 1 || half_window < 2 {
-            return;
+            return Vec::new();
         }
-        self.fits.resize(count, LocalFit::default());
+        let moments = Moments::of(half_window);
+        let unknown = LocalFit { residual_variance: 1.0 - moments.by_own, ..LocalFit::default() };
+        let mut fits = vec![unknown; count];
         // The points around the contour, or along it where every window ends within.
         let reach = if closed { half_window } else { 0 };
-        let mut coordinates = [0, 1].map(|_| Vec::with_capacity(count + 2 * reach));
+        let mut places = Vec::with_capacity(count + 2 * reach);
         for points in [&points[count - reach..], points, &points[..reach]] {
-            coordinates[0].extend(points.iter().map(|p| p.x));
-            coordinates[1].extend(points.iter().map(|p| p.y));
+            places.extend(points.iter().map(|p| [p.x, p.y]));
         }
         let first = if closed { 0 } else { half_window };
-        let windows = coordinates[0].len() - 2 * half_window;
-        let mut sums = vec![[0.0; 3]; windows];
-        let moments = Moments::of(half_window);
-        for (axis, values) in coordinates.iter().enumerate() {
-            vectorised(
-                #[inline(always)]
-                || moments.add_windows(values, half_window, &mut sums),
-            );
-            let own = values[half_window..].iter();
-            for (fit, (sums, own)) in self.fits[first..].iter_mut().zip(sums.iter().zip(own)) {
-                let [off, slope] = moments.solve(sums);
-                (fit.position.coords[axis], fit.tangent[axis]) = (own + off, slope);
-            }
-        }
-        self.fits.iter_mut().for_each(|fit| fit.residual_variance = 1.0 - moments.by_own);
+        vectorised(
+            #[inline(always)]
+            || {
+                moments.for_each_window(
+                    &places,
+                    #[inline(always)]
+                    |window, sums| {
+                        let ([off, slope], own) = (moments.solve(sums), places[window + half_window]);
+                        let fit = &mut fits[first + window];
+                        fit.position = Point2::new(own[0] + off[0], own[1] + off[1]);
+                        fit.tangent = slope.into();
+                    },
+                );
+            },
+        );
+        fits
     }
 
     /// Counts the outliers of a contour.
@@ -75,6 +94,7 @@ impl PlainRegression {
     }
 
     /// That of a point, unless its window is another, reaches beyond an end or holds an outlier.
+    #[inline(always)]
     pub(super) fn at(&self, i: usize, half_window: usize) -> Option<LocalFit> {
         let is_plain = self.half_window == half_window
             && !self.fits.is_empty()
@@ -83,8 +103,12 @@ impl PlainRegression {
     }
 }
 
+/// A number for each of the two coordinates.
+type Pair = [f64; 2];
+
 /// Sums of the powers of the places of a window, which lie from -1 to 1.
 struct Moments {
+    half_window: usize,
     second: f64,
     /// Of the inverse of the normal equations of value and bend.
     by_own: f64,
@@ -98,52 +122,102 @@ impl Moments {
         let fourth = 2.0 * places().map(|u| u.powi(4)).sum::<f64>();
         let count = (2 * half_window + 1) as f64;
         let determinant = count * fourth - second * second;
-        Self { second, by_own: fourth / determinant, by_bend: -second / determinant }
+        Self { half_window, second, by_own: fourth / determinant, by_bend: -second / determinant }
     }
 
     /// Sums of the values of every window, less that in its middle, times the first three powers of their places.
+    ///
+    /// A window holds one place whose number is a multiple of its length. What lies before that and what follows it are sums of earlier ones with one
+    /// value more (van Herk 1992), about that place and its value, and are then taken to the middle. Only values of the window ever enter: with sums
+    /// that run on, a far outlier would leave its rounding in all windows after it.
     #[inline(always)]
-    fn add_windows(&self, values: &[f64], half_window: usize, sums: &mut [[f64; 3]]) {
-        const LANES: usize = 8;
-        let unit = 1.0 / half_window as f64;
-        for (chunk, sums) in sums.chunks_mut(LANES).enumerate() {
-            let start = chunk * LANES + half_window;
-            let mut of_lanes = [[0.0; LANES]; 3];
-            if sums.len() == LANES {
-                let mut middle = [0.0; LANES];
-                middle.copy_from_slice(&values[start..start + LANES]);
-                for place in 1..=half_window {
-                    let u = place as f64 * unit;
-                    let (before, after) = (&values[start - place..][..LANES], &values[start + place..][..LANES]);
-                    for lane in 0..LANES {
-                        let (even, odd) = (before[lane] + after[lane] - 2.0 * middle[lane], after[lane] - before[lane]);
-                        of_lanes[0][lane] += even;
-                        of_lanes[1][lane] += u * odd;
-                        of_lanes[2][lane] += u * u * even;
-                    }
-                }
-            } else {
-                for (lane, _) in sums.iter().enumerate() {
-                    let at = start + lane;
-                    for place in 1..=half_window {
-                        let u = place as f64 * unit;
-                        let (before, after) = (values[at - place], values[at + place]);
-                        let (even, odd) = (before + after - 2.0 * values[at], after - before);
-                        of_lanes[0][lane] += even;
-                        of_lanes[1][lane] += u * odd;
-                        of_lanes[2][lane] += u * u * even;
-                    }
-                }
+    fn for_each_window(&self, values: &[Pair], mut visit: impl FnMut(usize, &[Pair; 3])) {
+        let (half_window, length) = (self.half_window, 2 * self.half_window + 1);
+        let (count, unit) = (length as f64, 1.0 / self.half_window as f64);
+        let Some(last_window) = values.len().checked_sub(length) else { return };
+        let mut following = vec![[[0.0; 2]; 3]; length];
+        for middle in (0..values.len()).step_by(length) {
+            let windows = (middle + 1).saturating_sub(length)..=middle.min(last_window);
+            if windows.is_empty() {
+                break;
             }
-            for (lane, sums) in sums.iter_mut().enumerate() {
-                // A closure would be called.
-                *sums = [of_lanes[0][lane], of_lanes[1][lane], of_lanes[2][lane]];
+            let about = values[middle];
+            let mut sums = [[0.0; 2]; 3];
+            let last = (windows.end() + length).min(values.len());
+            for (number, (value, following)) in values[middle..last].iter().zip(&mut following).enumerate() {
+                add_value(&mut sums, number as f64 * unit, value, &about);
+                *following = sums;
+            }
+            let mut before = [[0.0; 2]; 3];
+            for window in (*windows.start()..=middle).rev() {
+                let from_middle = middle as f64 - window as f64;
+                if window < middle {
+                    add_value(&mut before, -from_middle * unit, &values[window], &about);
+                }
+                if window > last_window {
+                    continue;
+                }
+                let following = &following[window + length - 1 - middle];
+                let (own, shift) = (values[window + half_window], from_middle * unit - 1.0);
+                let mut sums = [[0.0; 2]; 3];
+                for axis in 0..2 {
+                    // Written one by one: a closure would be called.
+                    let whole = before[0][axis] + following[0][axis];
+                    let first = before[1][axis] + following[1][axis];
+                    let second = before[2][axis] + following[2][axis];
+                    let own = own[axis] - about[axis];
+                    sums[0][axis] = whole - count * own;
+                    sums[1][axis] = first + shift * whole;
+                    sums[2][axis] = second + shift * (2.0 * first + shift * whole) - self.second * own;
+                }
+                visit(window, &sums);
             }
         }
     }
 
     /// Value in the middle, less that of its point, and slope.
-    fn solve(&self, [whole, first, second]: &[f64; 3]) -> [f64; 2] {
-        [self.by_own * whole + self.by_bend * second, first / self.second]
+    #[inline(always)]
+    fn solve(&self, [whole, first, second]: &[Pair; 3]) -> [Pair; 2] {
+        let Self { by_own, by_bend, second: square, .. } = self;
+        let off = [by_own * whole[0] + by_bend * second[0], by_own * whole[1] + by_bend * second[1]];
+        [off, [first[0] / square, first[1] / square]]
+    }
+}
+
+/// Adds a value at a place, less another, to sums of values times powers of their places.
+#[inline(always)]
+fn add_value(sums: &mut [Pair; 3], place: f64, value: &Pair, about: &Pair) {
+    for axis in 0..2 {
+        let value = value[axis] - about[axis];
+        sums[0][axis] += value;
+        sums[1][axis] += place * value;
+        sums[2][axis] += place * place * value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outlier_however_far_leaves_no_rounding_in_windows_without_it() {
+        for (count, closed, half_window) in [(130, true, 9), (77, false, 4), (401, true, 30)] {
+            let place = |i: u32| {
+                let t = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+                Point2::new(3.0 + t.cos(), t.sin() + 0.1 * (7.0 * t).sin())
+            };
+            let points: Vec<_> = (0..count).map(place).collect();
+            let expected = PlainRegression::fitted(&points, closed, half_window);
+            for far in [1e3, 1e100] {
+                let mut spoilt = points.clone();
+                spoilt[41] *= far;
+                let found = PlainRegression::fitted(&spoilt, closed, half_window);
+                let around = |i: usize| i.abs_diff(41).min(count as usize - i.abs_diff(41));
+                for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
+                    let apart = (found.position - expected.position).norm() + (found.tangent - expected.tangent).norm();
+                    assert_eq!(around(i) > half_window, apart < 1e-13, "{count} {i} {far}: {apart}");
+                }
+            }
+        }
     }
 }

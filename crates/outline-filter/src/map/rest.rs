@@ -19,6 +19,27 @@ pub(super) fn add_square(
     }
 }
 
+/// Eigenvalues of the first rows and columns of a symmetric matrix, of which no others are asked for, and their vectors; as many as there are
+/// entries.
+pub(super) fn eigen_of_block(
+    matrix: &SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>,
+    entries: usize,
+) -> Vec<(f64, SVector<f64, MAX_PARAMETERS>)> {
+    macro_rules! of_size {
+        ($k:literal) => {{
+            let eigen = matrix.fixed_view::<$k, $k>(0, 0).into_owned().symmetric_eigen();
+            let vector = |j: usize| SVector::from_fn(|i, _| if i < entries { eigen.eigenvectors[(i, j)] } else { 0.0 });
+            (0..entries).map(|j| (eigen.eigenvalues[j], vector(j))).collect()
+        }};
+    }
+    match entries {
+        3 => of_size!(3),
+        4 => of_size!(4),
+        6 => of_size!(6),
+        _ => of_size!(8),
+    }
+}
+
 /// What is left of an outline where a frame disagrees with the cells that tell most of a direction of the pose.
 pub(super) struct Rest {
     /// Mean square of the levers that it has in the direction that it shows least, over all cells.
@@ -50,15 +71,13 @@ impl Rest {
             if kept < ordered.len() {
                 ordered.select_nth_unstable_by(kept, by_lever);
             }
-            let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::identity();
-            levers.view_mut((0, 0), (entries, entries)).fill(0.0);
+            let mut levers = SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::zeros();
             for (_, number) in &ordered[..kept.min(ordered.len())] {
                 let (across, count) = &of_cells[*number as usize];
                 add_square(&mut levers, across, count.recip(), entries);
             }
-            let eigen = levers.symmetric_eigen();
-            let least = eigen.eigenvalues.imin();
-            (rest.lever, rest.direction) = (eigen.eigenvalues[least], eigen.eigenvectors.column(least).into_owned());
+            let least = eigen_of_block(&levers, entries).into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+            (rest.lever, rest.direction) = least.unwrap_or((rest.lever, rest.direction));
         }
         rest
     }

@@ -18,11 +18,16 @@ pub(crate) struct ErrorTransition {
 impl Belief {
     /// Moves on by `seconds` of the estimated motion: `g <- exp(A(theta) dt) g`, information `<- F^-T . F^-1` with the error transition
     /// `F = [[Ad, V], [0, I]]`. `None`, and nothing changes, where the numbers
-    /// do not allow it.
-    pub(crate) fn predict(&mut self, seconds: f64) -> Option<ErrorTransition> {
+    /// do not allow it, or `is_shown` says of the pose that it does not show the outline.
+    pub(crate) fn predict(
+        &mut self,
+        seconds: f64,
+        is_shown: impl FnOnce(&Matrix3<f64>) -> bool,
+    ) -> Option<ErrorTransition> {
         let (model, k) = (self.model, self.information.k);
         let flow = model.flow(&self.motion[..k], seconds).into_inner();
         let inverse = flow.try_inverse().filter(|m| m.iter().all(|e| e.is_finite()))?;
+        let pose = Some(flow * self.pose).filter(is_shown)?;
         let sensitivities = model.flow_sensitivities(&self.motion[..k], seconds);
         let by_motion = model.parameter_columns(sensitivities.into_iter());
         let ad_inverse = model.adjoint(&inverse, &flow);
@@ -32,7 +37,7 @@ impl Belief {
                 product[i][j] = (0..k).map(|m| ad_inverse[i][m] * by_motion[m][j]).sum();
             }
         }
-        self.pose = flow * self.pose;
+        self.pose = pose;
         self.information.predict(&ad_inverse, &product);
         self.marginal = moved_marginal(&self.marginal, k, &ad_inverse, &product);
         self.memory.advance(seconds);

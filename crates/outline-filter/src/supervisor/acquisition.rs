@@ -27,7 +27,9 @@ impl MotionFilter {
         if self.phase == Phase::Lost {
             let gate = Gate { largest_innovation: Some(LARGEST_INNOVATION), ..gate(&self.settings, track) };
             let mut going_on = track.clone();
-            going_on.predict(seconds);
+            if !going_on.predict(seconds) {
+                return self.search(time, seconds, outline);
+            }
             self.frame.load(outline, going_on.reference());
             // Nearly all frames of a lost object show something else.
             let outcome = going_on
@@ -313,11 +315,10 @@ impl MotionFilter {
         let mut track = tried.clone();
         if self.phase == Phase::Lost {
             track.relocate(found.pose, seconds);
-        } else {
-            let change = found.pose * track.body_pose().try_inverse()?;
-            track.set_motion(self.settings.model.motion_between(&change, seconds)?);
-            track.predict(seconds);
+            return track.is_shown().then_some(track);
         }
-        Some(track)
+        let change = found.pose * track.body_pose().try_inverse()?;
+        track.set_motion(self.settings.model.motion_between(&change, seconds)?);
+        track.predict(seconds).then_some(track)
     }
 }

@@ -46,8 +46,8 @@ impl MotionFilter {
             return None;
         }
         let mut track = self.track.clone()?;
-        if seconds > 0.0 {
-            predict(&self.settings, &mut track, &mut self.history.clone(), seconds);
+        if seconds > 0.0 && !predict(&self.settings, &mut track, &mut self.history.clone(), seconds) {
+            return None;
         }
         let deviation = track.deviation_along_normals()? * track.reference().radius;
         deviation.is_finite().then(|| ExpectedOutline { pieces: track.pieces(), deviation })

@@ -229,7 +229,7 @@ impl Remapper<'_> {
             frame.load(outline, track.reference());
             let outcome = advance_again(self.settings, (track, frame), &mut history, seconds);
             poses.push(*track.body_pose());
-            outcome.is_accepted()
+            outcome.is_some_and(|outcome| outcome.is_accepted())
         })?;
         Some(Remapped { track, history, poses })
     }

@@ -264,17 +264,21 @@ impl MotionFilter {
         self.clock.unit.unwrap_or(1.0)
     }
 
-    /// Predicts and measures.
+    /// Predicts and measures; `None` where the object cannot be predicted, and is lost.
     fn follow(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
         let track = self.track.as_mut()?;
         let seconds = time - self.clock.of_track;
-        self.clock.of_track = time;
         let is_after_rejected = self.counts.rejected_in_a_row > 0;
         let (frame, comparison) = (&mut self.frame, self.turn_hypotheses.comparison());
         frame.load(outline, track.reference());
         let expected = track.is_all_but_round().then(|| (*track.body_pose(), track.turn_in(seconds)));
-        let mut outcome =
+        let advanced =
             advance(&self.settings, (track, frame), &mut self.history, seconds, is_after_rejected, comparison);
+        let Some(mut outcome) = advanced else {
+            self.phase = Phase::Lost;
+            return None;
+        };
+        self.clock.of_track = time;
         self.motion_changed |= self.history.is_changing();
         track.record_spread(&outcome.measurement);
         if outcome.is_accepted() && expected.is_some_and(|(before, turn)| track.turn_leaps(&before, turn)) {

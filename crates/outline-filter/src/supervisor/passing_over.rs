@@ -14,8 +14,11 @@ impl MotionFilter {
             let (track, history) = (track.clone(), self.history.clone());
             self.before_repeated = Some(Box::new(BeforeRepeated { track, history, time: self.clock.of_track }));
         }
-        predict(&self.settings, track, &mut self.history, time - self.clock.of_track);
-        self.clock.of_track = time;
+        if predict(&self.settings, track, &mut self.history, time - self.clock.of_track) {
+            self.clock.of_track = time;
+        } else {
+            self.phase = Phase::Lost;
+        }
     }
 
     /// Goes back to the last frame that was looked at.

@@ -37,7 +37,7 @@ impl MotionFilter {
     /// The covariance that is stated: what the track knows, with the hypotheses of dynamics, the dependence of frames and what contradicts it (random);
     /// then what the motion model leaves out, edges and rounding (systematic).
     fn stated_now(&self) -> Option<Statement> {
-        let track = self.track.as_ref()?;
+        let track = self.track.as_ref().filter(|track| track.is_shown())?;
         let own = track.summary()?;
         let (model, centroid) = (self.settings.model, track.centred_pose().centroid);
         let none = CentredDeviations::zeros();

@@ -54,7 +54,8 @@ impl Gates {
     }
 }
 
-/// Predicts a track over so many seconds, measures the loaded frame, which is new, and finds how the motion changes.
+/// Predicts a track over so many seconds, measures the loaded frame, which is new, and finds how the motion changes. `None` where the
+/// object is lost, since it [cannot be predicted](Track::predict).
 pub(super) fn advance(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
@@ -62,8 +63,10 @@ pub(super) fn advance(
     seconds: f64,
     is_after_rejected: bool,
     comparison: Comparison,
-) -> Outcome {
-    predict(settings, track, history, seconds);
+) -> Option<Outcome> {
+    if !predict(settings, track, history, seconds) {
+        return None;
+    }
     let gates = Gates::of_new_frame(settings, track, history.widening(), is_after_rejected);
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, comparison);
     history.record(&outcome, seconds);
@@ -72,7 +75,7 @@ pub(super) fn advance(
     {
         history.record_apart(&elsewhere);
     }
-    outcome
+    Some(outcome)
 }
 
 /// As [`advance`], with a frame that was accepted once, and is measured against a map that was cut anew.
@@ -81,12 +84,14 @@ pub(super) fn advance_again(
     (track, frame): (&mut Track, &mut Frame),
     history: &mut MotionHistory,
     seconds: f64,
-) -> Outcome {
-    predict(settings, track, history, seconds);
+) -> Option<Outcome> {
+    if !predict(settings, track, history, seconds) {
+        return None;
+    }
     let gates = Gates::of_accepted_frame(settings, track, history.widening());
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, Comparison::NotAsked);
     history.record(&outcome, seconds);
-    outcome
+    Some(outcome)
 }
 
 /// What becomes of a frame, after the changes of the motion that it shows.
@@ -172,14 +177,16 @@ fn outcome_by_others(
 }
 
 /// Moves a track on to where its motion has led it. Process noise that is given is added; else the hypotheses of dynamics say where it is expected,
-/// once they lead, and until then the variances that innovations have told.
-pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHistory, seconds: f64) {
+/// once they lead, and until then the variances that innovations have told. False where the object [cannot be predicted](Track::predict).
+pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mut MotionHistory, seconds: f64) -> bool {
     if history.dynamics.is_none()
         && let Some(setting) = settings.followed_dynamics()
     {
         history.dynamics = track.begun_dynamics(setting);
     }
-    track.predict(seconds);
+    if !track.predict(seconds) {
+        return false;
+    }
     track.add_process_noise(&settings.process_noise, seconds);
     let (expected, null) = (track.centred_pose(), track.null_directions());
     let moved = history.dynamics.as_mut().is_some_and(|dynamics| dynamics.predict(&expected, seconds, &null));
@@ -190,13 +197,14 @@ pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mu
     if !is_led && let Some(variances) = history.change.variances() {
         track.add_change(variances);
     }
+    true
 }
 
 /// Puts a track where all hypotheses of dynamics together expect it; whether they do.
 fn lead(track: &mut Track, dynamics: &mut DynamicsFilter) -> bool {
     let Some(mut expected) = dynamics.combined(None, Purpose::Prediction) else { return false };
     expected.pose = dynamics.of_outline_now(&expected.pose);
-    let is_taken = dynamics.set_reference(&expected.pose);
+    let is_taken = track.map().is_shown_in(&expected.pose) && dynamics.set_reference(&expected.pose);
     if is_taken {
         track.expect(&expected);
     }

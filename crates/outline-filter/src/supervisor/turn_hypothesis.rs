@@ -46,7 +46,10 @@ impl TurnHypothesis {
         seconds: f64,
     ) -> Option<Outcome> {
         let track = self.track.as_mut()?;
-        track.predict(seconds);
+        if !track.predict(seconds) {
+            self.track = None;
+            return None;
+        }
         track.add_process_noise(&settings.process_noise, seconds);
         track.adopt_noise_of(present);
         let of_motion = gate_of_motion(settings, track);

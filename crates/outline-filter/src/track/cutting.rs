@@ -47,8 +47,9 @@ impl Track {
         frame: &Frame,
     ) -> Option<Self> {
         let mut noise = ContourNoise::of(&contours);
-        let mut draft = |contours, normal_noise| {
+        let mut draft = |mut contours: Vec<Contour>, normal_noise| {
             let (resolution, sigma) = Resolution::of(&mut noise, least_noise, frame.points.len(), normal_noise);
+            noise.hand_on_regressions(&mut contours);
             Self::drafted(of, pose, contours, (resolution, sigma), frame)
         };
         let mut track = draft(contours.clone(), NORMAL_NOISE)?;

@@ -341,10 +341,22 @@ fn is_positive(covariance: &DMatrix<f64>) -> bool {
         let scale = roots[i] * roots[j];
         rounding + if scale > 0.0 { covariance[(i, j)] / scale } else { 0.0 }
     });
-    scaled.cholesky().is_some()
+    covariance.diagonal().iter().all(|variance| *variance >= 0.0) && scaled.cholesky().is_some()
 }
 
 /// Standard deviations of a covariance.
 fn roots(covariance: &DMatrix<f64>) -> Vec<f64> {
     covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rounding_has_left_a_negative_variance_is_no_covariance() {
+        let with_variance = |variance: f64| DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, variance]);
+        assert!([1.0, 1e-20, 0.0].iter().all(|variance| is_positive(&with_variance(*variance))));
+        assert!([-1e-20, -1.0].iter().all(|variance| !is_positive(&with_variance(*variance))));
+    }
 }

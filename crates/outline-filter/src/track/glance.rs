@@ -64,7 +64,7 @@ mod tests {
         let mut frame = Frame::default();
         let mut track = Track::begin(MotionModel::Rigid, &shown(0.25, 0.001, 0.0), 0.0, &mut frame).expect("a track");
         for _ in 0..10 {
-            track.predict(0.1);
+            assert!(track.predict(0.1));
             frame.load(&shown(0.25, 0.001, 0.0), track.reference());
             let gate = Gate { smallest_agreement: 0.7, largest_innovation: None, largest_noise: None };
             assert!(track.update(&mut frame, &gate, Comparison::NotAsked).is_accepted());

@@ -131,7 +131,7 @@ mod tests {
             match &mut track {
                 None => track = Track::begin(MotionModel::Rigid, &outline, 0.0, &mut buffers),
                 Some(track) => {
-                    track.predict(1.0 / 30.0);
+                    assert!(track.predict(1.0 / 30.0));
                     buffers.load(&outline, track.reference());
                     let gate = Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: None };
                     assert!(track.update(&mut buffers, &gate, Comparison::NotAsked).is_accepted(), "{frame}");

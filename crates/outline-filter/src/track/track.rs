@@ -66,12 +66,20 @@ impl Track {
         Self::cut(model, reference, Matrix3::identity(), contours, rounding, frame)
     }
 
-    /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise.
-    pub(crate) fn predict(&mut self, seconds: f64) {
-        if let Some(transition) = self.belief.predict(seconds) {
-            self.sensitivity.predict(&transition, self.belief.parameter_count(), seconds);
-            self.shape.forget_shape(&mut self.belief);
-        }
+    /// Moves on by `seconds` of the estimated motion, which may have changed meanwhile by the process noise. False, and nothing changes, where that
+    /// leads to a pose that [does not show](OutlineMap::is_shown_in) the outline: it is not known where the object is.
+    #[must_use]
+    pub(crate) fn predict(&mut self, seconds: f64) -> bool {
+        let Self { map, belief, .. } = self;
+        let Some(transition) = belief.predict(seconds, |pose| map.is_shown_in(pose)) else { return false };
+        self.sensitivity.predict(&transition, self.belief.parameter_count(), seconds);
+        self.shape.forget_shape(&mut self.belief);
+        true
+    }
+
+    /// Whether its pose shows its outline.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.map.is_shown_in(&self.belief.pose)
     }
 
     pub(crate) fn add_process_noise(&mut self, noise: &ProcessNoise, seconds: f64) {

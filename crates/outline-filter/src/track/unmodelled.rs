@@ -135,7 +135,7 @@ mod tests {
             match &mut track {
                 None => track = Track::begin(model, &outline, 0.0, &mut buffers),
                 Some(track) => {
-                    track.predict(STEP);
+                    assert!(track.predict(STEP));
                     if change != [0.0; 2] {
                         track.add_change(change);
                     }

@@ -156,6 +156,11 @@ pub(crate) mod update {
     pub(crate) const SETTLED: f64 = 0.03;
     /// Determinant of a pose below which it has collapsed.
     pub(crate) const COLLAPSED: f64 = 1e-12;
+    /// Share of the farthest depth of an outline that the nearest must have: a camera as close to a plane as that shows a part of it only. Rates of
+    /// points grow with the square of their share, and variances with the fourth power, which leaves four of sixteen digits.
+    pub(crate) const LEAST_DEPTH: f64 = 1e-3;
+    /// Width to length of what a pose makes of a circle, below which the plane is seen from its edge: a thousandth of what pictures show.
+    pub(crate) const FLATTEST: f64 = 1e-5;
     /// Residuals within this many deviations agree with the map.
     pub(crate) const AGREEING: f64 = 3.5;
     /// Residuals below this many spacings agree too: corners lie off the straight cells by as much.

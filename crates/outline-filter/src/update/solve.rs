@@ -77,7 +77,7 @@ impl View<'_> {
             let next = next.ok_or(proposal.iterations)?;
             let step = (0..k).map(|i| (next[i] - proposal.state[i]).abs()).fold(0.0, f64::max);
             let pose = model.flow(&next.as_slice()[..k], 1.0).into_inner() * belief.pose;
-            if !pose.iter().all(|e| e.is_finite()) || pose.determinant().abs() < tuning::COLLAPSED {
+            if pose.determinant().abs() < tuning::COLLAPSED || !self.map.is_shown_in(&pose) {
                 return Err(proposal.iterations);
             }
             let iterations = proposal.iterations + 1;
