@@ -29,16 +29,21 @@ pub(super) fn turns_of_near_symmetry(found: &[RegisteredPose]) -> Vec<Matrix3<f6
     others.map(|by| best.pose * map_between(Rotation2::new(by).matrix(), &centre, &centre)).collect()
 }
 
-/// The smallest number of parts of a circle that turns are all multiples of; `None` where they are of none that is small enough to be told from
-/// chance, and where there is none but no turn at all.
+/// The number of parts of a circle that turns are all multiples of, nearest in parts; `None` where they are of none that is small enough to be told
+/// from chance, and where there is none but no turn at all.
 fn common_order(turns: &[f64]) -> Option<usize> {
     let turned = || turns.iter().filter(|turn| turn.abs() > tuning::OFF_NEAR_SYMMETRY);
     turned().next()?;
-    let are_multiples = |order: &usize| {
-        let angle = TAU / *order as f64;
-        turned().all(|turn| (turn - angle * (turn / angle).round()).abs() < tuning::OFF_NEAR_SYMMETRY)
+    let farthest_off = |order: usize| {
+        let angle = TAU / order as f64;
+        let off = turned().map(|turn| (turn - angle * (turn / angle).round()).abs());
+        (order, off.fold(0.0, f64::max))
     };
-    (2..=tuning::LARGEST_NEAR_SYMMETRY).find(are_multiples)
+    let fitting =
+        (2..=tuning::LARGEST_NEAR_SYMMETRY).map(farthest_off).filter(|(_, off)| *off < tuning::OFF_NEAR_SYMMETRY);
+    // Multiples of an order fit as well as it does.
+    let in_parts = |(order, off): &(usize, f64)| off.max(tuning::KNOWN_NEAR_SYMMETRY) * *order as f64;
+    fitting.min_by(|a, b| in_parts(a).total_cmp(&in_parts(b))).map(|(order, _)| order)
 }
 
 #[cfg(test)]
@@ -53,6 +58,7 @@ mod tests {
         assert_eq!(common_order(&of(14, &[0.0, 1.0, 3.0, -4.0])), Some(14));
         assert_eq!(common_order(&of(2, &[0.0, 1.0])), Some(2));
         assert_eq!(common_order(&of(24, &[0.0, 5.0])), Some(24));
+        assert_eq!(common_order(&of(24, &[0.0, 1.003, 4.995])), Some(24));
         // One turn of them that is no multiple of the others, and none but the best.
         assert_eq!(common_order(&[0.0, TAU / 5.0, TAU / 5.0 + 0.37, 1.0]), None);
         assert_eq!(common_order(&[0.0, 0.001]), None);

@@ -107,6 +107,8 @@ pub(crate) mod registration {
     /// Turns of poses that were found lie so near to multiples of a part of a circle, rad, where an outline nearly looks the same after it: few points tell
     /// a turn to a hundredth.
     pub(crate) const OFF_NEAR_SYMMETRY: f64 = 0.02;
+    /// As near as this, rad, they are multiples as far as the poses tell.
+    pub(crate) const KNOWN_NEAR_SYMMETRY: f64 = 0.004;
     /// Largest number of parts that is looked for: multiples of smaller ones are met by chance.
     pub(crate) const LARGEST_NEAR_SYMMETRY: usize = 40;
     /// A score up to this many times the best is a tie.
