@@ -165,5 +165,8 @@ fn a_motion_between_two_frames_alone_is_warned_of_where_the_way_of_tracing_is_in
         assert!(object["velocity"]["value"][0].is_number(), "{document}");
         assert_eq!(codes(&document).contains(&"tracing_doubtful".to_owned()), is_warned, "{document}");
         assert_eq!(codes(object).contains(&"of_two_frames".to_owned()), is_warned, "{document}");
+        let tracked = run(&format!("track {} --fps 30", folder.path().display()), "");
+        let warning = "object 0: its motion is that between two frames";
+        assert_eq!(stderr(&tracked).matches(warning).count(), usize::from(is_warned), "{}", stderr(&tracked));
     }
 }
