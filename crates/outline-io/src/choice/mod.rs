@@ -240,17 +240,7 @@ fn choose_within(
     }
     // Scaled down, a picture has less noise than as it is.
     if !is_good(&fine) && !others.is_empty() {
-        let in_others = |channel: &Channel| {
-            let channel = *channel;
-            move || tried(sample, base, channel)
-        };
-        coarse.extend(std::thread::scope(|scope| {
-            let threads: Vec<_> = others.iter().map(|channel| scope.spawn(in_others(channel))).collect();
-            threads
-                .into_iter()
-                .flat_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .collect::<Vec<_>>()
-        }));
+        coarse.extend(in_threads(others.iter().map(|channel| move || tried(sample, base, *channel))));
     }
     if !is_good(&fine) {
         fine.extend(looked_closer(sample, base, &mut coarse, &mut looked_at));
@@ -270,44 +260,60 @@ fn looked_closer(
     looked_at: &mut Vec<Tracing>,
 ) -> Vec<TracingEvidence> {
     sort(coarse);
-    let mut fine = Vec::new();
+    let mut wanted = Vec::new();
     for (rank, candidate) in coarse.iter().take(SHORT_LIST).enumerate() {
-        let tracing = candidate.tracing;
-        if looked_at.iter().any(|known| known.is_like(&tracing)) {
-            continue;
-        }
-        let trial = Trial::fine(sample, base, tracing.channel);
-        let with_level = |tracing: Tracing| Tracing {
-            level: tracing
-                .level
-                .and_then(|_| trial.noise_level(&tracing))
-                .map(|level| level * f64::from(sample.factor())),
-            ..tracing
-        };
-        let found = judged(&trial, with_level(tracing));
-        // What stands out where noise is averaged away may do so where it is smoothed.
-        let is_lost = found.as_ref().is_none_or(|found| found.score < 0.6 * candidate.score);
-        fine.extend(found);
-        looked_at.push(tracing);
-        if is_lost && tracing.smoothing == Smoothing::Automatic && !sample.is_two_valued() {
-            let smooth = Tracing { smoothing: Smoothing::Gaussian(AGAINST_NOISE), ..tracing };
-            fine.extend(judged(&trial, with_level(smooth)));
-        }
-        if rank == 0 {
-            let variants: &[TracingWay] = match tracing.way {
-                TracingWay::Median(_) => {
-                    &[TracingWay::Median(Difference::Lighter), TracingWay::Median(Difference::Darker)]
-                }
-                TracingWay::Surface(_) => {
-                    &[TracingWay::Surface(Difference::Lighter), TracingWay::Surface(Difference::Darker)]
-                }
-                _ => &[],
-            };
-            let variants = variants.iter().map(|way| with_level(Tracing { way: *way, ..tracing }));
-            fine.extend(variants.filter_map(|tracing| judged(&trial, tracing)));
+        if !looked_at.iter().any(|known| known.is_like(&candidate.tracing)) {
+            wanted.push((rank, candidate));
+            looked_at.push(candidate.tracing);
         }
     }
+    in_threads(wanted.into_iter().map(|(rank, candidate)| move || closer_look(sample, base, candidate, rank == 0)))
+}
+
+/// A way in more pictures as they are, and with its variants where it is the best so far.
+fn closer_look(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    candidate: &TracingEvidence,
+    is_best: bool,
+) -> Vec<TracingEvidence> {
+    let tracing = candidate.tracing;
+    let trial = Trial::fine(sample, base, tracing.channel);
+    let with_level = |tracing: Tracing| Tracing {
+        level: tracing.level.and_then(|_| trial.noise_level(&tracing)).map(|level| level * f64::from(sample.factor())),
+        ..tracing
+    };
+    let found = judged(&trial, with_level(tracing));
+    // What stands out where noise is averaged away may do so where it is smoothed.
+    let is_lost = found.as_ref().is_none_or(|found| found.score < 0.6 * candidate.score);
+    let mut fine: Vec<TracingEvidence> = found.into_iter().collect();
+    if is_lost && tracing.smoothing == Smoothing::Automatic && !sample.is_two_valued() {
+        let smooth = Tracing { smoothing: Smoothing::Gaussian(AGAINST_NOISE), ..tracing };
+        fine.extend(judged(&trial, with_level(smooth)));
+    }
+    let variants: &[TracingWay] = match tracing.way {
+        TracingWay::Median(_) if is_best => {
+            &[TracingWay::Median(Difference::Lighter), TracingWay::Median(Difference::Darker)]
+        }
+        TracingWay::Surface(_) if is_best => {
+            &[TracingWay::Surface(Difference::Lighter), TracingWay::Surface(Difference::Darker)]
+        }
+        _ => &[],
+    };
+    let variants = variants.iter().map(|way| with_level(Tracing { way: *way, ..tracing }));
+    fine.extend(variants.filter_map(|tracing| judged(&trial, tracing)));
     fine
+}
+
+/// What all of these find, one after the other, each looked for in a thread of its own.
+fn in_threads<F: FnOnce() -> Vec<TracingEvidence> + Send>(looks: impl Iterator<Item = F>) -> Vec<TracingEvidence> {
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = looks.map(|look| scope.spawn(look)).collect();
+        threads
+            .into_iter()
+            .flat_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    })
 }
 
 /// The plain ways in a channel, on a few pictures, scaled down.
