@@ -8,6 +8,7 @@ mod rest;
 mod sample;
 mod scaled;
 mod sight;
+mod ties;
 mod trial;
 mod tuning;
 mod warning;
@@ -29,6 +30,7 @@ use evidence::judged;
 use preference::{motion_beside, preferring_what_moves};
 pub(crate) use sample::BURST;
 pub use sample::{PictureSample, SamplePlan};
+use ties::settle_ties;
 use trial::Trial;
 pub use warning::TracingWarning;
 
@@ -247,6 +249,7 @@ fn choose_within(
     }
     sort(&mut fine);
     coarse.retain(|candidate| !looked_at.iter().any(|tracing| tracing.is_like(&candidate.tracing)));
+    settle_ties(sample, base, &mut fine);
     fine.extend(coarse);
     let beside = preferring_what_moves(sample, base, *first, &mut fine, resting.zip(early));
     (fine, beside)
@@ -342,13 +345,15 @@ fn tried(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Ve
     candidates
 }
 
+/// What a way is sorted by.
+fn worth(candidate: &TracingEvidence) -> f64 {
+    // Where a line is all that is seen, the rings are made for it: they do without a threshold, and take no gap for an opening.
+    let line = if candidate.inner_share > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
+    // Another channel is to be worth it: compression spoils what is not luminance.
+    let channel = if candidate.tracing.channel == Channel::Luminance { 0.0 } else { WORTH_OF_LUMINANCE };
+    (candidate.score * candidate.tracing.preference() - channel) * line
+}
+
 fn sort(candidates: &mut [TracingEvidence]) {
-    let worth = |candidate: &TracingEvidence| {
-        // Where a line is all that is seen, the rings are made for it: they do without a threshold, and take no gap for an opening.
-        let line = if candidate.inner_share > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
-        // Another channel is to be worth it: compression spoils what is not luminance.
-        let channel = if candidate.tracing.channel == Channel::Luminance { 0.0 } else { WORTH_OF_LUMINANCE };
-        (candidate.score * candidate.tracing.preference() - channel) * line
-    };
     candidates.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
 }
