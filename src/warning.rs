@@ -50,7 +50,8 @@ pub enum Warning {
         /// Time in seconds when the motion was last known.
         last_known: f64,
     },
-    /// The motion is that between two frames, and how the pictures were traced is in doubt: no third frame tells whether both show one object.
+    /// The motion is that between two frames, and either how the pictures were traced is in doubt or other frames were rejected: no third frame tells
+    /// whether both show one object.
     OfTwoFrames,
     /// The object was given up, and the filter started again with a new one.
     Restarted {
@@ -246,8 +247,7 @@ impl fmt::Display for Warning {
     }
 }
 
-const OF_TWO_FRAMES: &str = "its motion is that between two frames, traced in a way that is in doubt: no third frame tells whether both show \
-                             one object";
+const OF_TWO_FRAMES: &str = "its motion is that between two frames: no third frame tells whether both show one object";
 
 const ROTATION_FROM_PATH: &str = "the outline does not show its rotation: omega is told by the path alone, and right only if the object \
                                   turns with its path";

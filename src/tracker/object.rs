@@ -243,5 +243,6 @@ impl TrackedObject {
             dynamics: identifier.dynamics(),
             warnings,
         }
+        .with_others_rejected()
     }
 }

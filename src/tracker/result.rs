@@ -92,14 +92,25 @@ impl ObjectResult {
     ///
     /// Two outlines of whatever things have a motion from one to the other; that a third lies where it leads is what speaks for it. The accepted
     /// frames are counted from the first one on, also those before the object was given up and the filter started again: of that
-    /// [`Warning::Restarted`] tells. The warning is given once, however often this is called.
+    /// [`Warning::Restarted`] tells. The warning is given once, however often this is called. Where a frame was rejected besides the two it is
+    /// given without this.
     #[must_use]
-    pub fn of_doubtful_outlines(mut self) -> Self {
+    pub fn of_doubtful_outlines(self) -> Self {
+        let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2;
+        self.of_two_frames_where(is_of_two)
+    }
+
+    /// The same result with the warning that two frames alone tell the motion, where another one was rejected: it does not lie where they lead.
+    pub(super) fn with_others_rejected(self) -> Self {
+        let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2 && self.frames_rejected > 0;
+        self.of_two_frames_where(is_of_two)
+    }
+
+    fn of_two_frames_where(mut self, is_of_two: bool) -> Self {
         let names = self.motion.parameter_names();
         let has_motion = self.estimate.is_some() || self.plane.is_some();
         let is_stated =
             (has_motion && names.iter().any(|name| self.not_stated(name).is_none())) || self.velocity.is_some();
-        let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2;
         if is_stated && is_of_two && !self.warnings.contains(&Warning::OfTwoFrames) {
             self.warnings.push(Warning::OfTwoFrames);
             self.warnings.sort_by_key(Warning::order);
@@ -137,6 +148,19 @@ mod tests {
             .of_doubtful_outlines()
             .of_doubtful_outlines()
             .warnings
+    }
+
+    #[test]
+    fn what_is_stated_of_two_frames_beside_a_rejected_one_is_warned_of_though_nothing_is_in_doubt() {
+        let unknown = ObjectResult::unknown("left", Method::Filter, MotionModel::Rigid);
+        let (point, velocity, covariance) = (Point2::origin(), Vector2::x(), Matrix2::identity());
+        let stated = ObjectResult { velocity: Some(PointVelocity { point, velocity, covariance }), ..unknown };
+        let warnings_of = |frames, frames_rejected| {
+            ObjectResult { frames, frames_rejected, ..stated.clone() }.with_others_rejected().warnings
+        };
+        assert_eq!(warnings_of(3, 1), [Warning::OfTwoFrames]);
+        assert_eq!(warnings_of(4, 1), []);
+        assert_eq!(warnings_of(2, 0), []);
     }
 
     #[test]

@@ -89,10 +89,12 @@ struct Difference {
     distance: f64,
     /// `distance` over the largest accepted distance.
     place: f64,
-    /// Logarithm of the ratio of areas; `None` where one of them is clipped.
+    /// Logarithm of the ratio of areas; `None` where that tells nothing, as what is clipped has less than its area.
     growth: Option<f64>,
-    /// Distance of the invariants, likewise.
+    /// Distance of the invariants; `None` where one of them is clipped.
     shape: Option<f64>,
+    /// Whether neither is clipped.
+    are_whole: bool,
 }
 
 impl Difference {
@@ -156,13 +158,21 @@ impl Known {
     fn difference(&self, frame: u64, traced: &TracedOutline) -> Difference {
         let distance = (traced.centre - self.expected(frame)).norm() / self.diameter(traced);
         let missed = frame.saturating_sub(self.frame).saturating_sub(1) as f64;
-        let whole = !self.clipped && !traced.touches_border;
+        let growth = (traced.area / self.area).ln();
+        // A part that is larger than the whole is of something else.
+        let tells = match (self.clipped, traced.touches_border) {
+            (false, false) => true,
+            (true, false) => growth < 0.0,
+            (false, true) => growth > 0.0,
+            (true, true) => false,
+        };
         let shape = self.shape.zip(traced.invariants).filter(|_| !traced.touches_border);
         Difference {
             distance,
             place: distance / (REACH * (1.0 + 0.5 * missed)),
-            growth: whole.then(|| (traced.area / self.area).ln()),
+            growth: tells.then_some(growth),
             shape: shape.map(|(known, seen)| known.distance(&seen)),
+            are_whole: !self.clipped && !traced.touches_border,
         }
     }
 
@@ -173,7 +183,8 @@ impl Known {
     /// The same of what was seen in the frame before, if it may be far from where it is expected: as it was seen for the first time then, or as
     /// it moves by more than its diameter and may turn back.
     fn cost_of_far(&self, frame: u64, traced: &TracedOutline) -> Option<f64> {
-        let Difference { distance, growth: Some(growth), shape, .. } = self.difference(frame, traced) else {
+        let Difference { distance, growth: Some(growth), shape, are_whole: true, .. } = self.difference(frame, traced)
+        else {
             return None;
         };
         let reach =

@@ -1,6 +1,7 @@
 use std::io::Write as _;
 
-use freeform_motion::Tracker;
+use freeform_motion::tracker::ObjectResult;
+use freeform_motion::{Tracker, Warning};
 
 use crate::args::TrackArgs;
 use crate::awaited::Waiting;
@@ -31,13 +32,19 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut overlay = InputOverlay::open(args.drawings.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
+    let in_doubt = input.pictures().is_some_and(PictureInput::is_tracing_in_doubt) && !args.quiet;
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
     let failure = follow_stream(&mut following, &mut input, verbosity, |event| {
         let event = match event {
             Ok(event) => event,
-            Err(left) => return write_line(&mut sink, &closing_line(left).map_err(Failure::unusable)?),
+            Err(left) => {
+                if in_doubt {
+                    warn_of_two_frames(left.result.clone());
+                }
+                return write_line(&mut sink, &closing_line(left).map_err(Failure::unusable)?);
+            }
         };
         if let Some(overlay) = &mut overlay {
             overlay.take(event)?;
@@ -50,6 +57,9 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         first_reason = first_reason.take().or_else(|| observation.rejection.clone());
         write_line(&mut sink, &track_line(observation).map_err(Failure::unusable)?)
     })?;
+    if in_doubt {
+        following.results().into_iter().for_each(warn_of_two_frames);
+    }
     if let Some(overlay) = overlay {
         overlay.finish()?;
     }
@@ -61,6 +71,15 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
         (0, Some(reason)) => Err(Failure::no_result(format_args!("no frame could be used: {reason}"))),
         (0, None) => Err(Failure::no_result(format_args!("{name}: no outline in the file"))),
         _ => Ok(()),
+    }
+}
+
+/// Says of an object that is seen no longer, where it is in doubt what is traced, that its motion is that between two frames, if it is. Before the
+/// third frame that holds for every object.
+fn warn_of_two_frames(result: ObjectResult) {
+    let result = result.of_doubtful_outlines();
+    if result.warnings.contains(&Warning::OfTwoFrames) {
+        warn(&format!("object {}: {}", result.object, Warning::OfTwoFrames));
     }
 }
 

@@ -8,6 +8,7 @@ mod rest;
 mod sample;
 mod scaled;
 mod sight;
+mod ties;
 mod trial;
 mod tuning;
 mod warning;
@@ -29,6 +30,7 @@ use evidence::judged;
 use preference::{motion_beside, preferring_what_moves};
 pub(crate) use sample::BURST;
 pub use sample::{PictureSample, SamplePlan};
+use ties::settle_ties;
 use trial::Trial;
 pub use warning::TracingWarning;
 
@@ -240,23 +242,14 @@ fn choose_within(
     }
     // Scaled down, a picture has less noise than as it is.
     if !is_good(&fine) && !others.is_empty() {
-        let in_others = |channel: &Channel| {
-            let channel = *channel;
-            move || tried(sample, base, channel)
-        };
-        coarse.extend(std::thread::scope(|scope| {
-            let threads: Vec<_> = others.iter().map(|channel| scope.spawn(in_others(channel))).collect();
-            threads
-                .into_iter()
-                .flat_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
-                .collect::<Vec<_>>()
-        }));
+        coarse.extend(in_threads(others.iter().map(|channel| move || tried(sample, base, *channel))));
     }
     if !is_good(&fine) {
         fine.extend(looked_closer(sample, base, &mut coarse, &mut looked_at));
     }
     sort(&mut fine);
     coarse.retain(|candidate| !looked_at.iter().any(|tracing| tracing.is_like(&candidate.tracing)));
+    settle_ties(sample, base, &mut fine);
     fine.extend(coarse);
     let beside = preferring_what_moves(sample, base, *first, &mut fine, resting.zip(early));
     (fine, beside)
@@ -270,44 +263,60 @@ fn looked_closer(
     looked_at: &mut Vec<Tracing>,
 ) -> Vec<TracingEvidence> {
     sort(coarse);
-    let mut fine = Vec::new();
+    let mut wanted = Vec::new();
     for (rank, candidate) in coarse.iter().take(SHORT_LIST).enumerate() {
-        let tracing = candidate.tracing;
-        if looked_at.iter().any(|known| known.is_like(&tracing)) {
-            continue;
-        }
-        let trial = Trial::fine(sample, base, tracing.channel);
-        let with_level = |tracing: Tracing| Tracing {
-            level: tracing
-                .level
-                .and_then(|_| trial.noise_level(&tracing))
-                .map(|level| level * f64::from(sample.factor())),
-            ..tracing
-        };
-        let found = judged(&trial, with_level(tracing));
-        // What stands out where noise is averaged away may do so where it is smoothed.
-        let is_lost = found.as_ref().is_none_or(|found| found.score < 0.6 * candidate.score);
-        fine.extend(found);
-        looked_at.push(tracing);
-        if is_lost && tracing.smoothing == Smoothing::Automatic && !sample.is_two_valued() {
-            let smooth = Tracing { smoothing: Smoothing::Gaussian(AGAINST_NOISE), ..tracing };
-            fine.extend(judged(&trial, with_level(smooth)));
-        }
-        if rank == 0 {
-            let variants: &[TracingWay] = match tracing.way {
-                TracingWay::Median(_) => {
-                    &[TracingWay::Median(Difference::Lighter), TracingWay::Median(Difference::Darker)]
-                }
-                TracingWay::Surface(_) => {
-                    &[TracingWay::Surface(Difference::Lighter), TracingWay::Surface(Difference::Darker)]
-                }
-                _ => &[],
-            };
-            let variants = variants.iter().map(|way| with_level(Tracing { way: *way, ..tracing }));
-            fine.extend(variants.filter_map(|tracing| judged(&trial, tracing)));
+        if !looked_at.iter().any(|known| known.is_like(&candidate.tracing)) {
+            wanted.push((rank, candidate));
+            looked_at.push(candidate.tracing);
         }
     }
+    in_threads(wanted.into_iter().map(|(rank, candidate)| move || closer_look(sample, base, candidate, rank == 0)))
+}
+
+/// A way in more pictures as they are, and with its variants where it is the best so far.
+fn closer_look(
+    sample: &PictureSample,
+    base: &PictureSettings,
+    candidate: &TracingEvidence,
+    is_best: bool,
+) -> Vec<TracingEvidence> {
+    let tracing = candidate.tracing;
+    let trial = Trial::fine(sample, base, tracing.channel);
+    let with_level = |tracing: Tracing| Tracing {
+        level: tracing.level.and_then(|_| trial.noise_level(&tracing)).map(|level| level * f64::from(sample.factor())),
+        ..tracing
+    };
+    let found = judged(&trial, with_level(tracing));
+    // What stands out where noise is averaged away may do so where it is smoothed.
+    let is_lost = found.as_ref().is_none_or(|found| found.score < 0.6 * candidate.score);
+    let mut fine: Vec<TracingEvidence> = found.into_iter().collect();
+    if is_lost && tracing.smoothing == Smoothing::Automatic && !sample.is_two_valued() {
+        let smooth = Tracing { smoothing: Smoothing::Gaussian(AGAINST_NOISE), ..tracing };
+        fine.extend(judged(&trial, with_level(smooth)));
+    }
+    let variants: &[TracingWay] = match tracing.way {
+        TracingWay::Median(_) if is_best => {
+            &[TracingWay::Median(Difference::Lighter), TracingWay::Median(Difference::Darker)]
+        }
+        TracingWay::Surface(_) if is_best => {
+            &[TracingWay::Surface(Difference::Lighter), TracingWay::Surface(Difference::Darker)]
+        }
+        _ => &[],
+    };
+    let variants = variants.iter().map(|way| with_level(Tracing { way: *way, ..tracing }));
+    fine.extend(variants.filter_map(|tracing| judged(&trial, tracing)));
     fine
+}
+
+/// What all of these find, one after the other, each looked for in a thread of its own.
+fn in_threads<F: FnOnce() -> Vec<TracingEvidence> + Send>(looks: impl Iterator<Item = F>) -> Vec<TracingEvidence> {
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = looks.map(|look| scope.spawn(look)).collect();
+        threads
+            .into_iter()
+            .flat_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+            .collect()
+    })
 }
 
 /// The plain ways in a channel, on a few pictures, scaled down.
@@ -336,13 +345,15 @@ fn tried(sample: &PictureSample, base: &PictureSettings, channel: Channel) -> Ve
     candidates
 }
 
+/// What a way is sorted by.
+fn worth(candidate: &TracingEvidence) -> f64 {
+    // Where a line is all that is seen, the rings are made for it: they do without a threshold, and take no gap for an opening.
+    let line = if candidate.inner_share > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
+    // Another channel is to be worth it: compression spoils what is not luminance.
+    let channel = if candidate.tracing.channel == Channel::Luminance { 0.0 } else { WORTH_OF_LUMINANCE };
+    (candidate.score * candidate.tracing.preference() - channel) * line
+}
+
 fn sort(candidates: &mut [TracingEvidence]) {
-    let worth = |candidate: &TracingEvidence| {
-        // Where a line is all that is seen, the rings are made for it: they do without a threshold, and take no gap for an opening.
-        let line = if candidate.inner_share > LINE && !candidate.tracing.way.is_ring() { 0.85 } else { 1.0 };
-        // Another channel is to be worth it: compression spoils what is not luminance.
-        let channel = if candidate.tracing.channel == Channel::Luminance { 0.0 } else { WORTH_OF_LUMINANCE };
-        (candidate.score * candidate.tracing.preference() - channel) * line
-    };
     candidates.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
 }

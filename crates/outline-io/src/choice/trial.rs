@@ -222,6 +222,20 @@ impl Trial {
         sights
     }
 
+    /// How well the contour of the largest object that a way finds is known as a whole, in pixels of the sample: the part of its edges' error that
+    /// all points have in common, and that of the mean of all points; the median over some of the pictures.
+    pub(super) fn deviation_of_contour(&self, tracing: &Tracing) -> Option<f64> {
+        let mut settings = self.settings(tracing);
+        settings.trace.edges = Edges::Refined;
+        let deviations = (0..self.count()).step_by(BURST as usize).filter_map(|k| {
+            let seen = self.seen(tracing, &settings, k, 1)?;
+            let edges = seen.traced.first()?.edges.as_ref()?;
+            let of_points = edges.deviations.iter().map(|deviation| deviation.powi(2)).sum::<f64>().sqrt();
+            Some(edges.systematic.hypot(of_points / edges.deviations.len() as f64))
+        });
+        median(deviations)
+    }
+
     /// What a way finds in the first picture in which it finds something.
     pub(super) fn first_sight(&self, tracing: &Tracing) -> Option<Sight> {
         let settings = self.settings(tracing);

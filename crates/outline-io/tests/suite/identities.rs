@@ -59,6 +59,28 @@ fn a_ball_keeps_its_name_while_it_moves_by_several_times_its_size_and_bounces() 
 }
 
 #[test]
+fn a_hole_and_the_ground_around_it_that_the_edge_of_the_picture_cuts_keep_their_names() {
+    // Their middles are nearer to each other than the ground is wide, and in the first picture something else is all that is seen.
+    let pictures: Vec<GrayImage> = (0..8)
+        .map(|frame| {
+            GrayImage::from_fn(200, 100, |x, y| {
+                let far = (f64::from(x) - 80.0).hypot(f64::from(y) - 50.0);
+                let is_light = if frame == 0 { x > 190 && y < 40 } else { far < 12.0 || far > 22.0 && x < 170 };
+                Luma([if is_light { 220 } else { 10 }])
+            })
+        })
+        .collect();
+    let settings = PictureSettings { selection: Selection::All, ..PictureSettings::default() };
+    let mut names = Vec::new();
+    for traced in traced(pictures, settings).iter().skip(1) {
+        let objects = traced.objects.as_ref().expect("both");
+        assert_eq!(objects.len(), 2);
+        names.push(objects.iter().min_by(|a, b| a.1.area.total_cmp(&b.1.area)).expect("the hole").0);
+    }
+    assert!(names.iter().all(|name| *name == names[0]), "{names:?}");
+}
+
+#[test]
 fn only_what_has_left_its_place_is_taken_where_what_moves_is_asked_for() {
     let pictures: Vec<GrayImage> = (0..12)
         .map(|frame| {
