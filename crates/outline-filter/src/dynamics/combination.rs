@@ -19,6 +19,8 @@ use crate::{
 pub(crate) enum Purpose {
     /// To say where the object is expected.
     Prediction,
+    /// As that, by those that do not have a constant generator.
+    PredictionByOthers,
     /// To say how well the motion is known.
     Statement,
 }
@@ -162,13 +164,15 @@ impl<const N: usize> InteractingHypotheses<N> {
     ) -> [Option<Part<N>>; MOST] {
         let likely = self.least_weight(tuning::OUTSIDE_INTERVAL);
         let least = match purpose {
-            Purpose::Prediction => likely,
+            Purpose::Prediction | Purpose::PredictionByOthers => likely,
             Purpose::Statement => self.least_weight(tuning::OUTSIDE_THREE_DEVIATIONS),
         };
         std::array::from_fn(|number| {
             let (hypothesis, weight) = (self.hypotheses.get(number)?, self.weights[number]);
             let is_generator = hypothesis.course == Course::ConstantGenerator;
-            (weight >= least).then(|| match of_generator.filter(|_| is_generator) {
+            let has_generator = is_generator || matches!(hypothesis.course, Course::Shaken { .. });
+            let takes_part = weight >= least && !(has_generator && purpose == Purpose::PredictionByOthers);
+            takes_part.then(|| match of_generator.filter(|_| is_generator) {
                 Some((mean, covariance)) => {
                     let covariance = Some(covariance);
                     Part { weight, mean, covariance, is_measured: self.outline_has_moved, accelerates: false }

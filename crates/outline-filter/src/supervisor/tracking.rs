@@ -107,11 +107,9 @@ fn outcome_with_changes(
         return outcome;
     }
     let MotionHistory { change, dynamics, .. } = history;
-    let is_there = outcome.measurement.agreement >= settings.smallest_agreement;
-    if is_there
-        && !outcome.is_accepted()
+    if !outcome.is_accepted()
         && let Some(dynamics) = dynamics
-        && let Some(found) = outcome_by_others((track, frame), dynamics, &gates.as_before, comparison)
+        && let Some(found) = outcome_by_others((track, frame), dynamics, (&outcome, &gates.as_before), comparison)
     {
         outcome = found;
     }
@@ -158,22 +156,26 @@ pub(super) fn after_sudden_change(
 fn outcome_by_others(
     (track, frame): (&mut Track, &mut Frame),
     dynamics: &mut DynamicsFilter,
-    gate: &Gate,
+    (outcome, gate): (&Outcome, &Gate),
     comparison: Comparison,
 ) -> Option<Outcome> {
     if !dynamics.has_others() {
         return None;
     }
-    let (mut followed, mut their) = (track.clone(), dynamics.clone());
-    if !lead(&mut followed, &mut their) {
-        return None;
-    }
-    let found = followed.update(frame, gate, comparison);
-    if !found.is_accepted() {
-        return None;
-    }
-    (*track, *dynamics) = (followed, their);
-    Some(found)
+    // Where the outline lies apart from what the generator says, so does what all of them say together.
+    let is_there = outcome.measurement.agreement >= gate.smallest_agreement;
+    let purposes = [Purpose::Prediction, Purpose::PredictionByOthers];
+    purposes.into_iter().skip(usize::from(!is_there)).find_map(|purpose| {
+        let (mut followed, mut their) = (track.clone(), dynamics.clone());
+        if !lead(&mut followed, &mut their, purpose) {
+            return None;
+        }
+        let found = followed.update(frame, gate, comparison);
+        if found.is_accepted() {
+            (*track, *dynamics) = (followed, their);
+        }
+        found.is_accepted().then_some(found)
+    })
 }
 
 /// Moves a track on to where its motion has led it. Process noise that is given is added; else the hypotheses of dynamics say where it is expected,
@@ -193,16 +195,16 @@ pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mu
     if !moved {
         history.dynamics = None;
     }
-    let is_led = history.dynamics.as_mut().is_some_and(|dynamics| dynamics.leads() && lead(track, dynamics));
+    let is_led = history.dynamics.as_mut().is_some_and(|dynamics| dynamics.leads() && lead(track, dynamics, Purpose::Prediction));
     if !is_led && let Some(variances) = history.change.variances() {
         track.add_change(variances);
     }
     true
 }
 
-/// Puts a track where all hypotheses of dynamics together expect it; whether they do.
-fn lead(track: &mut Track, dynamics: &mut DynamicsFilter) -> bool {
-    let Some(mut expected) = dynamics.combined(None, Purpose::Prediction) else { return false };
+/// Puts a track where hypotheses of dynamics together expect it; whether they do.
+fn lead(track: &mut Track, dynamics: &mut DynamicsFilter, purpose: Purpose) -> bool {
+    let Some(mut expected) = dynamics.combined(None, purpose) else { return false };
     expected.pose = dynamics.of_outline_now(&expected.pose);
     let is_taken = track.map().is_shown_in(&expected.pose) && dynamics.set_reference(&expected.pose);
     if is_taken {
