@@ -2,9 +2,10 @@
 use freeform_curve_fit::Outline;
 
 use super::{
+    candidate::{Candidate, VerdictOf},
     motion_filter::{MotionFilter, Phase},
     tracking::gate,
-    turn_hypotheses::{Candidate, TurnHypotheses, VerdictOf},
+    turn_hypotheses::TurnHypotheses,
 };
 use crate::{
     map::TurnEvent,

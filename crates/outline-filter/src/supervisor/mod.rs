@@ -1,10 +1,12 @@
 //! The motion filter: phases, restarts, hypotheses and changes of the motion. The only state machine.
 mod acquisition;
 mod ambiguity;
+mod candidate;
 mod clock;
 mod error;
 mod expected_outline;
 mod initialisation;
+mod late_symmetry;
 mod motion_change;
 mod motion_filter;
 mod passing_over;

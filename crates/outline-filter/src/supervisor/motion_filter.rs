@@ -226,6 +226,7 @@ impl MotionFilter {
             self.search_memory.unfound.clear();
             let changes = !was_changing && self.history.is_changing();
             self.keep(time, outline, changes);
+            self.ask_again_for_symmetry(outline);
             self.doubt_large_turns();
             if self.track.as_ref().is_some_and(Track::may_show_turn) {
                 self.begin_with_turn(outline);

@@ -195,7 +195,10 @@ pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mu
     if !moved {
         history.dynamics = None;
     }
-    let is_led = history.dynamics.as_mut().is_some_and(|dynamics| dynamics.leads() && lead(track, dynamics, Purpose::Prediction));
+    let is_led = history
+        .dynamics
+        .as_mut()
+        .is_some_and(|dynamics| dynamics.leads() && lead(track, dynamics, Purpose::Prediction));
     if !is_led && let Some(variances) = history.change.variances() {
         track.add_change(variances);
     }

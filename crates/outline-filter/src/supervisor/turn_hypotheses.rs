@@ -3,9 +3,9 @@ use std::f64::consts::TAU;
 
 use freeform_estimate::MotionEstimate;
 use freeform_riccati::MAX_PARAMETERS;
-use nalgebra::Matrix3;
 
 use super::{
+    candidate::Candidate,
     settings::FilterSettings,
     turn_hypothesis::{Reason, TurnHypothesis, again_if_vouched_for},
 };
@@ -19,29 +19,6 @@ use crate::{
 };
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
-
-/// The track in a pose that was tried.
-#[derive(Debug, Clone)]
-pub(super) struct Candidate {
-    pub(super) track: Track,
-    pub(super) outcome: Outcome,
-    /// The pose that it was measured from.
-    pub(super) found_in: Matrix3<f64>,
-    /// Turn from the pose before, rad, anticlockwise where y points up.
-    pub(super) turn: f64,
-    /// Size of the change from the pose before.
-    pub(super) change: f64,
-    pub(super) likelihood: NegativeLogLikelihood,
-    pub(super) verdict_of: VerdictOf,
-}
-
-/// What says whether a pose that was tried is accepted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum VerdictOf {
-    Itself,
-    /// Others, which show that the noise of the frame says nothing against it.
-    Others,
-}
 
 /// All other turns than that of the present track, and what it is compared with them by.
 #[derive(Debug, Clone, Default)]
@@ -139,6 +116,16 @@ impl TurnHypotheses {
         (self.present_turn, self.acquired_over, self.symmetry_angle) = (turn, seconds, angle);
         self.rival_turns.push(turn - angle.copysign(turn));
         self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
+    }
+
+    /// Names the turns that look like that of the present track, over so long a time, of an outline that has been found to have a symmetry of some order
+    /// after the search that the turn was taken in.
+    pub(super) fn name_symmetry(&mut self, symmetry: usize, turn: f64, seconds: f64) {
+        if !self.rivals.is_empty() || self.are_told_by_intervals {
+            return;
+        }
+        (self.present_turn, self.acquired_over, self.symmetry_angle) = (turn, seconds, TAU / symmetry as f64);
+        self.name_turns_alike();
     }
 
     /// After an exchange, names the turns that look like the one taken now in place of those that look like the one before.
