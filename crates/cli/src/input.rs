@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use freeform_motion::outline_io::{
     FilePoints, OutlineFile, OutlineFrame, OutlineReader, PictureSequence, PolygonSettings, ReadError, ReadErrorKind,
-    TableFormat, VerticalAxis, labelme_files, read_comments,
+    TableFormat, VerticalAxis, labelme_files, out_of_number_order, read_comments,
 };
 use freeform_motion::{SimulatedMotion, outline_of_polygon};
 
@@ -28,6 +28,8 @@ pub(crate) struct Input {
     source: Source,
     /// Standard input or a pipe.
     is_stream: bool,
+    /// Two files that were named in another order than their numbers have.
+    out_of_order: Option<[PathBuf; 2]>,
 }
 
 enum Source {
@@ -43,6 +45,16 @@ impl Input {
     /// Opens CSV or pictures; standard input where the path is `-`. Names tell them apart, or what they begin with. A terminal shows
     /// that pictures are looked at, unless it is to be quiet.
     pub(crate) fn open(
+        paths: &[PathBuf],
+        options: &PictureOptions,
+        waiting: Waiting,
+        verbosity: Verbosity,
+    ) -> Result<Self, Failure> {
+        let out_of_order = out_of_number_order(paths).map(|pair| pair.map(Path::to_owned));
+        Ok(Self { out_of_order, ..Self::open_in_order(paths, options, waiting, verbosity)? })
+    }
+
+    fn open_in_order(
         paths: &[PathBuf],
         options: &PictureOptions,
         waiting: Waiting,
@@ -91,7 +103,7 @@ impl Input {
     }
 
     fn new(name: String, comments: Vec<String>, source: Source) -> Self {
-        Self { name, comments, source, is_stream: false }
+        Self { name, comments, source, is_stream: false, out_of_order: None }
     }
 
     fn of_pictures(pictures: PictureInput, name: String) -> Result<Self, Failure> {
@@ -192,11 +204,11 @@ impl Input {
 
     /// What may be wrong with the input, before it is read.
     pub(crate) fn warnings(&self) -> Vec<String> {
+        let mut warnings: Vec<String> = self.warning_of_order().into_iter().collect();
         if matches!(&self.source, Source::File(file) | Source::Polygons(file) if file.is_rate_assumed()) {
-            return vec![format!("{ASSUMED_RATE} frames/s assumed, the file does not say; give the rate with --fps")];
+            warnings.push(format!("{ASSUMED_RATE} frames/s assumed, the file does not say; give the rate with --fps"));
         }
-        let Some(pictures) = self.pictures() else { return Vec::new() };
-        let mut warnings = Vec::new();
+        let Some(pictures) = self.pictures() else { return warnings };
         if pictures.is_interlaced() {
             let reason = "every second line of a picture is of another moment, which frays the edges of what moves";
             let advice = "deinterlace it, such as with ffmpeg -vf yadif";
@@ -204,6 +216,17 @@ impl Input {
         }
         warnings.extend(pictures.warnings());
         warnings
+    }
+
+    /// That files were named in another order than their numbers have, as a shell orders them.
+    fn warning_of_order(&self) -> Option<String> {
+        let [before, after] = self.out_of_order.as_ref()?;
+        Some(format!(
+            "{} is taken before {}, in the order in which the files are named: a folder, or a pattern in quotes such as 'masks/*.png', is \
+             sorted by number",
+            before.display(),
+            after.display()
+        ))
     }
 
     /// Says how pictures are traced, if that was chosen, and what may be wrong with the input.

@@ -82,13 +82,19 @@ pub(crate) fn unquoted_length(text: &[u8]) -> Option<usize> {
     (text[length] != b'"').then_some(length)
 }
 
-/// A whole number from 0.
+/// Largest whole number up to which a float holds every one.
+const LARGEST_WHOLE_FLOAT: f64 = 9_007_199_254_740_992.0;
+
+/// A whole number from 0, which may be written as a float, as `numpy.savetxt` writes all numbers.
 pub(crate) fn frame_number(field: &[u8]) -> Result<u64, ReadErrorKind> {
     let text = text(field)?;
     if text.is_empty() {
         return Err(ReadErrorKind::EmptyField);
     }
-    text.parse().map_err(|_| ReadErrorKind::NotAFrameNumber { text: quoted_start(field) })
+    let is_whole = |value: &f64| (0.0..=LARGEST_WHOLE_FLOAT).contains(value) && value.fract() == 0.0;
+    let written_as_float = || text.parse::<f64>().ok().filter(is_whole).map(|value| value as u64);
+    let number = text.parse().ok().or_else(written_as_float);
+    number.ok_or_else(|| ReadErrorKind::NotAFrameNumber { text: quoted_start(field) })
 }
 
 /// The field without white space at its ends.

@@ -22,6 +22,38 @@ pub(crate) struct Lines<R> {
     at_end: bool,
     exceeded: bool,
     first_line: FirstLine,
+    head: Head,
+}
+
+/// Longest comment that is taken for a header, in bytes.
+const LONGEST_HEADER: usize = 1 << 12;
+
+/// The last comment before the first row: `numpy.savetxt` writes a header so.
+#[derive(Debug, Default)]
+struct Head {
+    comment: Vec<u8>,
+    is_in_comment: bool,
+    is_over: bool,
+}
+
+impl Head {
+    /// Looks at what has been read, a line at most.
+    fn take(&mut self, line: &[u8], begins_line: bool) {
+        if self.is_over {
+            return;
+        }
+        if let Some(first) = line.first().filter(|_| begins_line) {
+            self.is_in_comment = *first == COMMENT;
+            self.is_over = !self.is_in_comment && !line.trim_ascii().is_empty();
+            if self.is_in_comment {
+                self.comment.clear();
+            }
+        }
+        if self.is_in_comment {
+            let room = LONGEST_HEADER.saturating_sub(self.comment.len());
+            self.comment.extend_from_slice(&line[..line.len().min(room)]);
+        }
+    }
 }
 
 /// What is known of the first line, by which lines that end otherwise are told.
@@ -45,7 +77,15 @@ impl<R: Read> Lines<R> {
             at_end: false,
             exceeded: false,
             first_line: FirstLine::Open,
+            head: Head::default(),
         }
+    }
+
+    /// The last comment line before the first row, without `#`; empty where there is none.
+    pub(crate) fn last_comment(&self) -> &[u8] {
+        let comment = self.head.comment.trim_ascii();
+        let marks = comment.iter().take_while(|byte| **byte == COMMENT).count();
+        comment[marks..].trim_ascii()
     }
 
     /// The last row is complete: the next may have the full length again.
@@ -103,6 +143,7 @@ impl<R: Read> Read for Lines<R> {
                 (false, false) => self.first_line,
             };
         }
+        self.head.take(line, self.last_byte == b'\n');
         self.last_byte = *line.last().unwrap_or(&self.last_byte);
         self.source.consume(count);
         if !self.is_between_rows {

@@ -5,7 +5,7 @@ use nalgebra::Point2;
 
 use crate::column::Column;
 use crate::csv_columns::{HeaderError, Role};
-use crate::csv_field::{leading_number, unquoted_length};
+use crate::csv_field::{leading_number, number, unquoted_length};
 use crate::csv_lines::{COMMENT, Lines, ROW_LIMIT};
 use crate::error::{Place, ReadError, ReadErrorKind, Span};
 use crate::not_csv::{HEAD_LENGTH, not_csv};
@@ -25,6 +25,8 @@ pub(crate) struct Rows<R> {
     row: ByteRecord,
     /// Whether that row reads the same without quotes.
     needs_no_quotes: bool,
+    /// Whether that row is still to be handed out: it came where a header was expected.
+    is_put_back: bool,
     /// Lines that the csv crate has not seen.
     lines_repeated: u64,
     previous: ByteRecord,
@@ -54,7 +56,16 @@ impl<R: Read> Rows<R> {
             .terminator(Terminator::Any(b'\n'))
             .from_reader(Lines::new(Cursor::new(start).chain(source)));
         let (row, previous) = (ByteRecord::new(), ByteRecord::new());
-        let mut rows = Self { file, reader, field_count: 0, row, needs_no_quotes: false, lines_repeated: 0, previous };
+        let mut rows = Self {
+            file,
+            reader,
+            field_count: 0,
+            row,
+            needs_no_quotes: false,
+            is_put_back: false,
+            lines_repeated: 0,
+            previous,
+        };
         if !rows.read_row()? {
             // Comments alone: of what follows them, where no line ends, all is a comment too.
             let has_returns_alone = rows.reader.get_ref().has_returns_alone();
@@ -65,8 +76,17 @@ impl<R: Read> Rows<R> {
             return Err(rows.error_at(None, None, ReadErrorKind::LineEnds));
         }
         rows.field_count = rows.row.len();
-        let found = columns(&rows.row).map_err(|(column, kind)| rows.error(column, kind))?;
-        rows.row.clear();
+        let found = match columns(&rows.row) {
+            Err((_, ReadErrorKind::MissingColumns { .. })) if rows.begins_below_commented_header(&columns) => {
+                rows.is_put_back = true;
+                columns(&rows.commented_header())
+            }
+            found => found,
+        };
+        let found = found.map_err(|(column, kind)| rows.error(column, kind))?;
+        if !rows.is_put_back {
+            rows.row.clear();
+        }
         rows.needs_no_quotes = false;
         Ok((rows, found))
     }
@@ -176,14 +196,30 @@ impl<R: Read> Rows<R> {
         }
     }
 
+    /// The last comment before the first row as a header.
+    fn commented_header(&self) -> ByteRecord {
+        self.reader.get_ref().last_comment().split(|byte| *byte == b',').collect()
+    }
+
+    /// Whether the first row has numbers, as many as the comment before it has names, among which are all columns that are needed.
+    fn begins_below_commented_header<C>(&self, columns: impl Fn(&ByteRecord) -> Result<C, HeaderError>) -> bool {
+        let header = self.commented_header();
+        let has_numbers = self.row.iter().any(|field| number(field).is_ok());
+        has_numbers && header.len() == self.row.len() && columns(&header).is_ok()
+    }
+
     fn read_row(&mut self) -> Result<bool, ReadError> {
+        if std::mem::take(&mut self.is_put_back) {
+            self.needs_no_quotes = needs_no_quotes(&self.row);
+            return Ok(true);
+        }
         std::mem::swap(&mut self.row, &mut self.previous);
         loop {
             self.reader.get_mut().begin_row();
             match self.reader.read_byte_record(&mut self.row) {
                 Ok(true) if is_blank(&self.row) => {}
                 Ok(more) => {
-                    self.needs_no_quotes = !self.row.as_slice().iter().any(|byte| b",\n\"".contains(byte));
+                    self.needs_no_quotes = needs_no_quotes(&self.row);
                     return Ok(more);
                 }
                 Err(error) => return Err(self.failure(error)),
@@ -211,6 +247,11 @@ impl<R: Read> Rows<R> {
         };
         self.error_at(Some((line, line)), None, kind)
     }
+}
+
+/// Whether a row reads the same without quotes.
+fn needs_no_quotes(row: &ByteRecord) -> bool {
+    !row.as_slice().iter().any(|byte| b",\n\"".contains(byte))
 }
 
 /// A line of nothing but white space comes as one blank field.

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::column::Column;
 use crate::file_name::readable;
+use crate::header_hint::header_hint;
 use crate::picture_error::{PictureError, TraceError};
 use crate::polygon_error::PolygonError;
 
@@ -214,7 +215,7 @@ pub enum ReadErrorKind {
         text: String,
     },
     /// A number is missing.
-    #[error("the field is empty, expected a number")]
+    #[error("the field is empty, expected a number: fill it in, or leave out the point")]
     EmptyField,
     /// Text where a number should be.
     #[error("{text:?} is not a number")]
@@ -223,7 +224,7 @@ pub enum ReadErrorKind {
         text: String,
     },
     /// NaN or an infinity, written as such or by a number too large for a float.
-    #[error("{text:?} is not a finite number")]
+    #[error("{text:?} is not a finite number: leave out the point")]
     NotFinite {
         /// The field, shortened.
         text: String,
@@ -273,7 +274,7 @@ pub enum ReadErrorKind {
         time: f64,
     },
     /// The frame numbers of an object run backwards.
-    #[error("frame {frame} of object {object:?} comes after its frame {previous}")]
+    #[error("frame {frame} of object {object:?} comes after its frame {previous}: order the rows by frame")]
     FrameNotIncreasing {
         /// Object of the outline.
         object: String,
@@ -344,22 +345,6 @@ pub enum ReadErrorKind {
 
 fn comma_separated(columns: &[Column]) -> String {
     columns.iter().map(Column::name).collect::<Vec<_>>().join(", ")
-}
-
-/// What may be wrong with a header: its letters, or what separates its names.
-fn header_hint(missing: &[Column], header: &str) -> &'static str {
-    let is_there = |column: &Column| header.split(',').any(|name| name.trim().eq_ignore_ascii_case(column.name()));
-    if missing.iter().any(is_there) { "; names of columns are in lower case" } else { separator_hint(header) }
-}
-
-/// What to say of a header that lacks columns since something else than commas separates them.
-fn separator_hint(header: &str) -> &'static str {
-    match header {
-        _ if header.contains(',') => "",
-        _ if header.contains(';') => ": columns are separated by commas, not by semicolons",
-        _ if header.contains('\t') => ": columns are separated by commas, not by tabs",
-        _ => "",
-    }
 }
 
 /// Why a file gave no shape.

@@ -205,6 +205,9 @@ fn a_shape_comes_from_csv_points_or_pictures() {
     assert!(shape_of("a", &png(disc())).is_ok(), "the content tells a picture without an extension");
 }
 
+const ROW_OF_NUMBERS: &str = "a.csv:1: missing column(s) x, y, the header is \"1,2\"; that is a row of numbers: add a line before it that names the \
+                              columns, without # (numpy.savetxt: comments='')";
+
 #[test]
 fn a_file_without_a_shape_says_why() {
     let black = png(GrayImage::new(30, 30));
@@ -213,9 +216,13 @@ fn a_file_without_a_shape_says_why() {
     no_shape("a.png", b"", "a.png: the file is empty");
     no_shape("a.csv", b"", "a.csv: the file is empty, expected a header such as frame,time,x,y");
     no_shape("a.csv", b"x,y\n", "a.csv: no outline in the file");
-    no_shape("a.csv", b"1,2\n3,4\n", "a.csv:1: missing column(s) x, y, the header is \"1,2\"");
-    no_shape("a.csv", b"frame,x,y\n", "a.csv:1: missing column(s) time, the header is \"frame,x,y\"");
-    no_shape("a.csv", b"x,y\n0,0\n1,nan\n", "a.csv:3: column y: \"nan\" is not a finite number");
+    no_shape("a.csv", b"1,2\n3,4\n", ROW_OF_NUMBERS);
+    no_shape(
+        "a.csv",
+        b"frame,x,y\n",
+        "a.csv:1: missing column(s) time, the header is \"frame,x,y\"; give the time of each frame in seconds in a column named time",
+    );
+    no_shape("a.csv", b"x,y\n0,0\n1,nan\n", "a.csv:3: column y: \"nan\" is not a finite number: leave out the point");
     no_shape("a.csv", b"x,y\n0,0\n1,1\n", "a.csv:2-3: frame 0 of object \"0\": 2 point(s), at least 3 are needed");
     let open = b"frame,time,x,y,arc\n0,0,0,0,1\n0,0,2,0,1\n0,0,2,1,1\n";
     no_shape("a.csv", open, "a.csv: the first outline is made of open arcs, a shape needs a closed one");

@@ -204,7 +204,7 @@ fn deviations_that_are_none_are_refused_with_their_row() {
     for (value, message) in [
         (0.0, "row 4: column deviation: 0 is not a standard deviation (a number above 0, or nothing)"),
         (-0.5, "row 4: column deviation: -0.5 is not a standard deviation (a number above 0, or nothing)"),
-        (f64::INFINITY, "row 4: column deviation: \"inf\" is not a finite number"),
+        (f64::INFINITY, "row 4: column deviation: \"inf\" is not a finite number: leave out the point"),
         (1e101, "row 4: column deviation: 1e101 is beyond 1e100"),
     ] {
         let mut table = good.clone();

@@ -61,11 +61,22 @@ fn columns_that_are_separated_by_something_else_than_commas_are_told_so() {
     refused("frame;time;x;y\n0;0;1;2\n", &[], &semicolons);
     let tabs = format!("{missing} \"frame\\ttime\\tx\\ty\": columns are separated by commas, not by tabs");
     refused("frame\ttime\tx\ty\n0\t0\t1\t2\n", &[], &tabs);
+    let spaces = format!("{missing} \"frame time x y\": columns are separated by commas, not by spaces");
+    refused("frame time x y\n0 0 1 2\n", &[], &spaces);
+    refused(
+        "# frame time x y\n0.0 0 1 2\n",
+        &[],
+        &spaces.replace(":1:", ":2:").replace("\"frame time x y\"", "\"0.0 0 1 2\""),
+    );
 }
 
 #[test]
 fn missing_columns_are_named_with_the_header_found() {
-    refused("frame,x,y\n0,1,2\n", &[], "in.csv:1: missing column(s) time, the header is \"frame,x,y\"");
+    refused(
+        "frame,x,y\n0,1,2\n",
+        &[],
+        "in.csv:1: missing column(s) time, the header is \"frame,x,y\"; give the time of each frame in seconds in a column named time",
+    );
     refused("# a\n\nhello\n", &[], "in.csv:3: missing column(s) frame, time, x, y, the header is \"hello\"");
     refused(
         "Frame,time,x,y\n",
@@ -75,6 +86,17 @@ fn missing_columns_are_named_with_the_header_found() {
     let long = format!("{}\n", "abc,".repeat(100));
     let start = "abc,".repeat(10);
     refused(long, &[], &format!("in.csv:1: missing column(s) frame, time, x, y, the header is \"{start}...\""));
+}
+
+#[test]
+fn a_file_without_a_header_is_told_to_get_one_where_the_comment_before_it_is_none() {
+    let told =
+        "that is a row of numbers: add a line before it that names the columns, without # (numpy.savetxt: comments='')";
+    let missing = "missing column(s) frame, time, x, y, the header is \"0,0,1,2\"";
+    for head in ["", "# frame,time,x,y,z\n", "# frame,t,x,y\n", "# frame,time,x,y\n# made by hand\n"] {
+        let line = head.lines().count() + 1;
+        refused(format!("{head}0,0,1,2\n"), &[], &format!("in.csv:{line}: {missing}; {told}"));
+    }
 }
 
 #[test]
@@ -88,8 +110,16 @@ fn text_in_a_number_column_is_quoted() {
     refused(with_row("2,0.2,one,0\n"), &[0, 1], "in.csv:8: column x: \"one\" is not a number");
     refused(with_row("2,0.2,0,\"1;5\"\n"), &[0, 1], "in.csv:8: column y: \"1;5\" is not a number");
     refused(with_row("2,soon,0,0\n"), &[0, 1], "in.csv:8: column time: \"soon\" is not a number");
-    refused(with_row("2,0.2,0,\n"), &[0, 1], "in.csv:8: column y: the field is empty, expected a number");
-    refused(with_row("2, ,0,0\n"), &[0, 1], "in.csv:8: column time: the field is empty, expected a number");
+    refused(
+        with_row("2,0.2,0,\n"),
+        &[0, 1],
+        "in.csv:8: column y: the field is empty, expected a number: fill it in, or leave out the point",
+    );
+    refused(
+        with_row("2, ,0,0\n"),
+        &[0, 1],
+        "in.csv:8: column time: the field is empty, expected a number: fill it in, or leave out the point",
+    );
     refused(with_row("2,0.2,\"a\nb\",0\n"), &[0, 1], "in.csv:8: column x: \"a\\nb\" is not a number");
     let start = "z".repeat(40);
     refused(
@@ -102,20 +132,28 @@ fn text_in_a_number_column_is_quoted() {
 #[test]
 fn numbers_that_are_not_finite_or_too_large_are_refused() {
     for text in ["nan", "NaN", "inf", "-inf", "Infinity", "1e400"] {
-        let message = format!("in.csv:8: column y: \"{text}\" is not a finite number");
+        let message = format!("in.csv:8: column y: \"{text}\" is not a finite number: leave out the point");
         refused(with_row(&format!("2,0.2,0,{text}\n")), &[0, 1], &message);
     }
-    refused(with_row("2,inf,0,0\n"), &[0, 1], "in.csv:8: column time: \"inf\" is not a finite number");
+    refused(
+        with_row("2,inf,0,0\n"),
+        &[0, 1],
+        "in.csv:8: column time: \"inf\" is not a finite number: leave out the point",
+    );
     refused(with_row("2,0.2,-1e300,0\n"), &[0, 1], "in.csv:8: column x: -1e300 is beyond 1e100");
 }
 
 #[test]
 fn a_frame_number_is_a_whole_number_from_0() {
-    for text in ["-1", "1.5", "2.0", "two", "1e3", "99999999999999999999"] {
+    for text in ["-1", "1.5", "-2.0", "two", "1e300", "inf", "nan", "99999999999999999999"] {
         let message = format!("in.csv:8: column frame: \"{text}\" is not a frame number (a whole number, 0 or more)");
         refused(with_row(&format!("{text},0.2,0,0\n")), &[0], &message);
     }
-    refused(with_row(",0.2,0,0\n"), &[0], "in.csv:8: column frame: the field is empty, expected a number");
+    refused(
+        with_row(",0.2,0,0\n"),
+        &[0],
+        "in.csv:8: column frame: the field is empty, expected a number: fill it in, or leave out the point",
+    );
 }
 
 #[test]
@@ -159,7 +197,7 @@ fn time_must_increase_for_every_object() {
 #[test]
 fn frame_numbers_must_increase_for_every_object() {
     let three = with_row("5,0.5,0,0\n5,0.5,1,0\n5,0.5,0,1\n");
-    let message = "in.csv:11: column frame: frame 3 of object \"0\" comes after its frame 5";
+    let message = "in.csv:11: column frame: frame 3 of object \"0\" comes after its frame 5: order the rows by frame";
     refused(format!("{three}3,0.7,0,0\n"), &[0, 1, 5], message);
 }
 
@@ -197,7 +235,11 @@ fn a_last_line_that_is_cut_short_is_refused() {
     let whole = TWO_FRAMES.trim_end();
     assert_eq!(read_all(whole), (vec![0, 1], vec![]), "only the line end is missing");
     refused(&whole[..whole.len() - 2], &[0], "in.csv:7: the last line is cut short: 3 field(s), the header has 4");
-    refused(&whole[..whole.len() - 1], &[0], "in.csv:7: column y: the field is empty, expected a number");
+    refused(
+        &whole[..whole.len() - 1],
+        &[0],
+        "in.csv:7: column y: the field is empty, expected a number: fill it in, or leave out the point",
+    );
     refused(with_row("2,0.2,1,2e-"), &[0, 1], "in.csv:8: column y: \"2e-\" is not a number");
 }
 

@@ -256,3 +256,36 @@ fn rounded_numbers_are_short_and_right_to_the_resolution_asked_for() {
         }
     }
 }
+
+#[test]
+fn a_file_of_numpy_with_its_header_in_a_comment_and_frames_as_floats_is_read_as_one_with_a_header() {
+    let rows = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.5], [0.0, 0.0, 1.0], [7.0, 0.0, 0.0], [7.0, 1.0, 0.5], [7.0, 0.0, 1.0]];
+    let plain: String = rows.iter().map(|[frame, x, y]| format!("{frame},{},{x},{y}\n", 0.5 * frame)).collect();
+    let numpy: String =
+        rows.iter().map(|[frame, x, y]| format!("{frame:.18e},{:.18e},{x:e},{y:.3}\n", 0.5 * frame)).collect();
+    let expected = read(format!("frame,time,x,y\n{plain}").as_bytes());
+    assert_eq!(expected.iter().map(|frame| frame.frame).collect::<Vec<_>>(), [0, 7]);
+    for head in [
+        "# frame,time,x,y\n",
+        "#frame,time,x,y\r\n",
+        "# of numpy\n# frame, time, x, y\n\n",
+        "\u{feff}# frame,time,x,y\n",
+    ] {
+        for body in [&plain, &numpy] {
+            let text = format!("{head}{body}");
+            assert_eq!(read(text.as_bytes()), expected, "{text}");
+            assert_eq!(read(OneByte(text.as_bytes())), expected, "byte by byte: {text}");
+        }
+    }
+}
+
+#[test]
+fn an_error_below_a_commented_header_names_its_line_in_the_file() {
+    let text = "# of numpy\n# frame,time,x,y\n0,0,0,0\n0,0,1,0\n0,0,one,1\n";
+    let error = OutlineReader::new(text.as_bytes(), "in.csv").expect("a header").find_map(Result::err);
+    assert_eq!(error.expect("an error").to_string(), "in.csv:5: column x: \"one\" is not a number");
+    let text = "# frame,time,x,y\nzero,0,0,0\n0,0,1,0\n";
+    let error = OutlineReader::new(text.as_bytes(), "in.csv").expect("a header").find_map(Result::err);
+    let told = "in.csv:2: column frame: \"zero\" is not a frame number (a whole number, 0 or more)";
+    assert_eq!(error.expect("an error").to_string(), told);
+}

@@ -66,9 +66,12 @@ fn arcs_in_lists_and_in_rows_of_any_order_are_the_same_outline() {
 #[test]
 fn a_file_that_cannot_be_used_is_refused_with_row_and_column() {
     for (name, expected) in [
-        ("bad-null-list", "row 1: column x: the field is empty, expected a number"),
-        ("bad-null-value", "row 1: column y: the field is empty, expected a number"),
-        ("bad-nan", "row 2: column x: \"NaN\" is not a finite number"),
+        ("bad-null-list", "row 1: column x: the field is empty, expected a number: fill it in, or leave out the point"),
+        (
+            "bad-null-value",
+            "row 1: column y: the field is empty, expected a number: fill it in, or leave out the point",
+        ),
+        ("bad-nan", "row 2: column x: \"NaN\" is not a finite number: leave out the point"),
         ("bad-length", "row 1: column y: 2 value(s), column x has 3 in this row"),
         ("bad-text", "column x: the type is lists of BYTE_ARRAY (String), expected lists of numbers, or numbers"),
         ("bad-struct", "column x: the type is struct, expected lists of numbers, or numbers"),
@@ -76,7 +79,10 @@ fn a_file_that_cannot_be_used_is_refused_with_row_and_column() {
         ("bad-time", "column time: the type is INT64 (Timestamp"),
         ("bad-frame", "row 1: column frame: \"-4\" is not a frame number (a whole number, 0 or more)"),
         ("bad-frame-fraction", "row 1: column frame: \"4.5\" is not a frame number (a whole number, 0 or more)"),
-        ("bad-null-frame", "row 1: column frame: the field is empty, expected a number"),
+        (
+            "bad-null-frame",
+            "row 1: column frame: the field is empty, expected a number: fill it in, or leave out the point",
+        ),
         ("bad-name", "row 1: column object: the name is missing"),
         ("bad-codec", "compressed with Brotli"),
         ("bad-encoding", "column frame: the Parquet file cannot be read: values encoded as DELTA_BINARY_PACKED"),

@@ -61,14 +61,18 @@ fn deviations_that_are_none_are_refused_with_row_and_column() {
     for (name, expected) in [
         ("zero", format!("row 2: column deviation: 0 {none}")),
         ("negative", format!("row 2: column deviation: -0.5 {none}")),
-        ("nan", "row 2: column deviation: \"NaN\" is not a finite number".to_owned()),
-        ("infinite", "row 2: column deviation: \"inf\" is not a finite number".to_owned()),
+        ("nan", "row 2: column deviation: \"NaN\" is not a finite number: leave out the point".to_owned()),
+        ("infinite", "row 2: column deviation: \"inf\" is not a finite number: leave out the point".to_owned()),
         ("huge", "row 2: column deviation: 1e101 is beyond 1e100".to_owned()),
-        ("null-value", "row 2: column deviation: the field is empty, expected a number".to_owned()),
+        (
+            "null-value",
+            "row 2: column deviation: the field is empty, expected a number: fill it in, or leave out the point"
+                .to_owned(),
+        ),
         ("short", "row 2: column deviation: 3 value(s), column x has 4 in this row".to_owned()),
         ("long", "row 2: column deviation: 5 value(s), column x has 4 in this row".to_owned()),
         ("points-zero", format!("row 5: column deviation: 0 {none}")),
-        ("points-nan", "row 5: column deviation: \"NaN\" is not a finite number".to_owned()),
+        ("points-nan", "row 5: column deviation: \"NaN\" is not a finite number: leave out the point".to_owned()),
     ] {
         let reader = ParquetReader::open(sample(&format!("bad-deviations-{name}.parquet"))).expect("a table");
         let items: Vec<_> = reader.collect();
