@@ -123,6 +123,5 @@ fn take_back(state: &mut MotionState, next: &MotionState, process_noise: &Proces
     state.covariance = 0.5 * (&covariance + covariance.transpose());
     for j in 0..MAX_PARAMETERS {
         state.observable[j] |= next.observable[j];
-        state.hidden[j] &= next.hidden[j];
     }
 }

@@ -40,9 +40,10 @@ impl CommonError {
         Self { model, covariance, linear: reference.linear(), shift: SVector::zeros() }
     }
 
-    /// Whether a deviation of it is beyond a limit, in radians or RMS radii.
-    pub(super) fn is_beyond(&self, limit: f64) -> bool {
-        self.covariance.diagonal().iter().any(|variance| *variance > limit * limit)
+    /// Whether a deviation of the centroid is beyond a limit, in RMS radii. A turn may be known as little and nothing be wrong.
+    pub(super) fn moves_centroid_beyond(&self, limit: f64) -> bool {
+        let k = self.model.parameter_count();
+        (k - 2..k).any(|i| self.covariance[(i, i)] > limit * limit)
     }
 
     /// Its covariance about the centroid in a pose.

@@ -75,7 +75,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         let of_poses = Summary { covariance: *given_outline, ..*summary };
         let (_, measured) = of_poses.about_centroid::<N>(&change, k);
         let common = CommonError::of_outline(model, &covariance, &measured, &reference);
-        if common.is_beyond(tuning::UNTOLD) {
+        if common.moves_centroid_beyond(tuning::UNTOLD) {
             return None;
         }
         for (i, j) in (0..2 * k).flat_map(|i| (0..k).map(move |j| (i, j))) {

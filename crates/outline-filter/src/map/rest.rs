@@ -36,7 +36,8 @@ pub(super) fn eigen_of_block(
         3 => of_size!(3),
         4 => of_size!(4),
         6 => of_size!(6),
-        _ => of_size!(8),
+        MAX_PARAMETERS => of_size!(8),
+        _ => unreachable!("no model has {entries} parameters"),
     }
 }
 

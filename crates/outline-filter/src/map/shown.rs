@@ -6,25 +6,27 @@ use super::OutlineMap;
 use crate::tuning::update::{FLATTEST, LEAST_DEPTH};
 
 impl OutlineMap {
-    /// Whether a pose shows the outline: the plane is not seen from its edge anywhere along it, and all of it lies on one side of the line that goes to
-    /// infinity, none of it close by. No other pose can be worked with: points of the outline lie beyond any number, and errors of the pose move them by
-    /// as much.
+    /// Whether a pose shows the outline: it is seen from its front and nowhere from its edge, and all of it lies on one side of the line that goes to
+    /// infinity, none of it close by. No other pose can be worked with: points of the outline lie beyond any number, and errors of the pose move
+    /// them by as much.
     ///
-    /// Poses begin with the identity and are moved by exponentials, whose determinants are positive, so that a determinant has no way through zero
-    /// but past this bound.
+    /// Poses begin with the identity and move on continuously; one that is mirrored has been reached by a step over a pose that shows nothing.
     pub(crate) fn is_shown_in(&self, pose: &Matrix3<f64>) -> bool {
         if !pose.iter().all(|entry| entry.is_finite()) {
             return false;
         }
         if is_affine(pose) {
-            return is_regular(&pose.fixed_view::<2, 2>(0, 0).into_owned());
+            let linear = pose.fixed_view::<2, 2>(0, 0).into_owned();
+            return linear.determinant() > 0.0 && is_regular(&linear);
         }
         let depth = |p: &Point2<f64>| pose[(2, 0)] * p.x + pose[(2, 1)] * p.y + pose[(2, 2)];
         let depths = self.cells.iter().map(|cell| depth(&cell.centre));
         let (least, most) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), w| (a.min(w), b.max(w)));
         // A matrix and its negative are the same map.
-        let is_in_front = least > LEAST_DEPTH * most.abs() || -most > LEAST_DEPTH * least.abs();
-        is_in_front && self.cells.iter().all(|cell| is_regular(&scaled_derivative(pose, &cell.centre)))
+        let is_apart = least > LEAST_DEPTH * most.abs() || -most > LEAST_DEPTH * least.abs();
+        // The derivative of the map has the determinant of the matrix over the third power of the depth.
+        let is_from_front = pose.determinant() * most > 0.0;
+        is_apart && is_from_front && self.cells.iter().all(|cell| is_regular(&scaled_derivative(pose, &cell.centre)))
     }
 }
 
@@ -64,14 +66,17 @@ mod tests {
         let wide = |width: f64| Matrix3::from_diagonal(&nalgebra::Vector3::new(width, 1.0, 1.0));
         let is_shown = |pose: &Matrix3<f64>| track.map().is_shown_in(pose);
         // Cells at x in about -1 to 1.3: the line that goes to infinity is at -1 / x.
-        for pose in
-            [Matrix3::identity(), -Matrix3::identity(), perspective(0.3), perspective(-0.6), wide(1e-3), wide(-1.0)]
-        {
+        for pose in [Matrix3::identity(), -perspective(0.3), perspective(0.3), perspective(-0.6), wide(1e-3)] {
             assert!(is_shown(&pose), "{pose}");
         }
         for pose in
             [perspective(2.0), perspective(-1e9), wide(1e-7), wide(0.0), wide(f64::NAN), perspective(f64::INFINITY)]
         {
+            assert!(!is_shown(&pose), "{pose}");
+        }
+        // Mirrored, and turned about an axis in the plane by more than a right angle.
+        let behind = Matrix3::new(-0.9, 0.0, 0.4, 0.0, 1.0, 0.0, -0.4, 0.0, -0.9);
+        for pose in [wide(-1.0), wide(-1.0) * perspective(0.3), behind] {
             assert!(!is_shown(&pose), "{pose}");
         }
         // A line that just misses the outline, and one that touches it.

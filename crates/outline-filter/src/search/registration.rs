@@ -97,11 +97,11 @@ impl Registration {
         let apart = if slides { tuning::SAME_BY_FEW } else { tuning::SAME_POSE };
         let mut rigid = distinct(rigid, apart);
         // Where it has hidden parts, few starts lead to a tooth of a gear, and those to any.
-        let turns = turns_of_near_symmetry(&rigid);
-        rigid.extend(turns.iter().map(|start| refined(track, &few, MotionModel::Rigid, start, Steps::FURTHER)));
-        let mut rigid = distinct(rigid, apart);
-        if rigid.len() > tuning::REFINED {
-            // Few points have a handful on each tooth of a gear: they do not tell which of its turns a mark agrees with.
+        let turns = turns_of_near_symmetry(track.model(), &rigid);
+        if !turns.is_empty() {
+            rigid.extend(turns.iter().map(|start| refined(track, &few, MotionModel::Rigid, start, Steps::FURTHER)));
+            rigid = distinct(rigid, apart);
+            // Few points have a handful on each tooth: they do not tell which of its turns a mark agrees with.
             rigid.iter_mut().for_each(|found| found.score_by(track, points));
         }
         keep(&mut rigid, tuning::REFINED);

@@ -26,6 +26,8 @@ impl MotionFilter {
         if let Some(before) = self.before_repeated.take() {
             let BeforeRepeated { track, history, time } = *before;
             (self.track, self.history, self.clock.of_track) = (Some(track), history, time);
+            // It was tracked then, also where it could not be predicted since.
+            self.phase = Phase::Tracking;
         }
     }
 }

@@ -172,8 +172,8 @@ impl MotionFilter {
         let estimate = self.estimate()?;
         let mut observable = [false; MAX_PARAMETERS];
         observable.iter_mut().zip(estimate.parameters()).for_each(|(seen, p)| *seen = p.value.is_some());
-        let turn =
-            if self.turn_hypotheses.are_doubtful() { TurnOfPose::Ambiguous } else { TurnOfPose::AsTheOutlineShows };
+        let is_ambiguous = self.turn_hypotheses.make_pose_doubtful() && self.ambiguity().is_some();
+        let turn = if is_ambiguous { TurnOfPose::Ambiguous } else { TurnOfPose::AsTheOutlineShows };
         self.track.as_ref()?.state_of(&self.statement()?.all, self.clock.of_track, observable, turn)
     }
 

@@ -174,6 +174,13 @@ impl TurnHypotheses {
         (0..self.rivals.len()).any(|i| self.is_doubtful(i))
     }
 
+    /// Whether the smaller turn cannot be taken for granted against one that leads to another pose: a whole turn more or less does not.
+    pub(super) fn make_pose_doubtful(&self) -> bool {
+        let least = different_turn(self.symmetry_angle);
+        let differs = |i: usize| wrapped(self.rival_turns[i] - self.present_turn).abs() > least;
+        (0..self.rivals.len()).any(|i| self.is_doubtful(i) && differs(i))
+    }
+
     fn is_doubtful(&self, index: usize) -> bool {
         self.rivals[index].is_shown || is_doubtful(self.rival_turns[index], self.present_turn)
     }
@@ -221,7 +228,14 @@ impl TurnHypotheses {
         }
         for index in (0..self.rivals.len()).rev() {
             let rival = &mut self.rivals[index];
-            let Some(found) = rival.follow(settings, (track, frame), &outcome, seconds) else { continue };
+            let was_followed = rival.track.is_some();
+            let Some(found) = rival.follow(settings, (track, frame), &outcome, seconds) else {
+                // One that cannot be predicted is no way in which the object may have turned.
+                if was_followed {
+                    self.rule_out(index);
+                }
+                continue;
+            };
             let of_rival = rival.likelihood;
             let is_vouched_for = outcome.is_accepted() && !of_rival.is_worse_than(&self.likelihood);
             let found = if is_vouched_for { rival.again_if_vouched_for(settings, frame, found) } else { found };
@@ -330,8 +344,8 @@ impl TurnHypotheses {
         self.rival_turns.iter().zip(tracks).filter_map(|(turn, track)| Some((*turn, track?)))
     }
 
-    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew. Frames that none could be
-    /// made of have decided against a hypothesis.
+    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew. Those that
+    /// have none do not explain all of these frames, or not as well that they have been taken.
     pub(super) fn remap(&mut self, mut track_of: impl FnMut(f64) -> Option<Track>) {
         for index in (0..self.rivals.len()).rev() {
             if let Some(track) = &mut self.rivals[index].track {

@@ -9,7 +9,7 @@ use super::Track;
 use crate::{
     belief::{Belief, StateMatrix, StateVector, scaled_inverse},
     dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate},
-    map::NullDirection,
+    map::{CLOCKWISE, NullDirection},
     tuning::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
         statement::{ROUNDING_OF_CORRELATION, SHIFT_BY_LIGHT},
@@ -275,9 +275,9 @@ impl Track {
         let (change, kinds) = (at.about_centroid(model), model.parameter_kinds());
         let mut hidden = [false; MAX_PARAMETERS];
         if turn == TurnOfPose::Ambiguous {
-            let about_centroid = self.turn_about_centroid().unwrap_or_default();
-            hidden.iter_mut().zip(kinds).zip(&about_centroid).for_each(|((hidden, kind), rate)| {
-                *hidden = *kind == ParameterKind::Rate && *rate != 0.0;
+            let turn = model.parameters_of(&CLOCKWISE);
+            hidden.iter_mut().zip(kinds).zip(turn).for_each(|((hidden, kind), rate)| {
+                *hidden = *kind == ParameterKind::Rate && rate != 0.0;
             });
         }
         for null in self.map.null_directions(model, &self.belief.pose) {

@@ -132,7 +132,7 @@ impl Track {
     }
 
     /// The clockwise turn by 1 rad about the centroid, as parameters of the image.
-    pub(super) fn turn_about_centroid(&self) -> Option<SVector<f64, MAX_PARAMETERS>> {
+    fn turn_about_centroid(&self) -> Option<SVector<f64, MAX_PARAMETERS>> {
         let model = self.belief.model;
         Some(self.centred_pose().about_origin(model)? * SVector::from(model.parameters_of(&CLOCKWISE)))
     }

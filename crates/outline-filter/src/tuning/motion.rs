@@ -93,8 +93,8 @@ pub(crate) mod dynamics {
     /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
     pub(crate) const LEAST_VARIANCE: f64 = 1e-18;
     pub(crate) const LARGEST_VARIANCE: f64 = 0.0625;
-    /// Hypotheses begin once the outline tells the pose better than by a radian or a radius: two frames of few points on a fine map may have no cell in
-    /// common, and what all poses have in common stays what it was when they began.
+    /// Hypotheses begin once the outline tells the place of the object better than by this, in RMS radii: two frames of few points on a fine map may
+    /// have no cell in common, and what all poses have in common stays what it was when they began.
     pub(crate) const UNTOLD: f64 = 1.0;
     /// What makes a measurement of the pose solvable along what it says nothing of.
     pub(crate) const SINGULAR: f64 = 1e-9;

@@ -104,13 +104,19 @@ pub(crate) mod registration {
     /// reach ([`TUKEY`] times [`WIDEST_REFINED`]). Few points hardly tell how far such an outline has gone along itself, and no refinement
     /// brings together what is farther apart.
     pub(crate) const SAME_BY_FEW: f64 = TUKEY * WIDEST_REFINED;
-    /// Turns of poses that were found lie so near to multiples of a part of a circle, rad, where an outline nearly looks the same after it: few points tell
-    /// a turn to a hundredth.
+    /// Turns of poses that were found lie so near to multiples of a part of a circle, rad, where an outline nearly looks the same after it: few
+    /// points tell a turn to a hundredth, and the farthest off of several is off by about two of that.
     pub(crate) const OFF_NEAR_SYMMETRY: f64 = 0.02;
-    /// As near as this, rad, they are multiples as far as the poses tell.
+    /// Turns that are nearer to multiples than this, rad, say nothing of which of several numbers of parts fits better: a share of that hundredth.
     pub(crate) const KNOWN_NEAR_SYMMETRY: f64 = 0.004;
-    /// Largest number of parts that is looked for: multiples of smaller ones are met by chance.
+    /// Centres of these turns lie no farther apart, in radii: a hundredth in the angle of the smallest turn, a quarter of a radian, is as much.
+    pub(crate) const OFF_CENTRE: f64 = 0.1;
+    /// Largest number of parts that is looked for: [`OFF_NEAR_SYMMETRY`] on either side is a quarter of the angle of one then. Of poses with hidden
+    /// parts few teeth are reached, of outlines that are wholly symmetric
+    /// ([`LARGEST_ORDER`](crate::tuning::symmetry::LARGEST_ORDER)) all that matter.
     pub(crate) const LARGEST_NEAR_SYMMETRY: usize = 40;
+    /// As that, told by one turn alone, which is a multiple of one of so few parts by chance in a fifth of all cases.
+    pub(crate) const LARGEST_BY_ONE_TURN: usize = 8;
     /// A score up to this many times the best is a tie.
     pub(crate) const TIE: f64 = 1.25;
     /// Tukey's constant for 95 % efficiency at Gaussian noise.

@@ -105,3 +105,42 @@ fn a_gear_with_a_mark_and_a_gap_is_found_on_its_own_tooth() {
     assert!(all > 60, "{all}");
     assert!(off <= 1, "{off} of {all} turns");
 }
+
+/// A gear of 12 teeth with a shallow mark, whose outlines have errors that are smooth along the contour and other ones in every frame: those of the first
+/// two frames may say that it has turned by any number of teeth.
+#[test]
+fn a_gear_that_smooth_errors_let_turn_by_teeth_too_many_is_not_told_to_without_a_word() {
+    const TEETH: f64 = 12.0;
+    let (mut wrong, mut silent) = (0, 0);
+    for seed in 0..40 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let per_frame = random.random_range(-0.12..0.12);
+        let mut run = filter(MotionModel::Rigid);
+        for frame in 0..30 {
+            let mut errors = [[0.0; 2]; 20];
+            errors.iter_mut().flatten().for_each(|error| *error = random.random_range(-0.016..0.016));
+            let point = |i: u32| {
+                let angle = TAU * f64::from(i) / 500.0;
+                let mark = 0.04 * f64::exp(-((angle - 3.0) / 0.15).powi(2));
+                let tooth = 0.2 * f64::tanh(3.0 * (TEETH * angle).cos());
+                let terms = (1..).zip(&errors).map(|(k, [a, b])| {
+                    let (sine, cosine) = (f64::from(k) * angle).sin_cos();
+                    a * sine + b * cosine
+                });
+                let (radius, at) = (1.0 + tooth - mark + terms.sum::<f64>(), angle + per_frame * f64::from(frame));
+                Point2::new(radius * at.cos(), radius * at.sin())
+            };
+            let outline = Outline::closed((0..500).map(point).collect()).expect("an outline");
+            run.step(f64::from(frame) / 30.0, &outline).expect("increasing times");
+        }
+        // Omega is clockwise.
+        let truth = -30.0 * per_frame;
+        let omega = run.estimate().and_then(|estimate| estimate.parameters().next()?.value);
+        let Some(omega) = omega.filter(|omega| (omega - truth).abs() > 0.5) else { continue };
+        wrong += 1;
+        let is_told = run.aliases().iter().any(|alias| (alias - truth).abs() < 0.1 * (omega - truth).abs());
+        silent += u32::from(!is_told);
+    }
+    assert!(wrong <= 4, "{wrong}");
+    assert_eq!(silent, 0);
+}
