@@ -28,7 +28,10 @@ Examples:
   freeform identify outlines.csv --motion affine --svg parameters.svg --truth 0,1,-1,0,2,0
 
 A CSV file has a header frame,time,x,y and optional columns object and arc. The rows of an outline follow the contour. \
-If the file begins with the comment lines of 'freeform simulate', the true motion in them is printed next to the result.";
+If the file begins with the comment lines of 'freeform simulate', the true motion in them is printed next to the result.
+
+If a row of CSV cannot be read, its line is named on standard error, the result is that of the frames before it, and the exit status is 2. The \
+result itself, also as JSON, does not say that the input was cut.";
 
 /// Identify the motion of every object in a sequence of outlines.
 #[derive(Debug, Args)]
@@ -66,12 +69,17 @@ pub(crate) struct IdentifyArgs {
     /// The pose is relative to the first frame. Rigid: angle (rad, positive if omega is), x and y, the present position of the
     /// mean of the points of the first outline. Similarity: scale, then these. Affine: the matrix m11, m12, m21, m22, then x
     /// and y; projective also m31 and m32. The fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found
-    /// again, while it is lost, and in a frame that is not an outline. In a rejected frame they are the prediction. Not
-    /// available with the adaptive method.
+    /// again, while it is lost, and in a frame that is not an outline. The angle is also empty while the outline does not show it or while two turns
+    /// explain the outlines. In a rejected frame the fields are the prediction. The column segment is a number that is counted up from 0 where the
+    /// object was given up and begun anew, and where a frame shows its turn for the first time: the turn between poses of different segments is not
+    /// known. Not available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 
-    /// Estimate every row of the trajectory from all frames, also later ones
+    /// Estimate every row of the trajectory from all frames, also later ones; for constant motion only
+    ///
+    /// If the motion of an object was seen to change, its rows stay as they are without this option, and a warning says so. That is also so if
+    /// an object flies straight while it spins, as its b changes.
     #[arg(long, requires = "trajectory")]
     pub(crate) smooth: bool,
 

@@ -12,8 +12,9 @@ Examples:
   ffmpeg -loglevel error -i video.mp4 -f yuv4mpegpipe -pix_fmt yuv420p - | freeform track - --background median
   camera-outlines | freeform track --motion rigid | jq .parameters.omega.value
 
-Each line of the output is one JSON object with the fields object, frame, time, phase, accepted, parameters, \
-generator and reason (why the frame was not accepted, or null). The phases are acquiring, tracking and lost for the \
+Each line of the output is one JSON object with the fields schema, object, frame, time, phase, accepted, parameters, \
+generator, velocity (of the middle of the object), reason (why the frame was not accepted, or null) and ambiguity (other turns that explain \
+the outlines as well, or null). The phases are acquiring, tracking and lost for the \
 filter, start and adapt for the adaptive method. The last line of an object that was in none of the last 1000 frames has the \
 phase closed; the object is then forgotten.
 

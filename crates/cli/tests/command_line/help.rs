@@ -1,4 +1,4 @@
-use crate::support::{freeform, run, stderr, stdout, succeed};
+use crate::support::{freeform, json, run, sequence, stderr, stdout, succeed};
 
 #[test]
 fn every_command_has_a_help_with_examples() {
@@ -72,4 +72,14 @@ fn the_table_fits_a_terminal_of_80_columns() {
     let csv = crate::support::sequence("--omega -1.2345678 --b -123.45678,0.00012345");
     let table = succeed("identify - --quiet --motion affine", &csv);
     assert!(table.lines().all(|line| line.chars().count() <= 80), "{table}");
+}
+
+#[test]
+fn the_help_of_track_names_every_field_of_its_lines() {
+    let help = succeed("track --help", "");
+    let listed = help.split("with the fields").nth(1).and_then(|rest| rest.split("The phases").next()).expect("a list");
+    let line = json(succeed("track -", &sequence("")).lines().last().expect("a line"));
+    for field in line.as_object().expect("an object").keys() {
+        assert!(listed.contains(field.as_str()), "{field}");
+    }
 }

@@ -149,3 +149,27 @@ fn values_out_of_range_are_refused_with_the_range() {
         assert!(stderr(&output).contains(message), "{arguments}: {}", stderr(&output));
     }
 }
+
+#[test]
+fn files_named_in_another_order_than_their_numbers_are_warned_of_and_a_quoted_pattern_is_sorted_by_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, _) = pears(folder.path(), "frames", 12);
+    // As a shell orders them.
+    let mut named: Vec<String> = (0..12).map(|frame| format!("{frames}/{frame}.png")).collect();
+    let in_order = named.join(" ");
+    named.sort();
+    let told = format!(
+        "freeform: warning: {frames}/11.png is taken before {frames}/2.png, in the order in which the files are named"
+    );
+    for command in ["identify", "track", "outline"] {
+        let errors =
+            |files: &str, options: &str| stderr(&run(&format!("{command} {files} --light --fps 30 {options}"), ""));
+        assert!(errors(&named.join(" "), "").contains(&told), "{command}: {}", errors(&named.join(" "), ""));
+        for files in [&in_order, &format!("{frames}/*.png"), &frames] {
+            assert!(!errors(files, "").contains("is taken before"), "{command} {files}");
+        }
+        assert!(!errors(&named.join(" "), "--quiet").contains("is taken before"), "{command}");
+    }
+    let sorted = run(&format!("outline {frames}/*.png --light --fps 30"), "");
+    assert_eq!(stdout(&sorted), stdout(&run(&format!("outline {in_order} --light --fps 30"), "")));
+}

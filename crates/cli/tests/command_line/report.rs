@@ -155,3 +155,30 @@ fn angle_and_position_have_gaps_where_nothing_is_stated_and_where_the_object_is_
         assert_eq!((of("line"), of("band")), (2, 2), "{title}");
     }
 }
+
+#[test]
+fn what_is_stated_in_no_frame_is_named_in_the_report_and_not_drawn_as_an_empty_figure() {
+    let page = report(&sequence("--shape circle --b 0,0"), "");
+    let moved =
+        page.split("<h3>How it moved</h3>").nth(1).and_then(|rest| rest.split("<h3>").next()).expect("a section");
+    assert!(moved.contains("Not stated in any frame, and so not drawn: "), "{moved}");
+    assert_eq!(moved.matches("<svg").count(), 0, "{moved}");
+    assert!(!page.contains("e-12"), "no axis of nothing");
+    let page = report(&sequence(""), "");
+    let moved =
+        page.split("<h3>How it moved</h3>").nth(1).and_then(|rest| rest.split("<h3>").next()).expect("a section");
+    assert!(!page.contains("Not stated in any frame") && moved.matches("<svg").count() == 3, "{moved}");
+}
+
+#[test]
+fn bands_are_told_of_the_method_that_has_them_and_the_width_of_the_picture_has_its_unit() {
+    let csv = sequence("--seconds 2");
+    let (filter, adaptive) = (report(&csv, ""), report(&csv, "--method adaptive"));
+    assert!(filter.contains("up to each time, with 95 % bands.") && !filter.contains("gives no bands"));
+    assert!(!adaptive.contains("with 95 % bands") && adaptive.contains("The adaptive method gives no bands."));
+    assert!(filter.contains("wide in the unit of the coordinates."));
+    let folder = tempfile::tempdir().expect("a folder");
+    let (frames, base) = crate::pears::pears(folder.path(), "frames", 6);
+    succeed(&format!("identify {frames} --light --fps 30 --quiet --report {base}/report.html"), "");
+    assert!(std::fs::read_to_string(format!("{base}/report.html")).expect("the report").contains(" pixels wide."));
+}

@@ -66,10 +66,15 @@ impl MeaningOfB {
         Self { point, unit, short_unit, scale }
     }
 
+    /// Unit of a position in the outlines.
+    pub(crate) fn length_unit(&self) -> &str {
+        self.unit.split_once("/s").map_or(self.unit.as_str(), |(length, _)| length)
+    }
+
     /// Unit of a position, and what it was divided by.
     #[must_use]
     pub fn of_length(&self) -> String {
-        let unit = self.unit.split_once("/s").map_or(self.unit.as_str(), |(length, _)| length);
+        let unit = self.length_unit();
         let scale = self.scale.map_or_else(String::new, |scale| format!(", over f/Z0 = {scale}"));
         format!("{unit}{scale}")
     }

@@ -2,7 +2,7 @@
 use std::fmt::Write as _;
 
 use freeform_motion::Truth;
-use freeform_motion::tracker::{FrameRanges, ObjectResult};
+use freeform_motion::tracker::{FrameRanges, Method, ObjectResult};
 
 use super::bound_found::{NoBound, bound_found};
 use super::figures::{fit_panel, parameter_panels, residual_panels};
@@ -10,15 +10,14 @@ use super::meaning_of_b::MeaningOfB;
 use super::parameter_table::{PARAMETER_COLUMNS, meaning_of_v, parameter_rows};
 use super::player::Player;
 use super::pose_figures::{deviation_panels, pose_panels};
-use crate::figure::Panel;
+use crate::figure::{Look, Panel};
 use crate::history::History;
 use crate::plot::{escape, panel_svg};
 
 /// What a reader should know of the figures of a pose, of the parameters, of their standard deviations, and of the bound.
 const POSES: &str = "The turn since the first frame, and the place of the middle of the first outline. The true values lie within the \
                      bands in 95 of 100 cases. There is no line where nothing is stated.";
-const PARAMETERS: &str =
-    "The parameters of the motion as they were known from the frames up to each time, with 95 % bands.";
+const PARAMETERS: &str = "The parameters of the motion as they were known from the frames up to each time";
 const DEVIATIONS: &str = "How far the parameters are likely to be off, from the frames up to each time: the true value is within 1.96 \
                           standard deviations in 95 of 100 cases.";
 const BOUND: &str = "The dashed line is the Cramer-Rao bound: the least standard deviation that any unbiased method can have, if the outline \
@@ -48,7 +47,11 @@ impl ObjectSection<'_> {
         self.write_player(body, history, players);
         self.write_poses(body, history);
         let panels = parameter_panels(history, "", result.motion, self.truth, self.b);
-        write_panels(body, "How it moved", PARAMETERS, &panels);
+        let bands = match result.method {
+            Method::Filter => ", with 95 % bands.",
+            Method::Adaptive => ". The adaptive method gives no bands.",
+        };
+        write_panels(body, "How it moved", &format!("{PARAMETERS}{bands}"), &panels);
         self.write_deviations(body, history);
         write_residuals(body, history);
     }
@@ -123,7 +126,7 @@ fn write_residuals(body: &mut String, history: &History) {
     }
 }
 
-/// Panels below a heading, with what a reader should know of them.
+/// Panels below a heading, with what a reader should know of them. Those in which nothing would be drawn are named instead.
 fn write_panels(body: &mut String, heading: &str, text: &str, panels: &[Panel]) {
     if panels.is_empty() {
         return;
@@ -132,12 +135,24 @@ fn write_panels(body: &mut String, heading: &str, text: &str, panels: &[Panel]) 
     if !text.is_empty() {
         let _ = writeln!(body, "<p class=\"soft\">{}</p>", escape(text));
     }
+    let (drawn, left_out): (Vec<_>, Vec<_>) = panels.iter().partition(|panel| shows_something(panel));
+    if !left_out.is_empty() {
+        let titles: Vec<&str> = left_out.iter().map(|panel| panel.title.as_str()).collect();
+        let titles = escape(&titles.join("; "));
+        let _ = writeln!(body, "<p class=\"soft\">Not stated in any frame, and so not drawn: {titles}.</p>");
+    }
     body.push_str("<div class=\"panels\">\n");
-    for panel in panels {
+    for panel in drawn {
         let height = if panel.view.is_some() { 400.0 } else { 300.0 };
         let _ = writeln!(body, "<div>{}</div>", panel_svg(panel, 400.0, height));
     }
     body.push_str("</div>\n");
+}
+
+/// Whether anything found is drawn in a panel, beside the truth and the bound.
+fn shows_something(panel: &Panel) -> bool {
+    let found = panel.curves.iter().filter(|curve| !matches!(curve.look, Look::Truth | Look::Reference));
+    found.flat_map(|curve| curve.runs.iter().flatten()).any(|point| point.iter().all(|value| value.is_finite()))
 }
 
 fn write_row<'a>(body: &mut String, tag: &str, cells: impl Iterator<Item = &'a str>) {

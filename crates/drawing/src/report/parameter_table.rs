@@ -8,6 +8,12 @@ use super::meaning_of_b::MeaningOfB;
 /// Heads of the columns of [`parameter_rows`]; the last two only where the truth is known.
 pub const PARAMETER_COLUMNS: [&str; 6] = ["parameter", "value", "std", "unit", "truth", "error"];
 
+/// Share of a value and its standard deviation below which the truth is 0: far above the rounding of a product, far below what an error shows.
+const ROUNDING: f64 = 1e-9;
+
+/// Largest error, as a multiple of the truth, that is given as a share of it: of a truth near 0 the share says nothing.
+const LARGEST_SHARE: f64 = 10.0;
+
 /// The parameters of an object as text, one row each, and the velocity of its middle where the method gives one.
 #[must_use]
 pub fn parameter_rows(result: &ObjectResult, truth: Option<&Truth>, b: &MeaningOfB) -> Vec<Vec<String>> {
@@ -87,16 +93,23 @@ fn row([name, unknown, unit]: [&str; 3], known: Option<(f64, Option<f64>)>, trut
     };
     let mut row = vec![name.to_owned(), value, deviation, unit.to_owned()];
     if let Some(truth) = truth {
+        let truth = known.map_or(truth, |(value, deviation)| without_rounding(truth, value, deviation));
         row.push(significant(truth, 6));
         row.push(known.map_or_else(none, |(value, _)| error_text(value, truth)));
     }
     row
 }
 
-/// The difference from the truth, with its share of the truth where that is not 0.
+/// A truth that is told from 0 by no more than the rounding of its computation is 0.
+fn without_rounding(truth: f64, value: f64, deviation: Option<f64>) -> f64 {
+    let size = value.abs().max(deviation.unwrap_or(0.0));
+    if truth.abs() < ROUNDING * size { 0.0 } else { truth }
+}
+
+/// The difference from the truth, with its share of the truth where that tells anything.
 fn error_text(value: f64, truth: f64) -> String {
     let difference = significant(value - truth, 2);
-    if truth == 0.0 {
+    if (value - truth).abs() > LARGEST_SHARE * truth.abs() || truth == 0.0 {
         return difference;
     }
     format!("{difference} ({} %)", significant(100.0 * ((value - truth) / truth).abs(), 2))
@@ -145,6 +158,16 @@ mod tests {
         let truth = Truth { middle_velocity: Some([0.3125, 0.4]), ..truth };
         assert_eq!(truth_of_v1(&rows_beside(estimate.with_unobservable(0), &truth))[0], "0.312500");
         assert_eq!(truth_of_v1(&rows_beside(estimate, &truth))[0], "0.300000");
+    }
+
+    #[test]
+    fn a_truth_of_0_but_for_rounding_is_0_and_an_error_many_times_the_truth_is_no_percentage() {
+        let cells = |known, truth| row(["v1", "-", "px/s"], Some(known), Some(truth))[4..].to_vec();
+        assert_eq!(cells((-0.000_29, Some(0.000_37)), 1.77e-16), ["0", "-0.00029"]);
+        assert_eq!(cells((0.0, Some(0.000_37)), -4.7e-17), ["0", "0"]);
+        assert_eq!(cells((0.5, Some(0.1)), 0.001), ["0.00100000", "0.50"]);
+        assert_eq!(cells((0.5, Some(0.1)), 0.4), ["0.400000", "0.10 (25 %)"]);
+        assert_eq!(cells((1e-12, Some(1e-13)), 2e-12), ["2.00000e-12", "-1.0e-12 (50 %)"]);
     }
 
     #[test]

@@ -161,7 +161,11 @@ impl Player<'_> {
         if self.playback.is_thinned_along {
             told.push_str(" Of long outlines some of the points are shown.");
         }
-        let _ = write!(told, " The picture is {} image lengths wide.", significant(view.high.x - view.low.x, 3));
+        let width = significant(view.high.x - view.low.x, 3);
+        let _ = match self.b.length_unit() {
+            "lengths" => write!(told, " The picture is {width} wide in the unit of the coordinates."),
+            unit => write!(told, " The picture is {width} {unit} wide."),
+        };
         told
     }
 
