@@ -17,8 +17,8 @@ use crate::outline_rows::OutlineRows;
 /// `deviation`.
 ///
 /// The columns may stand in any order; others are ignored. Lines that begin with `#` are comments. The last comment before the first row is the
-/// header where that row has numbers in place of names, as `numpy.savetxt` writes it. Frame numbers may be written as floats, such as `2.0`. Fields may
-/// be quoted, white space around them is ignored, numbers are finite and at most 1e100 in size. The rows of one outline
+/// header where that row has numbers in place of names, as `numpy.savetxt` writes it. Frame numbers may be written as floats, such as `2.0`. Fields
+/// may be quoted, white space around them is ignored, numbers are finite and at most 1e100 in size. The rows of one outline
 /// (same frame and object) follow each other in the order of the contour. The frames of each object have increasing
 /// numbers, gaps allowed, and increasing times; objects may be mixed frame by frame or come one after the other.
 ///

@@ -22,8 +22,9 @@ pub(crate) fn natural_order(a: &str, b: &str) -> Ordering {
     }
 }
 
-/// The first two files that follow each other against the numbers in their names, such as `m10.png` and `m2.png`, where a shell has sorted them letter
-/// by letter; `None` where there are none, or where all run backwards. Only names in one folder that differ in nothing but numbers are compared.
+/// The first two files that follow each other against the numbers in their names, such as `m10.png` and `m2.png`, where a shell has sorted them
+/// letter by letter; `None` where there are none, or where all run backwards. Only names in one folder that differ in nothing but numbers are
+/// compared.
 ///
 /// ```
 /// use std::path::{Path, PathBuf};

@@ -201,6 +201,7 @@ fn a_shape_comes_from_csv_points_or_pictures() {
     let sequence = b"frame,time,x,y\n0,0,0,0\n0,0,2,0\n0,0,0,1\n1,1,0,0\n1,1,2,0\n1,1,0,oops\n";
     assert_eq!(shape_of("a.csv", sequence).expect("the first triangle"), bare);
     assert_eq!(bare.signed_area(), 1.0);
+    assert_eq!(shape_of("a.csv", b"# y,x\n0e0,0e0\n0e0,2e0\n1e0,0e0\n").expect("a header in a comment"), bare);
     assert!(shape_of("a.png", &png(disc())).is_ok());
     assert!(shape_of("a", &png(disc())).is_ok(), "the content tells a picture without an extension");
 }
