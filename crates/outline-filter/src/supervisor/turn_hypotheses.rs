@@ -108,12 +108,8 @@ impl TurnHypotheses {
         if turn.abs() <= 0.5 * angle || self.are_told_by_intervals || (0..self.rivals.len()).any(is_in_doubt) {
             return;
         }
-        // Over the same time as this turn.
-        for rival in &mut self.rival_turns {
-            let apart = *rival - self.present_turn;
-            *rival = turn + if self.acquired_over > 0.0 { apart * seconds / self.acquired_over } else { 0.0 };
-        }
-        (self.present_turn, self.acquired_over, self.symmetry_angle) = (turn, seconds, angle);
+        self.count_over(turn, seconds);
+        self.symmetry_angle = angle;
         self.rival_turns.push(turn - angle.copysign(turn));
         self.rivals.push(TurnHypothesis::new(None, NegativeLogLikelihood::default(), Reason::Symmetry));
     }
@@ -121,11 +117,21 @@ impl TurnHypotheses {
     /// Names the turns that look like that of the present track, over so long a time, of an outline that has been found to have a symmetry of some order
     /// after the search that the turn was taken in.
     pub(super) fn name_symmetry(&mut self, symmetry: usize, turn: f64, seconds: f64) {
-        if !self.rivals.is_empty() || self.are_told_by_intervals {
+        if self.are_told_by_intervals {
             return;
         }
-        (self.present_turn, self.acquired_over, self.symmetry_angle) = (turn, seconds, TAU / symmetry as f64);
+        self.count_over(turn, seconds);
+        self.symmetry_angle = TAU / symmetry as f64;
         self.name_turns_alike();
+    }
+
+    /// Takes as the present turn what is made of it in another time, and the others with it.
+    fn count_over(&mut self, turn: f64, seconds: f64) {
+        for rival in &mut self.rival_turns {
+            let apart = *rival - self.present_turn;
+            *rival = turn + if self.acquired_over > 0.0 { apart * seconds / self.acquired_over } else { 0.0 };
+        }
+        (self.present_turn, self.acquired_over) = (turn, seconds);
     }
 
     /// After an exchange, names the turns that look like the one taken now in place of those that look like the one before.

@@ -104,6 +104,9 @@ pub(crate) mod registration {
     /// reach ([`TUKEY`] times [`WIDEST_REFINED`]). Few points hardly tell how far such an outline has gone along itself, and no refinement
     /// brings together what is farther apart.
     pub(crate) const SAME_BY_FEW: f64 = TUKEY * WIDEST_REFINED;
+    /// Score in that of the best up to which poses explain a frame nearly alike, beside a mark: a tooth that is missing has a tenth of the points, which
+    /// count for four times as much.
+    pub(crate) const NEARLY_ALIKE: f64 = 1.5;
     /// Turns of poses that were found lie so near to multiples of a part of a circle, rad, where an outline nearly looks the same after it: few
     /// points tell a turn to a hundredth, and the farthest off of several is off by about two of that.
     pub(crate) const OFF_NEAR_SYMMETRY: f64 = 0.02;
