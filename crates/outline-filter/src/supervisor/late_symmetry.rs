@@ -1,8 +1,14 @@
 //! Symmetries that show once more frames have been seen than the one that the object was searched for in.
+use std::f64::consts::PI;
+
 use freeform_curve_fit::Outline;
 
 use super::motion_filter::MotionFilter;
-use crate::{search::symmetry_order, track::Track, tuning::symmetry as tuning};
+use crate::{
+    search::symmetry_order,
+    track::Track,
+    tuning::{registration::LARGEST_NEAR_SYMMETRY, symmetry as tuning},
+};
 
 impl MotionFilter {
     /// Asks again whether the outline is symmetric, when its map has been cut anew from several frames. Errors of the first two frames may pass for what
@@ -15,6 +21,10 @@ impl MotionFilter {
         let Some(shortest) = self.repeated.shortest_step().map(|step| step / self.seconds_per_unit()) else { return };
         let Some(track) = self.track.as_ref().filter(|track: &&Track| !track.turn_is_unseen()) else { return };
         let (pose, turn) = (*track.body_pose(), track.turn_in(shortest));
+        // No tooth less is a smaller turn.
+        if turn.abs() < PI / LARGEST_NEAR_SYMMETRY as f64 {
+            return;
+        }
         let symmetry = symmetry_order(track, outline, &pose, &mut self.frame);
         if symmetry > 1 {
             self.search_memory.symmetry = symmetry;
