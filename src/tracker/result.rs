@@ -96,17 +96,16 @@ impl ObjectResult {
     /// given without this.
     #[must_use]
     pub fn of_doubtful_outlines(self) -> Self {
-        let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2;
-        self.of_two_frames_where(is_of_two)
+        self.warned_of_two_frames()
     }
 
     /// The same result with the warning that two frames alone tell the motion, where another one was rejected: it does not lie where they lead.
     pub(super) fn with_others_rejected(self) -> Self {
-        let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2 && self.frames_rejected > 0;
-        self.of_two_frames_where(is_of_two)
+        if self.frames_rejected > 0 { self.warned_of_two_frames() } else { self }
     }
 
-    fn of_two_frames_where(mut self, is_of_two: bool) -> Self {
+    fn warned_of_two_frames(mut self) -> Self {
+        let is_of_two = self.frames.saturating_sub(self.frames_rejected) <= 2;
         let names = self.motion.parameter_names();
         let has_motion = self.estimate.is_some() || self.plane.is_some();
         let is_stated =

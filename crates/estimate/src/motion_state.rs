@@ -28,9 +28,9 @@ pub struct MotionState {
 pub struct PoseParameter {
     /// Name: see [`MotionState::pose_parameters`].
     pub name: &'static str,
-    /// Value; NaN where the outline does not show it, such as the turn of a circle.
+    /// Value; NaN where the outline does not show it, such as the turn of a circle, and where the turn is ambiguous.
     pub value: f64,
-    /// Its standard deviation; infinite where the outline does not show it.
+    /// Its standard deviation; infinite where there is no value.
     pub standard_deviation: f64,
 }
 
@@ -65,7 +65,7 @@ pub struct NormalisedState {
     pub covariance_given_outline: DMatrix<f64>,
     /// Which parameters of the motion are observable.
     pub observable: [bool; MAX_PARAMETERS],
-    /// Rates that the outline does not show, such as that of the turn of a circle: nor does it show how far the object has turned.
+    /// Rates that the outline does not show, such as that of the turn of a circle, or that are ambiguous: nor is it known how far the object has turned.
     pub hidden: [bool; MAX_PARAMETERS],
     /// Centroid of the object in the body frame, normalised: what turns without being seen turns about it.
     pub centroid: Point2<f64>,

@@ -77,9 +77,10 @@ impl<R: Read> Rows<R> {
         }
         rows.field_count = rows.row.len();
         let found = match columns(&rows.row) {
-            Err((_, ReadErrorKind::MissingColumns { .. })) if rows.begins_below_commented_header(&columns) => {
-                rows.is_put_back = true;
-                columns(&rows.commented_header())
+            Err(error @ (_, ReadErrorKind::MissingColumns { .. })) => {
+                let found = rows.columns_of_comment(columns).ok_or(error);
+                rows.is_put_back = found.is_ok();
+                found
             }
             found => found,
         };
@@ -196,16 +197,11 @@ impl<R: Read> Rows<R> {
         }
     }
 
-    /// The last comment before the first row as a header.
-    fn commented_header(&self) -> ByteRecord {
-        self.reader.get_ref().last_comment().split(|byte| *byte == b',').collect()
-    }
-
-    /// Whether the first row has numbers, as many as the comment before it has names, among which are all columns that are needed.
-    fn begins_below_commented_header<C>(&self, columns: impl Fn(&ByteRecord) -> Result<C, HeaderError>) -> bool {
-        let header = self.commented_header();
+    /// The columns that the last comment before the first row names, where that row has numbers, as many as there are names.
+    fn columns_of_comment<C>(&self, columns: impl Fn(&ByteRecord) -> Result<C, HeaderError>) -> Option<C> {
+        let header: ByteRecord = self.reader.get_ref().last_comment().split(|byte| *byte == b',').collect();
         let has_numbers = self.row.iter().any(|field| number(field).is_ok());
-        has_numbers && header.len() == self.row.len() && columns(&header).is_ok()
+        (has_numbers && header.len() == self.row.len()).then(|| columns(&header).ok())?
     }
 
     fn read_row(&mut self) -> Result<bool, ReadError> {

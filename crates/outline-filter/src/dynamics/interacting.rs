@@ -55,7 +55,7 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
 
 impl<const N: usize> InteractingHypotheses<N> {
     /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
-    /// (projective), numbers that do not allow it, and where the outline does not tell the pose yet.
+    /// (projective), numbers that do not allow it, and where the outline does not tell the place yet.
     /// The place is the object's centroid in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,

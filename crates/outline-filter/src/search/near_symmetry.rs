@@ -13,9 +13,9 @@ use crate::{map::map_between, track::wrapped, tuning::registration as tuning};
 pub(super) fn turns_of_near_symmetry(model: MotionModel, found: &[RegisteredPose]) -> Vec<Matrix3<f64>> {
     let Some(best) = found.iter().min_by(|a, b| a.score.total_cmp(&b.score)) else { return Vec::new() };
     let Some(inverse) = best.pose.try_inverse().filter(|_| model <= MotionModel::Similarity) else { return Vec::new() };
-    let alike = || found.iter().filter(|other| other.score <= tuning::NEARLY_ALIKE * best.score);
-    let turned = || alike().map(|other| (other, wrapped(other.turn - best.turn)));
-    let turned: Vec<_> = turned().filter(|(_, turn)| turn.abs() > tuning::OFF_NEAR_SYMMETRY).collect();
+    let alike = found.iter().filter(|other| other.score <= tuning::NEARLY_ALIKE * best.score);
+    let turned = alike.map(|other| (other, wrapped(other.turn - best.turn)));
+    let turned: Vec<_> = turned.filter(|(_, turn)| turn.abs() > tuning::OFF_NEAR_SYMMETRY).collect();
     let turns: Vec<f64> = turned.iter().map(|(_, turn)| *turn).collect();
     // What takes one pose to the other turns the body about the centre of its symmetry, which is not that of what has been seen of it.
     let centres: Option<Vec<_>> = turned.iter().map(|(other, _)| centre_of(&(inverse * other.pose))).collect();

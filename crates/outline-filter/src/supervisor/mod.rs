@@ -6,7 +6,6 @@ mod clock;
 mod error;
 mod expected_outline;
 mod initialisation;
-mod late_symmetry;
 mod motion_change;
 mod motion_filter;
 mod passing_over;
@@ -22,6 +21,7 @@ mod statement;
 mod tracking;
 mod turn_hypotheses;
 mod turn_hypothesis;
+mod turns_alike;
 mod window;
 
 pub use ambiguity::Ambiguity;

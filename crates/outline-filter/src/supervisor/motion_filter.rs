@@ -238,14 +238,6 @@ impl MotionFilter {
         (outcome.map(|outcome| outcome.measurement), rejection)
     }
 
-    /// Of two turns that look alike the smaller is taken, so that no frames tell one of more than half a circle between them, or of half the angle of a
-    /// symmetry.
-    fn doubt_large_turns(&mut self) {
-        let Some(track) = self.track.as_ref().filter(|track| !track.turn_is_unseen()) else { return };
-        let Some(shortest) = self.repeated.shortest_step().map(|step| step / self.seconds_per_unit()) else { return };
-        self.turn_hypotheses.doubt_more_than_half(track.turn_in(shortest), shortest);
-    }
-
     /// Takes the interval between the first two frames, up to a factor of two, as unit of time: so seconds may be nanoseconds or years.
     fn choose_time_unit(&mut self, time: f64) {
         let interval = time - self.clock.last_frame;

@@ -164,8 +164,8 @@ fn outcome_by_others(
     }
     // Where the outline lies apart from what the generator says, so does what all of them say together.
     let is_there = outcome.measurement.agreement >= gate.smallest_agreement;
-    let purposes = [Purpose::Prediction, Purpose::PredictionByOthers];
-    purposes.into_iter().skip(usize::from(!is_there)).find_map(|purpose| {
+    let together = is_there.then_some(Purpose::Prediction);
+    together.into_iter().chain([Purpose::PredictionByOthers]).find_map(|purpose| {
         let (mut followed, mut their) = (track.clone(), dynamics.clone());
         if !lead(&mut followed, &mut their, purpose) {
             return None;

@@ -234,10 +234,9 @@ impl TurnHypotheses {
         }
         for index in (0..self.rivals.len()).rev() {
             let rival = &mut self.rivals[index];
-            let was_followed = rival.track.is_some();
             let Some(found) = rival.follow(settings, (track, frame), &outcome, seconds) else {
                 // One that cannot be predicted is no way in which the object may have turned.
-                if was_followed {
+                if rival.track.is_some() {
                     self.rule_out(index);
                 }
                 continue;
@@ -350,8 +349,8 @@ impl TurnHypotheses {
         self.rival_turns.iter().zip(tracks).filter_map(|(turn, track)| Some((*turn, track?)))
     }
 
-    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew. Those that
-    /// have none do not explain all of these frames, or not as well that they have been taken.
+    /// Exchanges the tracks of all hypotheses, by their turns, for others that have taken the same frames on a map cut anew. Those that have none are
+    /// ruled out: on the new map not all of these frames are taken with their motion.
     pub(super) fn remap(&mut self, mut track_of: impl FnMut(f64) -> Option<Track>) {
         for index in (0..self.rivals.len()).rev() {
             if let Some(track) = &mut self.rivals[index].track {

@@ -37,7 +37,7 @@ impl TurnHypothesis {
         Self { track, likelihood, reason, is_shown: false }
     }
 
-    /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed.
+    /// Measures the loaded frame, of which `outcome` was found with the present track, where it is still followed and can be predicted.
     pub(super) fn follow(
         &mut self,
         settings: &FilterSettings,
@@ -47,7 +47,6 @@ impl TurnHypothesis {
     ) -> Option<Outcome> {
         let track = self.track.as_mut()?;
         if !track.predict(seconds) {
-            self.track = None;
             return None;
         }
         track.add_process_noise(&settings.process_noise, seconds);
