@@ -6,7 +6,7 @@ use super::{
     motion_change::MotionHistory,
     motion_filter::{MotionFilter, Phase},
     settings::FilterSettings,
-    tracking::advance_again,
+    tracking::{Turns, advance_again},
     window::{Draft, InitialisationWindow, Measured, Placed, Remapped, Remapping},
 };
 use crate::{
@@ -76,7 +76,7 @@ impl MotionFilter {
     /// Cuts the map anew from the first frames, after so many cuts; where there are rivals, in the frame after this.
     fn draft(&mut self, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
-        let remapper = Remapper { settings: &self.settings, window: &self.window };
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
         let turn = self.turn_hypotheses.present_turn();
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
@@ -98,7 +98,7 @@ impl MotionFilter {
     /// Measures the frames kept on cells cut anew.
     fn measure(&mut self, mut draft: Draft) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
-        let remapper = Remapper { settings: &self.settings, window: &self.window };
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
         let frames = remapper.placed(track, false);
         let Some(first) = frames.first() else { return Remapping::Idle };
         draft.track.begin_as(track, first.outline, &mut self.frame);
@@ -115,7 +115,7 @@ impl MotionFilter {
     /// Takes the frame kept last with all that have taken those before it on the new cells, and all of them with one more rival. All are
     /// exchanged at once: one alone would win by its finer cells.
     fn go_on(&mut self, Measured { begun, present, rivals }: Measured) -> Remapping {
-        let remapper = Remapper { settings: &self.settings, window: &self.window };
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
         let frame = &mut self.frame;
         let Some(present) = remapper.taken_last(present, frame) else { return Remapping::Idle };
         let mut rivals: Vec<_> = rivals
@@ -185,6 +185,7 @@ impl MotionFilter {
 struct Remapper<'a> {
     settings: &'a FilterSettings,
     window: &'a InitialisationWindow,
+    turns: Turns,
 }
 
 impl Remapper<'_> {
@@ -227,7 +228,7 @@ impl Remapper<'_> {
         let Remapped { track, mut history, mut poses } = remapped;
         let track = track.replayed(frames, buffers, |track, frame, seconds, outline| {
             frame.load(outline, track.reference());
-            let outcome = advance_again(self.settings, (track, frame), &mut history, seconds);
+            let outcome = advance_again(self.settings, (track, frame), &mut history, seconds, self.turns);
             poses.push(*track.body_pose());
             outcome.is_some_and(|outcome| outcome.is_accepted())
         })?;

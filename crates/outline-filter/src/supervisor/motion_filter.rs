@@ -259,14 +259,20 @@ impl MotionFilter {
 
     /// Predicts and measures; `None` where the object cannot be predicted, and is lost.
     fn follow(&mut self, time: f64, outline: &Outline) -> Option<Outcome> {
+        let turns = self.turns();
         let track = self.track.as_mut()?;
         let seconds = time - self.clock.of_track;
         let is_after_rejected = self.counts.rejected_in_a_row > 0;
         let (frame, comparison) = (&mut self.frame, self.turn_hypotheses.comparison());
         frame.load(outline, track.reference());
         let expected = track.is_all_but_round().then(|| (*track.body_pose(), track.turn_in(seconds)));
-        let advanced =
-            advance(&self.settings, (track, frame), &mut self.history, seconds, is_after_rejected, comparison);
+        let advanced = advance(
+            &self.settings,
+            (track, frame),
+            &mut self.history,
+            (seconds, is_after_rejected),
+            (turns, comparison),
+        );
         let Some(mut outcome) = advanced else {
             self.phase = Phase::Lost;
             return None;

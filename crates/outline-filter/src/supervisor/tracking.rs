@@ -1,11 +1,16 @@
 //! A track moved on to a frame, and the changes of its motion found.
+use std::f64::consts::TAU;
+
 use super::{motion_change::MotionHistory, settings::FilterSettings};
 use crate::{
     dynamics::{DynamicsFilter, Purpose},
     measurement::Frame,
     search::displacement_nearby,
     track::{Comparison, Outcome, Track},
-    tuning::update::{PARTLY_THERE, SUDDEN},
+    tuning::{
+        symmetry::NEARBY,
+        update::{PARTLY_THERE, SUDDEN},
+    },
     update::{Gate, Rejection},
 };
 
@@ -23,21 +28,69 @@ pub(super) fn gate(settings: &FilterSettings, track: &Track) -> Gate {
     }
 }
 
+/// Whether anything says that a motion goes on as it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Steadiness {
+    /// Several frames have.
+    Told,
+    /// It is known from one step alone, so that nothing does: an object that shows all of its outline elsewhere is there, unless that is another turn.
+    Untold,
+    /// The frame before was not taken: a second one is not wrong by chance.
+    Contradicted,
+}
+
+/// Whether an outline explains a frame in one turn alone. A search from where the object was expected may lead to others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Turns {
+    One,
+    /// It looks the same after so many parts of a whole turn.
+    Symmetric {
+        order: usize,
+    },
+    /// It looks nearly the same after some.
+    Several,
+}
+
+impl Turns {
+    /// Whether one that is found by a search that turns the object by so much, rad, is the one that was expected.
+    fn is_expected(self, turn: f64) -> bool {
+        match self {
+            Self::One => true,
+            Self::Symmetric { order } => turn.abs() < NEARBY * TAU / order as f64,
+            Self::Several => false,
+        }
+    }
+}
+
 /// What a frame is judged by.
 struct Gates {
     /// Where the motion has gone on as it was.
     as_before: Gate,
-    /// Where it may have changed at once.
+    /// Where it may have changed at once, by as much as linearisations show.
     after_sudden_change: Option<Gate>,
+    /// Where it may have changed at once, by as much as a search shows that begins where the object was expected.
+    nearby: Option<Gate>,
 }
 
 impl Gates {
-    /// Of a frame that is new. Only where the one before it was rejected the motion may have changed at once.
-    fn of_new_frame(settings: &FilterSettings, track: &Track, widening: f64, is_after_rejected: bool) -> Self {
+    /// Of a frame that is new, of a motion that is so `steady`.
+    fn of_new_frame(
+        settings: &FilterSettings,
+        track: &Track,
+        widening: f64,
+        (steady, turns): (Steadiness, Turns),
+    ) -> Self {
         let anywhere = gate(settings, track);
-        Self {
-            as_before: Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere },
-            after_sudden_change: (settings.finds_changes() && is_after_rejected).then_some(anywhere),
+        let as_before = Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere };
+        let nearby = Some(track.gate_of_all(anywhere));
+        let (after_sudden_change, nearby) = match steady {
+            Steadiness::Told => (None, None),
+            Steadiness::Untold => (nearby.filter(|_| turns == Turns::One), nearby),
+            Steadiness::Contradicted => (Some(anywhere), nearby),
+        };
+        match settings.finds_changes() {
+            true => Self { as_before, after_sudden_change, nearby },
+            false => Self { as_before, after_sudden_change: None, nearby: None },
         }
     }
 
@@ -45,11 +98,12 @@ impl Gates {
     fn of_accepted_frame(settings: &FilterSettings, track: &Track, widening: f64) -> Self {
         let anywhere = gate(settings, track).without_noise();
         if !settings.finds_changes() {
-            return Self { as_before: anywhere, after_sudden_change: None };
+            return Self { as_before: anywhere, after_sudden_change: None, nearby: None };
         }
         Self {
             as_before: Gate { largest_innovation: Some(widening * largest_innovation(track)), ..anywhere },
             after_sudden_change: Some(anywhere),
+            nearby: Some(track.gate_of_all(anywhere)),
         }
     }
 }
@@ -60,15 +114,19 @@ pub(super) fn advance(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
     history: &mut MotionHistory,
-    seconds: f64,
-    is_after_rejected: bool,
-    comparison: Comparison,
+    (seconds, is_after_rejected): (f64, bool),
+    (turns, comparison): (Turns, Comparison),
 ) -> Option<Outcome> {
+    let steady = match track.is_known_from_one_step() {
+        _ if is_after_rejected => Steadiness::Contradicted,
+        true => Steadiness::Untold,
+        false => Steadiness::Told,
+    };
     if !predict(settings, track, history, seconds) {
         return None;
     }
-    let gates = Gates::of_new_frame(settings, track, history.widening(), is_after_rejected);
-    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, comparison);
+    let gates = Gates::of_new_frame(settings, track, history.widening(), (steady, turns));
+    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, (turns, comparison));
     history.record(&outcome, seconds);
     if matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. }))
         && let Some(elsewhere) = displacement_nearby(track, frame)
@@ -84,12 +142,13 @@ pub(super) fn advance_again(
     (track, frame): (&mut Track, &mut Frame),
     history: &mut MotionHistory,
     seconds: f64,
+    turns: Turns,
 ) -> Option<Outcome> {
     if !predict(settings, track, history, seconds) {
         return None;
     }
     let gates = Gates::of_accepted_frame(settings, track, history.widening());
-    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, Comparison::NotAsked);
+    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, (turns, Comparison::NotAsked));
     history.record(&outcome, seconds);
     Some(outcome)
 }
@@ -100,7 +159,7 @@ fn outcome_with_changes(
     (track, frame): (&mut Track, &mut Frame),
     history: &mut MotionHistory,
     gates: &Gates,
-    comparison: Comparison,
+    (turns, comparison): (Turns, Comparison),
 ) -> Outcome {
     let mut outcome = track.update(frame, &gates.as_before, comparison);
     if !settings.finds_changes() {
@@ -123,6 +182,13 @@ fn outcome_with_changes(
         && let Some((changed, found)) = after_sudden_change(track, frame, &outcome, &gate, comparison)
     {
         *track = changed;
+        change.was_sudden = true;
+        outcome = found;
+    }
+    if !outcome.is_accepted()
+        && let Some(gate) = gates.nearby
+        && let Some(found) = outcome_nearby((track, frame), dynamics.as_mut(), &gate, (turns, comparison))
+    {
         change.was_sudden = true;
         outcome = found;
     }
@@ -149,6 +215,29 @@ pub(super) fn after_sudden_change(
     changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
     let found = changed.update(frame, gate, comparison);
     found.is_accepted().then_some((changed, found))
+}
+
+/// What becomes of a frame that shows the object so far from where it was expected that linearisations do not lead there, but near enough for a
+/// search from there; `None`, with nothing changed, where it is not accepted there either.
+fn outcome_nearby(
+    (track, frame): (&mut Track, &mut Frame),
+    dynamics: Option<&mut DynamicsFilter>,
+    gate: &Gate,
+    (turns, comparison): (Turns, Comparison),
+) -> Option<Outcome> {
+    let displacement = displacement_nearby(track, frame).filter(|_| turns != Turns::Several)?;
+    let mut displaced = track.clone();
+    let is_shown = displaced.displace(&displacement);
+    let pose = *displaced.body_pose();
+    if !is_shown || !turns.is_expected(track.turn_to(&pose)) {
+        return None;
+    }
+    let outcome = displaced.update(frame, gate, comparison);
+    if !outcome.is_accepted() || dynamics.is_some_and(|dynamics| !dynamics.set_reference(&pose)) {
+        return None;
+    }
+    *track = displaced;
+    Some(outcome)
 }
 
 /// What becomes of a frame not where a constant generator takes the object, but where other dynamics do that are not ruled out; `None`, with

@@ -3,13 +3,22 @@ use std::f64::consts::PI;
 
 use freeform_curve_fit::Outline;
 
-use super::motion_filter::MotionFilter;
+use super::{motion_filter::MotionFilter, tracking::Turns};
 use crate::{
     search::symmetry_order,
     tuning::{registration::LARGEST_NEAR_SYMMETRY, symmetry as tuning},
 };
 
 impl MotionFilter {
+    /// In which turns the outline explains a frame.
+    pub(super) fn turns(&self) -> Turns {
+        match self.search_memory.symmetry {
+            1 if self.turn_hypotheses.rival_turns().is_empty() => Turns::One,
+            1 => Turns::Several,
+            order => Turns::Symmetric { order },
+        }
+    }
+
     /// Asks again whether the outline is symmetric, when its map has been cut anew from several frames. Errors of the first two frames may pass for what
     /// tells the teeth of a gear apart, so that it is followed with a turn by any number of them: its map, in which all teeth have come to lie upon each
     /// other, is symmetric then, whatever the body is.

@@ -3,6 +3,7 @@ mod body_frame;
 mod common_shift;
 mod comparison;
 mod cutting;
+mod displacement;
 mod estimate;
 mod first_pose;
 mod glance;

@@ -5,7 +5,7 @@ use nalgebra::SVector;
 use crate::{
     dynamics::CentredDeviations,
     measurement::NegativeLogLikelihood,
-    tuning::usual_agreement::AFTER_REJECTED,
+    tuning::usual_agreement::ALL_OF_IT,
     update::{FrameMeasurement, Gate, PoseInnovation, PoseMeasurement, Rejection},
 };
 
@@ -71,7 +71,7 @@ impl Outcome {
 
     /// The outcome of a frame that follows one that was not taken.
     pub(crate) fn after_rejected(self) -> Self {
-        let is_in_doubt = self.is_accepted() && self.measurement.agreement < AFTER_REJECTED;
+        let is_in_doubt = self.is_accepted() && self.measurement.agreement < ALL_OF_IT;
         Self { doubt: self.doubt.or(is_in_doubt.then_some(Doubt::AfterRejected)), ..self }
     }
 

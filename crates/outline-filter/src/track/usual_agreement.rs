@@ -4,7 +4,7 @@
 //! a prediction that misses this part makes outliers of its points. All others agree, and the pose goes on as predicted, for ever. A share of points
 //! that disagree which is larger than usual says so.
 use super::{Doubt, Track};
-use crate::tuning::usual_agreement as tuning;
+use crate::{tuning::usual_agreement as tuning, update::Gate};
 
 /// How far the points of most of the frames agree.
 #[derive(Debug, Clone, Copy)]
@@ -71,6 +71,12 @@ impl Track {
             return Some(Doubt::Direction { weakest });
         }
         disagrees.then_some(Doubt::Points)
+    }
+
+    /// A gate for frames that show all of the outline, but for the share of the points that usually disagrees.
+    pub(crate) fn gate_of_all(&self, gate: Gate) -> Gate {
+        let of_all = tuning::ALL_OF_IT * (1.0 - self.usual.disagreeing);
+        Gate { smallest_agreement: gate.smallest_agreement.max(of_all), ..gate }
     }
 
     /// Records how far the points agree of a frame in doubt as nearer to what is usual: nothing else explains them better.

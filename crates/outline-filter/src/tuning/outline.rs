@@ -189,9 +189,9 @@ pub(crate) mod usual_agreement {
     /// Share of the usual weakest agreement below which a direction of the pose is in doubt: the ends of a bar have few points, of which chance
     /// leaves a third out.
     pub(crate) const WEAKEST: f64 = 0.6;
-    /// Share of the points that must agree, after a frame that was not taken, for nothing else to be looked for: a motion that has changed leads to
-    /// another tooth of a gear, or past the end of a bar, and a hole or an end are some hundredths of the points.
-    pub(crate) const AFTER_REJECTED: f64 = 0.97;
+    /// Share of the points from which on a frame shows all of an outline: a motion that has changed leads to another tooth of a gear, or past the end of
+    /// a bar, and a hole or an end are some hundredths of the points. After a frame that was not taken, one with fewer is looked for elsewhere.
+    pub(crate) const ALL_OF_IT: f64 = 0.97;
     /// Deviations by which another pose must explain such a frame better: more points than usual speak for it already.
     pub(crate) const ELSEWHERE: f64 = 3.0;
     /// Squares of the noise by which a pose further along a direction must explain a frame better, of which few points agree that tell it: four
@@ -262,4 +262,7 @@ pub(crate) mod symmetry {
     pub(crate) const TRIED: usize = 2;
     /// Turns that differ by less than this share of the angle of symmetry are the same.
     pub(crate) const SAME: f64 = 0.25;
+    /// Share of the angle of symmetry up to which a search may turn an object beside what was expected: by half of it and more it may have turned the
+    /// other way round.
+    pub(crate) const NEARBY: f64 = 0.125;
 }

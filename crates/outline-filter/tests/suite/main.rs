@@ -25,5 +25,6 @@ mod recording;
 #[cfg(feature = "serde")]
 mod saved_state;
 mod seen_aslant;
+mod thrown_bodies;
 mod washers;
 mod wrong_families;

@@ -328,7 +328,8 @@ fn rejected_frames_at_the_end_of_a_recording_change_nothing_in_the_batch() {
     let alone = estimate_batch(MotionModel::Rigid, &frames).expect("an estimate");
     for step in 1..3 {
         let (time, outline) = &frames[frames.len() - 1];
-        let away = outline.points().map(|p| Point2::new(p.x + f64::from(step), p.y)).collect();
+        // Of half the size: nothing of the object, wherever it may be.
+        let away = outline.points().map(|p| Point2::new(0.5 * p.x + f64::from(step), 0.5 * p.y)).collect();
         frames.push((time + SECONDS_PER_FRAME, Outline::closed(away).expect("an outline")));
     }
     let with_others = estimate_batch(MotionModel::Rigid, &frames).expect("an estimate");

@@ -1,0 +1,33 @@
+//! A track moved to where a frame shows its object, away from where it was expected.
+use freeform_riccati::{MAX_PARAMETERS, map_point};
+use nalgebra::SVector;
+
+use super::Track;
+use crate::belief::Belief;
+
+impl Track {
+    /// Whether the motion is known from no more than one step: from two frames, or since it has changed. Nothing says then that it is steady.
+    pub(crate) fn is_known_from_one_step(&self) -> bool {
+        let Belief { memory, information, .. } = &self.belief;
+        memory.shortest(information.k) <= memory.step
+    }
+
+    /// Moves the predicted pose by what it was found to be off by, which the motion has made of it during the last step; by as much as the outline is
+    /// displaced then, pose and motion may be others. False, and nothing changes, where the outline [is not shown](Track::is_shown) there.
+    #[must_use]
+    pub(crate) fn displace(&mut self, displacement: &SVector<f64, MAX_PARAMETERS>) -> bool {
+        let (k, seconds) = (self.belief.parameter_count(), self.belief.memory.step);
+        let before = self.belief.pose;
+        let pose = self.model().flow(&displacement.as_slice()[..k], 1.0).into_inner() * before;
+        if seconds <= 0.0 || !self.map.is_shown_in(&pose) {
+            return false;
+        }
+        let apart = |centre| (map_point(&pose, centre) - map_point(&before, centre)).norm_squared();
+        let cells = self.map.cells();
+        let mean_square = cells.iter().map(|cell| apart(&cell.centre)).sum::<f64>() / cells.len() as f64;
+        self.belief.pose = pose;
+        self.belief.motion.iter_mut().zip(displacement).for_each(|(rate, by)| *rate += by / seconds);
+        self.add_change([mean_square / seconds.powi(3); 2]);
+        true
+    }
+}
