@@ -9,6 +9,15 @@ pub(crate) type PoseMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
 /// keeps the former, while the latter, which turn with it in the motions of the models, change all the time.
 pub(crate) type ByKind = [f64; 2];
 
+/// When in a step the motion has changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TimeOfChange {
+    /// At its beginning: small changes in every step, of which innovations tell the size.
+    Beginning,
+    /// At any time, or all the time: one large change, of which the pose at the end leaves a quarter of the variance untold.
+    Any,
+}
+
 /// Which of the two a parameter of the motion belongs to.
 pub(crate) fn kind_index(kind: ParameterKind) -> usize {
     usize::from(kind == ParameterKind::Velocity)

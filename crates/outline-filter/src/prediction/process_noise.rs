@@ -1,7 +1,7 @@
 //! Process noise: what is forgotten because it may have changed.
 use freeform_estimate::ProcessNoise;
 
-use super::{ByKind, centred_change, kind_index};
+use super::{ByKind, TimeOfChange, centred_change, kind_index};
 use crate::{
     belief::{Belief, EarlierPoses, StateMatrix, scaled_inverse},
     map::NullDirection,
@@ -22,21 +22,35 @@ impl Belief {
     }
 
     /// Lets the motion have changed at random during the last step predicted: its rates and its velocities about the object's `centroid`
-    /// (body frame) by variances per second.
-    pub(crate) fn add_change(&mut self, variances: ByKind, centroid: &nalgebra::Point2<f64>, variance: f64) {
+    /// (body frame). The variances per second are those of a change at the beginning that moves the pose by as much.
+    pub(crate) fn add_change(
+        &mut self,
+        (variances, time): (ByKind, TimeOfChange),
+        centroid: &nalgebra::Point2<f64>,
+        variance: f64,
+    ) {
         let (k, seconds) = (self.information.k, self.memory.step);
         let Some(mut unit) = centred_change(self.model, &self.pose, centroid) else { return };
         for (mut column, kind) in unit.column_iter_mut().zip(self.model.parameter_kinds()) {
             column *= variances[kind_index(*kind)].sqrt();
         }
         let motion = unit * unit.transpose() * (seconds / variance);
-        // The pose has moved by the change of motion times the step.
+        // The pose has moved by the change of motion times the step, or, of a motion that changes all the time, by the integral of a random walk: a
+        // third of the variance, and half of the covariance.
+        let (both, of_motion) = match time {
+            TimeOfChange::Beginning => (1.0, 1.0),
+            TimeOfChange::Any => (1.5, 3.0),
+        };
         let added = StateMatrix::from_fn(|i, j| {
             if i >= 2 * k || j >= 2 * k {
                 return 0.0;
             }
-            let factor = |at: usize| if at < k { seconds } else { 1.0 };
-            motion[(i % k, j % k)] * factor(i) * factor(j)
+            let share = match (i < k, j < k) {
+                (true, true) => seconds * seconds,
+                (false, false) => of_motion,
+                _ => both * seconds,
+            };
+            motion[(i % k, j % k)] * share
         });
         self.add_covariance(&added);
     }

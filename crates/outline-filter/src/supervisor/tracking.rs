@@ -5,6 +5,7 @@ use super::{motion_change::MotionHistory, settings::FilterSettings};
 use crate::{
     dynamics::{DynamicsFilter, Purpose},
     measurement::Frame,
+    prediction::TimeOfChange,
     search::displacement_nearby,
     track::{Comparison, Outcome, Track},
     tuning::{
@@ -212,7 +213,8 @@ pub(super) fn after_sudden_change(
         return None;
     }
     let mut changed = track.clone();
-    changed.add_change([0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0)));
+    let variances = [0, 1].map(|kind| (innovation.gradient[kind] / innovation.fisher[kind]).max(0.0));
+    changed.add_change(variances, TimeOfChange::Any);
     let found = changed.update(frame, gate, comparison);
     found.is_accepted().then_some((changed, found))
 }
@@ -289,7 +291,7 @@ pub(super) fn predict(settings: &FilterSettings, track: &mut Track, history: &mu
         .as_mut()
         .is_some_and(|dynamics| dynamics.leads() && lead(track, dynamics, Purpose::Prediction));
     if !is_led && let Some(variances) = history.change.variances() {
-        track.add_change(variances);
+        track.add_change(variances, TimeOfChange::Beginning);
     }
     true
 }

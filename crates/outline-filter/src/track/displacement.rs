@@ -3,7 +3,7 @@ use freeform_riccati::{MAX_PARAMETERS, map_point};
 use nalgebra::SVector;
 
 use super::Track;
-use crate::belief::Belief;
+use crate::{belief::Belief, prediction::TimeOfChange};
 
 impl Track {
     /// Whether the motion is known from no more than one step: from two frames, or since it has changed. Nothing says then that it is steady.
@@ -27,7 +27,7 @@ impl Track {
         let mean_square = cells.iter().map(|cell| apart(&cell.centre)).sum::<f64>() / cells.len() as f64;
         self.belief.pose = pose;
         self.belief.motion.iter_mut().zip(displacement).for_each(|(rate, by)| *rate += by / seconds);
-        self.add_change([mean_square / seconds.powi(3); 2]);
+        self.add_change([mean_square / seconds.powi(3); 2], TimeOfChange::Any);
         true
     }
 }

@@ -17,7 +17,7 @@ use crate::{
         Counted, Frame, NegativeLogLikelihood, NoiseModel, Reference, ShownCorrelation, TakenOff, Tolerance, View,
         correlation_of,
     },
-    prediction::{ByKind, ShapeNoise},
+    prediction::{ByKind, ShapeNoise, TimeOfChange},
     tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning, usual_agreement},
     update::{FrameMeasurement, Gate, PoseMeasurement, Rejection, Sensitivity, commit, hold, left_by_offsets},
 };
@@ -90,9 +90,9 @@ impl Track {
     }
 
     /// Lets the motion have changed during the last step by variances per second of its rates and of the velocity of the centroid.
-    pub(crate) fn add_change(&mut self, variances: ByKind) {
+    pub(crate) fn add_change(&mut self, variances: ByKind, time: TimeOfChange) {
         let variance = self.noise.effective_variance();
-        self.belief.add_change(variances, &self.map.centroid(), variance);
+        self.belief.add_change((variances, time), &self.map.centroid(), variance);
     }
 
     /// Sets pose and motion to the combined prediction of the hypotheses of dynamics, and adds its covariance.

@@ -78,6 +78,7 @@ mod tests {
 
     use super::*;
     use crate::drawn_curves::{lobed, outline, polar};
+    use crate::prediction::TimeOfChange;
     use crate::track::Comparison;
     use crate::tuning::noise::{LARGEST, LARGEST_RATIO};
     use crate::update::{FrameMeasurement, Gate, UNMODELLED};
@@ -137,7 +138,7 @@ mod tests {
                 Some(track) => {
                     assert!(track.predict(STEP));
                     if change != [0.0; 2] {
-                        track.add_change(change);
+                        track.add_change(change, TimeOfChange::Beginning);
                     }
                     buffers.load(&outline, track.reference());
                     let gate = Gate { smallest_agreement: 0.5, largest_innovation: None, largest_noise: None };
