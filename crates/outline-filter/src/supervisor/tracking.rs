@@ -48,7 +48,7 @@ pub(super) enum Turns {
     Symmetric {
         order: usize,
     },
-    /// It looks nearly the same after some.
+    /// It looks nearly the same after some, or the same, and nothing says which it was.
     Several,
 }
 

@@ -14,8 +14,8 @@ impl MotionFilter {
     pub(super) fn turns(&self) -> Turns {
         match self.search_memory.symmetry {
             1 if self.turn_hypotheses.rival_turns().is_empty() => Turns::One,
-            1 => Turns::Several,
-            order => Turns::Symmetric { order },
+            order if order > 1 && !self.turn_hypotheses.are_doubtful() => Turns::Symmetric { order },
+            _ => Turns::Several,
         }
     }
 
