@@ -74,6 +74,11 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
                 "thrown with spin: the middle falls by 2 sizes/s^2",
                 Recipe { frames: 60, ..speed(on(Path::Thrown { gravity: 2.0 }), 1.0, 2.0) },
             ),
+            (
+                "thrown, small",
+                "the same of a body of 12 cm: by 80 sizes/s^2, at 5 to 15 sizes per second",
+                Recipe { frames: 24, ..speed(on(Path::Thrown { gravity: 80.0 }), 5.0, 15.0) },
+            ),
             ("rolling", "on a wheel of the size of the object, without slipping", on(Path::Rolling { slowing: 0.0 })),
             (
                 "rolling to rest",
@@ -92,6 +97,16 @@ pub(in crate::stress) fn kinds() -> Vec<Kind> {
             ("swing", "swings to and fro in 3 s", swinging(3.0, 1.0)),
             ("swing, blob", "the same with a smooth contour", blob(swinging(3.0, 1.0))),
             ("fast swing", "swings to and fro in 0.7 s", swinging(0.7, 1.0)),
+            (
+                "wide swing",
+                "swings to and fro in 1 s, at up to 5 to 10 sizes per second and 3 to 6 rad/s",
+                spin(speed(swinging(1.0, 1.0), 5.0, 10.0), 3.0, 6.0),
+            ),
+            (
+                "hops",
+                "moves for 0.2 s at 5 to 10 sizes per second and rests for 0.2 s, over and over",
+                speed(on(Path::StopAndGo { period: 0.4 }), 5.0, 10.0),
+            ),
             (
                 "disc with a notch that swings",
                 "a disc with a notch swings to and fro in 1 s, in its place, at up to 4 to 7 rad/s",
