@@ -6,6 +6,7 @@ mod cutting;
 mod estimate;
 mod first_pose;
 mod glance;
+mod grown;
 mod growth;
 #[cfg(test)]
 mod jacobians_tests;
