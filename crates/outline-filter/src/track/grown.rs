@@ -6,7 +6,7 @@ use super::Track;
 use crate::{
     map::OutlineMap,
     measurement::{Frame, weighted_median},
-    tuning::{measurement::MEDIAN_TO_DEVIATION, noise::LARGEST, update as tuning},
+    tuning::{family, measurement::MEDIAN_TO_DEVIATION, noise::LARGEST, update as tuning},
     update::{FrameMeasurement, Gate, Rejection, without_leverage},
 };
 
@@ -27,7 +27,7 @@ impl Track {
     /// through. The noise of the frame stays what it is without growth, so that what is learnt from it is known by as much less.
     ///
     /// Frames of an object that grows by little in each would be rejected one and all otherwise, as each is compared with those before it; and what
-    /// is rejected shows to no test that the outlines grow.
+    /// is rejected shows to no test that the outlines grow. This holds for the first frames, until such a test tells growth where there is some.
     pub(super) fn verdict_if_grown(
         &self,
         (gate, measurement): (&Gate, &FrameMeasurement),
@@ -36,7 +36,10 @@ impl Track {
     ) -> Result<(), Rejection> {
         let Err(Rejection::NoiseTooLarge { noise }) = verdict else { return verdict };
         let radius = self.reference.radius;
-        if self.model() != MotionModel::Rigid || measurement.of_good_points(noise) > LARGEST * radius {
+        // Where enough frames have been taken to tell growth, what is known of it is allowed for; a frame that is grown by itself is a bad one.
+        let may_grow = self.frames < family::MAP_KNOWN + family::FEWEST_FRAMES;
+        let is_little = measurement.of_good_points(noise) <= LARGEST * radius;
+        if self.model() != MotionModel::Rigid || !is_little || !may_grow {
             return verdict;
         }
         let Some(left) = noise_beside_growth(frame, (&self.map, pose)) else { return verdict };
