@@ -342,7 +342,7 @@ fn write_wrong_family(f: &mut fmt::Formatter<'_>, family: WrongFamily, motion: M
         WrongFamily::Shear => write!(
             f,
             "the outlines are stretched or sheared, which {motion} motion does not do: check the pixel aspect, try --rectify \
-             where the camera is tilted, or --motion affine"
+             where the camera is tilted, or --motion affine; light or shadow on one side of the object does nearly the same"
         ),
         WrongFamily::Perspective => write!(
             f,

@@ -180,8 +180,14 @@ impl PictureInput {
     }
 
     /// Whether the way of tracing was chosen, and may show something else than an object.
-    pub(crate) fn is_tracing_in_doubt(&self) -> bool {
+    fn is_tracing_in_doubt(&self) -> bool {
         self.chosen.as_ref().is_some_and(|chosen| !chosen.choice.is_convincing())
+    }
+
+    /// Whether two outlines of one name may be of two things: the way of tracing is in doubt, or there are more than two pictures, in the others of which
+    /// what bears the name was not seen.
+    pub(crate) fn may_mistake_one_for_another(&self) -> bool {
+        self.is_tracing_in_doubt() || self.frame_count().is_none_or(|count| count > 2)
     }
 
     /// Why the way of tracing is not to be trusted.

@@ -165,7 +165,7 @@ impl<'a> Outcome<'a> {
         left_out: LeftOut,
         failure: Option<Failure>,
     ) -> Self {
-        let in_doubt = input.pictures().is_some_and(PictureInput::is_tracing_in_doubt);
+        let in_doubt = input.pictures().is_some_and(PictureInput::may_mistake_one_for_another);
         let doubted = |result: ObjectResult| if in_doubt { result.of_doubtful_outlines() } else { result };
         let results: Vec<ObjectResult> = tracker.results().into_iter().map(doubted).collect();
         let is_found = results.iter().any(|result| result.parameters().is_some());

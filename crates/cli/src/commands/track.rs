@@ -32,7 +32,7 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     let mut overlay = InputOverlay::open(args.drawings.overlay.as_deref(), &args.inputs, &input, &args.options)?;
     interrupt::listen();
     let name = input.name.clone();
-    let in_doubt = input.pictures().is_some_and(PictureInput::is_tracing_in_doubt) && !args.quiet;
+    let in_doubt = input.pictures().is_some_and(PictureInput::may_mistake_one_for_another) && !args.quiet;
     let mut sink = Sink::stdout();
     let mut accepted = 0_u64;
     let mut first_reason = None;
@@ -74,8 +74,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     }
 }
 
-/// Says of an object that is seen no longer, where it is in doubt what is traced, that its motion is that between two frames, if it is. Before the
-/// third frame that holds for every object.
+/// Says of an object that is seen no longer, where its two outlines may be of two things, that its motion is that between two frames, if it is. Before
+/// the third frame that holds for every object.
 fn warn_of_two_frames(result: ObjectResult) {
     let result = result.of_doubtful_outlines();
     if result.warnings.contains(&Warning::OfTwoFrames) {

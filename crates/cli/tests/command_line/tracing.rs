@@ -190,3 +190,32 @@ fn a_motion_between_two_frames_alone_is_warned_of_where_the_way_of_tracing_is_in
         assert_eq!(stderr(&tracked).matches(warning).count(), usize::from(is_warned), "{}", stderr(&tracked));
     }
 }
+
+#[test]
+fn of_an_object_that_is_seen_in_two_of_more_pictures_it_is_said_that_no_third_tells_its_motion() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for frame in 0..12_u32 {
+        let is_l = |x: u32, y: u32, (left, top): (u32, u32)| {
+            let (x, y) = (x.wrapping_sub(left), y.wrapping_sub(top));
+            x < 24 && y < 32 && (x < 9 || y < 8)
+        };
+        // The second one is seen in the last two pictures.
+        let second = (frame >= 10).then_some((110, 70 + 3 * (frame - 10)));
+        let is_light =
+            |x: u32, y: u32| is_l(x, y, (20 + 4 * frame, 20)) || second.is_some_and(|place| is_l(x, y, place));
+        let noise = |x: u32, y: u32| ((x * 31 + y * 17 + frame * 7) % 5) as u8;
+        let value = |x: u32, y: u32| noise(x, y) + if is_light(x, y) { 180 } else { 60 };
+        let picture = GrayImage::from_fn(160, 120, |x, y| Luma([value(x, y)]));
+        picture.save(folder.path().join(format!("{frame:02}.png"))).expect("a picture");
+    }
+    let way = "--light --objects all";
+    let document = json(&succeed(&format!("identify {} --fps 30 {way} --json", folder.path().display()), ""));
+    let objects = document["objects"].as_array().expect("objects");
+    let is_warned = |object: &serde_json::Value| {
+        object["warnings"].as_array().into_iter().flatten().any(|warning| warning["code"] == "of_two_frames")
+    };
+    let told: Vec<_> = objects.iter().map(|object| (object["frames"].as_u64(), is_warned(object))).collect();
+    assert_eq!(told, [(Some(12), false), (Some(2), true)], "{document}");
+    let tracked = stderr(&run(&format!("track {} --fps 30 {way}", folder.path().display()), ""));
+    assert_eq!(tracked.matches("its motion is that between two frames").count(), 1, "{tracked}");
+}

@@ -2,11 +2,11 @@
 use std::sync::OnceLock;
 
 use freeform_riccati::MotionModel;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 use super::{
     innovations::InnovationSeries,
-    wrong_family::{WrongFamily, left_out_by},
+    wrong_family::{OF_LENS, WrongFamily, left_out_by, name_of, off_a_lens},
 };
 use crate::{
     tuning::family as tuning,
@@ -59,6 +59,22 @@ struct Fit {
     covariance: DMatrix<f64>,
 }
 
+impl Fit {
+    /// Where a motion is among those that are estimated.
+    fn place_of(&self, number: usize) -> Option<usize> {
+        self.numbers.iter().position(|n| *n == number)
+    }
+
+    /// How far what is found of a lens is from one, by [`off_a_lens`]; `None` where not all of it is told.
+    fn off_a_lens(&self) -> Option<f64> {
+        let places = OF_LENS.map(|number| self.place_of(number));
+        let sizes = SVector::from_fn(|i, _| places[i].map_or(0.0, |at| self.sizes[at]));
+        let covariance =
+            SMatrix::from_fn(|i, j| places[i].zip(places[j]).map_or(0.0, |(a, b)| self.covariance[(a, b)]));
+        places.iter().all(Option::is_some).then(|| off_a_lens(&sizes, &covariance)).flatten()
+    }
+}
+
 impl FamilyTests {
     /// Adds what a frame says of an object whose centroid is at a distance from where it was first, with the time from frame to frame; `sigma` is the
     /// deviation of the noise of a point, and `variance` that which dependence along the contour makes of it.
@@ -93,6 +109,7 @@ impl FamilyTests {
         let least = tuning::MATTERS * self.sigma + tuning::OF_NOISE * self.sigma * self.sigma;
         let dependence = self.series.dependence();
         let mut known = self.fit(&[]);
+        let mut found = Vec::new();
         loop {
             let mut clearest: Option<(WrongFamily, Fit, f64, f64)> = None;
             for (family, members) in groups.iter().copied() {
@@ -112,9 +129,12 @@ impl FamilyTests {
             if !is_found {
                 break;
             }
-            estimate.family.get_or_insert(family);
+            found.push(family);
             estimate.displacement = displacement;
         }
+        let read_out = known.place_of(READ_OUT).map_or(0.0, |at| known.sizes[at].abs());
+        let off = known.off_a_lens().map_or(0.0, |squared| deviations(squared, 2.0));
+        estimate.family = name_of(&found, read_out / self.step, off);
         for (a, i) in known.numbers.iter().enumerate() {
             for (b, j) in known.numbers.iter().enumerate() {
                 estimate.moments[(*i, *j)] = known.sizes[a] * known.sizes[b] + known.covariance[(a, b)];
@@ -297,8 +317,8 @@ mod tests {
     #[test]
     fn each_motion_that_is_left_out_is_told_by_its_name_and_size() {
         for (family, members) in GROUPS {
-            // Of a group that has others in it, the part that is its own.
-            let member = members[members.len() - 1];
+            // Of a lens, whose middle is where the object is first, the part that is its own.
+            let member = if family == WrongFamily::Lens { LENS[0] } else { members[members.len() - 1] };
             let mut sizes = UnmodelledVector::zeros();
             sizes[member] = 0.02;
             let tests = after(40, &sizes, 7);

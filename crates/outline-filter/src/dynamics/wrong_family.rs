@@ -1,7 +1,11 @@
 //! What a family of motions may leave out.
 use freeform_riccati::MotionModel;
+use nalgebra::{SMatrix, SVector, Vector2};
 
-use crate::update::{EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR};
+use crate::{
+    tuning::family::{ROWS_OF_OBJECT, SIGNIFICANT},
+    update::{EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR},
+};
 
 /// What outlines do that their family of motions does not have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,8 +33,11 @@ pub(super) const GROUPS: [(WrongFamily, Members); 5] = [
     (WrongFamily::Shear, &SHEAR),
     (WrongFamily::Perspective, &PERSPECTIVE),
     (WrongFamily::RollingShutter, &[READ_OUT]),
-    (WrongFamily::Lens, &[SHEAR[0], SHEAR[1], LENS[0], LENS[1], LENS[2]]),
+    (WrongFamily::Lens, &OF_LENS),
 ];
+
+/// What a lens does whose middle is elsewhere than where the object was first.
+pub(super) const OF_LENS: [usize; 5] = [SHEAR[0], SHEAR[1], LENS[0], LENS[1], LENS[2]];
 
 /// Groups beside a model that has growth and shear, whose numbers edges have.
 const GROUPS_BESIDE_SHEAR: [(WrongFamily, Members); 3] =
@@ -49,5 +56,75 @@ pub(super) fn left_out_by(model: MotionModel) -> (&'static [(WrongFamily, Member
         MotionModel::Rigid | MotionModel::Similarity => (&GROUPS, &OF_CAMERA),
         MotionModel::Affine => (&GROUPS_BESIDE_SHEAR, &OF_CAMERA_BESIDE_SHEAR),
         MotionModel::Projective => (&[], &[]),
+    }
+}
+
+/// The name of what was found, the clearest first. A camera is blamed for what it explains: where something else is there besides, beyond doubt, where
+/// rows would have to be read for longer than there is time from frame to frame, or what is found of a lens is none, the outlines change in another
+/// way, which has a bit of each. `read_out` is the time in which a rolling shutter would read the rows of a radius, in times from frame to frame,
+/// `off_a_lens` is in deviations.
+pub(super) fn name_of(found: &[WrongFamily], read_out: f64, off_a_lens: f64) -> Option<WrongFamily> {
+    let clearest = *found.first()?;
+    let explains = match clearest {
+        WrongFamily::Growth | WrongFamily::Shear | WrongFamily::Shape => true,
+        WrongFamily::Perspective => found.len() == 1,
+        WrongFamily::Lens => found.len() == 1 && off_a_lens < SIGNIFICANT,
+        WrongFamily::RollingShutter => found.len() == 1 && ROWS_OF_OBJECT * read_out <= 1.0,
+    };
+    Some(if explains { clearest } else { WrongFamily::Shape })
+}
+
+/// Squared distance of the sizes of [`OF_LENS`] from those of a lens, in deviations; chi-square of two degrees of freedom. `None` where they are known
+/// without error.
+///
+/// A lens of strength k and middle c displaces by `k |p - c|^2 (p - c)`. But for what moves or scales the picture as a whole this is k of `|p|^2 p`,
+/// -k c of what that becomes where its middle is elsewhere, and a stretch and skew of `k (cx^2 - cy^2)` and `2 k cx cy`. Light from a side makes these
+/// two without the others.
+pub(super) fn off_a_lens(sizes: &SVector<f64, 5>, covariance: &SMatrix<f64, 5, 5>) -> Option<f64> {
+    let [stretch, skew, k, x, y] = *sizes.as_ref();
+    // Times k, so that a lens may be weak and far.
+    let off = Vector2::new(k * stretch - (x * x - y * y), k * skew - 2.0 * x * y);
+    let by_sizes = SMatrix::<f64, 2, 5>::new(k, 0.0, stretch, -2.0 * x, 2.0 * y, 0.0, k, skew, -2.0 * y, -2.0 * x);
+    let variance = by_sizes * covariance * by_sizes.transpose();
+    Some(off.dot(&(variance.try_inverse()? * off)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        WrongFamily::{Growth, Lens, Perspective, RollingShutter, Shape, Shear},
+        name_of, off_a_lens,
+    };
+    use nalgebra::{SMatrix, SVector};
+
+    #[test]
+    fn a_camera_is_blamed_only_for_what_it_explains() {
+        assert_eq!(name_of(&[], 0.0, 0.0), None);
+        for alone in [Growth, Shear, Perspective, RollingShutter, Lens] {
+            assert_eq!(name_of(&[alone], 0.4, 4.0), Some(alone));
+        }
+        for camera in [Perspective, RollingShutter, Lens] {
+            assert_eq!(name_of(&[camera, Shear], 0.4, 0.0), Some(Shape));
+        }
+        // What the object does itself is named beside whatever else there is.
+        assert_eq!([Growth, Shear].map(|first| name_of(&[first, Lens], 0.4, 9.0)), [Some(Growth), Some(Shear)]);
+    }
+
+    #[test]
+    fn rows_are_not_read_for_longer_than_there_is_time_between_frames() {
+        let names = [0.5, 0.6].map(|read_out| name_of(&[RollingShutter], read_out, 0.0));
+        assert_eq!(names, [Some(RollingShutter), Some(Shape)]);
+    }
+
+    #[test]
+    fn a_lens_is_told_from_a_stretch_beside_some_of_one() {
+        let covariance = SMatrix::identity() * 1e-6;
+        for (k, x, y) in [(0.02, 0.0, 0.0), (0.02, 0.5, -0.3), (-0.01, 2.0, 1.0)] {
+            let lens = SVector::from([k * (x * x - y * y), 2.0 * k * x * y, k, -k * x, -k * y]);
+            assert!(off_a_lens(&lens, &covariance).expect("errors") < 1e-9, "{k} {x} {y}");
+            let stretched = lens + SVector::from([0.02, 0.0, 0.0, 0.0, 0.0]);
+            assert!(off_a_lens(&stretched, &covariance).expect("errors") > 10.0, "{k} {x} {y}");
+        }
+        assert_eq!(name_of(&[Lens], 0.0, 6.0), Some(Shape));
     }
 }

@@ -7,6 +7,7 @@ mod displacement;
 mod estimate;
 mod first_pose;
 mod glance;
+mod grown;
 mod growth;
 #[cfg(test)]
 mod jacobians_tests;

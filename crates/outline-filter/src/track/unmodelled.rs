@@ -67,7 +67,22 @@ impl Track {
         {
             (estimate.family, estimate.displacement) = (Some(WrongFamily::Shape), displacement);
         }
+        // An outline that is hardly out of round changes by as much as that as it turns, which is not followed where it is not seen.
+        let may_be_turn = estimate.family.is_some_and(|family| family != WrongFamily::Growth) && self.turn_is_unseen();
+        if may_be_turn && estimate.displacement < tuning::TURNED_UNSEEN * self.out_of_round() {
+            estimate.family = None;
+        }
         estimate
+    }
+
+    /// How far the cells lie from a circle about their middle, root mean square, normalised: as they were cut, since a map whose turn is not followed
+    /// becomes round.
+    fn out_of_round(&self) -> f64 {
+        let (cells, centroid) = (self.map.cells(), self.map.centroid());
+        let count = cells.len().max(1) as f64;
+        let distances = cells.iter().map(|cell| (cell.centre - centroid).norm());
+        let mean = distances.clone().sum::<f64>() / count;
+        (distances.map(|distance| (distance - mean).powi(2)).sum::<f64>() / count).sqrt()
     }
 }
 

@@ -174,6 +174,11 @@ pub(crate) mod update {
     /// One in so many of the points must tell of the noise, or that of the frame is not known: a few that happen to lie on known cells may be
     /// any.
     pub(crate) const ONE_IN_TELLS: usize = 4;
+    /// Rounds in which a growth of the outline is fitted to the residuals of a frame: the weights settle to some percent.
+    pub(crate) const GROWTH_ITERATIONS: usize = 4;
+    /// Deviations at which a point counts for half in that fit: 95 % efficiency for normal errors (P. W. Holland and R. E. Welsch, Robust regression
+    /// using iteratively reweighted least squares, 1977).
+    pub(crate) const GROWTH_CAUCHY: f64 = 2.385;
     /// Share of the variances of a pose that is added to what a frame has told of it, so that it can be inverted where the frame tells nothing.
     pub(crate) const REGULAR_GAIN: f64 = 1e-9;
     /// What is added to the diagonal of an information matrix, scaled to ones, so that it can be inverted: some thousand times rounding.

@@ -277,7 +277,7 @@ pub(super) const NONE: f64 = -1.0;
 /// What a squared residual would be without its point's own share of the information on the offset of its cell, in units of what it is, and
 /// whether that share is small enough to tell. `own` is all of that information; there is none where it is not positive.
 #[inline(always)]
-pub(super) fn without_leverage(weight: f64, by_offset: f64, own: f64) -> (f64, bool) {
+pub(crate) fn without_leverage(weight: f64, by_offset: f64, own: f64) -> (f64, bool) {
     let of_point = weight * by_offset * by_offset;
     (own / (own - of_point), (of_point < tuning::LARGEST_LEVERAGE * own) & (weight > 0.0))
 }

@@ -13,8 +13,8 @@ mod unmodelled_score;
 mod weakest_agreement;
 
 pub(crate) use commit::commit;
-pub(crate) use gate::Gate;
 pub use gate::{FrameMeasurement, Rejection};
+pub(crate) use gate::{Gate, without_leverage};
 pub(crate) use hold::{hold, with_hold};
 pub(crate) use innovation::PoseInnovation;
 pub(crate) use normal_equations::accumulate;

@@ -61,3 +61,69 @@ fn edges_that_light_displaces_are_told_from_an_affine_motion_and_its_rates_stay_
         assert!(told.is_none() && error < 4.0 && deviation < 0.02, "{seed}, no light: {told:?} {error} {deviation}");
     }
 }
+
+/// A filter of rigid motion after so many frames at 25 a second of a body with bends that turns by 0.5 rad/s, whose points are moved by what `moved` makes
+/// of the time and of errors across the outline of a side that light displaces.
+fn rigid(frames: u8, light: f64, moved: impl Fn(f64, Point2<f64>) -> Point2<f64>) -> (MotionFilter, usize) {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+    let mut rejected = 0;
+    for frame in 0..frames {
+        let time = f64::from(frame) / 25.0;
+        let edges = |_, normal: &Vector2<f64>| light * normal.x.max(0.0);
+        let outline = bent_outline(0.5 * time, 0.001, &mut random, edges);
+        let outline = Outline::closed(outline.points().map(|p| moved(time, *p)).collect()).expect("an outline");
+        rejected += usize::from(!filter.step(time, &outline).expect("an outline").is_accepted());
+    }
+    (filter, rejected)
+}
+
+#[test]
+fn an_object_that_comes_nearer_by_little_from_frame_to_frame_is_followed_and_its_growth_told() {
+    for rate in [0.1, -0.1] {
+        let (filter, rejected) = rigid(24, 0.0, |time, p| Point2::from((rate * time).exp() * p.coords));
+        assert_eq!((filter.wrong_family(), rejected), (Some(WrongFamily::Growth), 0), "{rate}");
+        let omega = filter.estimate().expect("an estimate").parameters().next().expect("omega");
+        let (value, deviation) = (omega.value.expect("a value"), omega.standard_deviation.expect("a deviation"));
+        assert!((value + 0.5).abs() < 4.0 * deviation && deviation < 0.1, "{rate}: {value} {deviation}");
+    }
+}
+
+#[test]
+fn what_scatters_or_bends_as_much_as_growth_displaces_is_rejected() {
+    for kind in 0..2 {
+        let (_, rejected) = rigid(24, 0.0, |time, p| {
+            let angle = p.y.atan2(p.x);
+            let wave = if kind == 0 { (7.0 * angle + 40.0 * time).cos() } else { (1e4 * p.x).sin() };
+            let size = if time > 0.5 && time < 0.6 { 0.02 } else { 0.0 };
+            Point2::from((1.0 + size * wave) * p.coords)
+        });
+        assert!(rejected > 0, "{kind}");
+    }
+}
+
+#[test]
+fn light_from_a_side_is_no_lens() {
+    for light in [0.03, 0.06] {
+        let (filter, _) = rigid(60, light, |time, p| p + Vector2::new(0.8, -0.3) * time);
+        let told = filter.wrong_family();
+        assert!(matches!(told, Some(WrongFamily::Shape | WrongFamily::Shear)), "{light}: {told:?}");
+    }
+}
+
+#[test]
+fn a_body_that_is_hardly_out_of_round_and_turns_unseen_is_not_bent_by_a_camera() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+    for frame in 0..40 {
+        let time = f64::from(frame) / 25.0;
+        let point = |i: u16| {
+            let angle = std::f64::consts::TAU * f64::from(i) / 250.0;
+            let radius = 1.0 + 0.01 * (2.0 * (angle - time)).cos() + random.random_range(-0.002..0.002);
+            Point2::new(0.5 * time + radius * angle.cos(), -0.2 * time + radius * angle.sin())
+        };
+        filter.step(time, &Outline::closed((0..250).map(point).collect()).expect("an outline")).expect("an outline");
+    }
+    assert!(filter.estimate().expect("an estimate").parameters().next().expect("omega").value.is_none());
+    assert_eq!(filter.wrong_family(), None);
+}
