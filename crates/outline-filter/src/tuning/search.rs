@@ -33,6 +33,9 @@ pub(crate) mod remapping {
 pub(crate) mod registration {
     /// Turns tried over the whole circle, 15 degrees apart: within reach of the local search on every outline tried.
     pub(crate) const TURNS: usize = 24;
+    /// Turns that a search is begun from at least, those that few points lie nearest to the outline by: half of them, as starts on the far side of
+    /// a pose do not lead to it.
+    pub(crate) const SEARCHED_FROM: usize = 12;
     /// Length of an outline over its width from which on turns that stretch it are tried, too: with less, what they differ by from plain turns is
     /// within reach of the search.
     pub(crate) const STRETCHED: f64 = 1.15;
