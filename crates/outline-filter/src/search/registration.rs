@@ -66,8 +66,11 @@ impl Registration {
         let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
         let Starts { turns, told } = Starts::of(track, points, landmarks);
         let mut begun = Begun { track, few: &few, poses: Vec::with_capacity(turns.len() + told.len()) };
-        let is_promising = promising(track, &few, points.len(), &turns);
-        let promising = || turns.iter().enumerate().filter(|(i, _)| is_promising[*i]);
+        // Asked for where it is needed: most frames of a lost object end with a part of the turns.
+        let numbered = || {
+            let is_promising = promising(track, &few, points.len(), &turns);
+            turns.iter().enumerate().zip(is_promising).filter_map(|(start, is_promising)| is_promising.then_some(start))
+        };
         match extent {
             Extent::Part(_) if turns.len() > 1 && Outlook::can_be_told(track, points.len()) => {
                 told.iter().for_each(|start| begun.add(start));
@@ -76,9 +79,9 @@ impl Registration {
                 if let Some(best) = begun.best_if_hopeless(extent.most_spread(track)) {
                     return Self { rigid: vec![best], outlook: Outlook::HopelessSoFar };
                 }
-                promising().filter(|(i, _)| !extent.has_turn(*i)).for_each(|(_, start)| begun.add(start));
+                numbered().filter(|(i, _)| !extent.has_turn(*i)).for_each(|(_, start)| begun.add(start));
             }
-            _ => promising().map(|(_, start)| start).chain(&told).for_each(|start| begun.add(start)),
+            _ => numbered().map(|(_, start)| start).chain(&told).for_each(|start| begun.add(start)),
         }
         let mut begun = begun.poses;
         let least = begun.iter().map(|found| found.spread).fold(f64::INFINITY, f64::min);
