@@ -60,6 +60,7 @@ impl OffsetInformation {
     }
 
     /// As [`all_mut`](Self::all_mut), cell by cell, of any size.
+    #[cfg(test)]
     pub(crate) fn iter_mut(&mut self) -> impl Iterator<Item = (&mut f64, &mut [f64])> {
         self.own.iter_mut().zip(self.coupling.chunks_exact_mut(self.size))
     }

@@ -3,6 +3,9 @@ use nalgebra::{Point2, Vector2};
 
 use super::{Cell, OutlineMap};
 
+/// Places that are looked up before those are looked at again that have moved to a neighbour.
+const BLOCK: usize = 64;
+
 /// Where the neighbours of a cell are nearer than the cell itself: beyond the line halfway to each.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bisectors {
@@ -101,14 +104,24 @@ impl OutlineMap {
         self.field.pixels(places.clone(), numbers);
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (nearest, bisectors) = (self.field.nearest(), self.bisectors.as_slice());
-        for (number, q) in numbers.iter_mut().zip(places.clone()) {
-            *number = bisectors[nearest[*number as usize] as usize].nearest(&q);
-        }
-        // Next to none have to go further.
-        for (number, q) in numbers.iter_mut().zip(places) {
-            let further = bisectors[*number as usize].nearest(&q);
-            if further != *number {
-                *number = self.nearest_from(further as usize, &q) as u32;
+        let mut places = places;
+        let mut moved = [(0_u32, Point2::origin()); BLOCK];
+        for numbers in numbers.chunks_mut(BLOCK) {
+            let mut count = 0;
+            for ((at, number), q) in (0..).zip(numbers.iter_mut()).zip(&mut places) {
+                let named = nearest[*number as usize];
+                *number = bisectors[named as usize].nearest(&q);
+                // Written in any case: which of them have moved cannot be foreseen.
+                moved[count] = (at, q);
+                count += usize::from(*number != named);
+            }
+            // Where the cell named is nearer than its neighbours there is nothing more to be asked; next to none have to go further.
+            for (at, q) in &moved[..count] {
+                let number: &mut u32 = &mut numbers[*at as usize];
+                let further = bisectors[*number as usize].nearest(q);
+                if further != *number {
+                    *number = self.nearest_from(further as usize, q) as u32;
+                }
             }
         }
     }

@@ -114,38 +114,53 @@ impl View<'_> {
         frame: &mut Frame,
         poses: &[Matrix3<f64>],
     ) -> Vec<NegativeLogLikelihood> {
-        frame.clear_shifts(self.map.cells().len());
-        let mut scale = f64::INFINITY;
-        let mut all: Vec<Vec<Option<f64>>> = Vec::with_capacity(poses.len());
-        for pose in poses {
-            self.measure_by_columns(frame, pose, &[], Pass::First);
-            let list: Vec<_> = self.innovations(frame, &frame.shifts).collect();
-            let mut sizes: Vec<f64> = list.iter().flatten().map(|innovation| innovation.abs()).collect();
-            scale = scale.min(median(&mut sizes).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m));
-            all.push(list);
-        }
-        let scale = if scale.is_finite() { scale.max(self.comparable_noise()) } else { self.comparable_noise() };
-        let correlation = self.noise.correlation();
-        all.into_iter().map(|list| of_innovations(list.into_iter(), scale, correlation)).collect()
+        let all: Vec<_> = poses.iter().map(|pose| self.innovations_in(frame, pose)).collect();
+        self.of_all(&all.iter().collect::<Vec<_>>())
     }
 
-    /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), for comparison with the first of the poses. What a first look finds
-    /// so many times worse than that, which is most of many poses, is not measured: its squares are those of the first look.
+    /// Innovations of the loaded points in a pose.
+    fn innovations_in(&self, frame: &mut Frame, pose: &Matrix3<f64>) -> Innovations {
+        frame.clear_shifts(self.map.cells().len());
+        self.measure_by_columns(frame, pose, &[], Pass::First);
+        let of_points: Vec<_> = self.innovations(frame, &frame.shifts).collect();
+        let mut sizes: Vec<f64> = of_points.iter().flatten().map(|innovation| innovation.abs()).collect();
+        let scale = median(&mut sizes).map_or(f64::INFINITY, |m| MEDIAN_TO_DEVIATION * m);
+        Innovations { of_points, scale }
+    }
+
+    /// Of innovations in several poses, by what the best of them leaves.
+    fn of_all(&self, all: &[&Innovations]) -> Vec<NegativeLogLikelihood> {
+        let scale = all.iter().map(|innovations| innovations.scale).fold(f64::INFINITY, f64::min);
+        let scale = if scale.is_finite() { scale.max(self.comparable_noise()) } else { self.comparable_noise() };
+        let correlation = self.noise.correlation();
+        all.iter().map(|list| of_innovations(list.of_points.iter().copied(), scale, correlation)).collect()
+    }
+
+    /// What other poses are compared with, of the loaded points.
+    pub(crate) fn look_at_first(&self, frame: &mut Frame, pose: &Matrix3<f64>) -> FirstPose {
+        let look = FirstLook::at(frame);
+        let mut numbers = vec![0; look.points.len()];
+        let mean_square = self.rough_mean_square(&look, pose, &mut numbers);
+        FirstPose { look, mean_square, innovations: self.innovations_in(frame, pose) }
+    }
+
+    /// As [`negative_log_likelihoods`](Self::negative_log_likelihoods), of a pose and those that are compared with it, of the points that it has been
+    /// looked at by. What a first look finds so many times worse than that, which is most of many poses, is not measured: its squares are those of
+    /// the first look.
     pub(crate) fn negative_log_likelihoods_beside_first(
         &self,
         frame: &mut Frame,
-        poses: &[Matrix3<f64>],
+        first: &FirstPose,
+        others: &[Matrix3<f64>],
         far_worse: f64,
     ) -> Vec<NegativeLogLikelihood> {
-        let Some((first, others)) = poses.split_first() else { return Vec::new() };
-        let look = FirstLook::at(frame);
-        let mut numbers = vec![0; look.points.len()];
-        let mut rough = |pose: &Matrix3<f64>| self.rough_mean_square(&look, pose, &mut numbers);
-        let limit = far_worse * rough(first).max(1.0);
-        let rough: Vec<_> = others.iter().map(rough).collect();
-        let near = others.iter().zip(&rough).filter(|(_, square)| **square <= limit).map(|(pose, _)| *pose);
-        let near: Vec<_> = std::iter::once(*first).chain(near).collect();
-        let mut measured = self.negative_log_likelihoods(frame, &near).into_iter();
+        let mut numbers = vec![0; first.look.points.len()];
+        let limit = far_worse * first.mean_square.max(1.0);
+        let rough: Vec<_> = others.iter().map(|pose| self.rough_mean_square(&first.look, pose, &mut numbers)).collect();
+        let near = others.iter().zip(&rough).filter(|(_, square)| **square <= limit);
+        let near: Vec<_> = near.map(|(pose, _)| self.innovations_in(frame, pose)).collect();
+        let all: Vec<_> = std::iter::once(&first.innovations).chain(&near).collect();
+        let mut measured = self.of_all(&all).into_iter();
         let Some(of_first) = measured.next() else { return Vec::new() };
         let far = |square: f64| NegativeLogLikelihood { squares: square * of_first.points, ..of_first };
         let others = rough
@@ -223,6 +238,20 @@ impl View<'_> {
         let variance = ratio * ratio + m.by_offset * m.by_offset / own;
         Some((m.residual + m.by_offset * shifts[m.cell]) / variance.sqrt())
     }
+}
+
+/// Innovations of the points of a frame in a pose; none where nothing was known.
+struct Innovations {
+    of_points: Vec<Option<f64>>,
+    /// Their deviation, by their median; infinite where there is none.
+    scale: f64,
+}
+
+/// A pose that others are compared with, as points of a frame are explained by it.
+pub(crate) struct FirstPose {
+    look: FirstLook,
+    mean_square: f64,
+    innovations: Innovations,
 }
 
 /// Some of the points of a frame, and what each states of its deviation, in that of a good point.

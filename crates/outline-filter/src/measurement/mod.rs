@@ -21,7 +21,7 @@ pub(crate) use correlation::{ShownCorrelation, TakenOff, correlation_of};
 pub(crate) use frame::{Frame, Piece, Reference};
 pub(crate) use hidden::{Lies, hide_points};
 pub(crate) use lattice::{PixelLattice, PlaceOnLattice};
-pub(crate) use likelihood::NegativeLogLikelihood;
+pub(crate) use likelihood::{FirstPose, NegativeLogLikelihood};
 pub(crate) use linearisation::Measurement;
 pub(crate) use noise::{Counted, NoiseModel, Rounding, Tolerance, spread};
 pub(crate) use point_deviations::{PointDeviations, weighted_median};

@@ -95,18 +95,44 @@ impl ShapeNoise {
         if self.variance <= 0.0 {
             return;
         }
-        let Arrowhead { dense, cells, .. } = &mut belief.information;
-        for (known, coupling) in cells.iter_mut().filter(|(known, _)| **known > 0.0) {
-            let own = 1.0 / (1.0 / *known + self.variance);
-            let kept = own / *known;
-            // The marginal information `dense - c c' / own` stays as it is.
-            let lost = (1.0 - kept) / *known;
-            for (row, c) in dense.iter_mut().zip(coupling.iter()) {
-                let factor = lost * c;
-                row.iter_mut().zip(coupling.iter()).for_each(|(entry, c)| *entry -= factor * c);
-            }
-            coupling.iter_mut().for_each(|entry| *entry *= kept);
-            *known = own;
+        match belief.parameter_count() {
+            3 => self.forget_sized::<6>(&mut belief.information),
+            4 => self.forget_sized::<8>(&mut belief.information),
+            6 => self.forget_sized::<12>(&mut belief.information),
+            _ => self.forget_sized::<16>(&mut belief.information),
+        }
+    }
+
+    /// Of pose and motion of S entries.
+    fn forget_sized<const S: usize>(&self, Arrowhead { dense, cells, .. }: &mut Arrowhead) {
+        let mut block: [[f64; S]; S] = std::array::from_fn(|i| std::array::from_fn(|j| dense[i][j]));
+        let (own, couplings) = cells.all_mut::<S>();
+        vectorised(
+            #[inline(always)]
+            || {
+                for (known, coupling) in own.iter_mut().zip(couplings.iter_mut()) {
+                    if *known <= 0.0 {
+                        continue;
+                    }
+                    let own = 1.0 / (1.0 / *known + self.variance);
+                    let kept = own / *known;
+                    // The marginal information `dense - c c' / own` stays as it is.
+                    let lost = (1.0 - kept) / *known;
+                    for (row, c) in block.iter_mut().zip(&*coupling) {
+                        let factor = lost * c;
+                        for j in 0..S {
+                            row[j] -= factor * coupling[j];
+                        }
+                    }
+                    for entry in coupling.iter_mut() {
+                        *entry *= kept;
+                    }
+                    *known = own;
+                }
+            },
+        );
+        for (row, of_block) in dense.iter_mut().zip(block) {
+            row[..S].copy_from_slice(&of_block);
         }
     }
 }

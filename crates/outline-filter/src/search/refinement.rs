@@ -186,6 +186,16 @@ impl Seen<'_> {
     }
 }
 
+/// Mean distances of points from the outline in several poses, as their scores are.
+pub(super) fn distances_in(
+    track: &Track,
+    points: &[Point2<f64>],
+    poses: impl Iterator<Item = Matrix3<f64>>,
+) -> Vec<f64> {
+    let mut numbers = vec![0; points.len()];
+    poses.map(|pose| mean_distance(track, points, &pose, &mut numbers)).collect()
+}
+
 /// Mean distance of points from the cells of the outline in a pose, those far off as if they were [`tuning::FARTHEST`] away. Where the outline has
 /// ends, points may lie in its gaps: beyond an end they count a little more than points on it, elsewhere some times as much. `numbers` has room
 /// for one of each point.

@@ -5,7 +5,7 @@ use super::{
     Landmarks,
     near_symmetry::turns_of_near_symmetry,
     outlook::Outlook,
-    refinement::{RegisteredPose, Steps, few_of, refined},
+    refinement::{RegisteredPose, Steps, distances_in, few_of, refined},
 };
 use crate::{
     track::{Track, turn_between, wrapped},
@@ -66,17 +66,22 @@ impl Registration {
         let outlook_by = |spread: f64| Outlook::of(track, points.len(), spread);
         let Starts { turns, told } = Starts::of(track, points, landmarks);
         let mut begun = Begun { track, few: &few, poses: Vec::with_capacity(turns.len() + told.len()) };
-        let numbered = || turns.iter().enumerate();
+        // Asked for where it is needed: most frames of a lost object end with a part of the turns.
+        let numbered = || {
+            let is_promising = promising(track, &few, points.len(), &turns);
+            turns.iter().enumerate().zip(is_promising).filter_map(|(start, is_promising)| is_promising.then_some(start))
+        };
         match extent {
             Extent::Part(_) if turns.len() > 1 && Outlook::can_be_told(track, points.len()) => {
                 told.iter().for_each(|start| begun.add(start));
-                numbered().filter(|(i, _)| extent.has_turn(*i)).for_each(|(_, start)| begun.add(start));
+                let of_part = turns.iter().enumerate().filter(|(i, _)| extent.has_turn(*i));
+                of_part.for_each(|(_, start)| begun.add(start));
                 if let Some(best) = begun.best_if_hopeless(extent.most_spread(track)) {
                     return Self { rigid: vec![best], outlook: Outlook::HopelessSoFar };
                 }
                 numbered().filter(|(i, _)| !extent.has_turn(*i)).for_each(|(_, start)| begun.add(start));
             }
-            _ => turns.iter().chain(&told).for_each(|start| begun.add(start)),
+            _ => numbered().map(|(_, start)| start).chain(&told).for_each(|start| begun.add(start)),
         }
         let mut begun = begun.poses;
         let least = begun.iter().map(|found| found.spread).fold(f64::INFINITY, f64::min);
@@ -226,6 +231,20 @@ impl Starts {
     }
 }
 
+/// Which of some turns a search is begun from, of a frame with so many points: those by which few of its points lie nearest to the outline from
+/// the beginning, and all that are hardly worse, as those of an outline are that is all but round. Of outlines with ends, and of few points,
+/// nearness says too little, so that all are.
+fn promising(track: &Track, few: &[Point2<f64>], points: usize, turns: &[Matrix3<f64>]) -> Vec<bool> {
+    if turns.len() <= tuning::SEARCHED_FROM || points < tuning::ENOUGH_POINTS || track.map().has_ends() {
+        return vec![true; turns.len()];
+    }
+    let distances = distances_in(track, few, turns.iter().map(|start| start * track.body_pose()));
+    let mut ordered = distances.clone();
+    ordered.sort_unstable_by(f64::total_cmp);
+    let limit = ordered[tuning::SEARCHED_FROM - 1].max(tuning::TIE * ordered[0]);
+    distances.iter().map(|distance| *distance <= limit).collect()
+}
+
 /// Of an outline whose shape may be stretched, and which is not as long as wide: turns of it as one that is, which may leave it as it is.
 fn stretched_turns(track: &Track, from: &Vector2<f64>, to: &Vector2<f64>) -> Vec<Matrix3<f64>> {
     let (map, pose) = (track.view().map, track.body_pose());
@@ -353,5 +372,22 @@ mod tests {
             }
         }
         assert!(longest <= 3, "{longest}");
+    }
+
+    #[test]
+    fn searches_begin_from_the_turns_on_either_side_of_that_of_a_frame_and_not_from_all() {
+        let mut frame = Frame::default();
+        let notched = |turn: f64| outline(400, |t| polar(if t < 0.3 { 0.9 } else { 1.0 }, t + turn));
+        let shapes: [&dyn Fn(f64) -> Outline; 2] = [&|turn| shown(0.25, turn), &notched];
+        for (shape, number) in shapes.into_iter().flat_map(|shape| (0..tuning::TURNS).map(move |i| (shape, i))) {
+            let turn = std::f64::consts::TAU * number as f64 / tuning::TURNS as f64 + 0.1;
+            let track = Track::begin(MotionModel::Rigid, &shape(0.0), 0.0, &mut frame).expect("a track");
+            frame.load(&shape(turn), track.reference());
+            let turns = Starts::of(&track, &frame.points, None).turns;
+            let is_begun = promising(&track, &few_of(&frame.points), frame.points.len(), &turns);
+            assert!(is_begun[number] && is_begun[(number + 1) % tuning::TURNS], "{number}: {is_begun:?}");
+            let count = is_begun.iter().filter(|begun| **begun).count();
+            assert!((tuning::SEARCHED_FROM..tuning::TURNS).contains(&count), "{number}: {is_begun:?}");
+        }
     }
 }

@@ -10,13 +10,14 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
     if track.turn_is_unseen() {
         return 1;
     }
+    let first = track.first_of_compared(outline, pose, frame);
     let mut as_good = |orders: Vec<usize>| -> Vec<usize> {
         if orders.is_empty() {
             return orders;
         }
         let turns = orders.iter().map(|n| track.turned(pose, std::f64::consts::TAU / *n as f64));
-        let poses: Vec<_> = std::iter::once(*pose).chain(turns).collect();
-        let likelihoods = track.compared_with_first(outline, &poses, frame, tuning::FAR_WORSE * tuning::AS_GOOD);
+        let turns: Vec<_> = turns.collect();
+        let likelihoods = track.compared_with(&first, &turns, frame, tuning::FAR_WORSE * tuning::AS_GOOD);
         let is_as_good = likelihoods[1..].iter().map(|other| other.is_within(tuning::AS_GOOD, &likelihoods[0]));
         orders.into_iter().zip(is_as_good).filter_map(|(n, is_as_good)| is_as_good.then_some(n)).collect()
     };
@@ -34,10 +35,8 @@ pub(crate) fn symmetry_order(track: &Track, outline: &Outline, pose: &Matrix3<f6
     }
     found.sort_unstable_by(|a, b| b.cmp(a));
     // Turns that are too small for the frame to show are no symmetry: half of one of a symmetry is seen.
-    let halves: Vec<_> = std::iter::once(*pose)
-        .chain(found.iter().map(|n| track.turned(pose, std::f64::consts::PI / *n as f64)))
-        .collect();
-    let likelihoods = track.compared_with_first(outline, &halves, frame, tuning::FAR_WORSE * tuning::HALF_IS_WORSE);
+    let halves: Vec<_> = found.iter().map(|n| track.turned(pose, std::f64::consts::PI / *n as f64)).collect();
+    let likelihoods = track.compared_with(&first, &halves, frame, tuning::FAR_WORSE * tuning::HALF_IS_WORSE);
     let seen = |at: &usize| !likelihoods[at + 1].is_within(tuning::HALF_IS_WORSE, &likelihoods[0]);
     (0..found.len()).find(seen).map_or(1, |at| found[at])
 }

@@ -19,8 +19,7 @@ use crate::{
 
 impl MotionFilter {
     /// Keeps one of the first frames, and cuts the map anew once there are enough of them, or where the motion seems to change, which
-    /// may be what coarse cells make of it. No frame has more of that to do than one cut, or than measuring the
-    /// frames kept for one hypothesis.
+    /// may be what coarse cells make of it. No frame has more of that to do than one cut, or than measuring a few of the frames kept.
     pub(super) fn keep(&mut self, time: f64, outline: &Outline, changes: bool) {
         let Some(track) = &mut self.track else { return };
         if track.turn_evidence() == TurnEvidence::Refuted {
@@ -46,7 +45,10 @@ impl MotionFilter {
             let turn = self.turn_hypotheses.present_turn();
             let next = match remapping {
                 Remapping::Drafted(draft) if draft.turn == turn => self.measure(*draft),
-                Remapping::Measured(measured) if measured.begun.turn == turn => self.go_on(*measured),
+                Remapping::Measured(measured) if measured.begun.turn == turn => {
+                    let most = frames_at_once(1 + self.turn_hypotheses.followed().count());
+                    self.go_on(*measured, most)
+                }
                 Remapping::Placed(placed) if placed.turn == turn => self.draft_along(*placed),
                 Remapping::Again { cuts } => self.draft(cuts),
                 // The map is cut for another hypothesis where they have been exchanged meanwhile.
@@ -102,34 +104,48 @@ impl MotionFilter {
         let frames = remapper.placed(track, false);
         let Some(first) = frames.first() else { return Remapping::Idle };
         draft.track.begin_as(track, first.outline, &mut self.frame);
-        let Some(present) = remapper.replayed(draft.track.clone(), &frames, &mut self.frame) else {
-            return Remapping::Idle;
-        };
-        let measured = Measured { begun: draft, present, rivals: Vec::new() };
-        if self.turn_hypotheses.followed().next().is_none() {
-            return self.exchange(measured);
+        let present = Remapped::at_first(draft.track.clone());
+        let hypotheses = 1 + self.turn_hypotheses.followed().count();
+        if hypotheses == 1 {
+            let Some(present) = remapper.taken(present, &frames, &mut self.frame) else { return Remapping::Idle };
+            return self.exchange(Measured { begun: draft, present, rivals: Vec::new() });
         }
-        Remapping::Measured(Box::new(measured))
+        let measured = Measured { begun: draft, present, rivals: Vec::new() };
+        self.go_on(measured, frames_at_once(hypotheses) - tuning::FRAMES_OF_BEGINNING)
     }
 
-    /// Takes the frame kept last with all that have taken those before it on the new cells, and all of them with one more rival. All are
-    /// exchanged at once: one alone would win by its finer cells.
-    fn go_on(&mut self, Measured { begun, present, rivals }: Measured) -> Remapping {
+    /// Takes so many of the frames kept on the new cells, always with the hypothesis that has taken the fewest, and begins one more rival. Once
+    /// all have taken all frames they are exchanged at once: one alone would win by its finer cells.
+    fn go_on(&mut self, Measured { begun, mut present, mut rivals }: Measured, most: usize) -> Remapping {
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
         let frame = &mut self.frame;
-        let Some(present) = remapper.taken_last(present, frame) else { return Remapping::Idle };
-        let mut rivals: Vec<_> = rivals
-            .into_iter()
-            .map(|(turn, rival)| (turn, rival.and_then(|rival| remapper.taken_last(rival, frame))))
-            .collect();
+        let frames = remapper.placed(&present.track, false);
+        rivals.retain(|(turn, _)| self.turn_hypotheses.followed().any(|(of, _)| of == *turn));
         let mut waiting = self.turn_hypotheses.followed().filter(|(turn, _)| rivals.iter().all(|(of, _)| of != turn));
         let (next, is_last) = (waiting.next(), waiting.next().is_none());
         drop(waiting);
         if let Some((turn, rival)) = next {
             rivals.push((turn, remapper.on_map_of(&begun.track, rival, frame)));
         }
+        for _ in 0..most {
+            let of_rivals = rivals.iter_mut().filter(|(_, rival)| rival.is_some());
+            let behind = of_rivals.min_by_key(|(_, rival)| rival.as_ref().map(Remapped::frames_taken));
+            let behind = behind.map(|(_, rival)| rival);
+            match behind {
+                Some(rival) if rival.as_ref().map(Remapped::frames_taken) < Some(present.frames_taken()) => {
+                    *rival = rival.take().and_then(|rival| remapper.taken_next(rival, &frames, frame));
+                }
+                _ if present.frames_taken() < frames.len() => {
+                    let Some(next) = remapper.taken_next(present, &frames, frame) else { return Remapping::Idle };
+                    present = next;
+                }
+                _ => break,
+            }
+        }
+        let has_all = |remapped: &Remapped| remapped.frames_taken() >= frames.len();
+        let have_all = is_last && has_all(&present) && rivals.iter().all(|(_, r)| r.as_ref().is_none_or(has_all));
         let measured = Measured { begun, present, rivals };
-        if is_last { self.exchange(measured) } else { Remapping::Measured(Box::new(measured)) }
+        if have_all { self.exchange(measured) } else { Remapping::Measured(Box::new(measured)) }
     }
 
     /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
@@ -199,8 +215,8 @@ impl Remapper<'_> {
         history.is_changing() || !self.settings.process_noise.is_none()
     }
 
-    /// A rival of a track that was begun anew, on the same cells: each of its own would be as many times the work, and a finer one would win by
-    /// that alone. Where they have not begun alike it has cells of its own all the same.
+    /// A rival of a track that was begun anew, at the first frame on the same cells: each of its own would be as many times the work, and a finer
+    /// one would win by that alone. Where they have not begun alike it has cells of its own all the same.
     fn on_map_of(&self, begun: &Track, rival: &Track, buffers: &mut Frame) -> Option<Remapped> {
         let frames = self.placed(rival, false);
         let begun = begun.with_motion_of(rival).or_else(|| {
@@ -208,19 +224,13 @@ impl Remapper<'_> {
             begun.begin_as(rival, frames.first()?.outline, buffers);
             Some(begun)
         })?;
-        self.replayed(begun, &frames, buffers)
+        Some(Remapped::at_first(begun))
     }
 
-    /// A track that stands at the first frame, after all of them.
-    fn replayed(&self, begun: Track, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
-        let poses = vec![*begun.first_body_pose()];
-        self.taken(Remapped { track: begun, history: MotionHistory::default(), poses }, frames, buffers)
-    }
-
-    /// One that stands at the last frame kept but one, after that which is kept last.
-    fn taken_last(&self, remapped: Remapped, buffers: &mut Frame) -> Option<Remapped> {
-        let frames = self.placed(&remapped.track, false);
-        self.taken(remapped, &frames[frames.len().checked_sub(2)?..], buffers)
+    /// One after the next of the frames kept.
+    fn taken_next(&self, remapped: Remapped, frames: &[PlacedFrame<'_>], buffers: &mut Frame) -> Option<Remapped> {
+        let next = remapped.frames_taken();
+        self.taken(remapped, frames.get(next.checked_sub(1)?..=next)?, buffers)
     }
 
     /// One that stands at the first of some frames, after all of them.
@@ -234,6 +244,11 @@ impl Remapper<'_> {
         })?;
         Some(Remapped { track, history, poses })
     }
+}
+
+/// Frames kept that are taken on new cells in one step, by the number of hypotheses which all take the frame of that step besides.
+fn frames_at_once(hypotheses: usize) -> usize {
+    tuning::MEASURED_AT_ONCE.saturating_sub(hypotheses).max(hypotheses + tuning::FRAMES_OF_BEGINNING)
 }
 
 #[cfg(test)]
@@ -289,17 +304,28 @@ mod tests {
 
     #[test]
     fn rivals_are_measured_on_the_cells_of_the_present_track() {
-        let peanut = |t: f64| 1.0 + 0.2 * (2.0 * t).cos();
-        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
-        let mut counts = Vec::new();
-        for frame in 0..8 {
-            filter.step(f64::from(frame) / 30.0, &turning(frame, 400, peanut)).expect("increasing times");
-            let Some(track) = &filter.track else { continue };
-            let rivals: Vec<_> = filter.turn_hypotheses.followed().map(|(_, rival)| rival.cell_count()).collect();
-            // All are exchanged at once.
-            assert!(rivals.iter().all(|cells| *cells == track.cell_count()), "frame {frame}: {rivals:?}");
-            counts.extend(rivals);
+        // Outlines of two lobes, and of four, whose rivals take more frames to be measured.
+        for (lobes, frames) in [(2.0, 8), (4.0, 18)] {
+            let lobed = |t: f64| 1.0 + 0.2 * (lobes * t).cos();
+            let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+            let mut counts = Vec::new();
+            for frame in 0..frames {
+                filter.step(f64::from(frame) / 30.0, &turning(frame, 400, lobed)).expect("increasing times");
+                let Some(track) = &filter.track else { continue };
+                let rivals: Vec<_> = filter.turn_hypotheses.followed().map(|(_, rival)| rival.cell_count()).collect();
+                // All are exchanged at once.
+                assert!(rivals.iter().all(|cells| *cells == track.cell_count()), "frame {frame}: {rivals:?}");
+                counts.extend(rivals);
+            }
+            assert!(counts.first() < counts.last(), "{lobes} lobes, never cut anew: {counts:?}");
         }
-        assert!(counts.first() < counts.last(), "never cut anew: {counts:?}");
+    }
+
+    #[test]
+    fn hypotheses_catch_up_on_new_cells_however_many_there_are() {
+        for hypotheses in 2..20 {
+            assert!(frames_at_once(hypotheses) > hypotheses, "{hypotheses}");
+        }
+        assert_eq!(frames_at_once(2) + 2, tuning::MEASURED_AT_ONCE);
     }
 }

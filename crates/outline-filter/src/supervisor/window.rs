@@ -30,7 +30,7 @@ pub(super) enum Remapping {
     Placed(Box<Placed>),
     /// Cut, and not measured yet.
     Drafted(Box<Draft>),
-    /// The present track has taken the frames kept on the new cells; its rivals do one after the other.
+    /// The present track and its rivals take the frames kept on the new cells, a few in each step.
     Measured(Box<Measured>),
     /// To be cut again, after so many cuts.
     Again { cuts: usize },
@@ -69,13 +69,26 @@ pub(super) struct Measured {
     pub(super) rivals: Vec<(f64, Option<Remapped>)>,
 }
 
-/// A track that has taken the frames kept on a map cut anew, how the motion changes in them, and their poses.
+/// A track that has taken some of the frames kept on a map cut anew, how the motion changes in them, and their poses.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Remapped {
     pub(super) track: Track,
     pub(super) history: MotionHistory,
     pub(super) poses: Vec<Matrix3<f64>>,
+}
+
+impl Remapped {
+    /// A track that stands at the first of the frames kept.
+    pub(super) fn at_first(track: Track) -> Self {
+        let poses = vec![*track.first_body_pose()];
+        Self { track, history: MotionHistory::default(), poses }
+    }
+
+    /// Number of frames taken, the first included.
+    pub(super) fn frames_taken(&self) -> usize {
+        self.poses.len()
+    }
 }
 
 #[cfg(feature = "serde")]

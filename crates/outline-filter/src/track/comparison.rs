@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 
 use super::{Track, wrapped};
 use crate::{
-    measurement::{Frame, NegativeLogLikelihood},
+    measurement::{FirstPose, Frame, NegativeLogLikelihood},
     tuning::{
         likelihood::{ENOUGH_POINTS, FAR_WORSE},
         registration as tuning,
@@ -24,25 +24,30 @@ impl Track {
         self.view().negative_log_likelihoods(frame, poses)
     }
 
-    /// As [`compared`](Self::compared), for comparison with the first of the poses alone: what is far worse than that is not measured.
-    pub(crate) fn compared_with_first(
+    /// As [`compared`](Self::compared), of one pose that others are [compared with](Self::compared_with) as long as the frame is loaded.
+    pub(crate) fn first_of_compared(&self, outline: &Outline, pose: &Matrix3<f64>, frame: &mut Frame) -> FirstPose {
+        frame.load(outline, self.reference);
+        frame.thin_out(ENOUGH_POINTS);
+        self.view().look_at_first(frame, pose)
+    }
+
+    /// Negative log-likelihoods of a pose and of others compared with it; what is far worse than that is not measured.
+    pub(crate) fn compared_with(
         &self,
-        outline: &Outline,
-        poses: &[Matrix3<f64>],
+        first: &FirstPose,
+        others: &[Matrix3<f64>],
         frame: &mut Frame,
         far_worse: f64,
     ) -> Vec<NegativeLogLikelihood> {
-        frame.load(outline, self.reference);
-        frame.thin_out(ENOUGH_POINTS);
-        self.view().negative_log_likelihoods_beside_first(frame, poses, far_worse)
+        self.view().negative_log_likelihoods_beside_first(frame, first, others, far_worse)
     }
 
     /// Whether the outline in a pose explains a frame significantly better than in most of the poses turned from it.
     pub(crate) fn shows_turn(&self, outline: &Outline, pose: &Matrix3<f64>, frame: &mut Frame) -> bool {
         let turns = (1..=tuning::OTHER_TURNS).map(|i| tuning::GOLDEN_ANGLE * i as f64);
         let others = turns.filter(|turn| wrapped(*turn).abs() >= tuning::NEAR).map(|turn| self.turned(pose, turn));
-        let poses: Vec<_> = std::iter::once(*pose).chain(others).collect();
-        let likelihoods = self.compared_with_first(outline, &poses, frame, FAR_WORSE);
+        let first = self.first_of_compared(outline, pose, frame);
+        let likelihoods = self.compared_with(&first, &others.collect::<Vec<_>>(), frame, FAR_WORSE);
         let worse = likelihoods[1..].iter().filter(|other| other.is_worse_than(&likelihoods[0])).count();
         // What has been seen of a turn for the first time may be a single mark, which the next frame may hide: it then lies anywhere in
         // what that frame does not show.

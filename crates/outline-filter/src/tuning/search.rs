@@ -8,6 +8,12 @@ pub(crate) mod remapping {
     pub(crate) const PLENTY_PER_CELL: f64 = 3.5;
     /// Times that a map is cut from the same frames at most.
     pub(crate) const MOST_CUTS: usize = 4;
+    /// Frames that are taken in one step by the track and its rivals while they are measured on new cells, that of the step included: no other
+    /// step takes longer...
+    pub(crate) const MEASURED_AT_ONCE: usize = 10;
+    /// ...and as many as measuring new cells for the first time takes the time of. With more rivals each step takes so many more than there
+    /// are hypotheses, so that they catch up.
+    pub(crate) const FRAMES_OF_BEGINNING: usize = 2;
     /// Points of several frames beyond which more of them would not make cells finer.
     pub(crate) const PLENTY: usize = 3200;
     /// Points nearer than so many spacings are one.
@@ -27,6 +33,9 @@ pub(crate) mod remapping {
 pub(crate) mod registration {
     /// Turns tried over the whole circle, 15 degrees apart: within reach of the local search on every outline tried.
     pub(crate) const TURNS: usize = 24;
+    /// Turns that a search is begun from at least, those that few points lie nearest to the outline by: half of them, as starts on the far side of
+    /// a pose do not lead to it.
+    pub(crate) const SEARCHED_FROM: usize = 12;
     /// Length of an outline over its width from which on turns that stretch it are tried, too: with less, what they differ by from plain turns is
     /// within reach of the search.
     pub(crate) const STRETCHED: f64 = 1.15;

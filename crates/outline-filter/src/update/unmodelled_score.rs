@@ -6,7 +6,7 @@ use super::{
     pose_measurement::PoseMeasurement,
     unmodelled_displacement::{UNMODELLED, UnmodelledMatrix, UnmodelledVector},
 };
-use crate::tuning::family as tuning;
+use crate::{tuning::family as tuning, vectors::LANES};
 
 /// What one frame says of the motions that are left out, its pose taken to be unknown.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +32,7 @@ pub(super) struct OfCell<'a, const K: usize, const S: usize> {
 
 /// Sums over the cells of a frame, the offsets eliminated.
 pub(super) struct Sums<const K: usize, const S: usize> {
+    /// Up to the diagonal; of what is beyond it not all is summed up.
     information: [[f64; UNMODELLED]; UNMODELLED],
     score: [f64; UNMODELLED],
     /// Squares of the displacements with what pose and outline have taken in.
@@ -88,7 +89,8 @@ impl<const K: usize, const S: usize> Sums<K, S> {
             let shared = left.map(|left| share * left);
             for (m, row) in self.information.iter_mut().enumerate() {
                 let of_own = shared[m] * own;
-                for l in 0..UNMODELLED {
+                // Up to the diagonal, in whole vectors.
+                for l in 0..UNMODELLED.min((m / LANES + 1) * LANES) {
                     row[l] += of_own * left[l];
                 }
             }
