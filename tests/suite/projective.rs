@@ -90,7 +90,7 @@ fn that_affine_motion_leaves_perspective_out_is_told_and_projective_motion_leave
         assert!(affine.iter().any(is_told), "{shape}: {affine:?}");
         let projective = found(MotionModel::Projective);
         assert!(projective.warnings.is_empty(), "{shape}: {:?}", projective.warnings);
-        assert!(projective.dynamics.is_none() && projective.aliases.is_empty());
+        assert!(projective.dynamics.is_some_and(|weights| weights.generator > 0.5) && projective.aliases.is_empty());
     }
 }
 

@@ -66,10 +66,14 @@ pub struct NormalisedState {
     /// Which parameters of the motion are observable.
     pub observable: [bool; MAX_PARAMETERS],
     /// Rates that the outline does not show, such as that of the turn of a circle, or that are ambiguous: nor is it known how far the object has turned.
+    /// Of projective motion also the perspective, where it takes part in what the outline does not show.
     pub hidden: [bool; MAX_PARAMETERS],
     /// Centroid of the object in the body frame, normalised: what turns without being seen turns about it.
     pub centroid: Point2<f64>,
 }
+
+/// Parameters of projective motion before those of the perspective.
+const PERSPECTIVE: usize = MAX_PARAMETERS - 2;
 
 impl From<NormalisedState> for MotionState {
     fn from(state: NormalisedState) -> Self {
@@ -186,14 +190,23 @@ impl MotionState {
         // Turned about the centroid by any angle a point moves by sqrt(2) times its distance, root mean square over both coordinates.
         let lever = self.radius * (g.fixed_view::<2, 2>(0, 0) * self.centroid.coords).norm();
         let by_unseen_turn = if is_any_hidden { lever } else { 0.0 };
+        // A perspective that is not seen, such as that of an ellipse, puts another point of the body there.
+        let is_perspective_hidden = self.hidden[PERSPECTIVE..].contains(&true);
+        let size = self.radius * g.fixed_view::<2, 2>(0, 0).norm();
+        let by_unseen_perspective = if is_perspective_hidden { size } else { 0.0 };
         for (name, row, start) in [("x", 0, self.origin.x), ("y", 1, self.origin.y)] {
             let mut at = entry(name, row, 2, self.radius);
             at.value += start;
-            at.standard_deviation = at.standard_deviation.hypot(by_unseen_turn);
+            at.standard_deviation = at.standard_deviation.hypot(by_unseen_turn).hypot(by_unseen_perspective);
             list.push(at);
         }
         if self.model == MotionModel::Projective {
-            list.extend([("m31", 0), ("m32", 1)].map(|(name, j)| entry(name, 2, j, 1.0 / self.radius)));
+            list.extend([("m31", 0), ("m32", 1)].map(|(name, j)| {
+                let shown = entry(name, 2, j, 1.0 / self.radius);
+                let unseen = PoseParameter { name, value: f64::NAN, standard_deviation: f64::INFINITY };
+                // Another turn gives the body another perspective, too.
+                if is_any_hidden { unseen } else { shown }
+            }));
         }
         list
     }

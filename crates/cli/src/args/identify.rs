@@ -68,11 +68,12 @@ pub(crate) struct IdentifyArgs {
     ///
     /// The pose is relative to the first frame. Rigid: angle (rad, positive if omega is), x and y, the present position of the
     /// mean of the points of the first outline. Similarity: scale, then these. Affine: the matrix m11, m12, m21, m22, then x
-    /// and y; projective also m31 and m32. The fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found
-    /// again, while it is lost, and in a frame that is not an outline. The angle is also empty while the outline does not show it or while two turns
-    /// explain the outlines. In a rejected frame the fields are the prediction. The column segment is a number that is counted up from 0 where the
-    /// object was given up and begun anew, and where a frame shows its turn for the first time: the turn between poses of different segments is not
-    /// known. Not available with the adaptive method.
+    /// and y; projective also m31 and m32, and the matrix has that mean for origin and m33 = 1. What the outline does not show is
+    /// empty. All fields are empty if the motion is not known: in the first frame, in a frame where a lost object is found again,
+    /// while it is lost, and in a frame that is not an outline. The angle and the matrix are also empty while two turns explain
+    /// the outlines. In a rejected frame the fields are the prediction. The column segment is a number that is counted up from 0
+    /// where the object was given up and begun anew, and where a frame shows its turn for the first time: the turn between poses of
+    /// different segments is not known. Not available with the adaptive method.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trajectory: Option<PathBuf>,
 
@@ -171,8 +172,8 @@ pub(crate) struct TrackOptions {
           conflicts_with = "scale")]
     pub(crate) rectify: Option<GivenRectification>,
 
-    /// What is assumed of how the motion goes on from frame to frame; not used by the adaptive method, nor for projective
-    /// motion and a plane in space
+    /// What is assumed of how the motion goes on from frame to frame; not used by the adaptive method, nor for a plane in
+    /// space
     ///
     /// With 'auto', the three others are followed side by side and weighted by their probabilities. With 'generator', the path of an
     /// object tells its turn also if its outline does not, as for a disc on a turntable.

@@ -2,7 +2,6 @@ use std::io::Write as _;
 
 use freeform_drawing::{Findings, MeaningOfB, OBJECTS_PLAYED, Report, write_report};
 use freeform_motion::outline_io::OutlineUncertainty;
-use freeform_motion::riccati::MotionModel;
 use freeform_motion::tracker::{NotStated, ObjectResult, write_results};
 use freeform_motion::{Tracker, Truth, Warning};
 
@@ -128,16 +127,8 @@ fn check(args: &IdentifyArgs) -> Result<(), Failure> {
     if args.options.degree.is_some() && args.options.method == IdentifyMethod::Filter && !args.quiet {
         warn("--degree: the motion filter fits no polynomial; the degree is used only for the curve in drawings");
     }
-    if args.options.dynamics != DynamicsChoice::Auto
-        && args.options.motion.model() == MotionModel::Projective
-        && !args.quiet
-    {
-        warn(match args.options.motion {
-            MotionChoice::Plane => "--dynamics: not used for a plane in space, whose velocities are taken for constant",
-            _ => {
-                "--dynamics: not used for projective motion, whose generator is taken for constant until it is seen to change"
-            }
-        });
+    if args.options.dynamics != DynamicsChoice::Auto && args.options.motion == MotionChoice::Plane && !args.quiet {
+        warn("--dynamics: not used for a plane in space, whose velocities are taken for constant");
     }
     Ok(())
 }

@@ -23,18 +23,19 @@ fn a_projective_motion_is_simulated_with_its_truth_and_identified_with_eight_par
     }
     let c1 = object["parameters"]["c1"]["value"].as_f64().expect("a number");
     assert_eq!(object["generator"][2][0].as_f64(), Some(c1));
-    // No family is larger, and no hypotheses of dynamics are followed.
-    assert_eq!((&object["warnings"], &object["dynamics"]), (&json("[]"), &json("null")));
+    // No family is larger.
+    assert_eq!(&object["warnings"], &json("[]"));
+    assert_eq!(object["dynamics"]["held"], "generator");
     let table = succeed("identify - --motion projective --scale 0.1", &outlines);
     let row = table.lines().find(|line| line.trim_start().starts_with("c2 ")).expect("a row of c2");
     assert!(row.contains(" 0.016"), "{row}");
 }
 
 #[test]
-fn options_without_effect_on_projective_motion_are_told_of_and_an_uncertain_edge_has_one() {
+fn dynamics_are_chosen_for_projective_motion_too_and_an_uncertain_edge_widens_its_deviations() {
     let outlines = outlines();
     let output = run("identify - --motion projective --dynamics velocity", &outlines);
-    assert!(output.status.success() && stderr(&output).contains("--dynamics: not used for projective motion"));
+    assert!(output.status.success() && !stderr(&output).contains("--dynamics"), "{}", stderr(&output));
     let document = json(&succeed("identify - --motion projective --edge-uncertainty 0.002 --format json", &outlines));
     for (name, parameter) in document["objects"][0]["parameters"].as_object().expect("parameters") {
         let [all, random] = ["std", "std_random"].map(|field| parameter[field].as_f64().expect("a number"));

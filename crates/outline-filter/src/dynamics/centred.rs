@@ -8,8 +8,8 @@ use crate::{
     vectors::vectorised,
 };
 
-/// Most parameters of a model that dynamics are told for, those of affine motion.
-pub(crate) const LARGEST: usize = 6;
+/// Most parameters of a model that dynamics are told for, those of projective motion.
+pub(crate) const LARGEST: usize = MAX_PARAMETERS;
 
 pub(crate) type CentredVector = SVector<f64, LARGEST>;
 pub(crate) type CentredMatrix = SMatrix<f64, LARGEST, LARGEST>;
@@ -37,17 +37,56 @@ impl CentredPose {
         self.pose.fixed_view::<2, 2>(0, 0).into_owned()
     }
 
-    /// Parameters about the image origin by those about the centroid.
-    pub(crate) fn about_origin(self, model: MotionModel) -> Option<SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>> {
-        centred_change(model, &self.pose, &self.centroid)
+    /// The pose with the centroid for origin, in the body and in the image: its linear part, and for a projective one its perspective.
+    pub(super) fn local(&self, model: MotionModel) -> Matrix3<f64> {
+        if model != MotionModel::Projective {
+            return as_map(&self.linear());
+        }
+        let (centre, centroid) = (self.centre(), self.centroid);
+        let mut local = moved_by(-centre.x, -centre.y) * self.pose * moved_by(centroid.x, centroid.y);
+        local /= local[(2, 2)];
+        // By rounding alone they are not.
+        (local[(0, 2)], local[(1, 2)]) = (0.0, 0.0);
+        local
     }
 
-    /// Parameters about the centroid by those about the image origin.
-    pub(crate) fn about_centroid(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
-        let centre = self.centre();
-        let shift = |x: f64, y: f64| Matrix3::new(1.0, 0.0, x, 0.0, 1.0, y, 0.0, 0.0, 1.0);
-        adjoint_matrix(model, &shift(-centre.x, -centre.y), &shift(centre.x, centre.y))
+    /// Parameters about the image origin, in the order of the model, by those about the centroid, in [that of centred
+    /// coordinates](centred_order).
+    pub(crate) fn about_origin(self, model: MotionModel) -> Option<SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>> {
+        let (change, order) = (centred_change(model, &self.pose, &self.centroid)?, centred_order(model));
+        Some(SMatrix::from_fn(|i, j| change[(i, order[j])]))
     }
+
+    /// Parameters about the centroid by those about the image origin, in the same orders.
+    pub(crate) fn about_centroid(self, model: MotionModel) -> SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS> {
+        let (centre, order) = (self.centre(), centred_order(model));
+        let change = adjoint_matrix(model, &moved_by(-centre.x, -centre.y), &moved_by(centre.x, centre.y));
+        SMatrix::from_fn(|i, j| change[(order[i], j)])
+    }
+}
+
+/// The order of centred coordinates, as numbers of the parameters of a model: the velocity comes last. In the models it does but for
+/// projective motion, whose perspective comes behind it.
+pub(crate) fn centred_order(model: MotionModel) -> &'static [usize; MAX_PARAMETERS] {
+    match model {
+        MotionModel::Rigid | MotionModel::Similarity | MotionModel::Affine => &[0, 1, 2, 3, 4, 5, 6, 7],
+        MotionModel::Projective => &[0, 1, 2, 3, 6, 7, 4, 5],
+    }
+}
+
+/// The generator about the centroid of parameters in the order of centred coordinates.
+pub(super) fn centred_generator(model: MotionModel, parameters: &[f64]) -> Matrix3<f64> {
+    match (model, parameters) {
+        (MotionModel::Projective, [a1, a2, a3, a4, c1, c2, b1, b2]) => {
+            Matrix3::new(*a1, *a2, *b1, *a3, *a4, *b2, *c1, *c2, 0.0)
+        }
+        _ => model.generator(parameters),
+    }
+}
+
+/// A shift of the plane.
+pub(super) fn moved_by(x: f64, y: f64) -> Matrix3<f64> {
+    Matrix3::new(1.0, 0.0, x, 0.0, 1.0, y, 0.0, 0.0, 1.0)
 }
 
 /// Pose and motion with their joint covariance at one time, normalised: what is believed, whichever the dynamics.
@@ -126,6 +165,7 @@ pub(super) fn carry<const N: usize>(f: &SMatrix<f64, N, N>, p: &mut SMatrix<f64,
             8 => carry_sized::<N, 8>(f, p),
             9 => carry_sized::<N, 9>(f, p),
             12 => carry_sized::<N, 12>(f, p),
+            16 => carry_sized::<N, 16>(f, p),
             _ => carry_sized::<N, N>(f, p),
         },
     );

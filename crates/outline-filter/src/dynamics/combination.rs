@@ -3,7 +3,7 @@ use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
 use super::{
-    centred::{Summary, carried, of_both, parts},
+    centred::{Summary, carried, centred_generator, centred_order, of_both, parts},
     course::Course,
     hypothesis::Hypothesis,
     interacting::{InteractingHypotheses, MOST},
@@ -82,8 +82,9 @@ impl<const N: usize> InteractingHypotheses<N> {
         let apart = hypothesis.mean.fixed_rows::<2>(k - 2).into_owned();
         let mut change = SMatrix::<f64, N, N>::identity();
         change.fixed_view_mut::<2, 2>(2 * k - 2, k - 2).copy_from(&-hypothesis.rates(model));
-        for (j, basis) in model.basis().iter().enumerate().take(k - 2) {
-            change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&-(parts(basis).0 * apart));
+        for (j, of_model) in centred_order(model).iter().enumerate().take(k - 2) {
+            let by_rate = parts(&model.basis()[*of_model]).0 * apart;
+            change.fixed_view_mut::<2, 1>(2 * k - 2, k + j).copy_from(&-by_rate);
         }
         change
     }
@@ -150,7 +151,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             covariance += apart * reach_of(probability) + beside;
         }
         if purpose == Purpose::Statement {
-            let rates = parts(&self.model.generator(&mean.as_slice()[k..2 * k])).0;
+            let rates = parts(&centred_generator(self.model, &mean.as_slice()[k..2 * k])).0;
             self.common.add_to(&mut covariance, &self.reference, (measured, accelerated), &rates)?;
         }
         self.about_origin(&mean, &covariance)

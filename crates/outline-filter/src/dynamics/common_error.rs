@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
 
 use crate::prediction::{PoseMatrix, moved_covariance};
 
-use super::centred::{CentredMatrix, CentredPose, LARGEST, as_map};
+use super::centred::{CentredMatrix, CentredPose, LARGEST, centred_order};
 #[cfg(feature = "serde")]
 use freeform_estimate::StateFormat;
 
@@ -19,8 +19,8 @@ pub(super) struct CommonError {
     model: MotionModel,
     /// About the centroid, when the hypotheses began.
     covariance: CentredMatrix,
-    /// Linear part of the pose then.
-    linear: Matrix2<f64>,
+    /// The pose then, with the centroid for origin.
+    local: Matrix3<f64>,
     /// Motion of the body frame by which the outline as a whole has moved since then.
     shift: SVector<f64, MAX_PARAMETERS>,
 }
@@ -37,7 +37,7 @@ impl CommonError {
         let k = model.parameter_count();
         let added = |i: usize, j: usize| covariance[(i, j)] - given_outline[(i, j)];
         let covariance = CentredMatrix::from_fn(|i, j| if i < k && j < k { added(i, j) } else { 0.0 });
-        Self { model, covariance, linear: reference.linear(), shift: SVector::zeros() }
+        Self { model, covariance, local: reference.local(model), shift: SVector::zeros() }
     }
 
     /// Whether a deviation of the centroid is beyond a limit, in RMS radii. A turn may be known as little and nothing be wrong.
@@ -48,9 +48,10 @@ impl CommonError {
 
     /// Its covariance about the centroid in a pose.
     pub(super) fn covariance_in(&self, pose: &CentredPose) -> Option<CentredMatrix> {
-        let map = as_map(&(pose.linear() * self.linear.try_inverse()?));
+        let map = pose.local(self.model) * self.local.try_inverse()?;
         let (change, k) = (self.model.adjoint(&map, &map.try_inverse()?), self.model.parameter_count());
-        let change = CentredMatrix::from_fn(|i, j| if i < k && j < k { change[i][j] } else { 0.0 });
+        let order = centred_order(self.model);
+        let change = CentredMatrix::from_fn(|i, j| if i < k && j < k { change[order[i]][order[j]] } else { 0.0 });
         let turned = change * self.covariance * change.transpose();
         turned.iter().all(|entry| entry.is_finite()).then_some(turned)
     }
@@ -104,9 +105,9 @@ impl CommonError {
 
     #[cfg(feature = "serde")]
     pub(super) fn is_valid(&self, model: MotionModel) -> bool {
-        let numbers = || self.covariance.iter().chain(&self.linear).chain(&self.shift);
+        let numbers = || self.covariance.iter().chain(&self.local).chain(&self.shift);
         let is_in_bounds = numbers().all(|entry| entry.abs() <= StateFormat::LARGEST_NUMBER);
-        self.model == model && is_in_bounds && self.linear.try_inverse().is_some()
+        self.model == model && is_in_bounds && self.local.try_inverse().is_some()
     }
 }
 

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{belief::StateMatrix, map::NullDirection, prediction::PoseMatrix, update::PoseMeasurement};
 
-/// Hypotheses of how the motion goes on, for the models that have dynamics. Matrices have the size that a model needs: most of the work on
+/// Hypotheses of how the motion goes on, of any model. Matrices have the size that a model needs: most of the work on
 /// larger ones would be on zeros.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -18,6 +18,7 @@ pub(crate) enum DynamicsFilter {
     Rigid(InteractingHypotheses<9>),
     Similarity(InteractingHypotheses<12>),
     Affine(InteractingHypotheses<18>),
+    Projective(InteractingHypotheses<24>),
 }
 
 /// Calls a method of the hypotheses, whatever their size.
@@ -27,13 +28,14 @@ macro_rules! of_any_size {
             DynamicsFilter::Rigid($hypotheses) => $value,
             DynamicsFilter::Similarity($hypotheses) => $value,
             DynamicsFilter::Affine($hypotheses) => $value,
+            DynamicsFilter::Projective($hypotheses) => $value,
         }
     };
 }
 
 impl DynamicsFilter {
     /// Begins with what is believed of an object after a step of so many seconds, and the covariance of that if the outline is known. `None`
-    /// for models without dynamics of their own (projective), and numbers that do not allow it.
+    /// for numbers that do not allow it.
     /// The place is the object's centroid in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
@@ -52,7 +54,9 @@ impl DynamicsFilter {
             MotionModel::Affine => {
                 InteractingHypotheses::begin(model, setting, summary, place, seconds).map(Self::Affine)
             }
-            MotionModel::Projective => None,
+            MotionModel::Projective => {
+                InteractingHypotheses::begin(model, setting, summary, place, seconds).map(Self::Projective)
+            }
         }
     }
 

@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use crate::tuning::dynamics as tuning;
 
 use super::{
-    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carry, parts},
+    centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carry, centred_generator, parts},
     course::Course,
     step::{Step, turned_along},
     turned_chains::carry_turned_chains,
@@ -73,7 +73,7 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Rates of the motion, as a linear map.
     pub(super) fn rates(&self, model: MotionModel) -> Matrix2<f64> {
-        parts(&model.generator(&self.mean.as_slice()[Self::K..2 * Self::K])).0
+        parts(&centred_generator(model, &self.mean.as_slice()[Self::K..2 * Self::K])).0
     }
 
     /// Takes next to nothing to be known of the entries behind the motion, which depend on no others then; `share` of the variance is added.
@@ -97,10 +97,11 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Moves on by a step; whether the numbers allow it.
     pub(super) fn predict(&mut self, step: &Step<'_>) -> bool {
-        if step.model <= MotionModel::Similarity {
-            self.predict_commuting(step);
-        } else if !self.predict_any(step) {
-            return false;
+        match step.model {
+            MotionModel::Rigid | MotionModel::Similarity => self.predict_commuting(step),
+            MotionModel::Affine if self.predict_any(step) => {}
+            MotionModel::Projective if self.predict_in_perspective(step) => {}
+            MotionModel::Affine | MotionModel::Projective => return false,
         }
         // A sum is finite only if all of its members are.
         let mut sum: [f64; N] = self.mean.into();
@@ -110,7 +111,7 @@ impl<const N: usize> Hypothesis<N> {
         sum.iter().sum::<f64>().is_finite()
     }
 
-    /// The plain way, for all models; whether the numbers allow it. Where turns and growth commute there is
+    /// The plain way, for all models but projective motion; whether the numbers allow it. Where turns and growth commute there is
     /// [another](Self::predict_commuting).
     pub(super) fn predict_any(&mut self, step: &Step<'_>) -> bool {
         let (model, k, dt) = (step.model, Self::K, step.seconds);
@@ -248,6 +249,7 @@ impl<const N: usize> Hypothesis<N> {
         match Self::K {
             3 => self.update_sized::<3>(measurement),
             4 => self.update_sized::<4>(measurement),
+            6 => self.update_sized::<6>(measurement),
             _ => self.update_sized::<LARGEST>(measurement),
         }
     }
@@ -274,7 +276,7 @@ impl<const N: usize> Hypothesis<N> {
         self.mean[2 * k - 1] += carried.y;
         let carried = match self.course {
             Course::ConstantVelocity => carried,
-            _ => parts(&model.generator(&self.mean.as_slice()[2 * k..3 * k])).0 * apart,
+            _ => parts(&centred_generator(model, &self.mean.as_slice()[2 * k..3 * k])).0 * apart,
         };
         self.mean[3 * k - 2] += carried.x;
         self.mean[3 * k - 1] += carried.y;

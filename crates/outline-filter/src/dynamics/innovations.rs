@@ -213,7 +213,7 @@ mod tests {
     use rand_distr::{Distribution as _, StandardNormal};
 
     use super::*;
-    use crate::dynamics::centred::CentredVector;
+    use nalgebra::SVector;
 
     /// Factors for autoregressive series of unit variance, over many runs: their root mean square.
     fn factor(correlation: f64, frames: usize) -> f64 {
@@ -222,11 +222,11 @@ mod tests {
         let runs = 200;
         let mut sum = 0.0;
         for _ in 0..runs {
-            let mut series = InnovationSeries::<6>::default();
-            let mut x = CentredVector::from_fn(|_, _| normal());
+            let mut series = InnovationSeries::<3>::default();
+            let mut x = SVector::<f64, 3>::from_fn(|_, _| normal());
             for _ in 0..frames {
                 x = correlation * x
-                    + (1.0 - correlation * correlation).sqrt() * CentredVector::from_fn(|_, _| normal());
+                    + (1.0 - correlation * correlation).sqrt() * SVector::<f64, 3>::from_fn(|_, _| normal());
                 series.add(&x, 3);
             }
             sum += series.spread(3)[0].powi(2);

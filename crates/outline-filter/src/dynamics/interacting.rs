@@ -10,6 +10,7 @@ use super::{
     hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
     mixing::mix,
+    perspective::is_beyond_linear,
     setting::{Dynamics, DynamicsWeights},
     steady_change::SteadyChange,
     step::Step,
@@ -54,8 +55,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
-    /// Begins with what is believed of an object after a step of so many seconds. `None` for models without dynamics of their own
-    /// (projective), numbers that do not allow it, and where the outline does not tell the place yet.
+    /// Begins with what is believed of an object after a step of so many seconds. `None` for numbers that do not allow it,
+    /// where the outline does not tell the place yet, and where projective motion is not shown as a whole.
     /// The place is the object's centroid in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
@@ -65,7 +66,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         seconds: f64,
     ) -> Option<Self> {
         let k = model.parameter_count();
-        if 3 * k != N || seconds <= 0.0 {
+        if 3 * k != N || seconds <= 0.0 || is_beyond_linear(model, null) {
             return None;
         }
         let reference = CentredPose { pose: summary.pose, centroid };
@@ -155,6 +156,9 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// Moves all hypotheses on by a step, after mixing their states; `pose` is where the object is predicted otherwise.
     /// Whether the numbers allow it.
     pub(crate) fn predict(&mut self, pose: &CentredPose, seconds: f64, null: &[NullDirection]) -> bool {
+        if is_beyond_linear(self.model, null) {
+            return false;
+        }
         self.reckon_with_change(seconds);
         let moved = CentredPose { pose: self.reference.pose, centroid: pose.centroid };
         let (model, reference) = (self.model, self.reference);

@@ -3,7 +3,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{SMatrix, SVector};
 
 use super::{
-    centred::{CentredVector, parts},
+    centred::{CentredVector, centred_generator, parts},
     course::Course,
     hypothesis::Hypothesis,
 };
@@ -228,7 +228,7 @@ impl Accelerations {
         match source.course {
             // Along an arc the velocity of the centroid turns all the time.
             Course::ConstantGenerator | Course::Shaken { .. } => {
-                let (a, v) = parts(&model.generator(&source.mean.as_slice()[k..2 * k]));
+                let (a, v) = parts(&centred_generator(model, &source.mean.as_slice()[k..2 * k]));
                 mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(a * v));
             }
             Course::ConstantVelocity => {

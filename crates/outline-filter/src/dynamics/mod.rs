@@ -15,13 +15,14 @@ mod hypothesis;
 mod innovations;
 mod interacting;
 mod mixing;
+mod perspective;
 mod setting;
 mod steady_change;
 mod step;
 mod turned_chains;
 mod wrong_family;
 
-pub(crate) use centred::{CentredDeviations, CentredPose, Summary};
+pub(crate) use centred::{CentredDeviations, CentredPose, Summary, centred_order};
 pub(crate) use combination::Purpose;
 pub(crate) use dynamics_filter::DynamicsFilter;
 pub(crate) use family::{FamilyTests, UnmodelledEstimate};

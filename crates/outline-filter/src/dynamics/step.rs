@@ -1,6 +1,6 @@
 //! A step in time, as all hypotheses of dynamics take it.
 use freeform_riccati::MotionModel;
-use nalgebra::{Matrix2, SMatrix, Vector2};
+use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2};
 
 use super::centred::{CentredPose, CentredVector, as_map};
 
@@ -11,8 +11,10 @@ pub(super) struct Step<'a> {
     pub(super) seconds: f64,
     /// Linear part of the pose before, with that of the pose after it taken off.
     pub(super) turned: Matrix2<f64>,
-    /// Its logarithm, as rates.
+    /// Its logarithm, as rates; none for projective motion.
     pub(super) turned_by: CentredVector,
+    /// As `turned`, with the perspective of both poses, for projective motion.
+    pub(super) local: Matrix3<f64>,
     /// The centroid before the step, as seen from the one after it.
     pub(super) centre: Vector2<f64>,
     /// Variance of a pose as one frame tells it, of every parameter.
@@ -29,8 +31,13 @@ impl<'a> Step<'a> {
         pose_variance: &'a CentredVector,
     ) -> Option<Self> {
         let turned = from.linear() * to.linear().try_inverse()?;
-        let by = model.motion_between(&as_map(&turned), 1.0)?;
-        let turned_by = CentredVector::from_fn(|j, _| by[j]);
+        let (mut turned_by, mut local) = (CentredVector::zeros(), Matrix3::identity());
+        if model == MotionModel::Projective {
+            local = from.local(model) * to.local(model).try_inverse()?;
+        } else {
+            let by = model.motion_between(&as_map(&turned), 1.0)?;
+            turned_by = CentredVector::from_fn(|j, _| by[j]);
+        }
         let by_change = [
             (0, 0, 1.0 / 20.0),
             (0, 1, 1.0 / (8.0 * seconds)),
@@ -40,7 +47,7 @@ impl<'a> Step<'a> {
             (2, 2, 1.0 / seconds.powi(4)),
         ];
         let centre = from.centre() - to.centre();
-        Some(Self { model, seconds, turned, turned_by, centre, pose_variance, by_change })
+        Some(Self { model, seconds, turned, turned_by, local, centre, pose_variance, by_change })
     }
 
     /// Propagation of the N = 3 k errors of a hypothesis, as far as it is that of the pose by itself, where the rates stay and its centroid

@@ -298,8 +298,8 @@ impl MotionFilter {
         Some(outcome)
     }
 
-    /// Probabilities of the hypotheses of dynamics; `None` where they are not told: before the third frame, with process noise, and for
-    /// projective motion.
+    /// Probabilities of the hypotheses of dynamics; `None` where they are not told: before the third frame, with process noise, and
+    /// for projective motion that the outline does not show as a whole.
     #[must_use]
     pub fn dynamics(&self) -> Option<DynamicsWeights> {
         self.history.dynamics.as_ref().map(DynamicsFilter::weights)

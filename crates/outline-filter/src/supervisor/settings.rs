@@ -16,7 +16,7 @@ pub struct FilterSettings {
     /// if `false`, the motion is assumed constant.
     pub adaptive: bool,
     /// What is assumed of how the motion goes on from frame to frame; [`Dynamics::Auto`] by default. Without effect with process noise, or if
-    /// `adaptive` is `false`, and on projective motion.
+    /// `adaptive` is `false`.
     pub dynamics: Dynamics,
     /// Systematic uncertainty of the outlines, image lengths: how far all of a side may lie off in every frame, such as by a shadow or by
     /// a threshold, not negative; 0 by default. It widens what is stated, and enters nothing else.

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point2, SVector, Vector2};
 use super::Track;
 use crate::{
     belief::{Belief, StateMatrix, StateVector, scaled_inverse},
-    dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate},
+    dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate, centred_order},
     map::{CLOCKWISE, NullDirection},
     tuning::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
@@ -75,7 +75,7 @@ impl Track {
             levers.iter_mut().zip(along).for_each(|(sum, v)| *sum += v * v / cells.len() as f64);
         }
         let pose = CentredDeviations::from_fn(|j, _| {
-            let lever = if j < k { levers[j].sqrt() } else { 0.0 };
+            let lever = if j < k { levers[centred_order(model)[j]].sqrt() } else { 0.0 };
             // Half of an error of one side is a shift; what an outline hardly shows may be anything.
             if lever > 0.0 { (0.5 * size / lever).min(1.0) } else { 0.0 }
         });
@@ -233,11 +233,23 @@ impl Track {
 
     /// Velocity of the object's centroid in a state of this track; `None` where it is not worth stating.
     pub(crate) fn velocity_of_centroid(&self, state: &MotionState) -> Option<PointVelocity> {
+        if self.hides_perspective() {
+            return None;
+        }
         let velocity = state.velocity_of(&(self.reference.origin + self.reference.radius * self.map.centroid().coords));
         let span = self.belief.memory.shortest(self.belief.parameter_count());
         let unit = self.reference.time_unit;
         let worth = |deviation: &f64| self.is_worth(*deviation * unit, span, self.reference.radius);
         velocity.standard_deviations().iter().all(worth).then_some(velocity)
+    }
+
+    /// Whether the outline does not show some of the perspective, as an ellipse does not: nor does it show which point of the body is where then.
+    fn hides_perspective(&self) -> bool {
+        let hidden = self.hidden_rates(TurnOfPose::AsTheOutlineShows);
+        hidden
+            .iter()
+            .zip(self.model().parameter_kinds())
+            .any(|(hidden, kind)| *hidden && *kind == ParameterKind::Perspective)
     }
 
     /// Whether another track of the same object has come to the same pose and motion: their difference, normalised, is shorter than `near`, and
@@ -269,7 +281,8 @@ impl Track {
         is_worth(deviation, span.max(memory.span.min(STEPS_KNOWN * memory.step)), displacement)
     }
 
-    /// Rates that take part in a motion about the centroid which the outline does not show, or in a turn that is ambiguous.
+    /// Rates, and entries of the perspective, that take part in a motion about the centroid which the outline does not show, or in a turn that is
+    /// ambiguous.
     fn hidden_rates(&self, turn: TurnOfPose) -> [bool; MAX_PARAMETERS] {
         let (model, at) = (self.belief.model, self.centred_pose());
         let (change, kinds) = (at.about_centroid(model), model.parameter_kinds());
@@ -280,11 +293,14 @@ impl Track {
                 *hidden = *kind == ParameterKind::Rate && rate != 0.0;
             });
         }
+        let order = centred_order(model);
         for null in self.map.null_directions(model, &self.belief.pose) {
             let centred = change * SVector::<f64, MAX_PARAMETERS>::from(null.direction);
             let least = TAKES_PART * centred.amax();
-            let takes_part = |j: usize| kinds.get(j) == Some(&ParameterKind::Rate) && centred[j].abs() > least;
-            hidden.iter_mut().enumerate().for_each(|(j, hidden)| *hidden |= takes_part(j));
+            for (entry, j) in centred.iter().zip(order) {
+                let is_velocity = kinds.get(*j).is_none_or(|kind| *kind == ParameterKind::Velocity);
+                hidden[*j] |= !is_velocity && entry.abs() > least;
+            }
         }
         hidden
     }

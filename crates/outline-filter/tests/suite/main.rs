@@ -20,6 +20,7 @@ mod moving_poses;
 mod near_symmetry;
 mod plane;
 mod point_deviations;
+mod projective_poses;
 mod recorded;
 mod recording;
 #[cfg(feature = "serde")]
