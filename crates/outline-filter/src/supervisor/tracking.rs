@@ -129,7 +129,7 @@ pub(super) fn advance(
     let gates = Gates::of_new_frame(settings, track, history.widening(), (steady, turns));
     let outcome = outcome_with_changes(settings, (track, frame), history, &gates, (turns, comparison));
     history.record(&outcome, seconds);
-    if matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. }))
+    if matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. } | Rejection::NotFound))
         && let Some(elsewhere) = displacement_nearby(track, frame)
     {
         history.record_apart(&elsewhere);

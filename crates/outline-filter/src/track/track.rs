@@ -143,7 +143,11 @@ impl Track {
         let by_pose = innovation.degrees_of_freedom;
         let taken = TakenOff { by_pose, left_by_offsets: left_by_offsets(&self.belief, frame) };
         let correlation = correlation_of(frame, known_noise, taken);
-        let verdict = self.verdict(gate, &measurement);
+        let unsettled = self.noise.sigma.max(tuning::UNSETTLED * self.map.spacing());
+        let verdict = match proposal.last_step > unsettled {
+            true => Err(Rejection::NotFound),
+            false => self.verdict(gate, &measurement),
+        };
         let verdict = self.verdict_if_grown((gate, &measurement), (frame, &proposal.pose), verdict);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));

@@ -58,7 +58,7 @@ pub enum Rejection {
     /// The frame repeats the one before it to the last digit, and the object is not known to be at rest: a picture that was stored twice shows nothing of
     /// the time that it is given with. After three in a row the object rests.
     Repeated,
-    /// No pose was found, or none was looked for, as too many frames have been searched in vain.
+    /// No pose was found, or none that linearisations settle in, or none was looked for, as too many frames have been searched in vain.
     NotFound,
 }
 

@@ -29,6 +29,8 @@ pub(crate) struct Proposal {
     pub(super) right: StateVector,
     /// Linearisations taken.
     pub(crate) iterations: usize,
+    /// How far the last of them has moved points at most, normalised.
+    pub(crate) last_step: f64,
 }
 
 impl View<'_> {
@@ -51,6 +53,7 @@ impl View<'_> {
             marginal: belief.marginal,
             right: StateVector::zeros(),
             iterations: 0,
+            last_step: 0.0,
         };
         let mut null = null.to_vec();
         let mut work = Arrowhead::new(k);
@@ -81,7 +84,7 @@ impl View<'_> {
                 return Err(proposal.iterations);
             }
             let iterations = proposal.iterations + 1;
-            proposal = Proposal { state: next, pose, added, marginal, right, iterations };
+            proposal = Proposal { state: next, pose, added, marginal, right, iterations, last_step: step };
             settled = step < tuning::SETTLED * self.noise.sigma;
         }
         Ok(proposal)
@@ -193,6 +196,7 @@ mod tests {
                 marginal,
                 right,
                 iterations: 1,
+                last_step: 0.0,
             };
             let (motion, offsets) = (belief.motion, belief.offsets.clone());
             let (mut noise, mut shape) = (NoiseModel::new(1.0), ShapeNoise::default());
