@@ -1,5 +1,5 @@
 //! Coordinates about the object's centroid: the rates, and the velocity of the centroid.
-use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterVector, map_point};
+use freeform_riccati::{MAX_PARAMETERS, MotionModel, ParameterKind, ParameterVector, map_point};
 use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use crate::{
@@ -72,6 +72,13 @@ pub(crate) fn centred_order(model: MotionModel) -> &'static [usize; MAX_PARAMETE
         MotionModel::Rigid | MotionModel::Similarity | MotionModel::Affine => &[0, 1, 2, 3, 4, 5, 6, 7],
         MotionModel::Projective => &[0, 1, 2, 3, 6, 7, 4, 5],
     }
+}
+
+/// Where the velocity of the centroid is in [that order](centred_order).
+pub(crate) fn centred_velocity(model: MotionModel) -> impl Iterator<Item = usize> {
+    let kinds = model.parameter_kinds();
+    let order = centred_order(model).iter().enumerate();
+    order.filter(|(_, j)| kinds.get(**j) == Some(&ParameterKind::Velocity)).map(|(i, _)| i)
 }
 
 /// The generator about the centroid of parameters in the order of centred coordinates.
@@ -233,6 +240,19 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn a_shift_has_velocities_alone_in_centred_coordinates_of_every_model() {
+        let at = CentredPose { pose: moved_by(0.3, -0.2), centroid: Point2::new(0.1, 0.4) };
+        let (mut shift, velocity) = (Matrix3::zeros(), [0.7, -1.1]);
+        (shift[(0, 2)], shift[(1, 2)]) = (velocity[0], velocity[1]);
+        for model in MotionModel::ALL {
+            let centred = at.about_centroid(model) * CentredVector::from(model.parameters_of(&shift));
+            let mut expected = CentredVector::zeros();
+            centred_velocity(model).zip(velocity).for_each(|(i, entry)| expected[i] = entry);
+            assert!((centred - expected).amax() < 1e-12, "{model:?}: {centred}");
+        }
+    }
 
     proptest! {
         #[test]

@@ -55,8 +55,8 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
 }
 
 impl<const N: usize> InteractingHypotheses<N> {
-    /// Begins with what is believed of an object after a step of so many seconds. `None` for numbers that do not allow it,
-    /// where the outline does not tell the place yet, and where projective motion is not shown as a whole.
+    /// Begins with what is believed of an object after a step of so many seconds. `None` for numbers that do not allow it, and
+    /// where the outline does not tell the place yet. Null directions must not be [beyond what is linear](is_beyond_linear).
     /// The place is the object's centroid in the body frame, with the null directions of its pose.
     pub(crate) fn begin(
         model: MotionModel,
@@ -66,7 +66,7 @@ impl<const N: usize> InteractingHypotheses<N> {
         seconds: f64,
     ) -> Option<Self> {
         let k = model.parameter_count();
-        if 3 * k != N || seconds <= 0.0 || is_beyond_linear(model, null) {
+        if 3 * k != N || seconds <= 0.0 {
             return None;
         }
         let reference = CentredPose { pose: summary.pose, centroid };

@@ -22,9 +22,10 @@ mod step;
 mod turned_chains;
 mod wrong_family;
 
-pub(crate) use centred::{CentredDeviations, CentredPose, Summary, centred_order};
+pub(crate) use centred::{CentredDeviations, CentredPose, Summary, centred_order, centred_velocity};
 pub(crate) use combination::Purpose;
 pub(crate) use dynamics_filter::DynamicsFilter;
 pub(crate) use family::{FamilyTests, UnmodelledEstimate};
+pub(crate) use perspective::is_beyond_linear;
 pub use setting::{Dynamics, DynamicsWeights, UnknownDynamics};
 pub use wrong_family::WrongFamily;

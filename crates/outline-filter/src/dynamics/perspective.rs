@@ -22,7 +22,7 @@ const RATES: usize = MAX_PARAMETERS - 2;
 
 /// Whether directions that the outline does not show are no directions but curves in the pose: of an ellipse under projective motion they bend with
 /// the perspective, and hypotheses that are held along straight lines lead astray.
-pub(super) fn is_beyond_linear(model: MotionModel, null: &[NullDirection]) -> bool {
+pub(crate) fn is_beyond_linear(model: MotionModel, null: &[NullDirection]) -> bool {
     model == MotionModel::Projective && !null.is_empty()
 }
 

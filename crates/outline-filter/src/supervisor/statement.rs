@@ -1,6 +1,6 @@
 //! What is stated of the motion, with how well it is known, or why nothing is.
 use freeform_estimate::{MotionEstimate, MotionState, PointVelocity};
-use freeform_riccati::{MAX_PARAMETERS, ParameterKind};
+use freeform_riccati::MAX_PARAMETERS;
 use nalgebra::DMatrix;
 
 use super::{
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     belief::StateMatrix,
-    dynamics::{CentredDeviations, Purpose, WrongFamily},
+    dynamics::{CentredDeviations, Purpose, WrongFamily, centred_velocity},
     track::{TurnOfPose, TurnTold},
     tuning::statement as tuning,
 };
@@ -69,8 +69,7 @@ impl MotionFilter {
             let [mut of_pose, mut of_motion] = track.systematic(displacement, track.span_of_motion(false));
             if unmodelled.family.is_some() {
                 let [of_place, of_velocity] = track.shift_by_light(&unmodelled);
-                let kinds = model.parameter_kinds().iter().enumerate();
-                for (i, _) in kinds.filter(|(_, kind)| **kind == ParameterKind::Velocity) {
+                for i in centred_velocity(model) {
                     of_pose[i] = of_pose[i].hypot(of_place);
                     of_motion[i] = of_motion[i].hypot(of_velocity);
                 }

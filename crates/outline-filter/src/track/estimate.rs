@@ -8,7 +8,9 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point2, SVector, Vector2};
 use super::Track;
 use crate::{
     belief::{Belief, StateMatrix, StateVector, scaled_inverse},
-    dynamics::{CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate, centred_order},
+    dynamics::{
+        CentredDeviations, Dynamics, DynamicsFilter, Summary, UnmodelledEstimate, centred_order, is_beyond_linear,
+    },
     map::{CLOCKWISE, NullDirection},
     tuning::{
         null_space::{HANGS_ON, TAKES_PART, TURNS_WITH},
@@ -119,9 +121,13 @@ impl Track {
         Some([held(&belief.marginal)?, held(&belief.information.with_outline_given())?])
     }
 
-    /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known.
+    /// Hypotheses of dynamics that begin with what is believed now. What the outline does not show is taken to be none, and known; `None` where
+    /// that is not possible, as projective motion is not shown as a whole, and for numbers that do not allow it.
     pub(crate) fn begun_dynamics(&self, setting: Dynamics) -> Option<DynamicsFilter> {
         let (belief, null) = (&self.belief, self.null_directions());
+        if is_beyond_linear(belief.model, &null) {
+            return None;
+        }
         let [mut summary, Summary { covariance: given_outline, .. }] = self.held_summaries(&null)?;
         self.add_kept_error(&mut summary.covariance, &summary.pose);
         let place = (self.map.centroid(), null.as_slice());
