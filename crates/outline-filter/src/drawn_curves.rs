@@ -1,6 +1,6 @@
 //! Closed curves that unit tests draw about the origin, by the angle.
 use freeform_curve_fit::Outline;
-use nalgebra::Point2;
+use nalgebra::{Point2, Rotation2};
 
 /// A lobe that recurs so many times in a round, with the amplitudes of its cosine and its sine.
 pub(crate) type Lobe = (f64, [f64; 2]);
@@ -25,4 +25,16 @@ pub(crate) fn all_around(count: u32, point: impl FnMut(f64) -> Point2<f64>) -> V
 /// The outline through those.
 pub(crate) fn outline(count: u32, point: impl FnMut(f64) -> Point2<f64>) -> Outline {
     Outline::closed(all_around(count, point)).expect("an outline")
+}
+
+/// Points on an outline, elsewhere on it from frame to frame, turned by 40 degrees in each.
+pub(crate) fn turning(frame: u32, count: u32, radius: impl Fn(f64) -> f64) -> Outline {
+    let turn = Rotation2::new(40.0_f64.to_radians() * f64::from(frame));
+    let point = |i: u32| {
+        let part = (0.618_034 * f64::from(frame)).fract();
+        let t = std::f64::consts::TAU * (f64::from(i) + part) / f64::from(count);
+        let noise = 0.004 * (12_345.678 * (f64::from(i) + 1.0) * (f64::from(frame) + 1.0).sqrt()).sin();
+        turn * Point2::new(t.cos(), t.sin()) * (radius(t) + noise)
+    };
+    Outline::closed((0..count).map(point).collect()).expect("an outline")
 }

@@ -78,12 +78,16 @@ impl MotionFilter {
     /// Cuts the map anew from the first frames, after so many cuts; where there are rivals, in the frame after this.
     fn draft(&mut self, cuts: usize) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
+        let hypotheses = 1 + self.turn_hypotheses.followed().count();
+        if hypotheses > 1 && kept_once_measured(self.window.len(), hypotheses) > tuning::MOST_KEPT {
+            return Remapping::Idle;
+        }
         let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
         let turn = self.turn_hypotheses.present_turn();
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
         let placed = Placed { runs, turn, cuts };
-        if self.turn_hypotheses.followed().next().is_none() {
+        if hypotheses == 1 {
             return self.draft_along(placed);
         }
         Remapping::Placed(Box::new(placed))
@@ -150,7 +154,7 @@ impl MotionFilter {
 
     /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
     /// one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that it is cut again unless
-    /// the pose has settled. A track that has gone astray among the frames kept, and explains the last of them worse than where it was, is none to
+    /// the pose has settled, or more frames are kept than rivals soon catch up with. A track that has gone astray among the frames kept, and explains the last of them worse than where it was, is none to
     /// be exchanged for.
     fn exchange(&mut self, Measured { begun, mut present, mut rivals }: Measured) -> Remapping {
         let Some((track, last)) = self.track.as_ref().zip(self.window.last()) else { return Remapping::Idle };
@@ -176,7 +180,9 @@ impl MotionFilter {
         }
         self.window.set_poses(present.poses);
         let cuts = begun.cuts;
-        if has_settled || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
+        // Each cut with rivals is from a multiple of the frames of the one before, as more are kept while these are measured.
+        let are_many = self.window.len() > tuning::OCCASIONS[1] && self.turn_hypotheses.followed().next().is_some();
+        if has_settled || are_many || cuts >= tuning::MOST_CUTS { Remapping::Idle } else { Remapping::Again { cuts } }
     }
 
     /// Begins anew, in the same body frame, with a frame that shows the turn at last: the earlier ones have turned by what nobody
@@ -251,13 +257,18 @@ fn frames_at_once(hypotheses: usize) -> usize {
     tuning::MEASURED_AT_ONCE.saturating_sub(hypotheses).max(hypotheses + tuning::FRAMES_OF_BEGINNING)
 }
 
+/// Frames that will be kept once so many hypotheses have caught up on those kept now, as one more comes in each step.
+fn kept_once_measured(frames: usize, hypotheses: usize) -> usize {
+    let caught_up = frames_at_once(hypotheses) - hypotheses;
+    frames + (frames * hypotheses).div_ceil(caught_up)
+}
+
 #[cfg(test)]
 mod tests {
     use freeform_riccati::MotionModel;
-    use nalgebra::{Point2, Rotation2};
 
     use super::*;
-    use crate::drawn_curves::{outline, polar};
+    use crate::drawn_curves::{outline, polar, turning};
 
     #[test]
     fn frames_are_not_kept_for_ever_where_the_turn_stays_unknown() {
@@ -269,18 +280,6 @@ mod tests {
             assert!(filter.window.len() <= tuning::OCCASIONS[2], "frame {frame}");
         }
         assert!(filter.track.as_ref().is_some_and(Track::turn_is_unseen));
-    }
-
-    /// Points on an outline, elsewhere on it from frame to frame, turned by 40 degrees in each.
-    fn turning(frame: u32, count: u32, radius: impl Fn(f64) -> f64) -> Outline {
-        let turn = Rotation2::new(40.0_f64.to_radians() * f64::from(frame));
-        let point = |i: u32| {
-            let part = (0.618_034 * f64::from(frame)).fract();
-            let t = std::f64::consts::TAU * (f64::from(i) + part) / f64::from(count);
-            let noise = 0.004 * (12_345.678 * (f64::from(i) + 1.0) * (f64::from(frame) + 1.0).sqrt()).sin();
-            turn * Point2::new(t.cos(), t.sin()) * (radius(t) + noise)
-        };
-        Outline::closed((0..count).map(point).collect()).expect("an outline")
     }
 
     #[test]
@@ -322,10 +321,63 @@ mod tests {
     }
 
     #[test]
-    fn hypotheses_catch_up_on_new_cells_however_many_there_are() {
-        for hypotheses in 2..20 {
-            assert!(frames_at_once(hypotheses) > hypotheses, "{hypotheses}");
+    fn few_frames_are_kept_while_several_hypotheses_are_measured_on_new_cells() {
+        // With 40 points there are occasions up to the last, and each cut could be followed by another.
+        for (lobes, points, hypotheses, most) in [(4.0, 400, 4, 16), (8.0, 400, 5, 16), (4.0, 40, 4, 90)] {
+            let lobed = |t: f64| 1.0 + 0.2 * (lobes * t).cos();
+            let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+            let (mut kept, mut followed, mut cells) = (0, 0, Vec::new());
+            for frame in 0..100 {
+                filter.step(f64::from(frame) / 30.0, &turning(frame, points, lobed)).expect("increasing times");
+                kept = kept.max(filter.window.len());
+                followed = followed.max(1 + filter.turn_hypotheses.followed().count());
+                cells.extend(filter.track.as_ref().map(Track::cell_count));
+            }
+            assert_eq!(followed, hypotheses, "{lobes} lobes, {points} points");
+            assert!(kept <= most && filter.window.len() == 0, "{lobes} lobes, {points} points: {kept} frames");
+            assert!(cells.first() < cells.last(), "{lobes} lobes, {points} points, never cut anew: {cells:?}");
         }
-        assert_eq!(frames_at_once(2) + 2, tuning::MEASURED_AT_ONCE);
+    }
+
+    #[test]
+    fn no_map_is_cut_from_more_frames_than_rivals_catch_up_with_before_too_many_are_kept() {
+        // Four and eight rivals of the present track among them.
+        for hypotheses in 2..=9 {
+            let caught_up = |from: usize| {
+                let (mut kept, mut taken) = (from, 0);
+                while taken < hypotheses * kept {
+                    taken += frames_at_once(hypotheses);
+                    kept += 1;
+                }
+                kept
+            };
+            let cut = tuning::OCCASIONS.map(|frames| kept_once_measured(frames, hypotheses) <= tuning::MOST_KEPT);
+            assert_eq!(cut, [true, true, hypotheses < 4], "{hypotheses} hypotheses");
+            for frames in tuning::OCCASIONS {
+                // The frame of a step comes before its share of the others is taken: one more or less.
+                let kept = caught_up(frames).abs_diff(kept_once_measured(frames, hypotheses));
+                assert!(kept <= 1, "{hypotheses} hypotheses, {frames} frames");
+            }
+        }
+    }
+
+    #[test]
+    fn frames_are_not_kept_for_ever_where_rivals_never_catch_up() {
+        let lobed = |t: f64| 1.0 + 0.2 * (4.0 * t).cos();
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        for frame in 0..8 {
+            filter.step(f64::from(frame) / 30.0, &turning(frame, 100, lobed)).expect("increasing times");
+        }
+        let track = filter.track.clone().expect("a track");
+        let measured = filter.window.take_remapping();
+        assert!(matches!(measured, Remapping::Measured(_)));
+        filter.window.set_remapping(measured);
+        let most = (8..200).map(|frame| {
+            filter.window.keep(f64::from(frame) / 30.0, &turning(frame, 100, lobed), &track);
+            filter.window.end_unless_few(track.cell_count());
+            filter.window.len()
+        });
+        assert_eq!(most.max(), Some(tuning::MOST_KEPT));
+        assert_eq!(filter.window.len(), 0);
     }
 }

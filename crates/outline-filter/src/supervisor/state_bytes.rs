@@ -15,9 +15,10 @@ const VERSION: u32 = 19;
 const FORMAT: StateFormat = state_format(*b"filt", "filter");
 
 impl MotionFilter {
-    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points, before the object was found again also up to two outlines, and
-    /// while its map is cut anew the frames that it is cut from and up to twice as much. A filter [made from them](Self::from_bytes)
-    /// goes on as this one would, to the last bit. The first four bytes are the version of the format, little-endian.
+    /// Everything that the filter knows, as bytes: 50 to 100 kB for an outline of 400 points, for each rival of its turn up to as much again,
+    /// before the object was found again also up to two outlines, and while its map is cut anew the frames that it is cut from, at most 128, their
+    /// points once more or the track and its rivals on the new map. A filter [made from them](Self::from_bytes) goes on as this one would, to the
+    /// last bit. The first four bytes are the version of the format, little-endian.
     ///
     /// # Errors
     /// None for a filter; the encoder reports errors of its sink, and memory has none.
@@ -137,4 +138,60 @@ impl MotionFilter {
 #[must_use]
 pub const fn state_format(kind: [u8; 4], name: &'static str) -> StateFormat {
     StateFormat { version: VERSION, kind, name }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        drawn_curves::turning,
+        supervisor::{
+            settings::FilterSettings,
+            window::{Measured, Remapping},
+        },
+    };
+
+    /// A filter whose map is cut anew, of an outline of four lobes, while the hypotheses of its turn are measured on it.
+    fn measuring() -> MotionFilter {
+        let lobed = |t: f64| 1.0 + 0.2 * (4.0 * t).cos();
+        let mut filter = MotionFilter::new(FilterSettings::default()).expect("settings");
+        for frame in 0..8 {
+            filter.step(f64::from(frame) / 30.0, &turning(frame, 100, lobed)).expect("increasing times");
+        }
+        filter
+    }
+
+    /// What comes of saving it after some change of what is being measured.
+    fn restored_after(change: impl Fn(&mut Measured)) -> Result<MotionFilter, StateError> {
+        let mut filter = measuring();
+        let Remapping::Measured(mut measured) = filter.window.take_remapping() else { panic!("nothing is measured") };
+        change(&mut measured);
+        filter.window.set_remapping(Remapping::Measured(measured));
+        MotionFilter::from_bytes(&filter.to_bytes().expect("memory takes it"))
+    }
+
+    #[test]
+    fn hypotheses_that_have_taken_more_frames_than_are_kept_or_none_are_refused() {
+        assert!(restored_after(|_| ()).is_ok());
+        let refused = Some(StateError::Inconsistent { part: "first frames" });
+        let kept = measuring().window.len();
+        for frames in [0, kept + 1] {
+            let of_present = restored_after(|measured| measured.present.poses.resize(frames, Default::default()));
+            assert_eq!(of_present.err(), refused, "{frames} frames");
+            let of_rival = restored_after(|measured| {
+                let rival = measured.rivals.iter_mut().find_map(|(_, rival)| rival.as_mut()).expect("a rival");
+                rival.poses.resize(frames, Default::default());
+            });
+            assert_eq!(of_rival.err(), refused, "{frames} frames of a rival");
+        }
+        assert!(restored_after(|measured| measured.present.poses.resize(kept, Default::default())).is_ok());
+    }
+
+    #[test]
+    fn rivals_whose_turns_are_no_numbers_are_refused() {
+        for turn in [f64::NAN, f64::INFINITY] {
+            let restored = restored_after(|measured| measured.rivals[0].0 = turn);
+            assert_eq!(restored.err(), Some(StateError::Inconsistent { part: "first frames" }), "{turn}");
+        }
+    }
 }

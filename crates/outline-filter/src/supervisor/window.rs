@@ -100,8 +100,10 @@ impl Draft {
 
 #[cfg(feature = "serde")]
 impl Remapped {
-    fn restore(&mut self, settings: &FilterSettings, restore: impl Fn(&mut Track) -> bool) -> bool {
-        self.history.is_valid(settings)
+    /// Whether it can be gone on with, `kept` being the number of frames kept.
+    fn restore(&mut self, settings: &FilterSettings, kept: usize, restore: impl Fn(&mut Track) -> bool) -> bool {
+        (1..=kept).contains(&self.frames_taken())
+            && self.history.is_valid(settings)
             && self.poses.iter().flatten().all(|entry| entry.is_finite())
             && restore(&mut self.track)
     }
@@ -163,6 +165,11 @@ impl InitialisationWindow {
         tuning::OCCASIONS.contains(&self.frames.len())
     }
 
+    /// Number of frames kept.
+    pub(super) fn len(&self) -> usize {
+        self.frames.len()
+    }
+
     /// The first frame kept.
     pub(super) fn first(&self) -> Option<&Outline> {
         self.frames.first().map(|(_, outline)| outline)
@@ -192,14 +199,16 @@ impl InitialisationWindow {
         self.remapping = remapping;
     }
 
-    /// Forgets what is kept unless it is in use, or more frames would make a map of so many cells better.
+    /// Forgets what is kept unless it is in use, or more frames would make a map of so many cells better; whatever it is in use for, once there
+    /// are too many frames: rivals that have come meanwhile have all of them before them.
     pub(super) fn end_unless_few(&mut self, cells: usize) {
         let count = self.frames.len().max(1);
         let next = tuning::OCCASIONS.into_iter().find(|occasion| *occasion > count);
         let each = self.points / count;
         let would_be_plenty = count > 1 && next.is_none_or(|next| next * each > tuning::PLENTY);
         let one_is_plenty = each as f64 > tuning::PLENTY_PER_CELL * cells as f64;
-        if matches!(self.remapping, Remapping::Idle) && (would_be_plenty || one_is_plenty) {
+        let is_idle = matches!(self.remapping, Remapping::Idle);
+        if is_idle && (would_be_plenty || one_is_plenty) || self.frames.len() > tuning::MOST_KEPT {
             self.end();
         }
     }
@@ -241,9 +250,13 @@ impl InitialisationWindow {
             Remapping::Drafted(draft) => draft.restore(|track| restore(track, SavedCells::Drafted)),
             Remapping::Measured(measured) => {
                 let Measured { begun, present, rivals } = &mut **measured;
+                let turns_are_finite = rivals.iter().all(|(turn, _)| turn.is_finite());
                 let rivals = rivals.iter_mut().filter_map(|(_, rival)| rival.as_mut());
-                begun.restore(of_measured)
-                    && std::iter::once(present).chain(rivals).all(|remapped| remapped.restore(settings, of_measured))
+                let kept = self.frames.len();
+                let mut all = std::iter::once(present).chain(rivals);
+                turns_are_finite
+                    && begun.restore(of_measured)
+                    && all.all(|remapped| remapped.restore(settings, kept, of_measured))
             }
             Remapping::Again { cuts } => *cuts <= tuning::MOST_CUTS,
         };
@@ -258,13 +271,5 @@ impl InitialisationWindow {
             && increases
             && self.frames.iter().all(|(time, _)| time.is_finite())
             && self.poses.iter().flatten().all(|entry| entry.is_finite())
-    }
-}
-
-#[cfg(test)]
-impl InitialisationWindow {
-    /// Number of frames kept.
-    pub(super) fn len(&self) -> usize {
-        self.frames.len()
     }
 }

@@ -14,6 +14,9 @@ pub(crate) mod remapping {
     /// ...and as many as measuring new cells for the first time takes the time of. With more rivals each step takes so many more than there
     /// are hypotheses, so that they catch up.
     pub(crate) const FRAMES_OF_BEGINNING: usize = 2;
+    /// Frames that are kept at most, twice the last occasion, for rivals to be measured on. While they are, more frames come: with four hypotheses
+    /// or more, which take few more frames in a step than come, no map is cut from so many that these would be exceeded.
+    pub(crate) const MOST_KEPT: usize = 2 * OCCASIONS[2];
     /// Points of several frames beyond which more of them would not make cells finer.
     pub(crate) const PLENTY: usize = 3200;
     /// Points nearer than so many spacings are one.
@@ -44,8 +47,8 @@ pub(crate) mod registration {
     pub(crate) const PARTS: usize = 8;
     /// ...and from one part to the next it is so many turns: after three frames no turn is further than 22.5 degrees from a start.
     pub(crate) const TO_NEXT_PART: usize = 3;
-    /// While an object is lost, frames that show something else make more noise tolerated. Frames that are hopeless without that are searched from all
-    /// turns once in so many; it has no factor in common with [`PARTS`], so that this happens to every part.
+    /// While an object is lost, frames that show something else make more noise tolerated. Frames that are hopeless without that are searched from
+    /// all turns once in so many; it has no factor in common with [`PARTS`], so that this happens to every part.
     pub(crate) const NOISY_SEARCHED: usize = 3;
     /// Points that the related points of an outline are found by: they need to tell a turn to some degrees.
     pub(crate) const POINTS_OF_LANDMARKS: usize = 100;
@@ -86,8 +89,8 @@ pub(crate) mod registration {
     pub(crate) const FAR_WORSE: f64 = 2.0;
     /// As [`FAR_WORSE`], of scores with few points, which are known to a tenth, before a pose is refined with all of them.
     pub(crate) const FAR_WORSE_BY_FEW: f64 = 3.0;
-    /// If few points in the best pose found deviate by more than so many times the most noise that is tolerated, no pose explains the frame: the median
-    /// of eighty is known to a seventh.
+    /// If few points in the best pose found deviate by more than so many times the most noise that is tolerated, no pose explains the frame: the
+    /// median of eighty is known to a seventh.
     pub(crate) const HOPELESS: f64 = 1.7;
     /// If all searches leave so many times that deviation after their first steps, only the best goes on, to confirm it: by the rest of their steps
     /// searches come nearer by less.
@@ -113,8 +116,8 @@ pub(crate) mod registration {
     /// reach ([`TUKEY`] times [`WIDEST_REFINED`]). Few points hardly tell how far such an outline has gone along itself, and no refinement
     /// brings together what is farther apart.
     pub(crate) const SAME_BY_FEW: f64 = TUKEY * WIDEST_REFINED;
-    /// Score in that of the best up to which poses explain a frame nearly alike, beside a mark: a tooth that is missing has a tenth of the points, which
-    /// count for four times as much.
+    /// Score in that of the best up to which poses explain a frame nearly alike, beside a mark: a tooth that is missing has a tenth of the points,
+    /// which count for four times as much.
     pub(crate) const NEARLY_ALIKE: f64 = 1.5;
     /// Turns of poses that were found lie so near to multiples of a part of a circle, rad, where an outline nearly looks the same after it: few
     /// points tell a turn to a hundredth, and the farthest off of several is off by about two of that.
@@ -173,8 +176,8 @@ pub(crate) mod turn_hypotheses {
     pub(crate) const SURELY_SMALLER: f64 = 2.0;
     /// Frames after which hypotheses that are surely larger turns are no longer followed: a symmetric outline will not tell them apart.
     pub(crate) const FOLLOWED: usize = 8;
-    /// Deviations by which the points of so many frames must be better for another of the turns that had looked the same: cells err alike in all of the
-    /// first frames, so that those of a square differ by up to six.
+    /// Deviations by which the points of so many frames must be better for another of the turns that had looked the same: cells err alike in all of
+    /// the first frames, so that those of a square differ by up to six.
     pub(crate) const NOT_THE_SAME: f64 = 10.0;
     /// Deviations by which poses or motions of hypotheses must differ to be in doubt.
     pub(crate) const DIFFERENT: f64 = 2.0;
