@@ -138,9 +138,9 @@ impl PyMotionFilter {
     /// time : float
     ///     Seconds, after the time of the frame before.
     /// outline : Outline or array_like, shape (n, 2)
-    ///     An outline, or the points of a closed contour in order. Contours without standard deviations whose coordinates are all whole numbers, with fewer than 40 points or
-    ///     a side of more than four times the mean length, are polygons with the corners of a mask, also in an `Outline`: points are put along
-    ///     their sides, one for each pixel.
+    ///     An outline, or the points of a closed contour in order. Contours without standard deviations whose coordinates are all whole numbers,
+    ///     with fewer than 40 points or a side of more than four times the mean length, are polygons with the corners of a mask, also in an
+    ///     `Outline`: points are put along their sides, one for each pixel.
     ///
     /// Returns
     /// -------
@@ -231,8 +231,8 @@ impl PyMotionFilter {
         self.lock().rival_turns().to_vec()
     }
 
-    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; of affine and projective motion mean
-    /// ones, (a2 - a3) / 2. Empty where there is none.
+    /// Other angular velocities that explain the outlines as well because they have a symmetry, shape (n,), rad/s; of affine and projective motion
+    /// mean ones, (a2 - a3) / 2. Empty where there is none.
     #[getter]
     fn aliases<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let aliases = self.lock().aliases();
@@ -240,7 +240,7 @@ impl PyMotionFilter {
     }
 
     /// Probabilities of the hypotheses of dynamics, `generator`, `velocity` and `accelerating`, which sum up to 1; None where they are not
-    /// told: before the third frame, with process noise, and for a projective motion.
+    /// told: before the third frame, with process noise, and for a projective motion that the outline does not show all of, as that of an ellipse.
     #[getter]
     fn dynamics<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let weights = self.lock().dynamics();

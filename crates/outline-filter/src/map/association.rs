@@ -2,9 +2,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::{Cell, OutlineMap};
-
-/// Places that are looked up before those are looked at again that have moved to a neighbour.
-const BLOCK: usize = 64;
+use crate::tuning::map as tuning;
 
 /// Where the neighbours of a cell are nearer than the cell itself: beyond the line halfway to each.
 #[derive(Debug, Clone, Copy)]
@@ -105,8 +103,8 @@ impl OutlineMap {
         // Slices are near at hand in a loop, vectors are looked up each time.
         let (nearest, bisectors) = (self.field.nearest(), self.bisectors.as_slice());
         let mut places = places;
-        let mut moved = [(0_u32, Point2::origin()); BLOCK];
-        for numbers in numbers.chunks_mut(BLOCK) {
+        let mut moved = [(0_u32, Point2::origin()); tuning::ASSOCIATED_AT_ONCE];
+        for numbers in numbers.chunks_mut(tuning::ASSOCIATED_AT_ONCE) {
             let mut count = 0;
             for ((at, number), q) in (0..).zip(numbers.iter_mut()).zip(&mut places) {
                 let named = nearest[*number as usize];

@@ -32,9 +32,11 @@ pub(crate) mod map {
     pub(crate) const MOST_TIMES_SEEN: usize = 8;
     /// Shortest run of new places that is taken: one alone is an outlier as often as not.
     pub(crate) const SHORTEST_RUN: usize = 2;
-    /// Longest side of the picture of nearest cells, pixels, which are hardly larger than the cells of 400 points: to fill it was a third of the first
-    /// frame with twice as many, and it stays within the first cache of a processor.
+    /// Longest side of the picture of nearest cells, pixels, which are hardly larger than the cells of 400 points: to fill it was a third of the
+    /// first frame with twice as many, and it stays within the first cache of a processor.
     pub(crate) const FIELD_PIXELS: f64 = 96.0;
+    /// Places that are looked up before those are looked at again that have moved to a neighbour: those that have, at most 1.5 kB, stay at hand.
+    pub(crate) const ASSOCIATED_AT_ONCE: usize = 64;
     /// Margin of that picture around the cells, in their extent: points of frames that are not yet aligned lie there.
     pub(crate) const FIELD_MARGIN: f64 = 0.1;
     /// Smallest pixel of that picture, in spacings: finer ones would not make the cell that a pixel names a nearer one.
@@ -159,8 +161,8 @@ pub(crate) mod null_space {
     pub(crate) const TURNS_WITH: f64 = 1e-6;
     /// Share of the deviation of a velocity at the origin of the image that a rate which is not known may make: beyond, neither is known.
     pub(crate) const HANGS_ON: f64 = 0.5;
-    /// Variances of the places within an outline, in those of its cells, of a shape: a circle has a half, a comb or the letter T about one. Those of an
-    /// outline that crosses itself are anything.
+    /// Variances of the places within an outline, in those of its cells, of a shape: a circle has a half, a comb or the letter T about one. Those of
+    /// an outline that crosses itself are anything.
     pub(crate) const AREA_OVER_CELLS: std::ops::RangeInclusive<f64> = 0.1..=4.0;
     /// How far the product of a saved stretch and its inverse may be from one: far above rounding, far below anything that would show.
     #[cfg(feature = "serde")]
@@ -189,8 +191,8 @@ pub(crate) mod usual_agreement {
     /// Share of the usual weakest agreement below which a direction of the pose is in doubt: the ends of a bar have few points, of which chance
     /// leaves a third out.
     pub(crate) const WEAKEST: f64 = 0.6;
-    /// Share of the points from which on a frame shows all of an outline: a motion that has changed leads to another tooth of a gear, or past the end of
-    /// a bar, and a hole or an end are some hundredths of the points. After a frame that was not taken, one with fewer is looked for elsewhere.
+    /// Share of the points from which on a frame shows all of an outline: a motion that has changed leads to another tooth of a gear, or past the end
+    /// of a bar, and a hole or an end are some hundredths of the points. After a frame that was not taken, one with fewer is looked for elsewhere.
     pub(crate) const ALL_OF_IT: f64 = 0.97;
     /// Deviations by which another pose must explain such a frame better: more points than usual speak for it already.
     pub(crate) const ELSEWHERE: f64 = 3.0;
