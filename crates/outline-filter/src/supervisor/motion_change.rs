@@ -43,7 +43,7 @@ pub(super) struct MotionHistory {
     /// a frame was taken last, normalised, of a turn that is small meanwhile.
     contradiction: Option<PoseVector>,
     /// Time since a frame was taken last.
-    since_taken: f64,
+    pub(super) since_taken: f64,
 }
 
 impl MotionHistory {

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     belief::StateMatrix,
     dynamics::{CentredDeviations, Purpose, WrongFamily, centred_velocity},
-    track::{TurnOfPose, TurnTold},
+    track::{Track, TurnOfPose, TurnTold},
     tuning::statement as tuning,
 };
 
@@ -99,10 +99,16 @@ impl MotionFilter {
         let Statement { random, all, .. } = self.statement()?;
         let estimate = track.estimate_of(all, self.turn_told())?.with_random_part(&track.deviations_of(random)?);
         let doubts = self.turn_hypotheses.doubts(&estimate).into_iter().enumerate();
-        let is_stated = self.unstated().is_none();
+        let is_stated = self.unstated().is_none() && !self.may_still_change();
         let unknown =
             doubts.take(self.settings.model.parameter_count()).filter(|(_, doubtful)| *doubtful || !is_stated);
         Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
+    }
+
+    /// Whether the motion has been seen to change, and is known from one step alone since the object was found again: what that tells is a mean over the
+    /// step, and by how much it is off the motion at its end nothing says.
+    fn may_still_change(&self) -> bool {
+        self.motion_changed && self.track.as_ref().is_some_and(Track::is_found_one_step_ago)
     }
 
     /// Whether the turn that is stated is told by the path of the object alone: the outline does not show it, and

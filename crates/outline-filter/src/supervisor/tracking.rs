@@ -1,6 +1,9 @@
 //! A track moved on to a frame, and the changes of its motion found.
 use std::f64::consts::TAU;
 
+use freeform_riccati::MAX_PARAMETERS;
+use nalgebra::SVector;
+
 use super::{motion_change::MotionHistory, settings::FilterSettings};
 use crate::{
     dynamics::{DynamicsFilter, Purpose},
@@ -127,12 +130,11 @@ pub(super) fn advance(
         return None;
     }
     let gates = Gates::of_new_frame(settings, track, history.widening(), (steady, turns));
-    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, (turns, comparison));
+    let (outcome, apart) =
+        outcome_with_changes(settings, (track, frame), history, (seconds, &gates), (turns, comparison));
     history.record(&outcome, seconds);
-    if matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. } | Rejection::NotFound))
-        && let Some(elsewhere) = displacement_nearby(track, frame)
-    {
-        history.record_apart(&elsewhere);
+    if let Some(apart) = apart {
+        history.record_apart(&apart);
     }
     Some(outcome)
 }
@@ -149,24 +151,30 @@ pub(super) fn advance_again(
         return None;
     }
     let gates = Gates::of_accepted_frame(settings, track, history.widening());
-    let outcome = outcome_with_changes(settings, (track, frame), history, &gates, (turns, Comparison::NotAsked));
+    let known = (turns, Comparison::NotAsked);
+    let (outcome, _) = outcome_with_changes(settings, (track, frame), history, (seconds, &gates), known);
     history.record(&outcome, seconds);
     Some(outcome)
 }
 
-/// What becomes of a frame, after the changes of the motion that it shows.
+/// How far an object lies from where it was expected: an error of the pose like those of the belief.
+type Apart = SVector<f64, MAX_PARAMETERS>;
+
+/// What becomes of a frame, after the changes of the motion that it shows; where it is not taken, and the outline is not where it was expected, how far
+/// from there a search has found it.
 fn outcome_with_changes(
     settings: &FilterSettings,
     (track, frame): (&mut Track, &mut Frame),
     history: &mut MotionHistory,
-    gates: &Gates,
+    (seconds, gates): (f64, &Gates),
     (turns, comparison): (Turns, Comparison),
-) -> Outcome {
+) -> (Outcome, Option<Apart>) {
     let mut outcome = track.update(frame, &gates.as_before, comparison);
     if !settings.finds_changes() {
-        return outcome;
+        let apart = is_apart(&outcome).then(|| displacement_nearby(track, frame)).flatten();
+        return (outcome, apart);
     }
-    let MotionHistory { change, dynamics, .. } = history;
+    let MotionHistory { change, dynamics, since_taken, .. } = history;
     if !outcome.is_accepted()
         && let Some(dynamics) = dynamics
         && let Some(found) = outcome_by_others((track, frame), dynamics, (&outcome, &gates.as_before), comparison)
@@ -186,17 +194,25 @@ fn outcome_with_changes(
         change.was_sudden = true;
         outcome = found;
     }
-    if !outcome.is_accepted()
-        && let Some(gate) = gates.nearby
-        && let Some(found) = outcome_nearby((track, frame), dynamics.as_mut(), &gate, (turns, comparison))
-    {
-        change.was_sudden = true;
-        outcome = found;
+    let gate = gates.nearby.filter(|_| turns != Turns::Several && !outcome.is_accepted());
+    let apart = (gate.is_some() || is_apart(&outcome)).then(|| displacement_nearby(track, frame)).flatten();
+    if let Some((gate, apart)) = gate.zip(apart) {
+        let dynamics = dynamics.as_mut();
+        let found = (turns, (apart, *since_taken + seconds));
+        if let Some(found) = outcome_nearby((track, frame), dynamics, found, (&gate, comparison)) {
+            change.was_sudden = true;
+            outcome = found;
+        }
     }
     if outcome.is_accepted() {
         change.update(&innovation, track.model().parameter_count());
     }
-    outcome
+    (outcome, apart.filter(|_| is_apart(&outcome)))
+}
+
+/// Whether a frame does not show the outline where it was expected.
+fn is_apart(outcome: &Outcome) -> bool {
+    matches!(outcome.verdict, Err(Rejection::AgreementTooSmall { .. } | Rejection::NotFound))
 }
 
 /// A track whose motion has changed by as much as the innovation of a frame says, which was not taken, with what becomes of the frame then; `None`
@@ -219,17 +235,16 @@ pub(super) fn after_sudden_change(
     found.is_accepted().then_some((changed, found))
 }
 
-/// What becomes of a frame that shows the object so far from where it was expected that linearisations do not lead there, but near enough for a
-/// search from there; `None`, with nothing changed, where it is not accepted there either.
+/// What becomes of a frame that shows the object so far from where it was expected that linearisations do not lead there, but where a search from
+/// there has found it, which the motion has made of it in so many seconds; `None`, with nothing changed, where it is not accepted there either.
 fn outcome_nearby(
     (track, frame): (&mut Track, &mut Frame),
     dynamics: Option<&mut DynamicsFilter>,
-    gate: &Gate,
-    (turns, comparison): (Turns, Comparison),
+    (turns, (apart, seconds)): (Turns, (Apart, f64)),
+    (gate, comparison): (&Gate, Comparison),
 ) -> Option<Outcome> {
-    let displacement = displacement_nearby(track, frame).filter(|_| turns != Turns::Several)?;
     let mut displaced = track.clone();
-    let is_shown = displaced.displace(&displacement);
+    let is_shown = displaced.displace(&apart, seconds);
     let pose = *displaced.body_pose();
     if !is_shown || !turns.is_expected(track.turn_to(&pose)) {
         return None;
@@ -239,7 +254,7 @@ fn outcome_nearby(
         return None;
     }
     *track = displaced;
-    Some(outcome)
+    Some(outcome.after_rejected())
 }
 
 /// What becomes of a frame not where a constant generator takes the object, but where other dynamics do that are not ruled out; `None`, with

@@ -10,11 +10,14 @@ use crate::{
 };
 
 impl MotionFilter {
-    /// In which turns the outline explains a frame.
+    /// In which turns the outline explains a frame. Others that are followed are not searched for nearby: the one that is would rule them out.
     pub(super) fn turns(&self) -> Turns {
+        let is_followed_alone = self.turn_hypotheses.followed().next().is_none();
         match self.search_memory.symmetry {
             1 if self.turn_hypotheses.rival_turns().is_empty() => Turns::One,
-            order if order > 1 && !self.turn_hypotheses.are_doubtful() => Turns::Symmetric { order },
+            order if order > 1 && is_followed_alone && !self.turn_hypotheses.are_doubtful() => {
+                Turns::Symmetric { order }
+            }
             _ => Turns::Several,
         }
     }

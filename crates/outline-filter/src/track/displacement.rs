@@ -12,14 +12,20 @@ impl Track {
         memory.shortest(information.k) <= memory.step
     }
 
-    /// Moves the predicted pose by what it was found to be off by, which the motion has made of it during the last step; by as much as the outline is
-    /// displaced then, pose and motion may be others. False, and nothing changes, where the outline [is not shown](Track::is_shown) there.
+    /// Whether one step has been made since the object was found where nothing said how it had moved.
+    pub(crate) fn is_found_one_step_ago(&self) -> bool {
+        let Belief { memory, .. } = &self.belief;
+        memory.span <= memory.step
+    }
+
+    /// Moves the predicted pose by what it was found to be off by, which the motion has made of it in so many seconds, up to now; by as much as the
+    /// outline is displaced then, the motion may be another. False, and nothing changes, where the outline [is not shown](Track::is_shown) there.
     #[must_use]
-    pub(crate) fn displace(&mut self, displacement: &SVector<f64, MAX_PARAMETERS>) -> bool {
-        let (k, seconds) = (self.belief.parameter_count(), self.belief.memory.step);
+    pub(crate) fn displace(&mut self, displacement: &SVector<f64, MAX_PARAMETERS>, seconds: f64) -> bool {
+        let (k, step) = (self.belief.parameter_count(), self.belief.memory.step);
         let before = self.belief.pose;
         let pose = self.model().flow(&displacement.as_slice()[..k], 1.0).into_inner() * before;
-        if seconds <= 0.0 || !self.map.is_shown_in(&pose) {
+        if seconds <= 0.0 || step <= 0.0 || !self.map.is_shown_in(&pose) {
             return false;
         }
         let apart = |centre| (map_point(&pose, centre) - map_point(&before, centre)).norm_squared();
@@ -27,7 +33,7 @@ impl Track {
         let mean_square = cells.iter().map(|cell| apart(&cell.centre)).sum::<f64>() / cells.len() as f64;
         self.belief.pose = pose;
         self.belief.motion.iter_mut().zip(displacement).for_each(|(rate, by)| *rate += by / seconds);
-        self.add_change([mean_square / seconds.powi(3); 2], TimeOfChange::Any);
+        self.add_change([mean_square / (seconds * seconds * step); 2], TimeOfChange::Any);
         true
     }
 }

@@ -73,9 +73,10 @@ impl Track {
         disagrees.then_some(Doubt::Points)
     }
 
-    /// A gate for frames that show all of the outline, but for the share of the points that usually disagrees.
+    /// A gate for frames that show all of the outline, but for the share of the points that usually disagrees, once that is known.
     pub(crate) fn gate_of_all(&self, gate: Gate) -> Gate {
-        let of_all = tuning::ALL_OF_IT * (1.0 - self.usual.disagreeing);
+        let is_known = self.usual.frames >= tuning::FEWEST_FRAMES;
+        let of_all = tuning::ALL_OF_IT * if is_known { 1.0 - self.usual.disagreeing } else { 1.0 };
         Gate { smallest_agreement: gate.smallest_agreement.max(of_all), ..gate }
     }
 
