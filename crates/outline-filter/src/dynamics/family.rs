@@ -219,8 +219,7 @@ impl FamilyTests {
         changes.map(|i| (self.squares[i] / n).sqrt()).max_by(f64::total_cmp).filter(|size| *size > least)
     }
 
-    /// The motions known with others, what these add to the squared distance from none, dependence from frame to frame allowed for, and how
-    /// many they are.
+    /// The motions known with others, what these add to the squared distance from none, dependence from frame to frame allowed for, and how many.
     fn with(&self, known: &Fit, others: &[usize], dependence: &UnmodelledVector) -> Option<(Fit, f64, f64)> {
         let new: Vec<usize> = others.iter().copied().filter(|i| !known.numbers.contains(i)).collect();
         let numbers: Vec<usize> = known.numbers.iter().copied().chain(new.iter().copied()).collect();

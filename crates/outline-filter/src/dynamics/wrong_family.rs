@@ -62,11 +62,11 @@ pub(super) fn left_out_by(model: MotionModel) -> (&'static [(WrongFamily, Member
 /// What was found, with the displacement of the outlines that it explains beside what was found before it, root mean square.
 pub(super) type Found = (WrongFamily, f64);
 
-/// The name of what was found, the clearest first. A camera is blamed for what it explains. One that looks from aside stretches and skews as well as it
-/// makes perspective, and what is left of either in higher orders is less than perspective is, though it may be clearer. Of a lens and of rows nothing
-/// is left: where something else is there besides, beyond doubt, where rows would have to be read for longer than there is time from frame to frame, or
-/// what is found of a lens is none, the outlines change in another way, which has a bit of each. `read_out` is the time in which a rolling shutter
-/// would read the rows of a radius, in times from frame to frame, `off_a_lens` is in deviations.
+/// The name of what was found, the clearest first. A camera is blamed for what it explains. One that looks from aside stretches and skews as well
+/// as it makes perspective, and what is left of either in higher orders is less than perspective is, though it may be clearer. Of a lens and of rows
+/// nothing is left: where something else is there besides, beyond doubt, where rows would have to be read for longer than there is time from frame
+/// to frame, or what is found of a lens is none, the outlines change in another way, which has a bit of each. `read_out` is the time in which a
+/// rolling shutter would read the rows of a radius, in times from frame to frame, `off_a_lens` is in deviations.
 pub(super) fn name_of(found: &[Found], read_out: f64, off_a_lens: f64) -> Option<WrongFamily> {
     let (clearest, _) = *found.first()?;
     let is_alone = found.len() == 1;
