@@ -12,6 +12,7 @@ mod left_out;
 mod output;
 mod overlay;
 mod picture_input;
+mod picture_settings;
 mod progress;
 mod reader;
 mod seen;

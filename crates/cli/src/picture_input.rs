@@ -8,10 +8,8 @@ use std::thread::available_parallelism;
 
 use freeform_drawing::{MeaningOfB, candidate_sheet};
 use freeform_motion::outline_io::{
-    Background, Channel, Clipping, Contours, Contrast, Difference, Edges, OutlineUncertainty, PictureError,
-    PictureErrorKind, PicturePreview, PictureSequence, PictureSettings, Ring, SequenceSettings, Smoothing, Threshold,
+    Channel, OutlineUncertainty, PictureError, PictureErrorKind, PicturePreview, PictureSequence, PictureSettings,
     TraceError, TraceSettings, TracedPicture, TracedPictures, TracingEvidence, TracingWarning, read_ahead,
-    read_picture_channel,
 };
 use freeform_motion::riccati::CameraScale;
 use freeform_motion::short;
@@ -23,12 +21,10 @@ use crate::command_line::{command_line_of_stdin, quoted};
 use crate::failure::{Failure, plain};
 use crate::interrupt;
 use crate::output::WholeFile;
+use crate::picture_settings::{picture_settings, sequence_settings};
 use crate::progress::Verbosity;
 use crate::seen::{Item, Missing, MissingKind};
 use crate::tracing_choice::{Chosen, choose, options_of};
-
-/// Pictures that the running median is taken of where no other number is given.
-const MEDIAN_SIZE: u8 = 25;
 
 /// Pictures that are traced side by side for each core, so that none stands still while the next ones are read.
 const PICTURES_OF_CORE: usize = 2;
@@ -184,8 +180,8 @@ impl PictureInput {
         self.chosen.as_ref().is_some_and(|chosen| !chosen.choice.is_convincing())
     }
 
-    /// Whether two outlines of one name may be of two things: the way of tracing is in doubt, or there are more than two pictures, in the others of which
-    /// what bears the name was not seen.
+    /// Whether two outlines of one name may be of two things: the way of tracing is in doubt, or there are more than two pictures, in the others of
+    /// which what bears the name was not seen.
     pub(crate) fn may_mistake_one_for_another(&self) -> bool {
         self.is_tracing_in_doubt() || self.frame_count().is_none_or(|count| count > 2)
     }
@@ -351,55 +347,4 @@ fn hint(error: &TraceError, options: &PictureOptions) -> Option<&'static str> {
         TraceError::NoContrast { .. } => Some("try --threshold, --dark, --background median, --ring or --channel"),
         _ => None,
     }
-}
-
-fn sequence_settings(options: &PictureOptions) -> SequenceSettings {
-    SequenceSettings { frames_per_second: options.fps, channel: options.channel().channel() }
-}
-
-fn picture_settings(
-    options: &PictureOptions,
-    aspect: Option<f64>,
-    preview: Option<&PicturePreview>,
-) -> Result<PictureSettings, Failure> {
-    let channel = options.channel().channel();
-    let is_median = options.background.as_ref().is_some_and(|path| path.as_os_str() == "median");
-    if options.background_window.is_some() && !is_median {
-        return Err(Failure::unusable(
-            "--background-window: how many pictures the median is of, so only for --background median",
-        ));
-    }
-    let background = match &options.background {
-        Some(path) if path.as_os_str() == "median" => {
-            Some(Background::RunningMedian(options.background_window.unwrap_or(MEDIAN_SIZE).into()))
-        }
-        Some(path) if path.as_os_str() == "surface" => Some(Background::Surface),
-        Some(_) if options.compares_with_whole() => preview.and_then(|p| p.ground(channel)).map(Background::Picture),
-        Some(path) => {
-            let picture = read_picture_channel(path, channel);
-            let failed = |error| Failure::unusable(format_args!("--background {}", plain(&error)));
-            Some(Background::Picture(picture.map_err(failed)?.into()))
-        }
-        None => None,
-    };
-    let difference = match (options.light, options.dark) {
-        (true, _) => Difference::Lighter,
-        (_, true) => Difference::Darker,
-        _ => Difference::Either,
-    };
-    let trace = TraceSettings {
-        contrast: if options.dark { Contrast::DarkOnLight } else { Contrast::LightOnDark },
-        threshold: options.threshold.map_or(Threshold::Automatic, Threshold::Level),
-        smoothing: options.smoothing.map_or(Smoothing::Automatic, Smoothing::Gaussian),
-        edges: Edges::Refined,
-        minimum_area: options.min_area,
-        contours: if options.traces_contours() { Contours::All } else { Contours::Boundary },
-        clipping: Clipping::Open,
-        y_up: !options.y_down,
-        ring: options.ring.map(|ring| Ring { contrast: ring.contrast(), width: options.ring_width }),
-        pixel_size: options.pixel_size,
-        pixel_aspect: options.pixel_aspect.or(aspect).unwrap_or(1.0),
-        margins: options.margins,
-    };
-    Ok(PictureSettings { trace, selection: options.objects().selection(), background, difference })
 }

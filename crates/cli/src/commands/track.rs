@@ -74,8 +74,8 @@ pub(crate) fn run(args: &TrackArgs) -> Result<(), Failure> {
     }
 }
 
-/// Says of an object that is seen no longer, where its two outlines may be of two things, that its motion is that between two frames, if it is. Before
-/// the third frame that holds for every object.
+/// Says of an object that is seen no longer, where its two outlines may be of two things, that its motion is that between two frames, if it is.
+/// Before the third frame that holds for every object.
 fn warn_of_two_frames(result: ObjectResult) {
     let result = result.of_doubtful_outlines();
     if result.warnings.contains(&Warning::OfTwoFrames) {

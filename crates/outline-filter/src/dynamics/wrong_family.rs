@@ -59,23 +59,41 @@ pub(super) fn left_out_by(model: MotionModel) -> (&'static [(WrongFamily, Member
     }
 }
 
-/// The name of what was found, the clearest first. A camera is blamed for what it explains: where something else is there besides, beyond doubt, where
-/// rows would have to be read for longer than there is time from frame to frame, or what is found of a lens is none, the outlines change in another
-/// way, which has a bit of each. `read_out` is the time in which a rolling shutter would read the rows of a radius, in times from frame to frame,
-/// `off_a_lens` is in deviations.
-pub(super) fn name_of(found: &[WrongFamily], read_out: f64, off_a_lens: f64) -> Option<WrongFamily> {
-    let clearest = *found.first()?;
-    let explains = match clearest {
-        WrongFamily::Growth | WrongFamily::Shear | WrongFamily::Shape => true,
-        WrongFamily::Perspective => found.len() == 1,
-        WrongFamily::Lens => found.len() == 1 && off_a_lens < SIGNIFICANT,
-        WrongFamily::RollingShutter => found.len() == 1 && ROWS_OF_OBJECT * read_out <= 1.0,
+/// What was found, with the displacement of the outlines that it explains beside what was found before it, root mean square.
+pub(super) type Found = (WrongFamily, f64);
+
+/// The name of what was found, the clearest first. A camera is blamed for what it explains. One that looks from aside stretches and skews as well
+/// as it makes perspective, and what is left of either in higher orders is less than perspective is, though it may be clearer. Of a lens and of rows
+/// nothing is left: where something else is there besides, beyond doubt, where rows would have to be read for longer than there is time from frame
+/// to frame, or what is found of a lens is none, the outlines change in another way, which has a bit of each. `read_out` is the time in which a
+/// rolling shutter would read the rows of a radius, in times from frame to frame, `off_a_lens` is in deviations.
+pub(super) fn name_of(found: &[Found], read_out: f64, off_a_lens: f64) -> Option<WrongFamily> {
+    let (clearest, _) = *found.first()?;
+    let is_alone = found.len() == 1;
+    let name = match clearest {
+        WrongFamily::Growth | WrongFamily::Shear | WrongFamily::Shape => clearest,
+        _ if is_tilt(found) => WrongFamily::Perspective,
+        WrongFamily::Lens if is_alone && off_a_lens < SIGNIFICANT => clearest,
+        WrongFamily::RollingShutter if is_alone && ROWS_OF_OBJECT * read_out <= 1.0 => clearest,
+        _ => WrongFamily::Shape,
     };
-    Some(if explains { clearest } else { WrongFamily::Shape })
+    Some(name)
 }
 
-/// Squared distance of the sizes of [`OF_LENS`] from those of a lens, in deviations; chi-square of two degrees of freedom. `None` where they are known
-/// without error.
+/// Whether there is perspective, and all else is stretch and skew or less than that.
+fn is_tilt(found: &[Found]) -> bool {
+    let perspective = found.iter().find(|(family, _)| *family == WrongFamily::Perspective);
+    perspective.is_some_and(|(_, most)| {
+        let explained = |(family, displacement): &Found| match family {
+            WrongFamily::Perspective | WrongFamily::Shear => true,
+            _ => displacement < most,
+        };
+        found.iter().all(explained)
+    })
+}
+
+/// Squared distance of the sizes of [`OF_LENS`] from those of a lens, in deviations; chi-square of two degrees of freedom. `None` where they are
+/// known without error.
 ///
 /// A lens of strength k and middle c displaces by `k |p - c|^2 (p - c)`. But for what moves or scales the picture as a whole this is k of `|p|^2 p`,
 /// -k c of what that becomes where its middle is elsewhere, and a stretch and skew of `k (cx^2 - cy^2)` and `2 k cx cy`. Light from a side makes these
@@ -101,18 +119,29 @@ mod tests {
     fn a_camera_is_blamed_only_for_what_it_explains() {
         assert_eq!(name_of(&[], 0.0, 0.0), None);
         for alone in [Growth, Shear, Perspective, RollingShutter, Lens] {
-            assert_eq!(name_of(&[alone], 0.4, 4.0), Some(alone));
+            assert_eq!(name_of(&[(alone, 0.01)], 0.4, 4.0), Some(alone));
         }
-        for camera in [Perspective, RollingShutter, Lens] {
-            assert_eq!(name_of(&[camera, Shear], 0.4, 0.0), Some(Shape));
+        for camera in [RollingShutter, Lens] {
+            assert_eq!(name_of(&[(camera, 0.01), (Shear, 0.001)], 0.4, 0.0), Some(Shape));
         }
         // What the object does itself is named beside whatever else there is.
-        assert_eq!([Growth, Shear].map(|first| name_of(&[first, Lens], 0.4, 9.0)), [Some(Growth), Some(Shear)]);
+        let names = [Growth, Shear].map(|first| name_of(&[(first, 0.01), (Lens, 0.02)], 0.4, 9.0));
+        assert_eq!(names, [Some(Growth), Some(Shear)]);
+    }
+
+    #[test]
+    fn a_tilted_camera_stretches_as_well_and_leaves_less_than_its_perspective() {
+        for (size, name) in [(0.009, Perspective), (0.011, Shape)] {
+            let after = |other| name_of(&[(Perspective, 0.01), (Shear, 0.02), (other, size)], 0.4, 0.0);
+            assert_eq!([Growth, RollingShutter, Lens].map(after), [Some(name); 3]);
+            let before = |other| name_of(&[(other, size), (Perspective, 0.01)], 0.4, 0.0);
+            assert_eq!([RollingShutter, Lens].map(before), [Some(name); 2]);
+        }
     }
 
     #[test]
     fn rows_are_not_read_for_longer_than_there_is_time_between_frames() {
-        let names = [0.5, 0.6].map(|read_out| name_of(&[RollingShutter], read_out, 0.0));
+        let names = [0.5, 0.6].map(|read_out| name_of(&[(RollingShutter, 0.01)], read_out, 0.0));
         assert_eq!(names, [Some(RollingShutter), Some(Shape)]);
     }
 
@@ -125,6 +154,6 @@ mod tests {
             let stretched = lens + SVector::from([0.02, 0.0, 0.0, 0.0, 0.0]);
             assert!(off_a_lens(&stretched, &covariance).expect("errors") > 10.0, "{k} {x} {y}");
         }
-        assert_eq!(name_of(&[Lens], 0.0, 6.0), Some(Shape));
+        assert_eq!(name_of(&[(Lens, 0.01)], 0.0, 6.0), Some(Shape));
     }
 }

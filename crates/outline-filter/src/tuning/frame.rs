@@ -155,9 +155,9 @@ pub(crate) mod update {
     pub(crate) const MOST_ITERATIONS: usize = 12;
     /// A step that moves points by less than this many deviations of the noise is the last.
     pub(crate) const SETTLED: f64 = 0.03;
-    /// If the last one that is taken moves them by more than this share of a cell, and by more than the noise, the pose is on its way to another, and
-    /// nothing is known of that. By less it moves to and fro where points change cells.
-    pub(crate) const UNSETTLED: f64 = 0.5;
+    /// If the last one that is taken moves them by more than so many cells, and by more than the noise, the pose is on its way to another, and nothing is
+    /// known of that. By less it moves to and fro where points change cells, or along a direction that few of them tell.
+    pub(crate) const UNSETTLED: f64 = 5.0;
     /// Determinant of a pose below which it has collapsed.
     pub(crate) const COLLAPSED: f64 = 1e-12;
     /// Share of the farthest depth of an outline that the nearest must have: a camera as close to a plane as that shows a part of it only. Rates of

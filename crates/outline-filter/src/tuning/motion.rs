@@ -165,8 +165,8 @@ pub(crate) mod family {
     /// Time in which a camera usually reads the rows that an object and its way take up, in times from frame to frame, where it reads them one after
     /// another: half of all rows in half of the time.
     pub(crate) const USUAL_READ_OUT: f64 = 0.25;
-    /// Rows that an object takes up, in radii: about twice its root mean square radius, and less where it is flat. A camera has read them before the next
-    /// frame.
+    /// Rows that an object takes up, in radii: about twice its root mean square radius, and less where it is flat. A camera has read them before
+    /// the next frame.
     pub(crate) const ROWS_OF_OBJECT: f64 = 2.0;
     /// Odds against a picture that is off in one of these ways.
     pub(crate) const ODDS_AGAINST: f64 = 9.0;
@@ -186,8 +186,8 @@ pub(crate) mod family {
     pub(crate) const LEFT: f64 = 0.01;
     /// What makes the equations of the pose solvable where the outline does not, as a share of the largest entry.
     pub(crate) const SINGULAR: f64 = 1e-9;
-    /// Displacement by an outline that turns unseen, over how far it is from round: two places of it that have nothing in common differ by the root of 2 of
-    /// that, opposite ones by 2.
+    /// Displacement by an outline that turns unseen, over how far it is from round: two places of it that have nothing in common differ by the root
+    /// of 2 of that, opposite ones by 2.
     pub(crate) const TURNED_UNSEEN: f64 = 2.0;
     /// Frames looked at: all of the first so many, and while the motion is known from fewer; else every so many. A frame that stands for
     /// several must not correct more than it has found.
