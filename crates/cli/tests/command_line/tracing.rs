@@ -200,7 +200,7 @@ fn of_an_object_that_is_seen_in_two_of_more_pictures_it_is_said_that_no_third_te
             x < 24 && y < 32 && (x < 9 || y < 8)
         };
         // The second one is seen in the last two pictures.
-        let second = (frame >= 10).then_some((110, 70 + 3 * (frame - 10)));
+        let second = (frame >= 10).then(|| (110, 70 + 3 * (frame - 10)));
         let is_light =
             |x: u32, y: u32| is_l(x, y, (20 + 4 * frame, 20)) || second.is_some_and(|place| is_l(x, y, place));
         let noise = |x: u32, y: u32| ((x * 31 + y * 17 + frame * 7) % 5) as u8;
