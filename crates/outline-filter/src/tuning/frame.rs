@@ -150,14 +150,13 @@ pub(crate) mod update {
     pub(crate) const GAUGE_WEIGHT: f64 = 10.0;
     /// Information on the motion that makes the first equations solvable, per squared second: next to nothing.
     pub(crate) const MOTION_PRIOR: f64 = 1e-10;
-    /// Most linearisations per frame. One suffices in steady state; acquisition needs three or four, and an object that lies a fifth of its size from
-    /// where it was expected ten and more.
-    pub(crate) const MOST_ITERATIONS: usize = 12;
+    /// Most linearisations per frame. One suffices in steady state; acquisition needs three or four.
+    pub(crate) const MOST_ITERATIONS: usize = 6;
     /// A step that moves points by less than this many deviations of the noise is the last.
     pub(crate) const SETTLED: f64 = 0.03;
     /// If the last one that is taken moves them by more than so many cells, and by more than the noise, the pose is on its way to another, and nothing is
     /// known of that. By less it moves to and fro where points change cells, or along a direction that few of them tell.
-    pub(crate) const UNSETTLED: f64 = 5.0;
+    pub(crate) const UNSETTLED: f64 = 2.0;
     /// Determinant of a pose below which it has collapsed.
     pub(crate) const COLLAPSED: f64 = 1e-12;
     /// Share of the farthest depth of an outline that the nearest must have: a camera as close to a plane as that shows a part of it only. Rates of
