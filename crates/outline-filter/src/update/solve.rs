@@ -58,7 +58,11 @@ impl View<'_> {
         let mut null = null.to_vec();
         let mut work = Arrowhead::new(k);
         let mut settled = false;
-        while proposal.iterations < most && !settled {
+        // An object that lies far from where it was expected takes more of them to come there.
+        let far = tuning::FAR * self.map.spacing();
+        let more =
+            |p: &Proposal| p.iterations < most || most > 1 && p.last_step > far && p.iterations < tuning::MOST_FROM_FAR;
+        while more(&proposal) && !settled {
             // A turn that is not seen is one about the centroid as the frame has it.
             if proposal.iterations > 0 && !null.is_empty() {
                 null = self.map.null_directions(model, &proposal.pose);
