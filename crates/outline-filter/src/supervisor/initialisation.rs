@@ -82,7 +82,7 @@ impl MotionFilter {
         if hypotheses > 1 && kept_once_measured(self.window.len(), hypotheses) > tuning::MOST_KEPT {
             return Remapping::Idle;
         }
-        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frames = remapper.placed(track, remapper.may_change(&self.history));
         let turn = self.turn_hypotheses.present_turn();
         let Some(runs) = track.points_along(&frames, 1, &mut self.frame) else { return Remapping::Idle };
@@ -104,7 +104,7 @@ impl MotionFilter {
     /// Measures the frames kept on cells cut anew.
     fn measure(&mut self, mut draft: Draft) -> Remapping {
         let Some(track) = &self.track else { return Remapping::Idle };
-        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frames = remapper.placed(track, false);
         let Some(first) = frames.first() else { return Remapping::Idle };
         draft.track.begin_as(track, first.outline, &mut self.frame);
@@ -121,7 +121,7 @@ impl MotionFilter {
     /// Takes so many of the frames kept on the new cells, always with the hypothesis that has taken the fewest, and begins one more rival. Once
     /// all have taken all frames they are exchanged at once: one alone would win by its finer cells.
     fn go_on(&mut self, Measured { begun, mut present, mut rivals }: Measured, most: usize) -> Remapping {
-        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns() };
+        let remapper = Remapper { settings: &self.settings, window: &self.window, turns: self.turns_of_kept() };
         let frame = &mut self.frame;
         let frames = remapper.placed(&present.track, false);
         rivals.retain(|(turn, _)| self.turn_hypotheses.followed().any(|(of, _)| of == *turn));

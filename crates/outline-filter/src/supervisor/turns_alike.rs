@@ -22,6 +22,12 @@ impl MotionFilter {
         }
     }
 
+    /// As [`turns`](Self::turns), of frames that have been taken once: where none of them needed a search nearby, cells cut anew must not make one
+    /// necessary.
+    pub(super) fn turns_of_kept(&self) -> Turns {
+        if self.motion_changed || self.history.is_changing() { self.turns() } else { Turns::Several }
+    }
+
     /// Asks again whether the outline is symmetric, when its map has been cut anew from several frames. Errors of the first two frames may pass for what
     /// tells the teeth of a gear apart, so that it is followed with a turn by any number of them: its map, in which all teeth have come to lie upon each
     /// other, is symmetric then, whatever the body is.

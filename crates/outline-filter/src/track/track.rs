@@ -143,8 +143,7 @@ impl Track {
         let by_pose = innovation.degrees_of_freedom;
         let taken = TakenOff { by_pose, left_by_offsets: left_by_offsets(&self.belief, frame) };
         let correlation = correlation_of(frame, known_noise, taken);
-        let unsettled = self.noise.sigma.max(tuning::UNSETTLED * self.map.spacing());
-        let verdict = match proposal.last_step > unsettled {
+        let verdict = match proposal.last_step > self.view().moved_by(tuning::UNSETTLED) {
             true => Err(Rejection::NotFound),
             false => self.verdict(gate, &measurement),
         };

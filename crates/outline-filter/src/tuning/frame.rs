@@ -152,13 +152,15 @@ pub(crate) mod update {
     pub(crate) const MOTION_PRIOR: f64 = 1e-10;
     /// Most linearisations per frame. One suffices in steady state; acquisition needs three or four.
     pub(crate) const MOST_ITERATIONS: usize = 6;
-    /// As that, as long as each of them moves points by more than [`FAR`] cells: an object that lies a fifth of its size from where it was expected takes
-    /// ten and more.
+    /// As that, as long as each of them moves points by more than [`FAR`] cells, and [`BEYOND_NOISE`]: an object that lies a fifth of its size from where
+    /// it was expected takes ten and more.
     pub(crate) const MOST_FROM_FAR: usize = 20;
     pub(crate) const FAR: f64 = 1.0;
+    /// Deviations of the noise that a step is beyond by which an object moves, and no points that change cells.
+    pub(crate) const BEYOND_NOISE: f64 = 4.0;
     /// A step that moves points by less than this many deviations of the noise is the last.
     pub(crate) const SETTLED: f64 = 0.03;
-    /// If the last one that is taken moves them by more than so many cells, and by more than the noise, the pose is on its way to another, and nothing is
+    /// If the last one that is taken moves them by more than so many cells, and [`BEYOND_NOISE`], the pose is on its way to another, and nothing is
     /// known of that. By less it moves to and fro where points change cells, or along a direction that few of them tell.
     pub(crate) const UNSETTLED: f64 = 2.0;
     /// Determinant of a pose below which it has collapsed.

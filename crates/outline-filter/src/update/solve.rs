@@ -34,6 +34,15 @@ pub(crate) struct Proposal {
 }
 
 impl View<'_> {
+    /// The step of a pose from which on its points are moved by so many cells, and beyond the noise. Infinite where few points tell the turn: the others
+    /// stay where they are, however far it goes.
+    pub(crate) fn moved_by(&self, cells: f64) -> f64 {
+        if self.map.is_all_but_round() {
+            return f64::INFINITY;
+        }
+        (cells * self.map.spacing()).max(tuning::BEYOND_NOISE * self.noise.sigma)
+    }
+
     /// Linearises and solves until the pose settles; the number of linearisations where there is no solution. `null` are the null directions
     /// of the predicted pose, `hold` is information that is added for the solution only, `most` is the number of linearisations at most.
     pub(crate) fn solve(
@@ -59,7 +68,7 @@ impl View<'_> {
         let mut work = Arrowhead::new(k);
         let mut settled = false;
         // An object that lies far from where it was expected takes more of them to come there.
-        let far = tuning::FAR * self.map.spacing();
+        let far = self.moved_by(tuning::FAR);
         let more =
             |p: &Proposal| p.iterations < most || most > 1 && p.last_step > far && p.iterations < tuning::MOST_FROM_FAR;
         while more(&proposal) && !settled {

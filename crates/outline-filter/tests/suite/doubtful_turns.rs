@@ -163,22 +163,24 @@ fn a_turn_that_has_grown_beyond_half_a_circle_per_frame_is_in_doubt() {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut run = filter(MotionModel::Rigid);
     let (mut turn, mut rate) = (0.0, 1.6);
-    let mut were_known = 0;
+    let (mut were_known, mut doubts) = (0, 0);
     for frame in 0..170 {
         run.step(f64::from(frame) / FRAME_RATE, &outline(turn, &mut random)).expect("increasing times");
+        (turn, rate) = (turn + rate, rate + 0.01);
         if let Some((value, _)) = omega_of(&run) {
             were_known += 1;
             assert!(value.abs() < 1.001 * PI * FRAME_RATE, "{frame}: {value}");
         }
         // What is known of a turn that grows by 0.01 rad per frame lags by about 0.11 rad.
-        if rate > PI + 0.12 {
+        if rate - 0.01 > PI + 0.12 {
             assert_eq!(omega_of(&run), None, "{frame}: {rate}");
-            let ambiguity = run.ambiguity().expect("a doubt");
+            // Nothing is in doubt of a motion that is not known, as after the object was found again.
+            let Some(ambiguity) = run.ambiguity() else { continue };
+            doubts += 1;
             assert!(ambiguity.rival_turns.iter().all(|rival| rival.abs() < TAU), "{ambiguity:?}");
         }
-        turn += rate;
-        rate += 0.01;
     }
+    assert!(doubts > 0);
     // Of 170: a turn that grows is doubtful as long as few frames tell how fast.
     assert!(were_known > 30, "{were_known}");
 }
