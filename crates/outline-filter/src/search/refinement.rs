@@ -1,6 +1,6 @@
 //! A pose brought onto the points of a frame from one that is near, by least squares of their distances from the outline.
-use freeform_riccati::{MotionModel, is_affine, map_point_by};
-use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector};
+use freeform_riccati::{MotionModel, is_affine, map_point, map_point_by};
+use nalgebra::{Const, DimMin, Matrix3, Point2, SMatrix, SVector, Vector2};
 
 use super::linearised::{Equations, Linearised, Rows, Seen, SideBySide};
 use crate::{
@@ -55,6 +55,13 @@ impl Steps {
 pub(super) fn few_of(points: &[Point2<f64>]) -> Vec<Point2<f64>> {
     let stride = (points.len() / tuning::FEW_POINTS).max(1);
     points.iter().step_by(stride).copied().collect()
+}
+
+/// Where the outline has its middle in the present pose, and the middle of the points of a frame: a search begins with one in the other.
+pub(super) fn middles(track: &Track, points: &[Point2<f64>]) -> [Vector2<f64>; 2] {
+    let (cells, pose) = (track.map().cells(), track.body_pose());
+    let of_cells = cells.iter().map(|c| map_point(pose, &c.centre).coords / cells.len() as f64);
+    [of_cells.sum(), points.iter().map(|p| p.coords / points.len() as f64).sum()]
 }
 
 /// Point-to-line steps with Tukey weights at a scale that shrinks with the residuals, at most so many.

@@ -5,7 +5,7 @@ use super::{
     Landmarks,
     near_symmetry::turns_of_near_symmetry,
     outlook::Outlook,
-    refinement::{RegisteredPose, Steps, distances_in, few_of, refined},
+    refinement::{RegisteredPose, Steps, distances_in, few_of, middles, refined},
 };
 use crate::{
     track::{Track, turn_between, wrapped},
@@ -204,10 +204,7 @@ struct Starts {
 
 impl Starts {
     fn of(track: &Track, points: &[Point2<f64>], landmarks: Option<[Landmarks; 2]>) -> Self {
-        let (map, pose) = (track.view().map, track.body_pose());
-        let count = map.cells().len() as f64;
-        let body_centre = map.cells().iter().map(|c| map_point(pose, &c.centre).coords / count).sum::<Vector2<f64>>();
-        let centre = points.iter().map(|p| p.coords / points.len() as f64).sum::<Vector2<f64>>();
+        let [body_centre, centre] = middles(track, points);
         // Of turns that make no difference the least is taken.
         let count = if track.turn_is_unseen() { 1 } else { tuning::TURNS };
         let turns = (0..count)

@@ -154,8 +154,8 @@ impl MotionFilter {
 
     /// Exchanges the track, and its rivals with it, for those on cells cut anew, and looks for changes of the motion once more: what was taken for
     /// one may have been what coarse cells left. Better aligned frames make a better map, which aligns them better, so that it is cut again unless
-    /// the pose has settled, or more frames are kept than rivals soon catch up with. A track that has gone astray among the frames kept, and explains the last of them worse than where it was, is none to
-    /// be exchanged for.
+    /// the pose has settled, or more frames are kept than rivals soon catch up with. A track that has gone astray among the frames kept, and explains
+    /// the last of them worse than where it was, is none to be exchanged for.
     fn exchange(&mut self, Measured { begun, mut present, mut rivals }: Measured) -> Remapping {
         let Some((track, last)) = self.track.as_ref().zip(self.window.last()) else { return Remapping::Idle };
         let poses = [*present.track.body_pose(), *track.body_pose()];

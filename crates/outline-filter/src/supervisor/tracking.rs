@@ -92,10 +92,8 @@ impl Gates {
             Steadiness::Untold => (nearby.filter(|_| turns == Turns::One), nearby),
             Steadiness::Contradicted => (Some(anywhere), nearby),
         };
-        match settings.finds_changes() {
-            true => Self { as_before, after_sudden_change, nearby },
-            false => Self { as_before, after_sudden_change: None, nearby: None },
-        }
+        let or_none = |gate: Option<Gate>| gate.filter(|_| settings.finds_changes());
+        Self { as_before, after_sudden_change: or_none(after_sudden_change), nearby: or_none(nearby) }
     }
 
     /// Of a frame that was accepted once. The noise of its few points on cells seen before tells less.

@@ -4,7 +4,7 @@ use crate::{
     belief::StateMatrix,
     measurement::Frame,
     tuning::update::{BEYOND_DOUBT, PARTLY_THERE},
-    update::{Gate, PoseInnovation, Proposal, hold, with_hold},
+    update::{Gate, Linearisations, PoseInnovation, Proposal, hold, with_hold},
 };
 
 impl Track {
@@ -15,7 +15,7 @@ impl Track {
         let view = self.view();
         let null = self.null_directions();
         let hold = hold(&self.belief, &self.map, &null);
-        let proposal = view.solve(frame, &null, hold.as_ref(), 1).ok()?;
+        let proposal = view.solve(frame, &null, hold.as_ref(), Linearisations::Once).ok()?;
         let variance = view.comparable_noise().powi(2) * self.noise.correlation();
         let innovation = self.innovation_of(&proposal, hold.as_ref(), variance).squared;
         let (measurement, _) = view.compare(frame, &proposal, innovation, self.reference.radius);

@@ -19,7 +19,9 @@ use crate::{
     },
     prediction::{ByKind, ShapeNoise, TimeOfChange},
     tuning::{map::FEWEST_POINTS, noise as of_noise, update as tuning, usual_agreement},
-    update::{FrameMeasurement, Gate, PoseMeasurement, Rejection, Sensitivity, commit, hold, left_by_offsets},
+    update::{
+        FrameMeasurement, Gate, Linearisations, PoseMeasurement, Rejection, Sensitivity, commit, hold, left_by_offsets,
+    },
 };
 
 /// One object: its outline, where it is, how it moves, and how well all of it is known.
@@ -123,7 +125,7 @@ impl Track {
         let (view, radius) = (self.view(), self.reference.radius);
         let null = self.map.null_directions(self.belief.model, &self.belief.pose);
         let hold = hold(&self.belief, &self.map, &null);
-        let proposal = match view.solve(frame, &null, hold.as_ref(), tuning::MOST_ITERATIONS) {
+        let proposal = match view.solve(frame, &null, hold.as_ref(), Linearisations::UntilSettled) {
             Ok(proposal) => proposal,
             Err(iterations) => return Outcome::unsolved(FrameMeasurement::unsolved(iterations), gate),
         };
@@ -143,10 +145,8 @@ impl Track {
         let by_pose = innovation.degrees_of_freedom;
         let taken = TakenOff { by_pose, left_by_offsets: left_by_offsets(&self.belief, frame) };
         let correlation = correlation_of(frame, known_noise, taken);
-        let verdict = match proposal.last_step > self.view().moved_by(tuning::UNSETTLED) {
-            true => Err(Rejection::NotFound),
-            false => self.verdict(gate, &measurement),
-        };
+        let is_settled = proposal.last_step <= self.view().moved_by(tuning::UNSETTLED);
+        let verdict = if is_settled { self.verdict(gate, &measurement) } else { Err(Rejection::NotFound) };
         let verdict = self.verdict_if_grown((gate, &measurement), (frame, &proposal.pose), verdict);
         let shows_outline = matches!(verdict, Ok(()) | Err(Rejection::InnovationTooLarge { .. }));
         let measured = shows_outline.then(|| PoseMeasurement::of(&self.belief, &proposal, frame));

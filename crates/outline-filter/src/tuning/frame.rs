@@ -155,6 +155,7 @@ pub(crate) mod update {
     /// As that, as long as each of them moves points by more than [`FAR`] cells, and [`BEYOND_NOISE`]: an object that lies a fifth of its size from where
     /// it was expected takes ten and more.
     pub(crate) const MOST_FROM_FAR: usize = 20;
+    /// Cells that points are moved by beyond which they have left their own.
     pub(crate) const FAR: f64 = 1.0;
     /// Deviations of the noise that a step is beyond by which an object moves, and no points that change cells.
     pub(crate) const BEYOND_NOISE: f64 = 4.0;

@@ -20,7 +20,7 @@ pub(crate) use innovation::PoseInnovation;
 pub(crate) use normal_equations::accumulate;
 pub(crate) use pose_measurement::{PoseMeasurement, left_by_offsets};
 pub(crate) use sensitivity::Sensitivity;
-pub(crate) use solve::Proposal;
+pub(crate) use solve::{Linearisations, Proposal};
 pub(crate) use unmodelled_displacement::{
     EDGES, GROWTH, LENS, PERSPECTIVE, READ_OUT, SHEAR, UNMODELLED, UnmodelledMatrix, UnmodelledVector,
 };

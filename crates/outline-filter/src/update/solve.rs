@@ -33,7 +33,24 @@ pub(crate) struct Proposal {
     pub(crate) last_step: f64,
 }
 
+/// How often a frame is linearised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Linearisations {
+    Once,
+    /// Until the pose settles, or there have been [too many](tuning::MOST_ITERATIONS).
+    UntilSettled,
+}
+
 impl View<'_> {
+    /// Whether one more is taken. An object that lies far from where it was expected takes more of them to come there.
+    fn goes_on(&self, linearisations: Linearisations, taken: usize, last_step: f64) -> bool {
+        match linearisations {
+            Linearisations::Once => taken < 1,
+            Linearisations::UntilSettled if taken < tuning::MOST_ITERATIONS => true,
+            Linearisations::UntilSettled => taken < tuning::MOST_FROM_FAR && last_step > self.moved_by(tuning::FAR),
+        }
+    }
+
     /// The step of a pose from which on its points are moved by so many cells, and beyond the noise. Infinite where few points tell the turn: the others
     /// stay where they are, however far it goes.
     pub(crate) fn moved_by(&self, cells: f64) -> f64 {
@@ -44,13 +61,13 @@ impl View<'_> {
     }
 
     /// Linearises and solves until the pose settles; the number of linearisations where there is no solution. `null` are the null directions
-    /// of the predicted pose, `hold` is information that is added for the solution only, `most` is the number of linearisations at most.
+    /// of the predicted pose, `hold` is information that is added for the solution only.
     pub(crate) fn solve(
         &self,
         frame: &mut Frame,
         null: &[NullDirection],
         hold: Option<&StateMatrix>,
-        most: usize,
+        linearisations: Linearisations,
     ) -> Result<Proposal, usize> {
         let belief = self.belief;
         let (model, k) = (belief.model, belief.parameter_count());
@@ -67,11 +84,7 @@ impl View<'_> {
         let mut null = null.to_vec();
         let mut work = Arrowhead::new(k);
         let mut settled = false;
-        // An object that lies far from where it was expected takes more of them to come there.
-        let far = self.moved_by(tuning::FAR);
-        let more =
-            |p: &Proposal| p.iterations < most || most > 1 && p.last_step > far && p.iterations < tuning::MOST_FROM_FAR;
-        while more(&proposal) && !settled {
+        while !settled && self.goes_on(linearisations, proposal.iterations, proposal.last_step) {
             // A turn that is not seen is one about the centroid as the frame has it.
             if proposal.iterations > 0 && !null.is_empty() {
                 null = self.map.null_directions(model, &proposal.pose);

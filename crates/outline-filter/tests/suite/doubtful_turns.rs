@@ -175,7 +175,11 @@ fn a_turn_that_has_grown_beyond_half_a_circle_per_frame_is_in_doubt() {
         if rate - 0.01 > PI + 0.12 {
             assert_eq!(omega_of(&run), None, "{frame}: {rate}");
             // Nothing is in doubt of a motion that is not known, as after the object was found again.
-            let Some(ambiguity) = run.ambiguity() else { continue };
+            let Some(ambiguity) = run.ambiguity() else {
+                let known = run.estimate().map_or(0, |e| e.parameters().filter(|p| p.value.is_some()).count());
+                assert_eq!(known, 0, "{frame}: {:?}", run.estimate());
+                continue;
+            };
             doubts += 1;
             assert!(ambiguity.rival_turns.iter().all(|rival| rival.abs() < TAU), "{ambiguity:?}");
         }
