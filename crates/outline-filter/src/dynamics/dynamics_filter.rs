@@ -92,6 +92,11 @@ impl DynamicsFilter {
         of_any_size!(self, hypotheses => hypotheses.of_outline_now(pose))
     }
 
+    /// Ends a step whose frame tells nothing of the pose.
+    pub(crate) fn pass_over(&mut self) {
+        of_any_size!(self, hypotheses => hypotheses.blend_arrivals());
+    }
+
     /// Probabilities of the three kinds of dynamics.
     pub(crate) fn weights(&self) -> DynamicsWeights {
         of_any_size!(self, hypotheses => hypotheses.weights())

@@ -9,7 +9,7 @@ use super::{
     course::Course,
     hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
-    mixing::mix,
+    mixing::{Arrival, mix},
     perspective::is_beyond_linear,
     setting::{Dynamics, DynamicsWeights},
     steady_change::SteadyChange,
@@ -35,6 +35,9 @@ pub(crate) struct InteractingHypotheses<const N: usize> {
     pub(super) model: MotionModel,
     setting: Dynamics,
     pub(super) hypotheses: Vec<Hypothesis<N>>,
+    /// None but from a step in time until a frame has been compared with it.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) arrivals: Vec<Arrival<N>>,
     /// None while the motion is seen to change, and where a setting says how it goes on.
     pub(super) steady_change: Option<SteadyChange<N>>,
     /// In the same order; zeros behind them.
@@ -88,6 +91,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             model,
             setting,
             hypotheses: Vec::with_capacity(MOST),
+            arrivals: Vec::new(),
             steady_change: None,
             weights: [0.0; MOST],
             reference,
@@ -159,19 +163,22 @@ impl<const N: usize> InteractingHypotheses<N> {
         if is_beyond_linear(self.model, null) {
             return false;
         }
+        self.blend_arrivals();
         self.reckon_with_change(seconds);
         let moved = CentredPose { pose: self.reference.pose, centroid: pose.centroid };
         let (model, reference) = (self.model, self.reference);
         self.all().for_each(|hypothesis| hypothesis.move_centroid(model, &reference, &moved));
         self.reference = moved;
-        mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds));
+        let arrivals = self.leads.then_some(&mut self.arrivals);
+        mix(&mut self.hypotheses, &mut self.weights, self.model, (&self.pose_variance, seconds), arrivals);
         let step = Step::new((self.model, seconds), [&self.reference, pose], &self.pose_variance);
         let possible = step.is_some_and(|step| {
             let fails = |change: &mut SteadyChange<N>| change.hypotheses().iter_mut().any(|h| !h.predict(&step));
             if self.steady_change.as_mut().is_some_and(fails) {
                 self.steady_change = None;
             }
-            self.hypotheses.iter_mut().all(|hypothesis| hypothesis.predict(&step))
+            let arrived = self.arrivals.iter_mut().map(|arrival| &mut arrival.state);
+            self.hypotheses.iter_mut().chain(arrived).all(|hypothesis| hypothesis.predict(&step))
         });
         self.reference = *pose;
         if !self.turn_is_of_path {
@@ -195,7 +202,26 @@ impl<const N: usize> InteractingHypotheses<N> {
 
     /// All that are moved on, those without a weight too.
     fn all(&mut self) -> impl Iterator<Item = &mut Hypothesis<N>> {
-        self.hypotheses.iter_mut().chain(self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses))
+        let arrived = self.arrivals.iter_mut().map(|arrival| &mut arrival.state);
+        self.hypotheses.iter_mut().chain(arrived).chain(self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses))
+    }
+
+    /// Takes those that have changed to each hypothesis to be one with those that have not.
+    pub(crate) fn blend_arrivals(&mut self) {
+        let Self { hypotheses, arrivals, .. } = self;
+        for Arrival { number, share, state } in arrivals.drain(..) {
+            let hypothesis = &mut hypotheses[number];
+            hypothesis.blend((&state.mean, &state.covariance), share, hypothesis.size());
+        }
+    }
+
+    /// A hypothesis with those that have changed to it.
+    pub(super) fn blended(&self, number: usize) -> Option<Hypothesis<N>> {
+        let mut hypothesis = self.hypotheses.get(number)?.clone();
+        if let Some(Arrival { share, state, .. }) = self.arrivals.iter().find(|arrival| arrival.number == number) {
+            hypothesis.blend((&state.mean, &state.covariance), *share, hypothesis.size());
+        }
+        Some(hypothesis)
     }
 
     /// Updates by what an accepted frame tells of the pose: the error of the reference pose. `off` are standard deviations of that pose about the
@@ -223,6 +249,22 @@ impl<const N: usize> InteractingHypotheses<N> {
             logarithms[number] = innovation.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
             standardised[number] = innovation.map(|i| i.standardised);
         }
+        for Arrival { number, share, state } in &mut self.arrivals {
+            let (own, arrived) = (logarithms[*number], state.update(&measurement));
+            let of_arrived = arrived.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
+            let largest = own.max(of_arrived);
+            if !largest.is_finite() {
+                *share = 0.0;
+                continue;
+            }
+            let [stayed, came] = [(1.0 - *share) * (own - largest).exp(), *share * (of_arrived - largest).exp()];
+            *share = came / (stayed + came);
+            logarithms[*number] = largest + (stayed + came).ln();
+            if *share > 0.5 {
+                standardised[*number] = arrived.map(|i| i.standardised);
+            }
+        }
+        self.blend_arrivals();
         if let Some(change) = &mut self.steady_change {
             change.update(&measurement);
         }

@@ -20,12 +20,14 @@ struct Pooled<const N: usize> {
 /// Takes every hypothesis to have been one of the others a step ago by chance; the probabilities sum up to one.
 ///
 /// The probability of a change is that the one course is left, times the share of changes that lead to the other, so that every mixture has
-/// two parts: the hypothesis itself, and all that have changed together.
+/// two parts: the hypothesis itself, and all that have changed together. They are blended, or kept apart as `arrivals` where that is asked for and
+/// matters.
 pub(super) fn mix<const N: usize>(
     hypotheses: &mut [Hypothesis<N>],
     weights: &mut [f64],
     model: MotionModel,
-    (pose_variance, seconds): (&CentredVector, f64),
+    units: (&CentredVector, f64),
+    mut arrivals: Option<&mut Vec<Arrival<N>>>,
 ) {
     let k = N / 3;
     if hypotheses.len() < 2 {
@@ -35,7 +37,7 @@ pub(super) fn mix<const N: usize>(
     let pooled = [with_all.of_velocity(hypotheses, weights, model), with_all];
     let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
     let shares: f64 = hypotheses.iter().map(|hypothesis| arriving(hypothesis.course)).sum();
-    for (hypothesis, weight) in hypotheses.iter_mut().zip(weights) {
+    for (number, (hypothesis, weight)) in hypotheses.iter_mut().zip(weights).enumerate() {
         let of_all = match Accelerations::of(hypothesis.course) {
             Accelerations::OfVelocity => &pooled[0],
             Accelerations::All | Accelerations::None => &pooled[1],
@@ -43,49 +45,97 @@ pub(super) fn mix<const N: usize>(
         // Of what has changed, this hypothesis takes its own part back.
         let stays = *weight * (1.0 - shares * leaving(hypothesis.course));
         let taken = all * arriving(hypothesis.course);
-        let total = taken + stays;
-        let [changed, own] = [taken / total, stays / total];
-        let n = hypothesis.size();
-        // What a course has alone is as it was, or nothing is known of it.
-        let shared = if hypothesis.course == Course::ConstantVelocity { 2 * k } else { n };
+        *weight = taken + stays;
+        let share = taken / *weight;
+        match &mut arrivals {
+            Some(arrivals) if widens(hypothesis, of_all, share, units) => {
+                arrivals.push(Arrival { number, share, state: of_all.as_course(hypothesis.course, model, units) });
+            }
+            _ => {
+                let n = hypothesis.size();
+                // What a course has alone is as it was, or nothing is known of it.
+                let shared = if hypothesis.course == Course::ConstantVelocity { 2 * k } else { n };
+                hypothesis.blend((&of_all.mean, &of_all.covariance), share, shared);
+                if n > 2 * k {
+                    let unknown = if shared < n { 1.0 } else { of_all.without };
+                    hypothesis.add_unknown(model, units, share * unknown);
+                }
+            }
+        }
+    }
+}
+
+/// Those that have changed to a hypothesis in the last step, kept apart from those that have not until a frame has told which explain it.
+#[derive(Debug, Clone)]
+pub(super) struct Arrival<const N: usize> {
+    /// Of the hypothesis.
+    pub(super) number: usize,
+    /// Their share of its probability.
+    pub(super) share: f64,
+    pub(super) state: Hypothesis<N>,
+}
+
+/// Whether a hypothesis that has been blended with what has changed to it expects a pose less well than those do that have not: a state that is
+/// wide on account of a few explains what neither the few nor the many do.
+fn widens<const N: usize>(
+    hypothesis: &Hypothesis<N>,
+    of_all: &Pooled<N>,
+    share: f64,
+    (pose_variance, seconds): (&CentredVector, f64),
+) -> bool {
+    let k = N / 3;
+    (0..k).any(|j| {
+        let expected = |covariance: &SMatrix<f64, N, N>| {
+            covariance[(j, j)] + 2.0 * seconds * covariance[(j, k + j)] + seconds * seconds * covariance[(k + j, k + j)]
+        };
+        let apart = (of_all.mean[j] - hypothesis.mean[j]) + seconds * (of_all.mean[k + j] - hypothesis.mean[k + j]);
+        let added = share * (expected(&of_all.covariance) + apart * apart);
+        added > tuning::WIDENS * (expected(&hypothesis.covariance) + pose_variance[j])
+    })
+}
+
+impl<const N: usize> Hypothesis<N> {
+    /// Takes a share of it to be in another state: both have the first entries, so many, in common.
+    pub(super) fn blend(
+        &mut self,
+        (mean, of_covariance): (&SVector<f64, N>, &SMatrix<f64, N, N>),
+        share: f64,
+        shared: usize,
+    ) {
+        let own = 1.0 - share;
         let mut apart = [0.0; N];
         for (i, apart) in apart.iter_mut().enumerate().take(shared) {
-            *apart = of_all.mean[i] - hypothesis.mean[i];
-            hypothesis.mean[i] += changed * *apart;
+            *apart = mean[i] - self.mean[i];
+            self.mean[i] += share * *apart;
         }
-        let (covariance, of_all_covariance) = (&mut hypothesis.covariance.data.0, &of_all.covariance.data.0);
+        let (covariance, of_covariance) = (&mut self.covariance.data.0, &of_covariance.data.0);
         vectorised(
             #[inline(always)]
             || {
                 // Columns are written anew, where nothing else is.
-                let of_covariance = covariance.iter_mut().zip(of_all_covariance).enumerate();
+                let columns = covariance.iter_mut().zip(of_covariance).enumerate();
                 if shared == N {
-                    for (j, (entries, of_all)) in of_covariance {
-                        let (mut column, by_column) = ([0.0; N], changed * apart[j]);
+                    for (j, (entries, of_other)) in columns {
+                        let (mut column, by_column) = ([0.0; N], share * apart[j]);
                         for i in 0..N {
-                            column[i] = changed * of_all[i] + own * (entries[i] + by_column * apart[i]);
+                            column[i] = share * of_other[i] + own * (entries[i] + by_column * apart[i]);
                         }
                         *entries = column;
                     }
                     return;
                 }
                 // What lies beyond the entries in use is none, in all of them.
-                let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { changed } else { 0.0 });
-                for (j, (entries, of_all)) in of_covariance {
-                    let (mut column, by_column) = ([0.0; N], changed * apart[j]);
+                let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { share } else { 0.0 });
+                for (j, (entries, of_other)) in columns {
+                    let (mut column, by_column) = ([0.0; N], share * apart[j]);
                     let counts = if j < shared { 1.0 } else { 0.0 };
                     for i in 0..N {
-                        column[i] = of_shared[i] * counts * of_all[i] + own * (entries[i] + by_column * apart[i]);
+                        column[i] = of_shared[i] * counts * of_other[i] + own * (entries[i] + by_column * apart[i]);
                     }
                     *entries = column;
                 }
             },
         );
-        let unknown = if shared < n { 1.0 } else { of_all.without };
-        if n > 2 * k {
-            hypothesis.add_unknown(model, (pose_variance, seconds), changed * unknown);
-        }
-        *weight = total;
     }
 }
 
@@ -128,6 +178,20 @@ fn counting<'a, const N: usize>(
 }
 
 impl<const N: usize> Pooled<N> {
+    /// As the state of a course.
+    fn as_course(&self, course: Course, model: MotionModel, units: (&CentredVector, f64)) -> Hypothesis<N> {
+        let (n, k) = (if course.has_more_than_motion() { N } else { 2 * N / 3 }, N / 3);
+        let shared = if course == Course::ConstantVelocity { 2 * k } else { n };
+        let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { 0.0 });
+        let covariance =
+            SMatrix::from_fn(|i, j| if i < shared && j < shared { self.covariance[(i, j)] } else { 0.0 });
+        let mut hypothesis = Hypothesis { course, mean, covariance };
+        if n > 2 * k {
+            hypothesis.add_unknown(model, units, if shared < n { 1.0 } else { self.without });
+        }
+        hypothesis
+    }
+
     /// With all accelerations.
     fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel) -> Self {
         let k = N / 3;
@@ -259,7 +323,7 @@ mod tests {
         let left = courses.map(|course| {
             let mut hypotheses = courses.map(of);
             let mut weights = courses.map(|other| f64::from(u8::from(other == course)));
-            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1));
+            mix(&mut hypotheses, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1), None);
             assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{weights:?}");
             assert!(weights.iter().all(|weight| *weight > 0.0), "{weights:?}");
             if course != courses[2] {
@@ -289,7 +353,7 @@ mod tests {
         let before = [of(1e-5, 0.3, 1.0), of(1e-2, -0.2, 2.0), of(1e1, 1.0, 0.5)];
         let weights_before = [0.5, 0.3, 0.2];
         let (mut after, mut weights) = (before.clone(), weights_before);
-        mix(&mut after, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1));
+        mix(&mut after, &mut weights, MotionModel::Rigid, (&CentredVector::repeat(1e-4), 0.1), None);
         let change = tuning::LEAVES_CHANGING;
         for (j, mixed) in after.iter().enumerate() {
             // Equation 68: of hypothesis i comes what has left it for j, and of j itself what has stayed.

@@ -67,6 +67,11 @@ impl MotionHistory {
     /// Records what became of a frame some time after the one before.
     pub(super) fn record(&mut self, outcome: &Outcome, seconds: f64) {
         self.since_taken += seconds;
+        if !outcome.is_accepted()
+            && let Some(dynamics) = self.dynamics.as_mut()
+        {
+            dynamics.pass_over();
+        }
         if outcome.is_accepted() {
             (self.contradiction, self.since_taken) = (None, 0.0);
             if let Some((dynamics, measured)) = self.dynamics.as_mut().zip(outcome.pose.as_ref()) {

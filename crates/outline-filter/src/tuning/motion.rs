@@ -88,6 +88,8 @@ pub(crate) mod dynamics {
     pub(crate) const OUTSIDE_THREE_DEVIATIONS: f64 = 0.0027;
     /// Deviations of a pose that an acceleration which begins moves the object by over the steps that its level remembers.
     pub(crate) const FIRST_ACCELERATION: f64 = 3.0;
+    /// Factor of the variance of an expected pose beyond which what has changed to a hypothesis is kept apart from it until a frame has been seen.
+    pub(crate) const WIDENS: f64 = 0.25;
     /// Share of a hypothesis below which it counts for nothing.
     pub(crate) const LEAST_SHARE: f64 = 1e-6;
     /// Variance of a pose, in squares of RMS radii or rad: no less than rounding, and no more than a quarter.
