@@ -147,14 +147,12 @@ fn leaving(course: Course) -> f64 {
     }
 }
 
-/// How often a change leads to a course, relative to others: 1 for all but [`Course::Shaken`].
+/// How often a change leads to a course, relative to those that accelerate.
 fn arriving(course: Course) -> f64 {
     match course {
         Course::Shaken { .. } => tuning::BEGINS_TO_SHAKE,
-        Course::ConstantGenerator
-        | Course::ConstantVelocity
-        | Course::Accelerating { .. }
-        | Course::SteadyChange { .. } => 1.0,
+        Course::ConstantGenerator | Course::ConstantVelocity => tuning::BECOMES_CONSTANT,
+        Course::Accelerating { .. } | Course::SteadyChange { .. } => 1.0,
     }
 }
 

@@ -105,10 +105,11 @@ impl MotionFilter {
         Some(unknown.fold(estimate, |e, (j, _)| e.with_unobservable(j)))
     }
 
-    /// Whether the motion has been seen to change, and is known from one step alone since the object was found again: what that tells is a mean over the
-    /// step, and by how much it is off the motion at its end nothing says.
+    /// Whether the motion has been seen to change, or not where it was expected, and is known from one step alone since the object was found again:
+    /// what that tells is a mean over the step, and by how much it is off the motion at its end nothing says.
     fn may_still_change(&self) -> bool {
-        self.motion_changed && self.track.as_ref().is_some_and(Track::is_found_one_step_ago)
+        let is_contradicted = self.motion_changed || self.counts.rejected_in_recording > 0;
+        is_contradicted && self.track.as_ref().is_some_and(Track::is_found_one_step_ago)
     }
 
     /// Whether the turn that is stated is told by the path of the object alone: the outline does not show it, and
@@ -188,7 +189,7 @@ impl MotionFilter {
     /// [ambiguous](Self::ambiguity), or if [`estimate`](Self::estimate) is `None`.
     #[must_use]
     pub fn velocity(&self) -> Option<PointVelocity> {
-        if self.turn_hypotheses.are_doubtful() || self.unstated().is_some() {
+        if self.turn_hypotheses.are_doubtful() || self.unstated().is_some() || self.may_still_change() {
             return None;
         }
         self.track.as_ref()?.velocity_of_centroid(&self.state()?)

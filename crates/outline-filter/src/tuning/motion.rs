@@ -54,12 +54,15 @@ pub(crate) mod batch {
 pub(crate) mod dynamics {
     /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 70,000 frames.
     /// With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a frame or two later.
-    pub(crate) const LEAVES_CONSTANT: f64 = 0.000_001_5;
+    pub(crate) const LEAVES_CONSTANT: f64 = 0.000_001_3;
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
-    /// How often a camera begins to shake, for one change to any other course: cameras that shake do so from the start. A motion that changes
-    /// slowly looks for some frames like one seen by a camera that shakes.
-    pub(crate) const BEGINS_TO_SHAKE: f64 = 0.01;
+    /// How often a motion that changes becomes constant, for one change of how it changes. A body that swings looks for three or four frames at its
+    /// turning points like one of a constant motion, and every frame of that speaks for it by up to sixty to one.
+    pub(crate) const BECOMES_CONSTANT: f64 = 0.01;
+    /// How often a camera begins to shake, as that: cameras that shake do so from the start. A motion that changes again, or
+    /// slowly, looks for some frames like one seen by a camera that shakes.
+    pub(crate) const BEGINS_TO_SHAKE: f64 = 0.0001;
     /// Probabilities before the third frame: most things on a table or in a machine turn about a fixed point, and few accelerate. Where frames
     /// do not tell a constant velocity from a constant generator, as where an object turns slowly, chance must not leave it out.
     pub(crate) const PRIOR_OF_GENERATOR: f64 = 0.886;
@@ -69,10 +72,11 @@ pub(crate) mod dynamics {
     pub(crate) const PRIOR_OF_EACH_LEVEL: f64 = 0.001;
     /// How much a camera shakes, in deviations of a pose as the points of a frame tell it.
     pub(crate) const SHAKEN: [f64; 2] = [4.0, 20.0];
-    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. They remember some forty
-    /// frames, fourteen, four, and none; the last are those of bodies that are pushed. Between levels ten thousand times apart a body that swings
-    /// has none that fits: deviations were half of the errors there.
-    pub(crate) const LEVELS: [f64; 6] = [1e-8, 1e-5, 1e-2, 1e1, 1e4, 1e7];
+    /// Densities of the change of accelerations: in variances of a pose as a frame tells it, per fifth power of a step. The first remember some forty
+    /// frames, fourteen and four, and tell poses apart by their variance hardly more than a constant motion does; the last remember none, as of bodies
+    /// that are pushed. From the third on they are thirty times apart: where none fits, a constant motion explains turning points better, and
+    /// between levels ten thousand times apart deviations were half of the errors.
+    pub(crate) const LEVELS: [f64; 9] = [1e-8, 1e-5, 1e-2, 0.3, 1e1, 3e2, 1e4, 3e5, 1e7];
     /// Steps that a density of one remembers; others, by its sixth root as many times (the gain of a Kalman filter of a random jerk).
     pub(crate) const MEMORY: f64 = 2.0;
     /// As these, where the velocity of the centroid alone changes.
