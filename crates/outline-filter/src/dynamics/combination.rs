@@ -169,7 +169,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             Purpose::Statement => self.least_weight(tuning::OUTSIDE_THREE_DEVIATIONS),
         };
         std::array::from_fn(|number| {
-            let (hypothesis, weight) = (&self.blended(number)?, self.weights[number]);
+            let (hypothesis, weight) = (self.hypotheses.get(number)?, self.weights[number]);
             let is_generator = hypothesis.course == Course::ConstantGenerator;
             let has_generator = is_generator || matches!(hypothesis.course, Course::Shaken { .. });
             let takes_part = weight >= least && !(has_generator && purpose == Purpose::PredictionByOthers);
@@ -179,6 +179,7 @@ impl<const N: usize> InteractingHypotheses<N> {
                     Part { weight, mean, covariance, is_measured: self.outline_has_moved, accelerates: false }
                 }
                 None => {
+                    let hypothesis = &*self.blended(number, hypothesis);
                     let mean = self.mean_of(hypothesis);
                     let covariance = (weight >= likely).then(|| self.covariance_of(hypothesis));
                     let accelerates = matches!(hypothesis.course, Course::Accelerating { .. });

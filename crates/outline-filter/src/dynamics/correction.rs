@@ -4,7 +4,7 @@
 //! `(W^-1 + P)^-1 = (I + W P)^-1 W = T T'`, where `T = L C^-T` and `C C' = I + L' P L`. That is never singular, also where W is, and has the
 //! determinant of `I + W P`. The covariance loses `H H'`, where H are its columns of the pose times T: it stays symmetric bit by bit.
 use super::{
-    centred::{CentredMatrix, CentredVector},
+    centred::{CentredDeviations, CentredMatrix, CentredVector},
     hypothesis::{CentredMeasurement, Hypothesis, Innovation},
 };
 use crate::{tuning::dynamics as tuning, vectors::vectorised};
@@ -27,6 +27,25 @@ pub(super) fn root_of(information: &CentredMatrix, k: usize) -> CentredMatrix {
         }
     }
     root
+}
+
+/// Information on a pose that is off, besides, by these deviations: (W^-1 + C)^-1 = (I + W C)^-1 W.
+pub(super) fn less_known(information: CentredMatrix, off: &CentredDeviations) -> Option<CentredMatrix> {
+    if off.iter().all(|deviation| *deviation == 0.0) {
+        return Some(information);
+    }
+    let covariance = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| off[i] * off[i]));
+    let less = (CentredMatrix::identity() + information * covariance).lu().solve(&information)?;
+    Some(0.5 * (less + less.transpose()))
+}
+
+/// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
+pub(super) fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
+    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
+    let jitter =
+        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
+    let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
+    regular.lu().solve(b)
 }
 
 /// What a correction is made of.
@@ -184,7 +203,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::dynamics::course::Course;
+    use crate::dynamics::{centred::LARGEST, course::Course};
 
     /// Largest difference from the plain way, in units of what is there: `(I + W P)^-1 W` by elimination, for information of a rank on a pose of K
     /// parameters.
@@ -222,6 +241,18 @@ mod tests {
         let of_mean = (corrected.mean - expected_mean).amax() / (mean.amax() + covariance.amax().sqrt());
         let of_likelihood = (found.log_likelihood - log_likelihood).abs() / (1.0 + log_likelihood.abs());
         standardised.fold(of_covariance.max(of_mean).max(of_likelihood), f64::max)
+    }
+
+    #[test]
+    fn an_error_besides_takes_information_away_also_where_there_is_none() {
+        let mut information = CentredMatrix::zeros();
+        (information[(0, 0)], information[(1, 1)], information[(0, 1)], information[(1, 0)]) = (4.0, 9.0, 1.0, 1.0);
+        assert_eq!(less_known(information, &CentredDeviations::zeros()), Some(information));
+        let less = less_known(information, &CentredDeviations::from_element(0.5)).expect("a solution");
+        let known = |m: &CentredMatrix| m.fixed_view::<2, 2>(0, 0).try_inverse().expect("two parameters are known");
+        let added = known(&less) - known(&information);
+        assert!((added - nalgebra::Matrix2::identity() * 0.25).amax() < 1e-12, "{added}");
+        assert_eq!(less.view((2, 2), (LARGEST - 2, LARGEST - 2)).amax(), 0.0);
     }
 
     proptest! {

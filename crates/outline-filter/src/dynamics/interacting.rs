@@ -1,15 +1,18 @@
 //! The hypotheses side by side.
+use std::borrow::Cow;
+
 use freeform_riccati::{MAX_PARAMETERS, MotionModel};
 use nalgebra::{Matrix3, Point2, SVector};
 
 use super::{
+    arrival::Arrival,
     centred::{CentredDeviations, CentredMatrix, CentredPose, CentredVector, LARGEST, Summary},
     common_error::CommonError,
-    correction::root_of,
+    correction::{less_known, root_of, solved},
     course::Course,
     hypothesis::{CentredMeasurement, Hypothesis},
     innovations::InnovationSeries,
-    mixing::{Arrival, mix},
+    mixing::mix,
     perspective::is_beyond_linear,
     setting::{Dynamics, DynamicsWeights},
     steady_change::SteadyChange,
@@ -91,7 +94,7 @@ impl<const N: usize> InteractingHypotheses<N> {
             model,
             setting,
             hypotheses: Vec::with_capacity(MOST),
-            arrivals: Vec::new(),
+            arrivals: Vec::with_capacity(MOST),
             steady_change: None,
             weights: [0.0; MOST],
             reference,
@@ -203,25 +206,25 @@ impl<const N: usize> InteractingHypotheses<N> {
     /// All that are moved on, those without a weight too.
     fn all(&mut self) -> impl Iterator<Item = &mut Hypothesis<N>> {
         let arrived = self.arrivals.iter_mut().map(|arrival| &mut arrival.state);
-        self.hypotheses.iter_mut().chain(arrived).chain(self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses))
+        self.hypotheses
+            .iter_mut()
+            .chain(arrived)
+            .chain(self.steady_change.iter_mut().flat_map(SteadyChange::hypotheses))
     }
 
     /// Takes those that have changed to each hypothesis to be one with those that have not.
     pub(crate) fn blend_arrivals(&mut self) {
         let Self { hypotheses, arrivals, .. } = self;
-        for Arrival { number, share, state } in arrivals.drain(..) {
-            let hypothesis = &mut hypotheses[number];
-            hypothesis.blend((&state.mean, &state.covariance), share, hypothesis.size());
-        }
+        arrivals.drain(..).for_each(|arrival| arrival.blend_into(&mut hypotheses[arrival.number]));
     }
 
-    /// A hypothesis with those that have changed to it.
-    pub(super) fn blended(&self, number: usize) -> Option<Hypothesis<N>> {
-        let mut hypothesis = self.hypotheses.get(number)?.clone();
-        if let Some(Arrival { share, state, .. }) = self.arrivals.iter().find(|arrival| arrival.number == number) {
-            hypothesis.blend((&state.mean, &state.covariance), *share, hypothesis.size());
+    /// The hypothesis of a number with those that have changed to it.
+    pub(super) fn blended<'a>(&self, number: usize, hypothesis: &'a Hypothesis<N>) -> Cow<'a, Hypothesis<N>> {
+        let mut blended = Cow::Borrowed(hypothesis);
+        if let Some(arrival) = self.arrivals.iter().find(|arrival| arrival.number == number) {
+            arrival.blend_into(blended.to_mut());
         }
-        Some(hypothesis)
+        blended
     }
 
     /// Updates by what an accepted frame tells of the pose: the error of the reference pose. `off` are standard deviations of that pose about the
@@ -249,20 +252,10 @@ impl<const N: usize> InteractingHypotheses<N> {
             logarithms[number] = innovation.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
             standardised[number] = innovation.map(|i| i.standardised);
         }
-        for Arrival { number, share, state } in &mut self.arrivals {
-            let (own, arrived) = (logarithms[*number], state.update(&measurement));
-            let of_arrived = arrived.map_or(f64::NEG_INFINITY, |i| i.log_likelihood);
-            let largest = own.max(of_arrived);
-            if !largest.is_finite() {
-                *share = 0.0;
-                continue;
-            }
-            let [stayed, came] = [(1.0 - *share) * (own - largest).exp(), *share * (of_arrived - largest).exp()];
-            *share = came / (stayed + came);
-            logarithms[*number] = largest + (stayed + came).ln();
-            if *share > 0.5 {
-                standardised[*number] = arrived.map(|i| i.standardised);
-            }
+        for arrival in &mut self.arrivals {
+            let number = arrival.number;
+            let (logarithm, score) = arrival.update(&measurement, (logarithms[number], standardised[number]));
+            (logarithms[number], standardised[number]) = (logarithm, score);
         }
         self.blend_arrivals();
         if let Some(change) = &mut self.steady_change {
@@ -374,25 +367,6 @@ impl<const N: usize> InteractingHypotheses<N> {
     }
 }
 
-/// Information on a pose that is off, besides, by these deviations: (W^-1 + C)^-1 = (I + W C)^-1 W.
-fn less_known(information: CentredMatrix, off: &CentredDeviations) -> Option<CentredMatrix> {
-    if off.iter().all(|deviation| *deviation == 0.0) {
-        return Some(information);
-    }
-    let covariance = CentredMatrix::from_diagonal(&CentredVector::from_fn(|i, _| off[i] * off[i]));
-    let less = (CentredMatrix::identity() + information * covariance).lu().solve(&information)?;
-    Some(0.5 * (less + less.transpose()))
-}
-
-/// Solution of `W x = b` for a matrix that may be singular: none along what it says nothing of.
-fn solved(information: &CentredMatrix, b: &CentredVector, k: usize) -> Option<CentredVector> {
-    let largest = (0..k).map(|j| information[(j, j)]).fold(0.0, f64::max);
-    let jitter =
-        |j: usize| if j < k { tuning::SINGULAR * (information[(j, j)] + tuning::SINGULAR * largest) } else { 1.0 };
-    let regular = information + CentredMatrix::from_diagonal(&CentredVector::from_fn(|j, _| jitter(j)));
-    regular.lu().solve(b)
-}
-
 #[cfg(feature = "serde")]
 impl<const N: usize> InteractingHypotheses<N> {
     /// Whether the hypotheses are those of a model and a setting, and all their numbers can be worked with.
@@ -417,22 +391,5 @@ impl<const N: usize> InteractingHypotheses<N> {
             && self.series.is_valid()
             && (self.shaking == 1.0
                 || Course::all_of(self.setting).iter().any(|course| course.shaking() == self.shaking))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_error_besides_takes_information_away_also_where_there_is_none() {
-        let mut information = CentredMatrix::zeros();
-        (information[(0, 0)], information[(1, 1)], information[(0, 1)], information[(1, 0)]) = (4.0, 9.0, 1.0, 1.0);
-        assert_eq!(less_known(information, &CentredDeviations::zeros()), Some(information));
-        let less = less_known(information, &CentredDeviations::from_element(0.5)).expect("a solution");
-        let known = |m: &CentredMatrix| m.fixed_view::<2, 2>(0, 0).try_inverse().expect("two parameters are known");
-        let added = known(&less) - known(&information);
-        assert!((added - nalgebra::Matrix2::identity() * 0.25).amax() < 1e-12, "{added}");
-        assert_eq!(less.view((2, 2), (LARGEST - 2, LARGEST - 2)).amax(), 0.0);
     }
 }

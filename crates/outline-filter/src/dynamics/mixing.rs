@@ -3,6 +3,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{SMatrix, SVector};
 
 use super::{
+    arrival::Arrival,
     centred::{CentredVector, centred_generator, parts},
     course::Course,
     hypothesis::Hypothesis,
@@ -65,16 +66,6 @@ pub(super) fn mix<const N: usize>(
     }
 }
 
-/// Those that have changed to a hypothesis in the last step, kept apart from those that have not until a frame has told which explain it.
-#[derive(Debug, Clone)]
-pub(super) struct Arrival<const N: usize> {
-    /// Of the hypothesis.
-    pub(super) number: usize,
-    /// Their share of its probability.
-    pub(super) share: f64,
-    pub(super) state: Hypothesis<N>,
-}
-
 /// Whether a hypothesis that has been blended with what has changed to it expects a pose less well than those do that have not: a state that is
 /// wide on account of a few explains what neither the few nor the many do.
 fn widens<const N: usize>(
@@ -92,51 +83,6 @@ fn widens<const N: usize>(
         let added = share * (expected(&of_all.covariance) + apart * apart);
         added > tuning::WIDENS * (expected(&hypothesis.covariance) + pose_variance[j])
     })
-}
-
-impl<const N: usize> Hypothesis<N> {
-    /// Takes a share of it to be in another state: both have the first entries, so many, in common.
-    pub(super) fn blend(
-        &mut self,
-        (mean, of_covariance): (&SVector<f64, N>, &SMatrix<f64, N, N>),
-        share: f64,
-        shared: usize,
-    ) {
-        let own = 1.0 - share;
-        let mut apart = [0.0; N];
-        for (i, apart) in apart.iter_mut().enumerate().take(shared) {
-            *apart = mean[i] - self.mean[i];
-            self.mean[i] += share * *apart;
-        }
-        let (covariance, of_covariance) = (&mut self.covariance.data.0, &of_covariance.data.0);
-        vectorised(
-            #[inline(always)]
-            || {
-                // Columns are written anew, where nothing else is.
-                let columns = covariance.iter_mut().zip(of_covariance).enumerate();
-                if shared == N {
-                    for (j, (entries, of_other)) in columns {
-                        let (mut column, by_column) = ([0.0; N], share * apart[j]);
-                        for i in 0..N {
-                            column[i] = share * of_other[i] + own * (entries[i] + by_column * apart[i]);
-                        }
-                        *entries = column;
-                    }
-                    return;
-                }
-                // What lies beyond the entries in use is none, in all of them.
-                let of_shared: [f64; N] = std::array::from_fn(|i| if i < shared { share } else { 0.0 });
-                for (j, (entries, of_other)) in columns {
-                    let (mut column, by_column) = ([0.0; N], share * apart[j]);
-                    let counts = if j < shared { 1.0 } else { 0.0 };
-                    for i in 0..N {
-                        column[i] = of_shared[i] * counts * of_other[i] + own * (entries[i] + by_column * apart[i]);
-                    }
-                    *entries = column;
-                }
-            },
-        );
-    }
 }
 
 /// Probability, in a step, that a course is left for a certain other one.
@@ -181,8 +127,7 @@ impl<const N: usize> Pooled<N> {
         let (n, k) = (if course.has_more_than_motion() { N } else { 2 * N / 3 }, N / 3);
         let shared = if course == Course::ConstantVelocity { 2 * k } else { n };
         let mean = SVector::from_fn(|i, _| if i < shared { self.mean[i] } else { 0.0 });
-        let covariance =
-            SMatrix::from_fn(|i, j| if i < shared && j < shared { self.covariance[(i, j)] } else { 0.0 });
+        let covariance = SMatrix::from_fn(|i, j| if i < shared && j < shared { self.covariance[(i, j)] } else { 0.0 });
         let mut hypothesis = Hypothesis { course, mean, covariance };
         if n > 2 * k {
             hypothesis.add_unknown(model, units, if shared < n { 1.0 } else { self.without });
