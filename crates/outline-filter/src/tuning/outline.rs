@@ -248,7 +248,7 @@ pub(crate) mod redrawing {
 /// Symmetry of outlines.
 pub(crate) mod symmetry {
     /// Frames after which the outline is asked again whether it is symmetric: soon after its map has been cut anew, in a frame without that to do.
-    pub(crate) const ASKED_AGAIN: [usize; 2] = [20, 70];
+    pub(crate) const ASKED_AGAIN: [usize; 4] = [20, 40, 70, 200];
     /// Largest order that is looked for.
     pub(crate) const LARGEST_ORDER: usize = 72;
     /// Mean square of the innovations of a turned outline, in those of the outline as it is, up to which it is symmetric within its

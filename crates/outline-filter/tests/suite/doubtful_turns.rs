@@ -164,7 +164,7 @@ fn a_turn_that_has_grown_beyond_half_a_circle_per_frame_is_in_doubt() {
     let mut run = filter(MotionModel::Rigid);
     let (mut turn, mut rate) = (0.0, 1.6);
     let (mut were_known, mut doubts) = (0, 0);
-    for frame in 0..170 {
+    for frame in 0..200 {
         run.step(f64::from(frame) / FRAME_RATE, &outline(turn, &mut random)).expect("increasing times");
         (turn, rate) = (turn + rate, rate + 0.01);
         if let Some((value, _)) = omega_of(&run) {
@@ -185,6 +185,6 @@ fn a_turn_that_has_grown_beyond_half_a_circle_per_frame_is_in_doubt() {
         }
     }
     assert!(doubts > 0);
-    // Of 170: a turn that grows is doubtful as long as few frames tell how fast.
+    // Of 200: a turn that grows is doubtful as long as few frames tell how fast.
     assert!(were_known > 30, "{were_known}");
 }

@@ -64,7 +64,7 @@ fn a_lost_object_is_found_within_eight_frames_at_whatever_turn_it_comes_back() {
 #[test]
 fn positions_of_an_object_that_was_lost_are_still_known_no_better_than_its_first_frame() {
     let (mut all, mut off) = (0, 0);
-    for seed in 0..16 {
+    for seed in 0..24 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let (turns, teeth) = (random.random_range(1.0..2.5), random.random_range(8..16));
         let gear = gear_with_a_missing_tooth(teeth);
