@@ -104,7 +104,10 @@ impl<const N: usize> InteractingHypotheses<N> {
             let turns = match hypothesis.course {
                 Course::ConstantGenerator => true,
                 Course::ConstantVelocity => false,
-                Course::Shaken { .. } | Course::Accelerating { .. } | Course::SteadyChange { .. } => continue,
+                Course::Shaken { .. }
+                | Course::Accelerating { .. }
+                | Course::ChangingGenerator { .. }
+                | Course::SteadyChange { .. } => continue,
             };
             if *weight > tuning::OUTSIDE_THREE_DEVIATIONS {
                 let possible = change.possible(turns, wider, &self.place_of(hypothesis))?;

@@ -32,7 +32,7 @@ impl<const N: usize> Hypothesis<N> {
         } else {
             let motion = &self.mean.as_slice()[k..2 * k];
             let v = parts(&model.generator(motion)).1;
-            let changes = matches!(self.course, Course::SteadyChange { .. });
+            let changes = self.course.has_accelerations();
             let change_of = |j: usize| if changes { self.mean[2 * k + j] } else { 0.0 };
             // Half way through the step.
             let rates: [f64; LARGEST] =
@@ -41,7 +41,7 @@ impl<const N: usize> Hypothesis<N> {
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
             let (shift, later) = match self.course {
                 Course::ConstantVelocity => (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning),
-                // Others have no such entries, but for a steady change.
+                // Others have no such entries, but for rates of change.
                 _ => (along * v + 0.5 * dt * dt * turning, turn * v + along * turning),
             };
             let transition = self.transition(step, (&turn, &along, &v, &later));
@@ -51,6 +51,7 @@ impl<const N: usize> Hypothesis<N> {
                 self.mean[j] += dt * rate;
                 self.mean[k + j] += if changes { dt * self.mean[2 * k + j] } else { 0.0 };
             }
+            self.add_change_of_accelerations(step);
         }
         for j in 0..k - 2 {
             self.mean[j] += step.turned_by[j];
@@ -105,12 +106,13 @@ mod tests {
     use super::*;
     use crate::dynamics::{CentredPose, centred::CentredVector};
 
-    const COURSES: [Course; 7] = [
+    const COURSES: [Course; 8] = [
         Course::ConstantGenerator,
         Course::ConstantVelocity,
         Course::Shaken { deviations: 4.0 },
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },
+        Course::ChangingGenerator { level: 1e1 },
         Course::SteadyChange { turns: true },
         Course::SteadyChange { turns: false },
     ];

@@ -23,6 +23,12 @@ pub(super) enum Course {
         /// Whether the rates do as well, or the velocity of the centroid alone, as of an object that spins while it falls.
         rates: bool,
     },
+    /// The generator changes at rates that change at random, which its state has in place of accelerations: the velocity of the centroid turns with the
+    /// object, as of one that speeds up about a fixed point.
+    ChangingGenerator {
+        /// As that of accelerations.
+        level: f64,
+    },
     /// The motion changes at a steady rate, which its state has in place of accelerations.
     SteadyChange {
         /// Whether the velocity of the centroid turns with the object, but for that.
@@ -35,7 +41,8 @@ impl Course {
     pub(super) fn all_of(setting: Dynamics) -> Vec<Self> {
         let all = tuning::LEVELS.map(|level| Self::Accelerating { level, rates: true });
         let of_velocity = tuning::LEVELS_OF_VELOCITY.map(|level| Self::Accelerating { level, rates: false });
-        let accelerating = all.into_iter().chain(of_velocity);
+        let of_generator = tuning::LEVELS_OF_GENERATOR.map(|level| Self::ChangingGenerator { level });
+        let accelerating = all.into_iter().chain(of_velocity).chain(of_generator);
         match setting {
             Dynamics::Auto => {
                 let shaken = tuning::SHAKEN.map(|deviations| Self::Shaken { deviations });
@@ -52,8 +59,8 @@ impl Course {
     /// that the level remembers. Larger ones are those of higher levels.
     pub(super) fn acceleration_prior(self, pose_variance: &CentredVector, k: usize, seconds: f64) -> CentredVector {
         let (first, span, size) = match self {
-            Self::Accelerating { level, rates } => {
-                let first = if rates { 0 } else { k - 2 };
+            Self::Accelerating { level, .. } | Self::ChangingGenerator { level } => {
+                let first = if self.changes_rates() { 0 } else { k - 2 };
                 (first, seconds * (tuning::MEMORY * level.powf(-1.0 / 6.0)).max(1.0), tuning::FIRST_ACCELERATION)
             }
             Self::SteadyChange { .. } => (0, seconds, steady_change::ANY),
@@ -69,7 +76,7 @@ impl Course {
             Self::ConstantGenerator => tuning::PRIOR_OF_GENERATOR,
             Self::Shaken { .. } => tuning::PRIOR_OF_SHAKEN,
             Self::ConstantVelocity => tuning::PRIOR_OF_VELOCITY,
-            Self::Accelerating { .. } => tuning::PRIOR_OF_EACH_LEVEL,
+            Self::Accelerating { .. } | Self::ChangingGenerator { .. } => tuning::PRIOR_OF_EACH_LEVEL,
             Self::SteadyChange { .. } => 0.0,
         }
     }
@@ -89,6 +96,33 @@ impl Course {
 
     /// Whether the state has entries behind the motion.
     pub(super) fn has_more_than_motion(self) -> bool {
-        matches!(self, Self::Accelerating { .. } | Self::ConstantVelocity | Self::SteadyChange { .. })
+        self.has_accelerations() || self == Self::ConstantVelocity
+    }
+
+    /// Whether these are accelerations, or rates of change in place of them.
+    pub(super) fn has_accelerations(self) -> bool {
+        matches!(self, Self::Accelerating { .. } | Self::ChangingGenerator { .. } | Self::SteadyChange { .. })
+    }
+
+    /// Whether the velocity of the centroid turns with the object, but for what changes it.
+    pub(super) fn turns(self) -> bool {
+        match self {
+            Self::ConstantGenerator | Self::Shaken { .. } | Self::ChangingGenerator { .. } => true,
+            Self::ConstantVelocity | Self::Accelerating { .. } => false,
+            Self::SteadyChange { turns } => turns,
+        }
+    }
+
+    /// Level at which its accelerations change at random, if they do.
+    pub(super) fn level(self) -> Option<f64> {
+        match self {
+            Self::Accelerating { level, .. } | Self::ChangingGenerator { level } => Some(level),
+            Self::ConstantGenerator | Self::Shaken { .. } | Self::ConstantVelocity | Self::SteadyChange { .. } => None,
+        }
+    }
+
+    /// Whether rates change, if anything does.
+    pub(super) fn changes_rates(self) -> bool {
+        self != Self::ConstantVelocity && !matches!(self, Self::Accelerating { rates: false, .. })
     }
 }

@@ -52,7 +52,7 @@ impl<const N: usize> Hypothesis<N> {
         if course.has_more_than_motion() {
             hypothesis.add_unknown(model, (pose_variance, seconds), 1.0);
         }
-        if let Course::Accelerating { .. } | Course::SteadyChange { .. } = course {
+        if course.has_accelerations() {
             let k = Self::K;
             // The motion known so far is the mean over the step: half of it ago.
             for j in 0..k {
@@ -131,7 +131,7 @@ impl<const N: usize> Hypothesis<N> {
                 let (turn, along) = of_motion();
                 (turn, along, along * v, turn * v)
             }
-            Course::SteadyChange { turns: true } => {
+            Course::ChangingGenerator { .. } | Course::SteadyChange { turns: true } => {
                 let half_way = motion + 0.5 * dt * acceleration;
                 let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
                 (turn, along, along * v + 0.5 * dt * dt * w, turn * v + along * w)
@@ -171,8 +171,8 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Lets accelerations have changed at random during a step.
     pub(super) fn add_change_of_accelerations(&mut self, step: &Step<'_>) {
-        let Course::Accelerating { level, rates: all } = self.course else { return };
-        let k = Self::K;
+        let Some(level) = self.course.level() else { return };
+        let (k, all) = (Self::K, self.course.changes_rates());
         let covariance = &mut self.covariance.data.0;
         for j in if all { 0 } else { k - 2 }..k {
             let variance = level * step.pose_variance[j];
@@ -198,7 +198,7 @@ impl<const N: usize> Hypothesis<N> {
         let rates = k - 2;
         let mut f = step.pose_transition(turn);
         match self.course {
-            Course::ConstantGenerator | Course::Shaken { .. } | Course::SteadyChange { turns: true } => {
+            course if course.turns() => {
                 let mean_velocity = 0.5 * (v + later);
                 for i in 0..2 {
                     for j in 0..2 {
@@ -223,15 +223,15 @@ impl<const N: usize> Hypothesis<N> {
                     f[(2 * k + row, column)] = turn[(i, j)];
                 }
             }
-            Course::Accelerating { .. } | Course::SteadyChange { turns: false } => {}
+            _ => {}
         }
-        if let Course::Accelerating { .. } | Course::SteadyChange { .. } = self.course {
+        if self.course.has_accelerations() {
             for j in 0..k {
                 f[(j, 2 * k + j)] = 0.5 * dt * dt;
                 f[(k + j, 2 * k + j)] = dt;
             }
         }
-        if self.course == (Course::SteadyChange { turns: true }) {
+        if self.course.has_accelerations() && self.course.turns() {
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 f[(k + rates + i, 2 * k + rates + j)] = along[(i, j)];
             }

@@ -26,7 +26,11 @@ use crate::{
 };
 
 /// Hypotheses at most.
-pub(super) const MOST: usize = 2 + tuning::SHAKEN.len() + tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len();
+pub(super) const MOST: usize = 2
+    + tuning::SHAKEN.len()
+    + tuning::LEVELS.len()
+    + tuning::LEVELS_OF_VELOCITY.len()
+    + tuning::LEVELS_OF_GENERATOR.len();
 
 type Weights = [f64; MOST];
 
@@ -302,7 +306,9 @@ impl<const N: usize> InteractingHypotheses<N> {
             match hypothesis.course {
                 Course::ConstantGenerator | Course::Shaken { .. } => weights.generator += weight,
                 Course::ConstantVelocity => weights.velocity += weight,
-                Course::Accelerating { .. } | Course::SteadyChange { .. } => weights.accelerating += weight,
+                Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::SteadyChange { .. } => {
+                    weights.accelerating += weight;
+                }
             }
         }
         weights

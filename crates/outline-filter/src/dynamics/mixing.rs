@@ -34,14 +34,16 @@ pub(super) fn mix<const N: usize>(
     if hypotheses.len() < 2 {
         return;
     }
-    let with_all = Pooled::of(hypotheses, weights, model);
-    let pooled = [with_all.of_velocity(hypotheses, weights, model), with_all];
+    let with_all = Pooled::of(hypotheses, weights, model, Accelerations::All);
+    let of_velocity = with_all.of_velocity(hypotheses, weights, model);
+    let of_generator = Pooled::of(hypotheses, weights, model, Accelerations::OfGenerator);
     let all: f64 = changing(hypotheses, weights).map(|(_, weight)| weight).sum();
     let shares: f64 = hypotheses.iter().map(|hypothesis| arriving(hypothesis.course)).sum();
     for (number, (hypothesis, weight)) in hypotheses.iter_mut().zip(weights).enumerate() {
         let of_all = match Accelerations::of(hypothesis.course) {
-            Accelerations::OfVelocity => &pooled[0],
-            Accelerations::All | Accelerations::None => &pooled[1],
+            Accelerations::OfVelocity => &of_velocity,
+            Accelerations::OfGenerator => &of_generator,
+            Accelerations::All | Accelerations::None => &with_all,
         };
         // Of what has changed, this hypothesis takes its own part back.
         let stays = *weight * (1.0 - shares * leaving(hypothesis.course));
@@ -89,7 +91,9 @@ fn widens<const N: usize>(
 fn leaving(course: Course) -> f64 {
     match course {
         Course::ConstantGenerator | Course::ConstantVelocity | Course::SteadyChange { .. } => tuning::LEAVES_CONSTANT,
-        Course::Accelerating { .. } | Course::Shaken { .. } => tuning::LEAVES_CHANGING,
+        Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::Shaken { .. } => {
+            tuning::LEAVES_CHANGING
+        }
     }
 }
 
@@ -98,7 +102,7 @@ fn arriving(course: Course) -> f64 {
     match course {
         Course::Shaken { .. } => tuning::BEGINS_TO_SHAKE,
         Course::ConstantGenerator | Course::ConstantVelocity => tuning::BECOMES_CONSTANT,
-        Course::Accelerating { .. } | Course::SteadyChange { .. } => 1.0,
+        Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::SteadyChange { .. } => 1.0,
     }
 }
 
@@ -135,17 +139,17 @@ impl<const N: usize> Pooled<N> {
         hypothesis
     }
 
-    /// With all accelerations.
-    fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel) -> Self {
+    /// With accelerations of all parameters.
+    fn of(hypotheses: &[Hypothesis<N>], weights: &[f64], model: MotionModel, accelerations: Accelerations) -> Self {
         let k = N / 3;
         let mut pooled = Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), without: 0.0 };
         let sources = counting(hypotheses, weights);
         for (source, share) in sources.clone() {
-            pooled.mean += Accelerations::All.mean_of(source, model) * share;
+            pooled.mean += accelerations.mean_of(source, model) * share;
         }
         for (source, share) in sources {
-            let apart = Accelerations::All.mean_of(source, model) - pooled.mean;
-            let known = if Accelerations::All.are_part_of(source.course) { 3 * k } else { 2 * k };
+            let apart = accelerations.mean_of(source, model) - pooled.mean;
+            let known = if accelerations.are_part_of(source.course) { 3 * k } else { 2 * k };
             let (covariance, of_source) = (&mut pooled.covariance.data.0, &source.covariance.data.0);
             vectorised(
                 #[inline(always)]
@@ -208,12 +212,15 @@ enum Accelerations {
     /// Of the velocity of the centroid alone.
     OfVelocity,
     All,
+    /// Of all parameters, that of the velocity of the centroid beside what the turn of the object makes of it.
+    OfGenerator,
 }
 
 impl Accelerations {
     fn of(course: Course) -> Self {
         match course {
-            Course::Accelerating { rates: true, .. } | Course::SteadyChange { .. } => Self::All,
+            Course::ChangingGenerator { .. } | Course::SteadyChange { turns: true } => Self::OfGenerator,
+            Course::Accelerating { rates: true, .. } | Course::SteadyChange { turns: false } => Self::All,
             Course::Accelerating { rates: false, .. } => Self::OfVelocity,
             Course::ConstantGenerator | Course::Shaken { .. } | Course::ConstantVelocity => Self::None,
         }
@@ -222,27 +229,26 @@ impl Accelerations {
     /// Whether a course has them all.
     fn are_part_of(self, course: Course) -> bool {
         let had = Self::of(course);
-        had != Self::None && (had == Self::All || self != Self::All)
+        had != Self::None && had == self || self == Self::OfVelocity && had == Self::All
     }
 
     /// The state of a hypothesis with these accelerations: those that it does not have follow from its motion.
     fn mean_of<const N: usize>(self, source: &Hypothesis<N>, model: MotionModel) -> SVector<f64, N> {
+        let mut mean = source.mean;
         if self.are_part_of(source.course) {
-            return source.mean;
+            return mean;
         }
         let k = N / 3;
-        let mut mean = source.mean;
-        match source.course {
-            // Along an arc the velocity of the centroid turns all the time.
-            Course::ConstantGenerator | Course::Shaken { .. } => {
-                let (a, v) = parts(&centred_generator(model, &source.mean.as_slice()[k..2 * k]));
-                mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(a * v));
-            }
-            Course::ConstantVelocity => {
-                let turning = source.mean.fixed_rows::<2>(3 * k - 2).into_owned();
-                mean.fixed_rows_mut::<2>(3 * k - 2).copy_from(&(source.rates(model) * turning));
-            }
-            Course::Accelerating { .. } | Course::SteadyChange { .. } => {}
+        // Along an arc the velocity of the centroid turns all the time.
+        let (a, v) = parts(&centred_generator(model, &source.mean.as_slice()[k..2 * k]));
+        let mut acceleration = mean.fixed_rows_mut::<2>(3 * k - 2);
+        if source.course == Course::ConstantVelocity {
+            acceleration.copy_from(&(a * source.mean.fixed_rows::<2>(3 * k - 2)));
+        } else if source.course.turns() {
+            acceleration += a * v;
+        }
+        if self == Self::OfGenerator {
+            acceleration -= a * v;
         }
         mean
     }

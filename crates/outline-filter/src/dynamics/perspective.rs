@@ -51,7 +51,9 @@ impl<const N: usize> Hypothesis<N> {
             Course::ConstantGenerator | Course::Shaken { .. } => {
                 moved_by_generator(&motion, &CentredVector::zeros(), dt)
             }
-            Course::SteadyChange { turns: true } => moved_by_generator(&motion, &acceleration, dt),
+            Course::ChangingGenerator { .. } | Course::SteadyChange { turns: true } => {
+                moved_by_generator(&motion, &acceleration, dt)
+            }
             Course::ConstantVelocity => moved_straight(&motion, &acceleration, dt),
             Course::Accelerating { .. } | Course::SteadyChange { turns: false } => {
                 moved_by_accelerations(&motion, &acceleration, dt)
@@ -98,7 +100,7 @@ impl<const N: usize> Hypothesis<N> {
                 f.fixed_view_mut::<2, 2>(k + RATES, 2 * k + RATES).copy_from(&less);
                 f.fixed_view_mut::<2, 2>(2 * k + RATES, 2 * k + RATES).copy_from(&turn);
             }
-            Course::Accelerating { .. } | Course::SteadyChange { .. } => {
+            Course::Accelerating { .. } | Course::ChangingGenerator { .. } | Course::SteadyChange { .. } => {
                 for j in 0..k {
                     f[(j, 2 * k + j)] = 0.5 * dt * dt;
                     f[(k + j, 2 * k + j)] = dt;
@@ -200,11 +202,12 @@ mod tests {
 
     type State = nalgebra::SVector<f64, 24>;
 
-    const COURSES: [Course; 6] = [
+    const COURSES: [Course; 7] = [
         Course::ConstantGenerator,
         Course::ConstantVelocity,
         Course::Accelerating { level: 1e-1, rates: true },
         Course::Accelerating { level: 1e1, rates: false },
+        Course::ChangingGenerator { level: 1e1 },
         Course::SteadyChange { turns: true },
         Course::SteadyChange { turns: false },
     ];

@@ -81,6 +81,8 @@ pub(crate) mod dynamics {
     pub(crate) const MEMORY: f64 = 2.0;
     /// As these, where the velocity of the centroid alone changes.
     pub(crate) const LEVELS_OF_VELOCITY: [f64; 2] = [1e-7, 1e-2];
+    /// As these, where it turns with the object. Of a body that turns by a small angle from frame to frame the others say nearly the same.
+    pub(crate) const LEVELS_OF_GENERATOR: [f64; 4] = [1e-5, 1e-2, 1e1, 1e4];
     /// How far the point of an object that runs straight may be from its centroid, in RMS radii, as a deviation: noise, hidden arcs, and bodies
     /// that are not quite even.
     pub(crate) const OFF_CENTROID: f64 = 0.02;
