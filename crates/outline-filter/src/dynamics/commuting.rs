@@ -41,8 +41,8 @@ impl<const N: usize> Hypothesis<N> {
             let turning = Vector2::new(self.mean[3 * k - 2], self.mean[3 * k - 1]);
             let (shift, later) = match self.course {
                 Course::ConstantVelocity => (v * dt + turned_along(&along, dt) * turning, v + turn * turning - turning),
-                // Others have no such entries, but for rates of change.
-                _ => (along * v + 0.5 * dt * dt * turning, turn * v + along * turning),
+                _ if changes => (along * v + self.pushed_along(step) * turning, turn * v + along * turning),
+                _ => (along * v, turn * v),
             };
             let transition = self.transition(step, (&turn, &along, &v, &later));
             self.covariance = carried(&transition, &self.covariance, self.size());
@@ -116,6 +116,31 @@ mod tests {
         Course::SteadyChange { turns: true },
         Course::SteadyChange { turns: false },
     ];
+
+    /// It is pushed by none but its turn: of the velocity of the point that runs straight, `-A V` is a push that stays.
+    #[test]
+    fn a_body_that_spins_about_a_point_aside_which_runs_straight_has_a_generator_that_changes_steadily() {
+        let still = CentredPose { pose: Matrix3::identity(), centroid: Point2::origin() };
+        let variance = CentredVector::repeat(1.0);
+        let (seconds, omega, aside, straight) = (0.7, 2.0, Vector2::new(0.4, -0.1), Vector2::new(0.3, 0.5));
+        let step = Step::new((MotionModel::Rigid, seconds), [&still, &still], &variance).expect("poses");
+        let rates = parts(&MotionModel::Rigid.generator(&[omega, 0.0, 0.0])).0;
+        let (velocity, push) = (straight + rates * aside, -(rates * straight));
+        let mut mean = SVector::<f64, 9>::zeros();
+        mean[3] = omega;
+        mean.fixed_rows_mut::<2>(4).copy_from(&velocity);
+        mean.fixed_rows_mut::<2>(7).copy_from(&push);
+        let course = Course::ChangingGenerator { level: 1.0 };
+        let mut hypothesis = Hypothesis::<9> { course, mean, covariance: SMatrix::identity() };
+        for number in 1..=5 {
+            assert!(hypothesis.predict(&step));
+            let time = f64::from(number) * seconds;
+            let turned = MotionModel::Rigid.linear_flow(&[omega, 0.0, 0.0], time) * aside;
+            let [place, later] = [1, 4].map(|at| Vector2::new(hypothesis.mean[at], hypothesis.mean[at + 1]));
+            assert!((place - (straight * time + turned - aside)).norm() < 1e-12, "{number}: {place}");
+            assert!((later - (straight + rates * turned)).norm() < 1e-12, "{number}: {later}");
+        }
+    }
 
     /// Largest difference between the two ways, for a model of N / 3 parameters.
     fn difference<const N: usize>(model: MotionModel, numbers: &[f64], course: Course) -> f64 {

@@ -7,7 +7,7 @@ use crate::tuning::dynamics as tuning;
 use super::{
     centred::{CentredMatrix, CentredPose, CentredVector, LARGEST, as_map, carry, centred_generator, parts},
     course::Course,
-    step::{Step, turned_along},
+    step::{Step, pushed_along, turned_along},
     turned_chains::carry_turned_chains,
 };
 
@@ -76,6 +76,14 @@ impl<const N: usize> Hypothesis<N> {
         parts(&centred_generator(model, &self.mean.as_slice()[Self::K..2 * Self::K])).0
     }
 
+    /// How far a push beside the turn takes the centroid over a step, the rates being those half way through it.
+    pub(super) fn pushed_along(&self, step: &Step<'_>) -> Matrix2<f64> {
+        let (k, dt) = (Self::K, step.seconds);
+        let half_way =
+            CentredVector::from_fn(|j, _| if j < k { self.mean[k + j] + 0.5 * dt * self.mean[2 * k + j] } else { 0.0 });
+        pushed_along(&parts(&centred_generator(step.model, &half_way.as_slice()[..k])).0, dt)
+    }
+
     /// Takes next to nothing to be known of the entries behind the motion, which depend on no others then; `share` of the variance is added.
     pub(super) fn add_unknown(
         &mut self,
@@ -134,7 +142,7 @@ impl<const N: usize> Hypothesis<N> {
             Course::ChangingGenerator { .. } | Course::SteadyChange { turns: true } => {
                 let half_way = motion + 0.5 * dt * acceleration;
                 let (turn, along) = model.linear_flow_with_integral(&half_way.as_slice()[..k], dt);
-                (turn, along, along * v + 0.5 * dt * dt * w, turn * v + along * w)
+                (turn, along, along * v + self.pushed_along(step) * w, turn * v + along * w)
             }
             Course::ConstantVelocity => {
                 let (turn, along) = of_motion();
@@ -232,7 +240,9 @@ impl<const N: usize> Hypothesis<N> {
             }
         }
         if self.course.has_accelerations() && self.course.turns() {
+            let pushed = self.pushed_along(step);
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                f[(rates + i, 2 * k + rates + j)] = pushed[(i, j)];
                 f[(k + rates + i, 2 * k + rates + j)] = along[(i, j)];
             }
             // The rates half way through the step are larger by half of what they change.

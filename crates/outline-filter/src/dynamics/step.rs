@@ -3,6 +3,7 @@ use freeform_riccati::MotionModel;
 use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2};
 
 use super::centred::{CentredPose, CentredVector, as_map};
+use crate::tuning::dynamics as tuning;
 
 /// A step in time between two reference poses.
 #[derive(Debug, Clone, Copy)]
@@ -75,6 +76,21 @@ impl<'a> Step<'a> {
         }
         f
     }
+}
+
+/// How far a velocity takes an object over a step that is pushed on by one per second and turns with rates A beside that, from none: the integral of
+/// that of the turn, `sum of A^n dt^(n+2) / (n+2)!`. A step is of a turn or two at most.
+pub(super) fn pushed_along(rates: &Matrix2<f64>, seconds: f64) -> Matrix2<f64> {
+    let mut term = Matrix2::identity() * (0.5 * seconds * seconds);
+    let mut sum = term;
+    for n in 3..=tuning::MOST_TERMS {
+        term = rates * term * (seconds / f64::from(n));
+        sum += term;
+        if term.amax() <= f64::EPSILON * sum.amax() {
+            break;
+        }
+    }
+    sum
 }
 
 /// How much farther than at the velocity before a step its part that turns with the object carries over the step, from the integral of the

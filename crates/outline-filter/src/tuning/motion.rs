@@ -104,6 +104,8 @@ pub(crate) mod dynamics {
     /// Hypotheses begin once the outline tells the place of the object better than by this, in RMS radii: two frames of few points on a fine map may
     /// have no cell in common, and what all poses have in common stays what it was when they began.
     pub(crate) const UNTOLD: f64 = 1.0;
+    /// Terms of a series of powers of the turn in a step at most: that of two rounds has settled by then.
+    pub(crate) const MOST_TERMS: u32 = 60;
     /// What makes a measurement of the pose solvable along what it says nothing of.
     pub(crate) const SINGULAR: f64 = 1e-9;
     /// Share of the information on a parameter, all others known, that rounding leaves where there is none with the others unknown.
