@@ -52,9 +52,9 @@ pub(crate) mod batch {
 
 /// Hypotheses of dynamics.
 pub(crate) mod dynamics {
-    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 110,000 frames.
+    /// Probability, in a step, that a constant motion changes to that of a certain other hypothesis: to all of them together, a change in 130,000 frames.
     /// With a hundred times as much most sequences of a thousand frames were found to show a change by chance; a real one is seen a frame or two later.
-    pub(crate) const LEAVES_CONSTANT: f64 = 0.000_000_8;
+    pub(crate) const LEAVES_CONSTANT: f64 = 0.000_000_5;
     /// As that, of a motion that changes already: most of those go on to.
     pub(crate) const LEAVES_CHANGING: f64 = 0.000_15;
     /// How often a motion that changes becomes constant, for one change of how it changes. A body that swings looks for three or four frames at its

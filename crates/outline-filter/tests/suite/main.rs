@@ -3,6 +3,7 @@ mod all_but_round;
 mod dependent_errors;
 mod doubtful_starts;
 mod doubtful_turns;
+mod fast_changes;
 mod few_tell;
 mod filter_changes;
 mod filter_input;

@@ -1,0 +1,55 @@
+//! Motions that change by much more, from frame to frame, than a pose is known to.
+use crate::filter_support::{filter, frames_of, settings};
+use freeform_riccati::{AffineMotion, MotionModel, RigidMotion};
+use freeform_sim_camera::{BuiltInShape, Motion, Settings};
+
+/// What becomes of the angular velocity about the origin of the image, from the tenth frame on.
+#[derive(Debug, Default)]
+struct Told {
+    frames: u32,
+    rejected: u32,
+    stated: u32,
+    /// By more than five deviations, from the sixth frame on.
+    off: u32,
+}
+
+/// Of 60 frames of three shapes, three seeds each, that turn about the origin of the image, aside of them.
+fn told(spin: impl Fn(f64) -> f64 + Copy + Send + Sync + 'static) -> Told {
+    let turning = move |time: f64| AffineMotion::from(RigidMotion { omega: spin(time), b1: 0.0, b2: 0.0 });
+    let mut told = Told::default();
+    for (shape, seed) in [BuiltInShape::Bird, BuiltInShape::Glider, BuiltInShape::Phone].into_iter().zip([0, 10, 20]) {
+        for seed in seed..seed + 3 {
+            let mut run = filter(MotionModel::Rigid);
+            for frame in frames_of(shape, Motion::varying(turning), Settings { points: 200, ..settings(60, seed) }) {
+                let step = run.step(frame.time, &frame.outline).expect("increasing times");
+                if frame.index < 6 {
+                    continue;
+                }
+                told.frames += 1;
+                told.rejected += u32::from(!step.is_accepted());
+                let omega = run.estimate().and_then(|estimate| estimate.parameters().next());
+                let Some((value, std)) = omega.and_then(|omega| omega.value.zip(omega.standard_deviation)) else {
+                    continue;
+                };
+                told.stated += 1;
+                told.off += u32::from((value - spin(frame.time)).abs() > 5.0 * std);
+            }
+        }
+    }
+    told
+}
+
+#[test]
+fn the_spin_of_a_body_that_swings_is_within_its_deviations_at_its_turning_points_too() {
+    // For three frames at its turning points it hardly changes, and then by thirty deviations from frame to frame.
+    let told = told(|time| 4.5 * (6.0 * time + 0.5).sin());
+    assert!(told.off == 0 && told.stated * 10 > told.frames * 9, "{told:?}");
+}
+
+#[test]
+fn a_body_that_speeds_up_about_a_point_aside_is_followed_at_large_turns_from_frame_to_frame() {
+    // By 0.3 to 0.8 rad a frame. No acceleration of its centroid is nearly constant.
+    let told = told(|time| 9.0 + 7.5 * time);
+    assert!(told.rejected * 50 < told.frames && told.stated * 10 > told.frames * 9, "{told:?}");
+    assert!(told.off * 100 <= told.stated, "{told:?}");
+}
