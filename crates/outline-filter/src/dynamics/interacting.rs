@@ -28,9 +28,7 @@ use crate::{
 /// Hypotheses at most.
 pub(super) const MOST: usize = 2
     + tuning::SHAKEN.len()
-    + tuning::LEVELS.len()
-    + tuning::LEVELS_OF_VELOCITY.len()
-    + tuning::LEVELS_OF_GENERATOR.len();
+    + (tuning::LEVELS.len() + tuning::LEVELS_OF_VELOCITY.len() + tuning::LEVELS_OF_GENERATOR.len());
 
 type Weights = [f64; MOST];
 
